@@ -1,0 +1,46 @@
+# `make run` and `make test` need nothing but make, a C++20 compiler and a Python >= 3.12.
+.DEFAULT_GOAL := help
+.NOTPARALLEL:
+.PHONY: help setup run test verify lint format docs clean distclean
+
+IN_VENV := tools/venv-run
+EXAMPLE := milled_block
+CPP := $(shell find cpp src tests -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
+
+help: ## list the targets
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/  make \1\t\2/p' Makefile | expand -t 20
+
+setup: ## make .venv and build the core; quick when nothing changed
+	@tools/setup
+
+run: setup ## run the main example and say where its pictures are
+	@$(IN_VENV) anisocontact run examples/$(EXAMPLE)/case.toml -o results/$(EXAMPLE) --overwrite
+	@echo "pictures: results/$(EXAMPLE)/report.html   fields for ParaView: results/$(EXAMPLE)/*.pvd"
+
+lint: setup ## style, types and format of Python and C++
+	@$(IN_VENV) ruff check --quiet .
+	@$(IN_VENV) ruff format --check --quiet . || { echo "error: not formatted: make format" >&2; exit 1; }
+	@$(IN_VENV) mypy
+	@[ -z "$(CPP)" ] || $(IN_VENV) clang-format --dry-run -Werror $(CPP)
+
+test: lint ## lint and all tests but the slow ones
+	@$(IN_VENV) pytest
+
+verify: lint ## lint and all tests
+	@$(IN_VENV) pytest -m ""
+
+format: setup ## format Python and C++
+	@$(IN_VENV) ruff check --fix --select I --quiet .
+	@$(IN_VENV) ruff format --quiet .
+	@[ -z "$(CPP)" ] || $(IN_VENV) clang-format -i $(CPP)
+
+docs: setup ## build the documentation in docs/_build/html
+	@$(IN_VENV) sphinx-build -W --keep-going -q -b html docs docs/_build/html
+	@echo "documentation: docs/_build/html/index.html"
+
+clean: ## remove results, built documentation and caches
+	rm -rf results docs/_build docs/reference/generated .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -not -path './.venv/*' -prune -exec rm -rf {} +
+
+distclean: clean ## ... and .venv
+	rm -rf .venv
