@@ -1,0 +1,38 @@
+#pragma once
+// Constant direction with an angle: the spectral representation.
+
+#include "anisocontact/anisotropy/field.hpp"
+
+namespace anisocontact::anisotropy {
+
+/// First axis: `vector` projected on the tangent plane, turned by `angle` about the normal
+/// [Konyukhov Schweizerhof 2006, eq. (42), (43)].
+class Constant {
+ public:
+  Constant() = default;
+  Constant(const Vec3<double>& vector, double angle) : vector_(vector), angle_(angle) {}
+
+  static Descriptor describe() {
+    return {"constant",
+            "One direction in space, projected on the surface and turned about its normal.",
+            {{"vector", Kind::vector, "1", "direction of the first axis before it is turned",
+              Bound::nonzero},
+             {"angle", Kind::scalar, "angle", "turn of the axes about the outward normal",
+              Bound::any, false, {0.0}}}};
+  }
+  static Constant make(const Values& v) {
+    const auto& d = v.vector("vector");
+    return {Vec3<double>(d[0], d[1], d[2]), v.scalar("angle")};
+  }
+
+  template <class S>
+  Axes<S> axes(const surface::Geometry<S>& g, const Vector<S>&) const {
+    return axes_from<S>(g, constant<S>(vector_), angle_);
+  }
+
+ private:
+  Vec3<double> vector_{Vec3<double>::UnitX()};
+  double angle_{0.0};
+};
+
+}  // namespace anisocontact::anisotropy

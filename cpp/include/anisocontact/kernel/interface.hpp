@@ -1,0 +1,165 @@
+#pragma once
+// The law of an interface at one point: kinematics in, traction and trial state out.
+
+#include <optional>
+
+#include "anisocontact/anisotropy/registry.hpp"
+#include "anisocontact/kernel/evolution.hpp"
+#include "anisocontact/law/registry.hpp"
+#include "anisocontact/surface/registry.hpp"
+
+namespace anisocontact::kernel {
+
+/// Normal law, adhesion and friction of an interface, with their directions. Without directions
+/// the tensors are isotropic, and any axes do.
+struct InterfaceLaw {
+  law::AnyNormalLaw normal;
+  law::AnyAdhesion adhesion;
+  std::optional<anisotropy::AnyField> adhesion_directions;
+  law::AnyFriction friction;
+  std::optional<anisotropy::AnyField> friction_directions;
+  law::AnyRule rule;
+};
+
+/// Axes of a field; without one, along the first coordinate line.
+template <class S>
+anisotropy::Axes<S> axes_of(const std::optional<anisotropy::AnyField>& field,
+                            const surface::Geometry<S>& g, const Vector<S>& xi) {
+  if (field) return anisotropy::axes(*field, g, xi);
+  return anisotropy::axes_from(g, g.jet.d1[0], 0.0);
+}
+
+/// Where a point is on the master.
+template <class S>
+struct Kinematics {
+  surface::Geometry<S> now;
+  surface::Geometry<double> before;  ///< at the committed coordinates, today's configuration
+  Vector<S> xi;
+  S gap;
+  double dt;
+};
+
+/// N, T and the trial state.
+template <class S>
+struct Reaction {
+  S pressure{0.0};
+  Covector<S> traction{};
+  anisotropy::Axes<S> adhesion_axes{}, friction_axes{};
+  PointState state{};
+  Failure failure{Failure::none};
+};
+
+/// Part of a step that a point spent in contact: 1 where it was in contact before, else what is
+/// left after the gap closed, the motion taken as straight.
+template <class S>
+S contact_fraction(const PointState& state, const S& gap) {
+  if (state.status != static_cast<std::int64_t>(Contact::open) || !(state.gap > 0.0)) return S(1.0);
+  return gap / (gap - S(state.gap));
+}
+
+/// State of a point that is not in contact: no force, no history but its path.
+template <class S>
+PointState opened(const PointState& old, const Kinematics<S>& k) {
+  PointState s;
+  s.xi = {value(k.xi[0]), value(k.xi[1])};
+  s.origin = s.xi;
+  s.gap = value(k.gap);
+  s.slip_accumulated = old.slip_accumulated;
+  s.dissipation = old.dissipation;
+  return s;
+}
+
+/// History and increment as the law needs them; a point that comes into contact has no history.
+template <class S>
+Transported<S> history(const PointState& state, const Kinematics<S>& k) {
+  Transported<S> t = transport(state, k.before, k.now);
+  if (state.status == static_cast<std::int64_t>(Contact::open)) {
+    t.stored = {};
+    t.elastic = {};
+    t.increment = contact_fraction(state, k.gap) * t.increment;
+  }
+  return t;
+}
+
+/// Solves for T: the trial force where it is inside the ellipse, else what the rule makes of it.
+template <class S>
+law::SlideResult<S> tangential(const InterfaceLaw& l, const law::SlideProblem<S>& p,
+                               Contact& status) {
+  if (law::friction_norm(p.friction, p.trial) <= p.pressure) {
+    status = Contact::stick;
+    return {p.trial, p.trial, {}, true};
+  }
+  status = Contact::slip;
+  return std::visit([&](const auto& rule) { return rule.slide(p); }, l.rule);
+}
+
+/// Trial state after the law has been solved.
+template <class S>
+PointState advanced(const PointState& old, const Kinematics<S>& k, const Transported<S>& t,
+                    const law::SlideResult<S>& r, const law::LinearTensors<S>& tensors,
+                    const S& pressure, Contact status) {
+  PointState s;
+  s.xi = {value(k.xi[0]), value(k.xi[1])};
+  const bool begins = old.status == static_cast<std::int64_t>(Contact::open);
+  s.origin = begins ? s.xi : old.origin;
+  const Covector<double> traction = value(r.traction);
+  const Vector<double> slip = value(r.slip);
+  const Vector<double> elastic = value(t.elastic) + value(t.increment) - slip;
+  s.traction = traction.c;
+  s.stored = value(r.stored).c;
+  s.elastic = elastic.c;
+  s.slip = slip.c;
+  s.gap = value(k.gap);
+  s.pressure = value(pressure);
+  s.slip_accumulated =
+      old.slip_accumulated + std::sqrt(dot(slip, value(k.now.a_co) * slip));
+  s.dissipation = old.dissipation - dot(traction, slip);
+  s.energy_adhesion = -0.5 * dot(value(tensors.b) * elastic, elastic);
+  s.energy_normal = -0.5 * s.pressure * s.gap;
+  s.status = static_cast<std::int64_t>(status);
+  return s;
+}
+
+/// The whole law at a point.
+template <class S>
+Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinematics<S>& k) {
+  Reaction<S> r;
+  r.pressure =
+      law::pressure(law::normal_model(l.normal), k.gap, state.gap, state.pressure, k.dt);
+  if (!(value(r.pressure) > 0.0)) {
+    r.state = opened(state, k);
+    return r;
+  }
+  r.adhesion_axes = axes_of(l.adhesion_directions, k.now, k.xi);
+  r.friction_axes = axes_of(l.friction_directions, k.now, k.xi);
+  if (!r.adhesion_axes.valid || !r.friction_axes.valid) {
+    r.failure = Failure::direction;
+    return r;
+  }
+  const auto tensors = law::pull_back(law::linear_model(l.adhesion), k.now, r.adhesion_axes);
+  const Transported<S> t = history(state, k);
+  const auto trial =
+      law::trial(tensors, t.connection, t.stored, t.elastic, t.increment, k.dt);
+  const auto friction =
+      std::visit([&](const auto& f) { return f.tensor(k.now, r.friction_axes); }, l.friction);
+  const law::SlideProblem<S> p{trial.stiffness,
+                               friction,
+                               k.now.a_co,
+                               {k.now.project_contra(r.friction_axes.e[0]),
+                                k.now.project_contra(r.friction_axes.e[1])},
+                               trial.traction,
+                               t.elastic + t.increment,
+                               t.increment,
+                               r.pressure};
+  Contact status{};
+  const auto solved = tangential(l, p, status);
+  if (!solved.converged) {
+    r.failure = Failure::law;
+    return r;
+  }
+  r.traction = solved.traction;
+  r.state = advanced(state, k, t, solved, tensors, r.pressure, status);
+  return r;
+}
+
+}  // namespace anisocontact::kernel

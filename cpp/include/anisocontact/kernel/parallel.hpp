@@ -1,0 +1,27 @@
+#pragma once
+// Batches of points over threads.
+
+#include <algorithm>
+#include <cstddef>
+#include <thread>
+#include <vector>
+
+namespace anisocontact::kernel {
+
+/// Calls f(i) for i in [0, n), the range cut into one piece a thread. Small ranges stay on the
+/// calling thread, where starting another would cost more than it saves.
+template <class F>
+void parallel_for(std::size_t n, std::size_t threads, const F& f) {
+  constexpr std::size_t least_per_thread = 256;
+  const std::size_t used = std::max<std::size_t>(1, std::min(threads, n / least_per_thread));
+  const auto run = [&](std::size_t part) {
+    for (std::size_t i = n * part / used; i < n * (part + 1) / used; ++i) f(i);
+  };
+  std::vector<std::thread> pool;
+  pool.reserve(used - 1);
+  for (std::size_t part = 1; part < used; ++part) pool.emplace_back(run, part);
+  run(0);
+  for (auto& t : pool) t.join();
+}
+
+}  // namespace anisocontact::kernel

@@ -1,0 +1,99 @@
+#pragma once
+// One slave point against an analytic surface: projection -> kinematics -> law -> traction on the
+// slave and its exact derivative with respect to the position of the slave.
+
+#include "anisocontact/kernel/interface.hpp"
+#include "anisocontact/projection/closest_point.hpp"
+
+namespace anisocontact::kernel {
+
+/// Surface and law of an interface.
+struct Interface {
+  surface::AnySurface surface;
+  InterfaceLaw law;
+};
+
+/// Result at a point; vectors in global components.
+struct PointResult {
+  Vec3<double> traction{Vec3<double>::Zero()};  ///< t = N n + T on the slave
+  Eigen::Matrix3d tangent{Eigen::Matrix3d::Zero()};  ///< dt/dx
+  Vec3<double> normal{Vec3<double>::Zero()};
+  std::array<Vec3<double>, 2> adhesion_axes{Vec3<double>::Zero(), Vec3<double>::Zero()};
+  std::array<Vec3<double>, 2> friction_axes{Vec3<double>::Zero(), Vec3<double>::Zero()};
+  PointState state{};
+  Failure failure{Failure::none};
+};
+
+/// The slave position in the scalar type of the update, seeded where derivatives are wanted.
+template <class S>
+Vec3<S> seeded(const Vec3<double>& x) {
+  if constexpr (std::is_same_v<S, double>)
+    return x;
+  else
+    return {S::variable(x[0], 0), S::variable(x[1], 1), S::variable(x[2], 2)};
+}
+
+/// Kinematics of a projected point.
+template <class S>
+Kinematics<S> kinematics(const surface::AnySurface& surface, const PointState& state,
+                         const std::array<double, 2>& xi, const Vec3<S>& x, double dt) {
+  Kinematics<S> k;
+  const auto here = surface::geometry(surface::jet(surface, xi[0], xi[1]));
+  if constexpr (std::is_same_v<S, double>) {
+    k.xi = {xi};
+    k.now = here;
+  } else {
+    k.xi = projection::linearised(here, xi, x);
+    k.now = surface::geometry(surface::jet(surface, k.xi[0], k.xi[1]));
+  }
+  k.before = surface::geometry(surface::jet(surface, state.xi[0], state.xi[1]));
+  k.gap = (x - k.now.jet.position).dot(k.now.normal);
+  k.dt = dt;
+  return k;
+}
+
+/// Pure update of one point; with S = Dual<3> the tangent comes along.
+template <class S>
+PointResult update(const Interface& itf, const PointState& state, const Vec3<double>& x,
+                   double dt) noexcept {
+  PointResult out;
+  out.state = state;
+  const auto p = projection::closest_point(itf.surface, x);
+  if (p.status == projection::Status::failed) {
+    out.failure = Failure::projection;
+    return out;
+  }
+  const auto k = kinematics<S>(itf.surface, state, p.xi, seeded<S>(x), dt);
+  out.normal = value(k.now.normal);
+  const auto r = react(itf.law, state, k);
+  out.failure = r.failure;
+  if (r.failure != Failure::none) return out;
+  out.state = r.state;
+  for (std::size_t i = 0; i < 2; ++i) {
+    out.adhesion_axes[i] = value(r.adhesion_axes.e[i]);
+    out.friction_axes[i] = value(r.friction_axes.e[i]);
+  }
+  const Vec3<S> t = r.pressure * k.now.normal + k.now.spatial(r.traction);
+  out.traction = value(t);
+  if constexpr (!std::is_same_v<S, double>)
+    for (Eigen::Index i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) out.tangent(i, static_cast<Eigen::Index>(j)) = t[i].d[j];
+  return out;
+}
+
+/// State of a point before the first step: projected, without force (101).
+inline PointState initial_state(const surface::AnySurface& surface, const Vec3<double>& x,
+                                Failure& failure) noexcept {
+  PointState s;
+  const auto p = projection::closest_point(surface, x);
+  if (p.status == projection::Status::failed) {
+    failure = Failure::projection;
+    return s;
+  }
+  const auto g = surface::geometry(surface::jet(surface, p.xi[0], p.xi[1]));
+  s.xi = s.origin = p.xi;
+  s.gap = (x - g.jet.position).dot(g.normal);
+  return s;
+}
+
+}  // namespace anisocontact::kernel

@@ -1,0 +1,32 @@
+#pragma once
+// What a contact point remembers from one accepted step to the next.
+
+#include <array>
+#include <cstdint>
+
+namespace anisocontact::kernel {
+
+enum class Contact : std::int64_t { open = 0, stick = 1, slip = 2 };
+
+/// Why a point could not be updated.
+enum class Failure : std::int64_t { none = 0, projection = 1, direction = 2, law = 3 };
+
+/// Committed state of a point. Plain data of eight-byte fields, so that an array of states is one
+/// block of memory which can be copied, compared and stored whole.
+struct PointState {
+  std::array<double, 2> xi{};        ///< coordinates of the projection
+  std::array<double, 2> origin{};    ///< coordinates where the contact began, xi_(0)
+  std::array<double, 2> traction{};  ///< T_i in the basis at xi
+  std::array<double, 2> stored{};    ///< elastic force the next trial starts from, T_i
+  std::array<double, 2> elastic{};   ///< elastic slip, xi^i
+  std::array<double, 2> slip{};      ///< last sliding increment, xi^i
+  double gap{0.0};                   ///< xi^3
+  double pressure{0.0};              ///< N
+  double slip_accumulated{0.0};      ///< length of the sliding path
+  double dissipation{0.0};           ///< by friction, per area
+  double energy_adhesion{0.0};       ///< elastic energy of the tangential law, per area
+  double energy_normal{0.0};         ///< elastic energy of the normal law, per area
+  std::int64_t status{0};
+};
+
+}  // namespace anisocontact::kernel

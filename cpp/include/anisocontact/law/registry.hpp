@@ -1,0 +1,34 @@
+#pragma once
+// The laws there are. A new one: its header, and its name here.
+
+#include "anisocontact/law/adhesion.hpp"
+#include "anisocontact/law/friction.hpp"
+#include "anisocontact/law/normal.hpp"
+#include "anisocontact/law/rules/explicit.hpp"
+#include "anisocontact/law/rules/maximum_dissipation.hpp"
+#include "anisocontact/law/rules/radial.hpp"
+#include "anisocontact/registry/descriptor.hpp"
+
+namespace anisocontact::law {
+
+using SlidingRules = Registry<MaximumDissipation, Explicit, Radial>;
+using AnyRule = SlidingRules::Any;
+
+using AdhesionModels = Registry<Elastic>;
+using AnyAdhesion = AdhesionModels::Any;
+
+using NormalLaws = Registry<Penalty>;
+using AnyNormalLaw = NormalLaws::Any;
+
+using FrictionModels = Registry<Orthotropic>;
+using AnyFriction = FrictionModels::Any;
+
+inline const LinearModel& linear_model(const AnyAdhesion& a) {
+  return std::visit([](const auto& m) -> const LinearModel& { return m.model(); }, a);
+}
+
+inline const NormalModel& normal_model(const AnyNormalLaw& n) {
+  return std::visit([](const auto& m) -> const NormalModel& { return m.model(); }, n);
+}
+
+}  // namespace anisocontact::law

@@ -1,0 +1,67 @@
+#pragma once
+// What a sliding rule is given and what it returns.
+
+#include <array>
+#include <concepts>
+
+#include "anisocontact/registry/descriptor.hpp"
+#include "anisocontact/tensor/tangent.hpp"
+
+namespace anisocontact::law {
+
+/// A trial force outside the yield ellipse: find T on it with T = T_tr + S dxi_sl.
+template <class S>
+struct SlideProblem {
+  CoCo<S> stiffness;             ///< S = -B, or its algorithmic counterpart in time
+  ContraContra<S> friction;      ///< f^ij of T.FT = N^2
+  CoCo<S> a_co;                  ///< metric
+  std::array<Vector<S>, 2> axes; ///< friction axes e_1, e_2
+  Covector<S> trial;             ///< T_tr
+  Vector<S> elastic;             ///< elastic slip if the whole increment were elastic
+  Vector<S> increment;           ///< whole slip increment dxi
+  S pressure;                    ///< N > 0
+};
+
+template <class S>
+struct SlideResult {
+  Covector<S> traction;  ///< T on the yield ellipse, acts in this step
+  Covector<S> stored;    ///< elastic force the next trial starts from; T but for the explicit rule
+  Vector<S> slip;        ///< dxi_sl
+  bool converged{true};
+};
+
+/// Consistent tangent of T at fixed stiffness and friction tensors.
+struct SlideTangent {
+  CoContra<double> d_trial;    ///< dT_i / dT_tr,j
+  Covector<double> d_pressure; ///< dT_i / dN
+};
+
+template <class T>
+concept SlidingRule = requires(const T& r, const SlideProblem<double>& p,
+                               const SlideProblem<Dual<3>>& d, const SlideResult<double>& s) {
+  { r.slide(p) } noexcept -> std::same_as<SlideResult<double>>;
+  { r.slide(d) } noexcept -> std::same_as<SlideResult<Dual<3>>>;
+  { r.tangent(p, s) } noexcept -> std::same_as<SlideTangent>;
+  { T::describe() } -> std::same_as<Descriptor>;
+};
+
+/// sqrt(T . F T), the norm of the yield function [Konyukhov Schweizerhof 2006, eq. (33)].
+template <class S>
+S friction_norm(const ContraContra<S>& friction, const Covector<S>& t) {
+  using std::sqrt;
+  return sqrt(dot(t, friction * t));
+}
+
+/// dxi_sl that a change of force T - T_tr stands for; in the degenerate strip, where S has rank
+/// one, the slip of least length (the force then lies in the range of S).
+template <class S>
+Vector<S> slip_from_force(const SlideProblem<S>& p, const Covector<S>& change) {
+  const ContraContra<S> a_contra = inverse(p.a_co);
+  const CoContra<S> mixed = p.stiffness * a_contra;
+  const S tr = trace(mixed);
+  constexpr double rank_limit = 1e-12;  // relative; rounding of a rank-one S is some 1e-16
+  if (value(det(mixed)) > rank_limit * value(tr * tr)) return inverse(p.stiffness) * change;
+  return (S(1.0) / (tr * tr)) * (a_contra * (p.stiffness * (a_contra * change)));
+}
+
+}  // namespace anisocontact::law

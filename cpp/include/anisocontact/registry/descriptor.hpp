@@ -1,0 +1,82 @@
+#pragma once
+// What a surface, field, law or rule says of itself. Bindings, case schema, `info` and the
+// conformance tests are made from these descriptions; nothing else lists names or parameters.
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace anisocontact {
+
+/// Form of a parameter: one number, a pair, a spatial vector, a list, whole numbers, a switch, or
+/// one of a few words (whose place in `choices` is its value).
+enum class Kind { scalar, pair, vector, array, integer, integers, flag, choice };
+
+/// What values a parameter may take.
+enum class Bound { any, nonzero, positive, non_negative };
+
+struct Parameter {
+  std::string name;
+  Kind kind;
+  std::string unit;  ///< dimension: "length", "angle", "stress/length", "1", ...
+  std::string doc;
+  Bound bound{Bound::any};
+  bool required{true};
+  std::vector<double> fallback{};
+  std::vector<std::string> choices{};
+};
+
+struct Descriptor {
+  std::string name;
+  std::string doc;
+  std::vector<Parameter> parameters;
+};
+
+/// Values of the parameters by name; every kind is a flat list of numbers.
+class Values {
+ public:
+  Values() = default;
+  explicit Values(std::map<std::string, std::vector<double>> values)
+      : values_(std::move(values)) {}
+
+  const std::vector<double>& list(const std::string& name) const {
+    const auto it = values_.find(name);
+    if (it == values_.end()) throw std::invalid_argument(name + " is missing");
+    return it->second;
+  }
+  double scalar(const std::string& name) const { return at_least(name, 1)[0]; }
+  bool flag(const std::string& name) const { return scalar(name) != 0.0; }
+  const std::vector<double>& pair(const std::string& name) const { return at_least(name, 2); }
+  const std::vector<double>& vector(const std::string& name) const { return at_least(name, 3); }
+  bool has(const std::string& name) const { return values_.contains(name); }
+
+ private:
+  const std::vector<double>& at_least(const std::string& name, std::size_t n) const {
+    const auto& v = list(name);
+    if (v.size() < n)
+      throw std::invalid_argument(name + " has " + std::to_string(v.size()) + " values, needs " +
+                                  std::to_string(n));
+    return v;
+  }
+  std::map<std::string, std::vector<double>> values_;
+};
+
+/// A list of registered types; the registry of a room is one such list.
+template <class... T>
+struct Registry {
+  using Any = std::variant<T...>;
+
+  static std::vector<Descriptor> describe() { return {T::describe()...}; }
+
+  /// The registered type called `name`, built from its values.
+  static Any make(const std::string& name, const Values& values) {
+    Any result;
+    const bool found = ((T::describe().name == name && (result = T::make(values), true)) || ...);
+    if (!found) throw std::invalid_argument("no entry called " + name);
+    return result;
+  }
+};
+
+}  // namespace anisocontact

@@ -1,0 +1,21 @@
+#pragma once
+// The surfaces there are. A new one: its header in analytic/, and its name here.
+
+#include "anisocontact/registry/descriptor.hpp"
+#include "anisocontact/surface/analytic/plane.hpp"
+
+namespace anisocontact::surface {
+
+using Surfaces = Registry<Plane>;
+using AnySurface = Surfaces::Any;
+
+inline Domain domain(const AnySurface& s) {
+  return std::visit([](const auto& t) { return t.domain(); }, s);
+}
+
+template <class S>
+Jet<S> jet(const AnySurface& s, const S& u, const S& v) {
+  return std::visit([&](const auto& t) { return t.jet(u, v); }, s);
+}
+
+}  // namespace anisocontact::surface

@@ -1,0 +1,163 @@
+#pragma once
+// Vectors and tensors of the tangent plane with the placement of every index in the type.
+// A contraction compiles only between an upper and a lower index; a sum only between equals.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "anisocontact/tensor/dual.hpp"
+
+namespace anisocontact {
+
+/// Placement of an index: `co` (lower, T_i) or `contra` (upper, xi^i).
+enum class Place { co, contra };
+
+constexpr Place opposite(Place p) { return p == Place::co ? Place::contra : Place::co; }
+
+/// First-order tensor of the tangent plane.
+template <class S, Place P>
+struct Tangent1 {
+  std::array<S, 2> c{};
+
+  S& operator[](std::size_t i) { return c[i]; }
+  const S& operator[](std::size_t i) const { return c[i]; }
+
+  friend Tangent1 operator+(const Tangent1& a, const Tangent1& b) {
+    return {{a.c[0] + b.c[0], a.c[1] + b.c[1]}};
+  }
+  friend Tangent1 operator-(const Tangent1& a, const Tangent1& b) {
+    return {{a.c[0] - b.c[0], a.c[1] - b.c[1]}};
+  }
+  friend Tangent1 operator*(const S& s, const Tangent1& a) { return {{s * a.c[0], s * a.c[1]}}; }
+  Tangent1 operator-() const { return {{-c[0], -c[1]}}; }
+};
+
+/// Second-order tensor of the tangent plane.
+template <class S, Place P, Place Q>
+struct Tangent2 {
+  std::array<std::array<S, 2>, 2> c{};
+
+  S& operator()(std::size_t i, std::size_t j) { return c[i][j]; }
+  const S& operator()(std::size_t i, std::size_t j) const { return c[i][j]; }
+
+  friend Tangent2 operator+(const Tangent2& a, const Tangent2& b) {
+    return {{{{a.c[0][0] + b.c[0][0], a.c[0][1] + b.c[0][1]},
+              {a.c[1][0] + b.c[1][0], a.c[1][1] + b.c[1][1]}}}};
+  }
+  friend Tangent2 operator-(const Tangent2& a, const Tangent2& b) { return a + (-b); }
+  friend Tangent2 operator*(const S& s, const Tangent2& a) {
+    return {{{{s * a.c[0][0], s * a.c[0][1]}, {s * a.c[1][0], s * a.c[1][1]}}}};
+  }
+  Tangent2 operator-() const { return {{{{-c[0][0], -c[0][1]}, {-c[1][0], -c[1][1]}}}}; }
+};
+
+/// Contravariant components, xi^i.
+template <class S>
+using Vector = Tangent1<S, Place::contra>;
+/// Covariant components, T_i.
+template <class S>
+using Covector = Tangent1<S, Place::co>;
+template <class S>
+using CoCo = Tangent2<S, Place::co, Place::co>;
+template <class S>
+using ContraContra = Tangent2<S, Place::contra, Place::contra>;
+/// Maps covectors to covectors: m_i^j.
+template <class S>
+using CoContra = Tangent2<S, Place::co, Place::contra>;
+/// Maps vectors to vectors: m^i_j.
+template <class S>
+using ContraCo = Tangent2<S, Place::contra, Place::co>;
+
+/// u_i v^i.
+template <class S, Place P>
+S dot(const Tangent1<S, P>& u, const Tangent1<S, opposite(P)>& v) {
+  return u.c[0] * v.c[0] + u.c[1] * v.c[1];
+}
+
+/// Contraction of the last index of `m` with `u`.
+template <class S, Place P, Place Q>
+Tangent1<S, P> operator*(const Tangent2<S, P, Q>& m, const Tangent1<S, opposite(Q)>& u) {
+  return {{m.c[0][0] * u.c[0] + m.c[0][1] * u.c[1], m.c[1][0] * u.c[0] + m.c[1][1] * u.c[1]}};
+}
+
+/// Contraction of the last index of `m` with the first index of `n`.
+template <class S, Place P, Place Q, Place R>
+Tangent2<S, P, R> operator*(const Tangent2<S, P, Q>& m, const Tangent2<S, opposite(Q), R>& n) {
+  Tangent2<S, P, R> r;
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) r.c[i][j] = m.c[i][0] * n.c[0][j] + m.c[i][1] * n.c[1][j];
+  return r;
+}
+
+/// u (x) v.
+template <class S, Place P, Place Q>
+Tangent2<S, P, Q> outer(const Tangent1<S, P>& u, const Tangent1<S, Q>& v) {
+  return {{{{u.c[0] * v.c[0], u.c[0] * v.c[1]}, {u.c[1] * v.c[0], u.c[1] * v.c[1]}}}};
+}
+
+template <class S, Place P, Place Q>
+Tangent2<S, Q, P> transpose(const Tangent2<S, P, Q>& m) {
+  return {{{{m.c[0][0], m.c[1][0]}, {m.c[0][1], m.c[1][1]}}}};
+}
+
+template <class S, Place P, Place Q>
+S det(const Tangent2<S, P, Q>& m) {
+  return m.c[0][0] * m.c[1][1] - m.c[0][1] * m.c[1][0];
+}
+
+/// m_i^i, defined for mixed placement alone.
+template <class S, Place P>
+S trace(const Tangent2<S, P, opposite(P)>& m) {
+  return m.c[0][0] + m.c[1][1];
+}
+
+/// det(m) m^-1; the placement is that of the inverse.
+template <class S, Place P, Place Q>
+Tangent2<S, opposite(Q), opposite(P)> adjugate(const Tangent2<S, P, Q>& m) {
+  return {{{{m.c[1][1], -m.c[0][1]}, {-m.c[1][0], m.c[0][0]}}}};
+}
+
+template <class S, Place P, Place Q>
+Tangent2<S, opposite(Q), opposite(P)> inverse(const Tangent2<S, P, Q>& m) {
+  return (S(1.0) / det(m)) * adjugate(m);
+}
+
+/// The unit tensor delta_i^j.
+template <class S, Place P>
+Tangent2<S, P, opposite(P)> unit() {
+  return {{{{S(1.0), S(0.0)}, {S(0.0), S(1.0)}}}};
+}
+
+/// Full contraction m_ij n^ij.
+template <class S, Place P, Place Q>
+S contract(const Tangent2<S, P, Q>& m, const Tangent2<S, opposite(P), opposite(Q)>& n) {
+  return m.c[0][0] * n.c[0][0] + m.c[0][1] * n.c[0][1] + m.c[1][0] * n.c[1][0] +
+         m.c[1][1] * n.c[1][1];
+}
+
+/// Square root of a symmetric positive tensor in mixed placement: (M + sqrt(det M) I)/sqrt(tr M + 2 sqrt(det M))
+/// by the theorem of Cayley and Hamilton.
+template <class S, Place P>
+Tangent2<S, P, opposite(P)> square_root(const Tangent2<S, P, opposite(P)>& m) {
+  using std::sqrt;
+  const S s = sqrt(det(m));
+  return (S(1.0) / sqrt(trace(m) + S(2.0) * s)) * (m + s * unit<S, P>());
+}
+
+/// Constants in the scalar type S.
+template <class S, Place P>
+Tangent1<S, P> constant(const Tangent1<double, P>& u) {
+  return {{S(u.c[0]), S(u.c[1])}};
+}
+template <class S, Place P>
+Tangent1<double, P> value(const Tangent1<S, P>& u) {
+  return {{value(u.c[0]), value(u.c[1])}};
+}
+template <class S, Place P, Place Q>
+Tangent2<double, P, Q> value(const Tangent2<S, P, Q>& m) {
+  return {
+      {{{value(m.c[0][0]), value(m.c[0][1])}, {value(m.c[1][0]), value(m.c[1][1])}}}};
+}
+
+}  // namespace anisocontact

@@ -1,0 +1,148 @@
+// Batches of points through a whole interface.
+
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cstring>
+#include <utility>
+
+#include "anisocontact/kernel/parallel.hpp"
+#include "anisocontact/kernel/point.hpp"
+#include "arrays.hpp"
+#include "rooms.hpp"
+#include "types.hpp"
+
+namespace anisocontact::bindings {
+
+namespace {
+
+using kernel::PointState;
+using Named = std::pair<std::string, ValueMap>;
+
+struct InterfaceHandle {
+  kernel::Interface itf;
+};
+
+std::optional<anisotropy::AnyField> unwrap(const FieldHandle* f) {
+  return f == nullptr ? std::nullopt : std::optional(f->any);
+}
+
+/// Name, offset, count and NumPy type of each field of a point's state.
+nb::list state_layout() {
+  nb::list l;
+  const auto add = [&](const char* name, std::size_t offset, std::size_t count, const char* type) {
+    l.append(nb::make_tuple(name, offset, count, type));
+  };
+  add("xi", offsetof(PointState, xi), 2, "f8");
+  add("origin", offsetof(PointState, origin), 2, "f8");
+  add("traction", offsetof(PointState, traction), 2, "f8");
+  add("stored", offsetof(PointState, stored), 2, "f8");
+  add("elastic", offsetof(PointState, elastic), 2, "f8");
+  add("slip", offsetof(PointState, slip), 2, "f8");
+  add("gap", offsetof(PointState, gap), 1, "f8");
+  add("pressure", offsetof(PointState, pressure), 1, "f8");
+  add("slip_accumulated", offsetof(PointState, slip_accumulated), 1, "f8");
+  add("dissipation", offsetof(PointState, dissipation), 1, "f8");
+  add("energy_adhesion", offsetof(PointState, energy_adhesion), 1, "f8");
+  add("energy_normal", offsetof(PointState, energy_normal), 1, "f8");
+  add("status", offsetof(PointState, status), 1, "i8");
+  return l;
+}
+
+PointState load(const std::uint8_t* bytes, std::size_t i) {
+  PointState s;
+  std::memcpy(&s, bytes + i * sizeof(PointState), sizeof(PointState));
+  return s;
+}
+
+void store(std::uint8_t* bytes, std::size_t i, const PointState& s) {
+  std::memcpy(bytes + i * sizeof(PointState), &s, sizeof(PointState));
+}
+
+nb::dict initial_state(const InterfaceHandle& h, const Points& x) {
+  const std::size_t n = x.shape(0);
+  Array<std::uint8_t> state({n, sizeof(PointState)});
+  Array<std::int8_t> failure({n});
+  for (std::size_t i = 0; i < n; ++i) {
+    auto f = kernel::Failure::none;
+    store(state.data, i, kernel::initial_state(h.itf.surface, row3(x.data(), i), f));
+    failure.data[i] = static_cast<std::int8_t>(f);
+  }
+  nb::dict r;
+  r["state"] = state.array;
+  r["failure"] = failure.array;
+  return r;
+}
+
+nb::dict update(const InterfaceHandle& h, const Bytes& state, const Points& x, double dt,
+                bool with_tangent, std::size_t threads) {
+  const std::size_t n = x.shape(0);
+  if (state.shape(0) != n || state.shape(1) != sizeof(PointState))
+    throw std::invalid_argument("state does not belong to these points");
+  Array<std::uint8_t> next({n, sizeof(PointState)});
+  Array<double> traction({n, 3}), tangent({with_tangent ? n : 0, 3, 3}), normal({n, 3}),
+      adhesion({n, 2, 3}), friction({n, 2, 3});
+  Array<std::int8_t> failure({n});
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_for(n, threads, [&](std::size_t i) {
+      const PointState s = load(state.data(), i);
+      const Vec3<double> p = row3(x.data(), i);
+      const auto r = with_tangent ? kernel::update<Dual<3>>(h.itf, s, p, dt)
+                                  : kernel::update<double>(h.itf, s, p, dt);
+      store(next.data, i, r.state);
+      put3(traction.data, i, r.traction);
+      put3(normal.data, i, r.normal);
+      for (std::size_t k = 0; k < 2; ++k) {
+        put3(adhesion.data, 2 * i + k, r.adhesion_axes[k]);
+        put3(friction.data, 2 * i + k, r.friction_axes[k]);
+      }
+      if (with_tangent)
+        for (std::size_t k = 0; k < 9; ++k)
+          tangent.data[9 * i + k] =
+              r.tangent(static_cast<Eigen::Index>(k / 3), static_cast<Eigen::Index>(k % 3));
+      failure.data[i] = static_cast<std::int8_t>(r.failure);
+    });
+  }
+  nb::dict d;
+  d["state"] = next.array;
+  d["traction"] = traction.array;
+  d["tangent"] = tangent.array;
+  d["normal"] = normal.array;
+  d["adhesion_axes"] = adhesion.array;
+  d["friction_axes"] = friction.array;
+  d["failure"] = failure.array;
+  return d;
+}
+
+}  // namespace
+
+void bind_kernel(nb::module_& m) {
+  m.def("state_layout", &state_layout);
+  m.attr("state_size") = sizeof(PointState);
+  nb::class_<InterfaceHandle>(m, "Interface")
+      .def("__init__",
+           [](InterfaceHandle* self, const SurfaceHandle& surface, const Named& normal,
+              const Named& adhesion, const FieldHandle* adhesion_directions, const Named& friction,
+              const FieldHandle* friction_directions, const Named& rule) {
+             new (self) InterfaceHandle{
+                 {surface.any,
+                  {law::NormalLaws::make(normal.first, Values(normal.second)),
+                   law::AdhesionModels::make(adhesion.first, Values(adhesion.second)),
+                   unwrap(adhesion_directions),
+                   law::FrictionModels::make(friction.first, Values(friction.second)),
+                   unwrap(friction_directions),
+                   law::SlidingRules::make(rule.first, Values(rule.second))}}};
+           },
+           nb::arg("surface"), nb::arg("normal"), nb::arg("adhesion"),
+           nb::arg("adhesion_directions").none(), nb::arg("friction"),
+           nb::arg("friction_directions").none(), nb::arg("rule"))
+      .def("initial_state", &initial_state, nb::arg("x"))
+      .def("update", &update, nb::arg("state"), nb::arg("x"), nb::arg("dt"), nb::arg("tangent"),
+           nb::arg("threads"));
+}
+
+}  // namespace anisocontact::bindings

@@ -1,0 +1,109 @@
+// The tangential law by itself: trial force to force, without a surface.
+
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "anisocontact/kernel/parallel.hpp"
+#include "arrays.hpp"
+#include "rooms.hpp"
+#include "types.hpp"
+
+namespace anisocontact::bindings {
+
+namespace {
+
+struct RuleHandle {
+  law::AnyRule any;
+};
+
+/// Inputs of a batch of slides in the orthonormal frame of the friction axes, a_ij = delta_ij.
+struct SlideInput {
+  const double *stiffness, *friction, *trial, *pressure;
+
+  law::SlideProblem<double> problem(std::size_t i) const {
+    law::SlideProblem<double> p;
+    for (std::size_t k = 0; k < 4; ++k) {
+      p.stiffness(k / 2, k % 2) = stiffness[4 * i + k];
+      p.friction(k / 2, k % 2) = friction[4 * i + k];
+    }
+    p.a_co(0, 0) = p.a_co(1, 1) = 1.0;
+    p.axes = {Vector<double>{{1.0, 0.0}}, Vector<double>{{0.0, 1.0}}};
+    p.trial = {{trial[2 * i], trial[2 * i + 1]}};
+    p.elastic = -(inverse(p.stiffness) * p.trial);
+    p.increment = p.elastic;
+    p.pressure = pressure[i];
+    return p;
+  }
+};
+
+struct SlideOutput {
+  double *traction, *stored, *slip, *d_trial, *d_pressure;
+  bool *slides, *converged;
+};
+
+template <class Rule>
+void slide_one(const Rule& rule, const SlideInput& in, const SlideOutput& out,
+               std::size_t i) noexcept {
+  const auto p = in.problem(i);
+  law::SlideResult<double> r{p.trial, p.trial, {}, true};
+  law::SlideTangent t{unit<double, Place::co>(), {}};
+  out.slides[i] = law::friction_norm(p.friction, p.trial) > p.pressure;
+  if (out.slides[i]) {
+    r = rule.slide(p);
+    t = rule.tangent(p, r);
+  }
+  for (std::size_t k = 0; k < 2; ++k) {
+    out.traction[2 * i + k] = r.traction[k];
+    out.stored[2 * i + k] = r.stored[k];
+    out.slip[2 * i + k] = r.slip[k];
+    out.d_pressure[2 * i + k] = t.d_pressure[k];
+    for (std::size_t j = 0; j < 2; ++j) out.d_trial[4 * i + 2 * k + j] = t.d_trial(k, j);
+  }
+  out.converged[i] = r.converged;
+}
+
+nb::dict slide(const RuleHandle& rule, const Matrices& stiffness, const Matrices& friction,
+               const Coordinates& trial, const Scalars& pressure, std::size_t threads) {
+  const std::size_t n = pressure.shape(0);
+  if (stiffness.shape(0) != n || friction.shape(0) != n || trial.shape(0) != n)
+    throw std::invalid_argument("stiffness, friction, trial and pressure differ in length");
+  Array<double> traction({n, 2}), stored({n, 2}), slip({n, 2}), d_trial({n, 2, 2}),
+      d_pressure({n, 2});
+  Array<bool> slides({n}), converged({n});
+  const SlideInput in{stiffness.data(), friction.data(), trial.data(), pressure.data()};
+  const SlideOutput out{traction.data,   stored.data, slip.data,     d_trial.data,
+                        d_pressure.data, slides.data, converged.data};
+  {
+    nb::gil_scoped_release free;
+    std::visit(
+        [&](const auto& r) {
+          kernel::parallel_for(n, threads, [&](std::size_t i) { slide_one(r, in, out, i); });
+        },
+        rule.any);
+  }
+  nb::dict d;
+  d["traction"] = traction.array;
+  d["stored"] = stored.array;
+  d["slip"] = slip.array;
+  d["d_trial"] = d_trial.array;
+  d["d_pressure"] = d_pressure.array;
+  d["slides"] = slides.array;
+  d["converged"] = converged.array;
+  return d;
+}
+
+}  // namespace
+
+void bind_law(nb::module_& m) {
+  nb::class_<RuleHandle>(m, "SlidingRule")
+      .def("__init__",
+           [](RuleHandle* self, const std::string& name, const ValueMap& values) {
+             new (self) RuleHandle{law::SlidingRules::make(name, Values(values))};
+           },
+           nb::arg("name"), nb::arg("values"))
+      .def("slide", &slide, nb::arg("stiffness"), nb::arg("friction"), nb::arg("trial"),
+           nb::arg("pressure"), nb::arg("threads"));
+}
+
+}  // namespace anisocontact::bindings

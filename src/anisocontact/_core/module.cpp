@@ -1,0 +1,13 @@
+// The extension module: one function a room.
+
+#include <nanobind/nanobind.h>
+
+#include "rooms.hpp"
+
+NB_MODULE(_core, m) {
+  anisocontact::bindings::bind_registry(m);
+  anisocontact::bindings::bind_surface(m);
+  anisocontact::bindings::bind_anisotropy(m);
+  anisocontact::bindings::bind_law(m);
+  anisocontact::bindings::bind_kernel(m);
+}

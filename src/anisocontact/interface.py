@@ -1,0 +1,196 @@
+"""An interface: a surface with its laws, updated in batches of slave points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact import _core
+from anisocontact.errors import InputError
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.surfaces import Floats, Surface, default_threads, points
+
+#: Names of the codes of a point's status.
+STATUS = ("open", "stick", "slip")
+#: What could not be done at a point, by its failure code.
+FAILURE = (
+    "",
+    "no closest point on the surface",
+    "the direction field is singular or parallel to the normal",
+    "the sliding rule found no force",
+)
+
+
+def _state_dtype() -> np.dtype[np.void]:
+    names, formats, offsets = [], [], []
+    for name, offset, count, kind in _core.state_layout():
+        names.append(name)
+        formats.append((kind, (count,)) if count > 1 else kind)
+        offsets.append(offset)
+    return np.dtype(
+        {"names": names, "formats": formats, "offsets": offsets, "itemsize": _core.state_size}
+    )
+
+
+#: Structured type of the state of a point; an array of it is one block that can be copied whole.
+STATE = _state_dtype()
+
+State = npt.NDArray[np.void]
+
+
+@dataclass(frozen=True)
+class Response:
+    """What an interface answers to positions of n slave points.
+
+    Args:
+        traction: t = N n + T on the slave, (n, 3) [stress].
+        tangent: dt/dx, exact and in general unsymmetric, (n, 3, 3) [stress/length]; empty where it
+            was not asked for.
+        state: Trial state, (n,) of `STATE`; it is committed by keeping it.
+        normal: Outward normal of the master, (n, 3).
+        directions_adhesion: Axes of the adhesion tensor, (n, 2, 3); zero at open points.
+        directions_friction: Axes of the friction tensor, (n, 2, 3); zero at open points.
+        failure: Why a point could not be updated, a code of `FAILURE`, (n,).
+    """
+
+    traction: Floats
+    tangent: Floats
+    state: State
+    normal: Floats
+    directions_adhesion: Floats
+    directions_friction: Floats
+    failure: npt.NDArray[np.int8]
+
+    @property
+    def pressure(self) -> Floats:
+        """N, (n,) [stress]."""
+        return self.state["pressure"]
+
+    @property
+    def gap(self) -> Floats:
+        """xi^3, (n,) [length]."""
+        return self.state["gap"]
+
+    @property
+    def status(self) -> npt.NDArray[np.int8]:
+        """0 open, 1 stick, 2 slip, (n,)."""
+        return self.state["status"].astype(np.int8)
+
+    @property
+    def failed(self) -> npt.NDArray[np.bool_]:
+        """Whether a point could not be updated, (n,)."""
+        return self.failure != 0
+
+    @property
+    def traction_t(self) -> Floats:
+        """Tangential traction T on the slave, (n, 3) [stress]."""
+        return self.traction - self.pressure[:, None] * self.normal
+
+    @property
+    def traction_principal(self) -> Floats:
+        """Components of T along the friction axes, (n, 2) [stress]."""
+        return np.einsum("nij,nj->ni", self.directions_friction, self.traction_t)
+
+
+class Interface:
+    """A surface with the laws of its contact.
+
+    Args:
+        surface: The master.
+        normal: Law of the pressure.
+        adhesion: Tangential law inside the yield ellipse.
+        friction: Yield ellipse and sliding rule.
+        threads: Number of threads of a batch; all processors if left out.
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> from anisocontact.anisotropy import make_directions
+        >>> marks = make_directions("constant", vector=(1, 0, 0))
+        >>> interface = Interface(
+        ...     make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)),
+        ...     NormalLaw(penalty=1e5),
+        ...     Adhesion(stiffness=(2e5, 5e4), directions=marks),
+        ...     Friction(coefficients=(0.3, 0.1), directions=marks),
+        ... )
+        >>> state = interface.initial_state([[0.0, 0.0, 0.0]])
+        >>> interface.update(state, [[1e-3, 0.0, -1e-4]]).traction.round(9).tolist()
+        [[-3.0, 0.0, 10.0]]
+    """
+
+    def __init__(
+        self,
+        surface: Surface,
+        normal: NormalLaw,
+        adhesion: Adhesion,
+        friction: Friction,
+        *,
+        threads: int | None = None,
+    ) -> None:
+        self.surface, self.normal, self.adhesion, self.friction = (
+            surface,
+            normal,
+            adhesion,
+            friction,
+        )
+        self.threads = threads or default_threads()
+        self.core = _core.Interface(
+            surface.core,
+            normal.named,
+            adhesion.named,
+            adhesion.directions.core if adhesion.directions else None,
+            friction.named,
+            friction.directions.core if friction.directions else None,
+            friction.rule,
+        )
+
+    def initial_state(self, x: npt.ArrayLike) -> State:
+        """State before the first step: projected and free of force.
+
+        Args:
+            x: Slave points, (n, 3) [length].
+
+        Returns:
+            The state of every point, (n,) of `STATE` [Konyukhov Schweizerhof 2006, eq. (101)].
+
+        Raises:
+            InputError: A point has no closest point on the surface.
+        """
+        x = points(x, 3)
+        r = self.core.initial_state(x)
+        failed = np.flatnonzero(r["failure"])
+        if failed.size:
+            raise InputError(f"{FAILURE[1]} for the point {x[failed[0]].tolist()}", field="x")
+        return _as_state(r["state"])
+
+    def update(
+        self, state: State, x: npt.ArrayLike, dt: float = 1.0, *, tangent: bool = True
+    ) -> Response:
+        """Tractions at new positions; the committed state is not changed.
+
+        Args:
+            state: Committed state, (n,) of `STATE`.
+            x: Slave points, (n, 3) [length].
+            dt: Time step [time]; without meaning for rate-independent laws.
+            tangent: Whether dt/dx is wanted.
+
+        Returns:
+            Tractions, tangent and trial state.
+        """
+        x = points(x, 3)
+        raw = np.ascontiguousarray(state).view(np.uint8).reshape(len(state), STATE.itemsize)
+        r = self.core.update(raw, x, dt, tangent, self.threads)
+        return Response(
+            traction=r["traction"],
+            tangent=r["tangent"],
+            state=_as_state(r["state"]),
+            normal=r["normal"],
+            directions_adhesion=r["adhesion_axes"],
+            directions_friction=r["friction_axes"],
+            failure=r["failure"],
+        )
+
+
+def _as_state(raw: npt.NDArray[np.uint8]) -> State:
+    return raw.reshape(-1).view(STATE)

@@ -1,0 +1,208 @@
+"""Laws of an interface: pressure, adhesion, friction."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact import _core, registry
+from anisocontact.anisotropy import DirectionField
+from anisocontact.errors import InputError
+from anisocontact.registry import Entry
+from anisocontact.surfaces import Floats, default_threads
+
+Named = tuple[str, dict[str, list[float]]]
+
+
+def _named(
+    registry_of: Callable[[], tuple[Entry, ...]],
+    name: str,
+    parameters: dict[str, object],
+    field: str,
+) -> Named:
+    e = registry.entry(registry_of(), name, field)
+    return name, registry.values(e, parameters)
+
+
+def _isotropic(value: object) -> bool:
+    """Whether a pair of values is a single one, so that no direction is needed."""
+    return isinstance(value, Sequence | np.ndarray) and len(value) == 2 and value[0] == value[1]
+
+
+class NormalLaw:
+    """Law of the pressure N of the gap.
+
+    Args:
+        model: Name in `registry.normal_laws()`.
+        **parameters: Its parameters.
+
+    Raises:
+        InputError: Unknown name or parameter, or a value out of range.
+
+    Example:
+        >>> NormalLaw(penalty=1e5).named[1]["penalty"]
+        [100000.0]
+    """
+
+    def __init__(self, model: str = "penalty", **parameters: object) -> None:
+        self.named = _named(registry.normal_laws, model, parameters, "normal.model")
+
+
+class Adhesion:
+    """Tangential law inside the yield ellipse.
+
+    Args:
+        model: Name in `registry.adhesion_models()`.
+        directions: Axes of the tensors; may be left out where both values of every pair are
+            equal.
+        **parameters: The model's parameters, such as `stiffness`, the eigenvalues of -B
+            [stress/length].
+
+    Raises:
+        InputError: Unknown name or parameter, a value out of range, or no directions where the
+            values differ.
+
+    Example:
+        >>> Adhesion(stiffness=(1e5, 1e5)).directions is None
+        True
+    """
+
+    def __init__(
+        self,
+        model: str = "elastic",
+        *,
+        directions: DirectionField | None = None,
+        **parameters: object,
+    ) -> None:
+        self.named = _named(registry.adhesion_models, model, parameters, "adhesion.model")
+        _need_directions("adhesion", directions, self.named, parameters)
+        self.directions = directions
+
+
+class Friction:
+    """Yield ellipse and sliding rule.
+
+    Args:
+        model: Name in `registry.friction_models()`.
+        directions: Axes of the friction tensor; may be left out where both values of every pair
+            are equal.
+        sliding_rule: Name in `registry.sliding_rules()`.
+        **parameters: Parameters of the model, such as `coefficients`, and of the sliding rule,
+            such as `history`.
+
+    Raises:
+        InputError: Unknown name or parameter, a value out of range, or no directions where the
+            values differ.
+
+    Example:
+        >>> Friction(coefficients=(0.3, 0.3)).rule[0]
+        'maximum-dissipation'
+    """
+
+    def __init__(
+        self,
+        model: str = "orthotropic",
+        *,
+        directions: DirectionField | None = None,
+        sliding_rule: str = "maximum-dissipation",
+        **parameters: object,
+    ) -> None:
+        rule = registry.entry(registry.sliding_rules(), sliding_rule, "friction.sliding_rule")
+        of_rule = {p.name for p in rule.parameters}
+        own = {k: v for k, v in parameters.items() if k not in of_rule}
+        self.named = _named(registry.friction_models, model, own, "friction.model")
+        self.rule: Named = (
+            sliding_rule,
+            registry.values(rule, {k: v for k, v in parameters.items() if k in of_rule}),
+        )
+        _need_directions("friction", directions, self.named, parameters)
+        self.directions = directions
+
+
+def _need_directions(
+    what: str, directions: DirectionField | None, named: Named, parameters: dict[str, object]
+) -> None:
+    if directions is not None:
+        return
+    for name, numbers in named[1].items():
+        if len(numbers) == 2 and not _isotropic(numbers):
+            raise InputError(
+                f"{what} has two different values of {name} ({parameters.get(name)!r}) "
+                "and no directions; give directions, or equal values",
+                field=f"{what}.directions",
+            )
+
+
+@dataclass(frozen=True)
+class Slide:
+    """Forces of a batch of n points in an orthonormal frame.
+
+    Args:
+        traction: T, (n, 2).
+        stored: Elastic force the next trial starts from, (n, 2).
+        slip: Sliding increment, (n, 2); zero where the point sticks.
+        d_trial: dT_i/dT_tr,j, (n, 2, 2).
+        d_pressure: dT_i/dN, (n, 2).
+        slides: Whether the trial force was outside the ellipse, (n,).
+        converged: Whether the rule found its force, (n,).
+    """
+
+    traction: Floats
+    stored: Floats
+    slip: Floats
+    d_trial: Floats
+    d_pressure: Floats
+    slides: npt.NDArray[np.bool_]
+    converged: npt.NDArray[np.bool_]
+
+
+def slide(
+    stiffness: npt.ArrayLike,
+    friction: npt.ArrayLike,
+    trial: npt.ArrayLike,
+    pressure: npt.ArrayLike,
+    sliding_rule: str = "maximum-dissipation",
+    threads: int | None = None,
+    **parameters: object,
+) -> Slide:
+    """The sliding rule by itself: trial force to force, with the consistent tangent.
+
+    Args:
+        stiffness: S = -B, (n, 2, 2) [stress/length].
+        friction: F of the yield ellipse T.FT = N^2, (n, 2, 2).
+        trial: T_tr, (n, 2) [stress].
+        pressure: N > 0, (n,) [stress].
+        sliding_rule: Name in `registry.sliding_rules()`.
+        threads: Number of threads; all processors if left out.
+        **parameters: Parameters of the rule.
+
+    Returns:
+        Force, slip and tangent of every point. The frame is orthonormal with its first axis
+        along the first friction axis.
+
+    Raises:
+        InputError: Unknown rule or parameter, or arrays that do not fit.
+
+    Example:
+        >>> s = slide(np.eye(2)[None], np.eye(2)[None] / 0.09, [[1.0, 0.0]], [1.0])
+        >>> s.traction.round(12).tolist()
+        [[0.3, 0.0]]
+    """
+    rule = registry.entry(registry.sliding_rules(), sliding_rule, "sliding_rule")
+    core = _core.SlidingRule(sliding_rule, registry.values(rule, parameters))
+    arrays = [
+        np.ascontiguousarray(a, dtype=np.float64) for a in (stiffness, friction, trial, pressure)
+    ]
+    n = arrays[3].size
+    for a, name, shape in zip(
+        arrays,
+        ("stiffness", "friction", "trial", "pressure"),
+        ((n, 2, 2), (n, 2, 2), (n, 2), (n,)),
+        strict=True,
+    ):
+        if a.shape != shape:
+            raise InputError(f"an array of shape {a.shape} given, {shape} needed", field=name)
+    return Slide(**core.slide(*arrays, threads or default_threads()))

@@ -1,0 +1,257 @@
+"""What there is to choose from: surfaces, direction fields, laws and rules with their parameters.
+
+Everything here comes from the descriptions that the C++ core registers; the case schema, the
+command `anisocontact info` and the conformance tests are made from the same entries.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from anisocontact import _core
+from anisocontact.errors import InputError
+
+_SIZES = {"scalar": 1, "integer": 1, "flag": 1, "choice": 1, "pair": 2, "vector": 3}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of an entry.
+
+    Args:
+        name: Identifier; with the unit "angle" it is in radians, in a case file `<name>_deg`.
+        kind: "scalar", "pair", "vector", "array", "integer", "integers", "flag" or "choice".
+        unit: Dimension, such as "length" or "stress/length"; "1" where there is none.
+        doc: One line.
+        bound: "any", "nonzero", "positive" or "non-negative".
+        required: Whether it must be given.
+        default: Value where it is not required.
+        choices: The words a "choice" may be.
+    """
+
+    name: str
+    kind: str
+    unit: str
+    doc: str
+    bound: str = "any"
+    required: bool = True
+    default: tuple[float, ...] = ()
+    choices: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A registered surface, field, law or rule.
+
+    Args:
+        name: The name it is asked for by.
+        kind: The registry it belongs to, such as "surface".
+        doc: One line.
+        parameters: Its parameters.
+    """
+
+    name: str
+    kind: str
+    doc: str
+    parameters: tuple[Parameter, ...]
+
+
+def _entries(kind: str, describe: Callable[[], list[_core.Descriptor]]) -> tuple[Entry, ...]:
+    return tuple(
+        Entry(
+            d.name,
+            kind,
+            d.doc,
+            tuple(
+                Parameter(
+                    p.name,
+                    p.kind,
+                    p.unit,
+                    p.doc,
+                    p.bound,
+                    p.required,
+                    tuple(p.fallback),
+                    tuple(p.choices),
+                )
+                for p in d.parameters
+            ),
+        )
+        for d in describe()
+    )
+
+
+def surfaces() -> tuple[Entry, ...]:
+    """Analytic surfaces."""
+    return _entries("surface", _core.surfaces)
+
+
+def direction_fields() -> tuple[Entry, ...]:
+    """Fields of directions on a surface."""
+    return _entries("direction field", _core.direction_fields)
+
+
+def normal_laws() -> tuple[Entry, ...]:
+    """Laws of the pressure."""
+    return _entries("normal law", _core.normal_laws)
+
+
+def adhesion_models() -> tuple[Entry, ...]:
+    """Laws of the tangential force inside the yield ellipse."""
+    return _entries("adhesion model", _core.adhesion_models)
+
+
+def friction_models() -> tuple[Entry, ...]:
+    """Friction tensors, which make the yield ellipse."""
+    return _entries("friction model", _core.friction_models)
+
+
+def sliding_rules() -> tuple[Entry, ...]:
+    """Rules of the force in slip."""
+    return _entries("sliding rule", _core.sliding_rules)
+
+
+def entry(entries: Iterable[Entry], name: str, field: str = "") -> Entry:
+    """The entry called `name`.
+
+    Args:
+        entries: A registry.
+        name: Name of an entry.
+        field: Where the name was given, for the message.
+
+    Returns:
+        The entry.
+
+    Raises:
+        InputError: There is none of that name; the message lists those there are.
+    """
+    found = tuple(entries)
+    for e in found:
+        if e.name == name:
+            return e
+    names = [e.name for e in found]
+    near = difflib.get_close_matches(str(name), names, 1)
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    kind = found[0].kind if found else "entry"
+    raise InputError(
+        f"unknown {kind} {name!r}, there are: {', '.join(names)}{hint}", field=field or kind
+    )
+
+
+Value = float | int | bool | str | Sequence[float]
+
+
+def values(e: Entry, given: Mapping[str, object], prefix: str = "") -> dict[str, list[float]]:
+    """Checked parameter values of an entry, as the core takes them.
+
+    Args:
+        e: The entry.
+        given: Values by parameter name; None counts as left out.
+        prefix: Dotted path put before the parameter's name in messages.
+
+    Returns:
+        A list of numbers for every parameter, defaults filled in.
+
+    Raises:
+        InputError: A parameter is unknown, missing, of the wrong form or out of range.
+
+    Example:
+        >>> values(entry(surfaces(), "plane"), {"point": (0, 0, 0), "normal": (0, 0, 1)})["point"]
+        [0.0, 0.0, 0.0]
+    """
+    path = f"{prefix}." if prefix else ""
+    known = {p.name for p in e.parameters}
+    for name in given:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            allowed = ", ".join(sorted(known)) or "none"
+            raise InputError(
+                f"{e.kind} {e.name!r} has no parameter {name!r}, allowed: {allowed}{hint}",
+                field=f"{path}{name}",
+            )
+    result = {}
+    for p in e.parameters:
+        v = given.get(p.name)
+        if v is None:
+            if p.required:
+                raise InputError(
+                    f"{e.kind} {e.name!r} needs {p.name} ({p.doc})", field=f"{path}{p.name}"
+                )
+            result[p.name] = list(p.default)
+        else:
+            result[p.name] = check(p, v, f"{path}{p.name}")
+    return result
+
+
+def check(p: Parameter, given: object, field: str = "") -> list[float]:
+    """One parameter's value as a list of numbers.
+
+    Args:
+        p: The parameter.
+        given: What was given.
+        field: Dotted path for the message.
+
+    Returns:
+        The numbers; of a choice its place among the choices.
+
+    Raises:
+        InputError: Not of the parameter's form, not finite or out of its bound.
+    """
+    field = field or p.name
+    if p.kind == "choice":
+        if given not in p.choices:
+            raise InputError(f"{given!r} given, allowed: {', '.join(p.choices)}", field=field)
+        return [float(p.choices.index(str(given)))]
+    numbers = _numbers(p, given, field)
+    if not all(math.isfinite(v) for v in numbers):
+        raise InputError(f"{given!r} given, finite numbers are needed", field=field)
+    _check_bound(p, numbers, given, field)
+    return numbers
+
+
+def _numbers(p: Parameter, given: object, field: str) -> list[float]:
+    if p.kind == "flag":
+        if not isinstance(given, bool):
+            raise InputError(f"{given!r} given, true or false is needed", field=field)
+        return [float(given)]
+    is_list = isinstance(given, Iterable) and not isinstance(given, str | bytes)
+    items = list(given) if is_list else [given]  # type: ignore[call-overload]
+    if any(isinstance(v, bool) or not hasattr(v, "__float__") for v in items):
+        raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
+    numbers = [float(v) for v in items]
+    size = _SIZES.get(p.kind)
+    scalar_form = size == 1
+    if scalar_form == is_list or (size is not None and len(numbers) != size):
+        raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
+    if p.kind in ("integer", "integers") and any(v != int(v) for v in numbers):
+        raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
+    return numbers
+
+
+def _form(p: Parameter) -> str:
+    forms = {
+        "scalar": "one number is",
+        "pair": "two numbers are",
+        "vector": "three numbers are",
+        "array": "a list of numbers is",
+        "integer": "a whole number is",
+        "integers": "a list of whole numbers is",
+    }
+    return forms[p.kind]
+
+
+def _check_bound(p: Parameter, numbers: list[float], given: object, field: str) -> None:
+    wrong = {
+        "any": False,
+        "nonzero": not any(v != 0.0 for v in numbers),
+        "positive": any(v <= 0.0 for v in numbers),
+        "non-negative": any(v < 0.0 for v in numbers),
+    }[p.bound]
+    if wrong:
+        bound = {"nonzero": "must not be zero", "positive": "must be > 0"}.get(
+            p.bound, "must be >= 0"
+        )
+        raise InputError(f"{given!r} given, {bound}", field=field)
