@@ -109,7 +109,7 @@ def run(what: str, command: Sequence[str | Path]) -> None:
         output = LOG.read_bytes()[start:].decode(errors="replace")
         missing = re.search(r"(lib[\w.+-]+): cannot open shared object file", output)
         if missing:
-            raise SetupError(f"{what}: the system library {missing[1]} is missing: {GMSH_LIBRARIES}")
+            raise SetupError(f"{what}: system library {missing[1]} not found: {GMSH_LIBRARIES}")
         print("\n".join(output.splitlines()[-25:]), file=sys.stderr)
         raise SetupError(f"{what} failed, see above; the whole log is {LOG.relative_to(ROOT)}")
 
@@ -126,8 +126,8 @@ def check_compilers() -> None:
         command = [*found[0].split(), "-std=c++20", "-c", str(source), "-o", f"{source}.o"]
         if subprocess.run(command, capture_output=True, check=False).returncode:
             raise SetupError(
-                f"{found[0]} does not compile C++20 (g++ >= 11 or clang++ >= 15 does): {COMPILERS}, "
-                "or set CXX"
+                f"{found[0]} does not compile C++20: set CXX to g++ >= 11 or clang++ >= 15, "
+                f"or get one: {COMPILERS}"
             )
     c_compiler = os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc"
     if not any(shutil.which(name) for name in (c_compiler.split()[0], "cc", "gcc", "clang")):
@@ -164,7 +164,7 @@ def install_dependencies(project: dict[str, Any]) -> None:
     if not stage.is_done():
         check_compilers()
         say(f"installing dependencies: a few minutes the first time ({LOG.relative_to(ROOT)})")
-        pip = [PYTHON, "-m", "pip", "install", "--progress-bar", "off"]
+        pip: list[str | Path] = [PYTHON, "-m", "pip", "install", "--progress-bar", "off"]
         run("installing dependencies", [*pip, "--constraint", CONSTRAINTS, *wanted])
         stage.done()
     check = Stage("finite-elements", [stage.key])
@@ -190,7 +190,14 @@ def build_core() -> None:
         run("installing the core", [cmake, "--install", BUILD, "--prefix", site])
     else:
         settings = [f"build-dir={BUILD}", "cmake.define.ANISOCONTACT_WERROR=ON"]
-        editable = [PYTHON, "-m", "pip", "install", "--no-deps", "--no-build-isolation"]
+        editable: list[str | Path] = [
+            PYTHON,
+            "-m",
+            "pip",
+            "install",
+            "--no-deps",
+            "--no-build-isolation",
+        ]
         config = [f"--config-settings={setting}" for setting in settings]
         run("building the core", [*editable, *config, "--editable", ROOT])
         project.done()
