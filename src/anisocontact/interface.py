@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact import _core
+from anisocontact import _core, registry
 from anisocontact.errors import InputError
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import Floats, Surface, default_threads, points
@@ -102,6 +102,7 @@ class Interface:
         normal: Law of the pressure.
         adhesion: Tangential law inside the yield ellipse.
         friction: Yield ellipse and sliding rule.
+        evolution: Name in `registry.evolution_forms()`: how the history enters the step.
         threads: Number of threads of a batch; all processors if left out.
 
     Example:
@@ -126,8 +127,16 @@ class Interface:
         adhesion: Adhesion,
         friction: Friction,
         *,
+        evolution: str = "transport",
         threads: int | None = None,
     ) -> None:
+        registry.entry(registry.evolution_forms(), evolution, "evolution")
+        if evolution == "total" and adhesion.named[0] != "elastic":
+            raise InputError(
+                f"'total' needs the adhesion model 'elastic', {adhesion.named[0]!r} given",
+                field="evolution",
+            )
+        self.evolution = evolution
         self.surface, self.normal, self.adhesion, self.friction = (
             surface,
             normal,
@@ -143,6 +152,7 @@ class Interface:
             friction.named,
             friction.directions.core if friction.directions else None,
             friction.rule,
+            evolution,
         )
 
     def initial_state(self, x: npt.ArrayLike) -> State:

@@ -140,6 +140,11 @@ def entry(entries: Iterable[Entry], name: str, field: str = "") -> Entry:
     )
 
 
+def evolution_forms() -> tuple[Entry, ...]:
+    """Discrete forms of the evolution of the tangential force along the path."""
+    return _entries("evolution form", _core.evolution_forms)
+
+
 Value = float | int | bool | str | Sequence[float]
 
 

@@ -46,6 +46,7 @@ nb::list state_layout() {
   add("pressure", offsetof(PointState, pressure), 1, "f8");
   add("slip_accumulated", offsetof(PointState, slip_accumulated), 1, "f8");
   add("dissipation", offsetof(PointState, dissipation), 1, "f8");
+  add("dissipation_viscous", offsetof(PointState, dissipation_viscous), 1, "f8");
   add("energy_adhesion", offsetof(PointState, energy_adhesion), 1, "f8");
   add("energy_normal", offsetof(PointState, energy_normal), 1, "f8");
   add("status", offsetof(PointState, status), 1, "i8");
@@ -124,22 +125,25 @@ void bind_kernel(nb::module_& m) {
   m.def("state_layout", &state_layout);
   m.attr("state_size") = sizeof(PointState);
   nb::class_<InterfaceHandle>(m, "Interface")
-      .def("__init__",
-           [](InterfaceHandle* self, const SurfaceHandle& surface, const Named& normal,
-              const Named& adhesion, const FieldHandle* adhesion_directions, const Named& friction,
-              const FieldHandle* friction_directions, const Named& rule) {
-             new (self) InterfaceHandle{
-                 {surface.any,
-                  {law::NormalLaws::make(normal.first, Values(normal.second)),
-                   law::AdhesionModels::make(adhesion.first, Values(adhesion.second)),
-                   unwrap(adhesion_directions),
-                   law::FrictionModels::make(friction.first, Values(friction.second)),
-                   unwrap(friction_directions),
-                   law::SlidingRules::make(rule.first, Values(rule.second))}}};
-           },
-           nb::arg("surface"), nb::arg("normal"), nb::arg("adhesion"),
-           nb::arg("adhesion_directions").none(), nb::arg("friction"),
-           nb::arg("friction_directions").none(), nb::arg("rule"))
+      .def(
+          "__init__",
+          [](InterfaceHandle* self, const SurfaceHandle& surface, const Named& normal,
+             const Named& adhesion, const FieldHandle* adhesion_directions, const Named& friction,
+             const FieldHandle* friction_directions, const Named& rule,
+             const std::string& evolution) {
+            new (self) InterfaceHandle{
+                {surface.any,
+                 {law::NormalLaws::make(normal.first, Values(normal.second)),
+                  law::AdhesionModels::make(adhesion.first, Values(adhesion.second)),
+                  unwrap(adhesion_directions),
+                  law::FrictionModels::make(friction.first, Values(friction.second)),
+                  unwrap(friction_directions),
+                  law::SlidingRules::make(rule.first, Values(rule.second)),
+                  kernel::EvolutionForms::make(evolution, Values())}}};
+          },
+          nb::arg("surface"), nb::arg("normal"), nb::arg("adhesion"),
+          nb::arg("adhesion_directions").none(), nb::arg("friction"),
+          nb::arg("friction_directions").none(), nb::arg("rule"), nb::arg("evolution"))
       .def("initial_state", &initial_state, nb::arg("x"))
       .def("update", &update, nb::arg("state"), nb::arg("x"), nb::arg("dt"), nb::arg("tangent"),
            nb::arg("threads"));

@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "anisocontact/kernel/evolution.hpp"
 #include "rooms.hpp"
 #include "types.hpp"
 
@@ -60,6 +61,7 @@ void bind_registry(nb::module_& m) {
   m.def("adhesion_models", &law::AdhesionModels::describe);
   m.def("friction_models", &law::FrictionModels::describe);
   m.def("sliding_rules", &law::SlidingRules::describe);
+  m.def("evolution_forms", &kernel::EvolutionForms::describe);
 }
 
 }  // namespace anisocontact::bindings

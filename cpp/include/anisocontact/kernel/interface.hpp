@@ -1,6 +1,8 @@
 #pragma once
 // The law of an interface at one point: kinematics in, traction and trial state out.
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "anisocontact/anisotropy/registry.hpp"
@@ -19,6 +21,7 @@ struct InterfaceLaw {
   law::AnyFriction friction;
   std::optional<anisotropy::AnyField> friction_directions;
   law::AnyRule rule;
+  AnyEvolution evolution{};
 };
 
 /// Axes of a field; without one, along the first coordinate line.
@@ -28,16 +31,6 @@ anisotropy::Axes<S> axes_of(const std::optional<anisotropy::AnyField>& field,
   if (field) return anisotropy::axes(*field, g, xi);
   return anisotropy::axes_from(g, g.jet.d1[0], 0.0);
 }
-
-/// Where a point is on the master.
-template <class S>
-struct Kinematics {
-  surface::Geometry<S> now;
-  surface::Geometry<double> before;  ///< at the committed coordinates, today's configuration
-  Vector<S> xi;
-  S gap;
-  double dt;
-};
 
 /// N, T and the trial state.
 template <class S>
@@ -66,13 +59,16 @@ PointState opened(const PointState& old, const Kinematics<S>& k) {
   s.gap = value(k.gap);
   s.slip_accumulated = old.slip_accumulated;
   s.dissipation = old.dissipation;
+  s.dissipation_viscous = old.dissipation_viscous;
   return s;
 }
 
 /// History and increment as the law needs them; a point that comes into contact has no history.
 template <class S>
-Transported<S> history(const PointState& state, const Kinematics<S>& k) {
-  Transported<S> t = transport(state, k.before, k.now);
+Transported<S> history(const AnyEvolution& evolution, const PointState& state,
+                       const Kinematics<S>& k, const CoCo<S>& adhesion) {
+  Transported<S> t =
+      std::visit([&](const auto& e) { return e.apply(state, k, adhesion); }, evolution);
   if (state.status == static_cast<std::int64_t>(Contact::open)) {
     t.stored = {};
     t.elastic = {};
@@ -95,27 +91,33 @@ law::SlideResult<S> tangential(const InterfaceLaw& l, const law::SlideProblem<S>
 
 /// Trial state after the law has been solved.
 template <class S>
-PointState advanced(const PointState& old, const Kinematics<S>& k, const Transported<S>& t,
-                    const law::SlideResult<S>& r, const law::LinearTensors<S>& tensors,
-                    const S& pressure, Contact status) {
+PointState advanced(const InterfaceLaw& l, const PointState& old, const Kinematics<S>& k,
+                    const Transported<S>& t, const law::SlideResult<S>& r,
+                    const anisotropy::Axes<S>& axes, const S& pressure, Contact status) {
   PointState s;
   s.xi = {value(k.xi[0]), value(k.xi[1])};
   const bool begins = old.status == static_cast<std::int64_t>(Contact::open);
   s.origin = begins ? s.xi : old.origin;
   const Covector<double> traction = value(r.traction);
   const Vector<double> slip = value(r.slip);
-  const Vector<double> elastic = value(t.elastic) + value(t.increment) - slip;
+  const Vector<double> increment = value(t.increment);
+  const Vector<double> elastic = value(t.elastic) + increment - slip;
   s.traction = traction.c;
   s.stored = value(r.stored).c;
   s.elastic = elastic.c;
   s.slip = slip.c;
   s.gap = value(k.gap);
   s.pressure = value(pressure);
-  s.slip_accumulated =
-      old.slip_accumulated + std::sqrt(dot(slip, value(k.now.a_co) * slip));
+  s.slip_accumulated = old.slip_accumulated + std::sqrt(dot(slip, value(k.now.a_co) * slip));
   s.dissipation = old.dissipation - dot(traction, slip);
-  s.energy_adhesion = -0.5 * dot(value(tensors.b) * elastic, elastic);
-  s.energy_normal = -0.5 * s.pressure * s.gap;
+  const auto tangential = law::energies(law::linear_model(l.adhesion), value(k.now),
+                                        {value(axes.e[0]), value(axes.e[1])}, value(r.stored),
+                                        elastic, increment - slip, k.dt);
+  const auto normal = law::energies(law::normal_model(l.normal), s.gap,
+                                    s.gap - std::min(old.gap, 0.0), s.pressure, k.dt);
+  s.energy_adhesion = tangential.elastic;
+  s.energy_normal = normal.elastic;
+  s.dissipation_viscous = old.dissipation_viscous + tangential.viscous + normal.viscous;
   s.status = static_cast<std::int64_t>(status);
   return s;
 }
@@ -124,8 +126,7 @@ PointState advanced(const PointState& old, const Kinematics<S>& k, const Transpo
 template <class S>
 Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinematics<S>& k) {
   Reaction<S> r;
-  r.pressure =
-      law::pressure(law::normal_model(l.normal), k.gap, state.gap, state.pressure, k.dt);
+  r.pressure = law::pressure(law::normal_model(l.normal), k.gap, state.gap, state.pressure, k.dt);
   if (!(value(r.pressure) > 0.0)) {
     r.state = opened(state, k);
     return r;
@@ -137,20 +138,19 @@ Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinemati
     return r;
   }
   const auto tensors = law::pull_back(law::linear_model(l.adhesion), k.now, r.adhesion_axes);
-  const Transported<S> t = history(state, k);
-  const auto trial =
-      law::trial(tensors, t.connection, t.stored, t.elastic, t.increment, k.dt);
+  const Transported<S> t = history(l.evolution, state, k, tensors.b);
+  const auto trial = law::trial(tensors, t.connection, t.stored, t.elastic, t.increment, k.dt);
   const auto friction =
       std::visit([&](const auto& f) { return f.tensor(k.now, r.friction_axes); }, l.friction);
-  const law::SlideProblem<S> p{trial.stiffness,
-                               friction,
-                               k.now.a_co,
-                               {k.now.project_contra(r.friction_axes.e[0]),
-                                k.now.project_contra(r.friction_axes.e[1])},
-                               trial.traction,
-                               t.elastic + t.increment,
-                               t.increment,
-                               r.pressure};
+  const law::SlideProblem<S> p{
+      trial.stiffness,
+      friction,
+      k.now.a_co,
+      {k.now.project_contra(r.friction_axes.e[0]), k.now.project_contra(r.friction_axes.e[1])},
+      trial.traction,
+      t.elastic + t.increment,
+      t.increment,
+      r.pressure};
   Contact status{};
   const auto solved = tangential(l, p, status);
   if (!solved.converged) {
@@ -158,7 +158,7 @@ Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinemati
     return r;
   }
   r.traction = solved.traction;
-  r.state = advanced(state, k, t, solved, tensors, r.pressure, status);
+  r.state = advanced(l, state, k, t, solved, r.adhesion_axes, r.pressure, status);
   return r;
 }
 

@@ -15,7 +15,7 @@ struct Interface {
 
 /// Result at a point; vectors in global components.
 struct PointResult {
-  Vec3<double> traction{Vec3<double>::Zero()};  ///< t = N n + T on the slave
+  Vec3<double> traction{Vec3<double>::Zero()};       ///< t = N n + T on the slave
   Eigen::Matrix3d tangent{Eigen::Matrix3d::Zero()};  ///< dt/dx
   Vec3<double> normal{Vec3<double>::Zero()};
   std::array<Vec3<double>, 2> adhesion_axes{Vec3<double>::Zero(), Vec3<double>::Zero()};
@@ -47,6 +47,7 @@ Kinematics<S> kinematics(const surface::AnySurface& surface, const PointState& s
     k.now = surface::geometry(surface::jet(surface, k.xi[0], k.xi[1]));
   }
   k.before = surface::geometry(surface::jet(surface, state.xi[0], state.xi[1]));
+  k.domain = surface::domain(surface);
   k.gap = (x - k.now.jet.position).dot(k.now.normal);
   k.dt = dt;
   return k;

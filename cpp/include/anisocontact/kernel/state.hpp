@@ -24,6 +24,7 @@ struct PointState {
   double pressure{0.0};              ///< N
   double slip_accumulated{0.0};      ///< length of the sliding path
   double dissipation{0.0};           ///< by friction, per area
+  double dissipation_viscous{0.0};   ///< by the viscosity of the laws, per area
   double energy_adhesion{0.0};       ///< elastic energy of the tangential law, per area
   double energy_normal{0.0};         ///< elastic energy of the normal law, per area
   std::int64_t status{0};

@@ -1,68 +1,12 @@
 #pragma once
-// Linear models of the interface inside the yield ellipse, integrated by backward Euler:
-//   w dT/dt + A T = B v + C dxi_el                [Konyukhov Schweizerhof 2006, eq. (26)].
-// w = 1 is the rate form; w = 0 with A = I gives T = B v + C dxi_el (Kelvin-Voigt).
+// The adhesion models: named members of the linear family, each a choice of w, A, B, C.
 
-#include <array>
+#include <stdexcept>
 
-#include "anisocontact/anisotropy/field.hpp"
+#include "anisocontact/law/linear_model.hpp"
 #include "anisocontact/registry/descriptor.hpp"
-#include "anisocontact/tensor/tangent.hpp"
 
 namespace anisocontact::law {
-
-/// Components along the axes of the adhesion directions.
-using AxesMatrix = std::array<std::array<double, 2>, 2>;
-
-inline AxesMatrix diagonal(double a, double b) { return {{{a, 0.0}, {0.0, b}}}; }
-
-/// w, A, B, C of a linear model along the axes of its directions.
-struct LinearModel {
-  double w{1.0};
-  AxesMatrix a{}, b{}, c{};
-};
-
-/// The same tensors in the convective basis of the surface.
-template <class S>
-struct LinearTensors {
-  S w;
-  CoContra<S> a;
-  CoCo<S> b, c;
-};
-
-template <class S>
-LinearTensors<S> pull_back(const LinearModel& m, const surface::Geometry<S>& g,
-                           const anisotropy::Axes<S>& axes) {
-  const std::array<Covector<S>, 2> lower{g.project_co(axes.e[0]), g.project_co(axes.e[1])};
-  const std::array<Vector<S>, 2> upper{g.a_contra * lower[0], g.a_contra * lower[1]};
-  LinearTensors<S> t{S(m.w), {}, {}, {}};
-  for (std::size_t i = 0; i < 2; ++i)
-    for (std::size_t j = 0; j < 2; ++j) {
-      t.a = t.a + S(m.a[i][j]) * outer(lower[i], upper[j]);
-      t.b = t.b + S(m.b[i][j]) * outer(lower[i], lower[j]);
-      t.c = t.c + S(m.c[i][j]) * outer(lower[i], lower[j]);
-    }
-  return t;
-}
-
-/// Trial force and the stiffness with which slip relieves it.
-template <class S>
-struct Trial {
-  Covector<S> traction;  ///< T_tr
-  CoCo<S> stiffness;     ///< T = T_tr + stiffness dxi_sl
-};
-
-/// Backward Euler: (w G + dt A) T = w T_n + (B + dt C)(dxi - dxi_sl) + dt C dxi_el,n, where G
-/// carries the connection of the covariant form and is the unit tensor in the transported form.
-template <class S>
-Trial<S> trial(const LinearTensors<S>& m, const CoContra<S>& g, const Covector<S>& stored,
-               const Vector<S>& elastic, const Vector<S>& increment, double dt) {
-  const CoContra<S> left = m.w * g + S(dt) * m.a;
-  const CoContra<S> left_inv = (S(1.0) / det(left)) * (trace(left) * unit<S, Place::co>() - left);
-  const CoCo<S> right = m.b + S(dt) * m.c;
-  const Covector<S> rhs = m.w * stored + right * increment + S(dt) * (m.c * elastic);
-  return {left_inv * rhs, -(left_inv * right)};
-}
 
 /// Rate-independent adhesion, dT/dt = B v, B = -(eps_1 e_1 (x) e_1 + eps_2 e_2 (x) e_2)
 /// [Konyukhov Schweizerhof 2006, eq. (28), (49)].
@@ -71,11 +15,13 @@ class Elastic {
   static Descriptor describe() {
     return {"elastic",
             "Rate-independent elastic adhesion.",
-            {{"stiffness", Kind::pair, "stress/length",
-              "tangential stiffness along the two axes", Bound::non_negative}}};
+            {{"stiffness", Kind::pair, "stress/length", "tangential stiffness along the two axes",
+              Bound::non_negative}}};
   }
   static Elastic make(const Values& v) {
     const auto& e = v.pair("stiffness");
+    if (e[0] == 0.0 && e[1] == 0.0)
+      throw std::invalid_argument("stiffness: 0 along both axes, one at least must be > 0");
     Elastic m;
     m.model_.b = diagonal(-e[0], -e[1]);
     return m;
@@ -83,6 +29,137 @@ class Elastic {
   const LinearModel& model() const { return model_; }
 
  private:
+  LinearModel model_;
+};
+
+/// Spring and dashpot in series along each axis: dT/dt + T/tau = -k v.
+class Maxwell {
+ public:
+  static Descriptor describe() {
+    return {
+        "maxwell",
+        "Spring and dashpot in series along each axis; the force relaxes to zero.",
+        {{"stiffness", Kind::pair, "stress/length", "stiffness of the springs", Bound::positive},
+         {"relaxation_time", Kind::pair, "time", "relaxation times along the two axes",
+          Bound::positive}}};
+  }
+  static Maxwell make(const Values& v) {
+    const auto &k = v.pair("stiffness"), &tau = v.pair("relaxation_time");
+    Maxwell m;
+    m.model_.a = diagonal(1.0 / tau[0], 1.0 / tau[1]);
+    m.model_.b = diagonal(-k[0], -k[1]);
+    return m;
+  }
+  const LinearModel& model() const { return model_; }
+
+ private:
+  LinearModel model_;
+};
+
+/// Spring and dashpot side by side along each axis: T = -k xi_el - eta v.
+class KelvinVoigt {
+ public:
+  static Descriptor describe() {
+    return {"kelvin-voigt",
+            "Spring and dashpot side by side along each axis.",
+            {{"stiffness", Kind::pair, "stress/length", "stiffness of the springs",
+              Bound::non_negative},
+             {"viscosity", Kind::pair, "stress*time/length", "viscosity of the dashpots",
+              Bound::positive}}};
+  }
+  static KelvinVoigt make(const Values& v) {
+    const auto &k = v.pair("stiffness"), &eta = v.pair("viscosity");
+    KelvinVoigt m;
+    m.model_.w = 0.0;
+    m.model_.a = diagonal(1.0, 1.0);
+    m.model_.b = diagonal(-eta[0], -eta[1]);
+    m.model_.c = diagonal(-k[0], -k[1]);
+    return m;
+  }
+  const LinearModel& model() const { return model_; }
+
+ private:
+  LinearModel model_;
+};
+
+/// A spring beside a Maxwell element along each axis:
+/// dT/dt + T/tau = -(k + k_1) v - (k/tau) xi_el.
+class StandardLinearSolid {
+ public:
+  static Descriptor describe() {
+    return {"standard-linear-solid",
+            "A spring beside a Maxwell element along each axis; the force relaxes to the spring's.",
+            {{"stiffness", Kind::pair, "stress/length", "stiffness of the springs, at rest",
+              Bound::positive},
+             {"stiffness_maxwell", Kind::pair, "stress/length",
+              "stiffness of the Maxwell elements, which relaxes", Bound::positive},
+             {"relaxation_time", Kind::pair, "time", "relaxation times along the two axes",
+              Bound::positive}}};
+  }
+  static StandardLinearSolid make(const Values& v) {
+    const auto &k = v.pair("stiffness"), &k1 = v.pair("stiffness_maxwell"),
+               &tau = v.pair("relaxation_time");
+    StandardLinearSolid m;
+    m.model_.a = diagonal(1.0 / tau[0], 1.0 / tau[1]);
+    m.model_.b = diagonal(-k[0] - k1[0], -k[1] - k1[1]);
+    m.model_.c = diagonal(-k[0] / tau[0], -k[1] / tau[1]);
+    return m;
+  }
+  const LinearModel& model() const { return model_; }
+
+ private:
+  LinearModel model_;
+};
+
+/// The general model dT/dt + A T = B v + C xi_el with full tensors
+/// [Konyukhov Schweizerhof 2006, eq. (26)].
+class GeneralLinear {
+ public:
+  static Descriptor describe() {
+    const std::string form = ", 2 x 2 along the axes, row by row";
+    return {"general-linear",
+            "dT/dt + A T = -S v - R xi_el with full tensors A, S = -B, R = -C, eq. (26).",
+            {{"relaxation", Kind::array, "1/time", "A" + form, Bound::any},
+             {"stiffness_instant", Kind::array, "stress/length", "S = -B, positive definite" + form,
+              Bound::any},
+             {"stiffness_rate",
+              Kind::array,
+              "stress/length/time",
+              "R = -C" + form,
+              Bound::any,
+              false,
+              {0.0, 0.0, 0.0, 0.0}}}};
+  }
+  static GeneralLinear make(const Values& v) {
+    GeneralLinear m;
+    m.model_.a = matrix(v, "relaxation", 1.0);
+    m.model_.b = matrix(v, "stiffness_instant", -1.0);
+    m.model_.c = matrix(v, "stiffness_rate", -1.0);
+    if (!positive(m.model_.b, -1.0))
+      throw std::invalid_argument("stiffness_instant: its symmetric part is not positive definite");
+    if (!(m.model_.a[0][0] >= 0.0 && m.model_.a[1][1] >= 0.0 && !negative(m.model_.a)))
+      throw std::invalid_argument("relaxation: its symmetric part has a negative eigenvalue");
+    return m;
+  }
+  const LinearModel& model() const { return model_; }
+
+ private:
+  static AxesMatrix matrix(const Values& v, const std::string& name, double sign) {
+    const auto& l = v.list(name);
+    if (l.size() != 4)
+      throw std::invalid_argument(name + ": " + std::to_string(l.size()) +
+                                  " values given, 4 needed (2 x 2, row by row)");
+    return {{{sign * l[0], sign * l[1]}, {sign * l[2], sign * l[3]}}};
+  }
+  /// Determinant of the symmetric part.
+  static double symmetric_det(const AxesMatrix& m) {
+    const double s = 0.5 * (m[0][1] + m[1][0]);
+    return m[0][0] * m[1][1] - s * s;
+  }
+  static bool positive(const AxesMatrix& m, double sign) {
+    return sign * m[0][0] > 0.0 && symmetric_det(m) > 0.0;
+  }
+  static bool negative(const AxesMatrix& m) { return symmetric_det(m) < 0.0; }
   LinearModel model_;
 };
 

@@ -2,6 +2,7 @@
 // The laws there are. A new one: its header, and its name here.
 
 #include "anisocontact/law/adhesion.hpp"
+#include "anisocontact/law/energy.hpp"
 #include "anisocontact/law/friction.hpp"
 #include "anisocontact/law/normal.hpp"
 #include "anisocontact/law/rules/explicit.hpp"
@@ -14,10 +15,11 @@ namespace anisocontact::law {
 using SlidingRules = Registry<MaximumDissipation, Explicit, Radial>;
 using AnyRule = SlidingRules::Any;
 
-using AdhesionModels = Registry<Elastic>;
+using AdhesionModels = Registry<Elastic, Maxwell, KelvinVoigt, StandardLinearSolid, GeneralLinear>;
 using AnyAdhesion = AdhesionModels::Any;
 
-using NormalLaws = Registry<Penalty>;
+using NormalLaws =
+    Registry<Penalty, NormalKelvinVoigt, NormalMaxwell, NormalStandardLinearSolid, NormalGeneral>;
 using AnyNormalLaw = NormalLaws::Any;
 
 using FrictionModels = Registry<Orthotropic>;

@@ -99,6 +99,24 @@ Geometry<S> geometry(const Jet<S>& jet) {
   return g;
 }
 
+/// The geometry in plain numbers.
+template <class S>
+Geometry<double> value(const Geometry<S>& g) {
+  using anisocontact::value;
+  Geometry<double> r;
+  r.jet = {value(g.jet.position),
+           {value(g.jet.d1[0]), value(g.jet.d1[1])},
+           {value(g.jet.d2[0]), value(g.jet.d2[1]), value(g.jet.d2[2])}};
+  r.a_co = value(g.a_co);
+  r.a_contra = value(g.a_contra);
+  r.area = value(g.area);
+  r.normal = value(g.normal);
+  r.h_co = value(g.h_co);
+  r.h_mixed = value(g.h_mixed);
+  r.christoffel = {value(g.christoffel[0]), value(g.christoffel[1])};
+  return r;
+}
+
 /// Basis r_i = (a_i^k - h_i^k xi^3) rho_k, r_3 = n of the space around the surface
 /// [Konyukhov Schweizerhof 2006, eq. (3)].
 template <class S>

@@ -1,0 +1,78 @@
+#pragma once
+// Linear models of the interface inside the yield ellipse, integrated by backward Euler:
+//   w dT/dt + A T = B v + C dxi_el                [Konyukhov Schweizerhof 2006, eq. (26)].
+// w = 1 is the rate form; w = 0 with A = I gives T = B v + C dxi_el (Kelvin-Voigt).
+
+#include <array>
+
+#include "anisocontact/anisotropy/field.hpp"
+#include "anisocontact/tensor/tangent.hpp"
+
+namespace anisocontact::law {
+
+/// Components along the axes e_a of the adhesion directions: T = t_a e_a, slip read as e_a . xi.
+using AxesMatrix = std::array<std::array<double, 2>, 2>;
+
+inline AxesMatrix diagonal(double a, double b) { return {{{a, 0.0}, {0.0, b}}}; }
+
+/// w, A, B, C of a linear model: w dt_a/dt + A_ab t_b = B_ab (e_b . v) + C_ab (e_b . xi_el).
+struct LinearModel {
+  double w{1.0};
+  AxesMatrix a{}, b{}, c{};
+};
+
+/// The same tensors in the convective basis of the surface.
+template <class S>
+struct LinearTensors {
+  S w;
+  CoContra<S> a;
+  CoCo<S> b, c;
+};
+
+/// Contravariant components of the axes reciprocal to e_1, e_2; e_1, e_2 themselves where these
+/// are orthonormal.
+template <class S>
+std::array<Vector<S>, 2> reciprocal(const std::array<Covector<S>, 2>& lower,
+                                    const std::array<Vector<S>, 2>& upper) {
+  const S g11 = dot(lower[0], upper[0]), g12 = dot(lower[0], upper[1]),
+          g22 = dot(lower[1], upper[1]);
+  const S inv = S(1.0) / (g11 * g22 - g12 * g12);
+  return {inv * (g22 * upper[0] - g12 * upper[1]), inv * (g11 * upper[1] - g12 * upper[0])};
+}
+
+template <class S>
+LinearTensors<S> pull_back(const LinearModel& m, const surface::Geometry<S>& g,
+                           const anisotropy::Axes<S>& axes) {
+  const std::array<Covector<S>, 2> lower{g.project_co(axes.e[0]), g.project_co(axes.e[1])};
+  const std::array<Vector<S>, 2> upper{g.a_contra * lower[0], g.a_contra * lower[1]};
+  const auto dual = reciprocal(lower, upper);
+  LinearTensors<S> t{S(m.w), {}, {}, {}};
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) {
+      t.a = t.a + S(m.a[i][j]) * outer(lower[i], dual[j]);
+      t.b = t.b + S(m.b[i][j]) * outer(lower[i], lower[j]);
+      t.c = t.c + S(m.c[i][j]) * outer(lower[i], lower[j]);
+    }
+  return t;
+}
+
+/// Trial force and the stiffness with which slip relieves it.
+template <class S>
+struct Trial {
+  Covector<S> traction;  ///< T_tr
+  CoCo<S> stiffness;     ///< T = T_tr + stiffness dxi_sl
+};
+
+/// Backward Euler: (w G + dt A) T = w T_n + (B + dt C)(dxi - dxi_sl) + dt C dxi_el,n, where G
+/// carries the connection of the covariant form and is the unit tensor in the transported form.
+template <class S>
+Trial<S> trial(const LinearTensors<S>& m, const CoContra<S>& g, const Covector<S>& stored,
+               const Vector<S>& elastic, const Vector<S>& increment, double dt) {
+  const CoContra<S> left = m.w * g + S(dt) * m.a;
+  const CoContra<S> left_inv = (S(1.0) / det(left)) * (trace(left) * unit<S, Place::co>() - left);
+  const CoCo<S> right = m.b + S(dt) * m.c;
+  const Covector<S> rhs = m.w * stored + right * increment + S(dt) * (m.c * elastic);
+  return {left_inv * rhs, -(left_inv * right)};
+}
+
+}  // namespace anisocontact::law
