@@ -1,0 +1,239 @@
+"""Reference pages made from the program itself, in `reference/generated/`.
+
+The case file's page comes from its JSON Schema, the command's from its argument parser, the page
+of surfaces and laws from the registries, the Python pages from the modules there are.
+"""
+
+import argparse
+import pkgutil
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from sphinx.application import Sphinx
+
+Schema = Mapping[str, Any]
+
+
+def table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
+    """Return a Markdown table; empty without rows."""
+    cells = ([cell.replace("|", r"\|").replace("\n", " ") for cell in row] for row in rows)
+    lines = [[*header], *cells]
+    if len(lines) == 1:
+        return ""
+    lines.insert(1, ["---"] * len(lines[0]))
+    return "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
+
+
+def code(value: object) -> str:
+    """Return a value as TOML would show it, in code style."""
+    text = {True: "true", False: "false"}.get(value) if isinstance(value, bool) else None
+    if text is None:
+        text = f'"{value}"' if isinstance(value, str) else str(value)
+    return f"`{text}`"
+
+
+# --- case file ---------------------------------------------------------------------------------
+
+
+def type_words(schema: Schema) -> str:
+    """Return what a value may be, in words."""
+    if "$ref" in schema:
+        name = schema["$ref"].rsplit("/", 1)[-1]
+        return f"[{name}](#{name.lower()})"
+    if "const" in schema or "enum" in schema:
+        return ", ".join(map(code, schema.get("enum", [schema.get("const")])))
+    for key in ("anyOf", "oneOf", "allOf"):
+        if key in schema:
+            return " or ".join(dict.fromkeys(type_words(option) for option in schema[key]))
+    if schema.get("type") == "array":
+        return array_words(schema)
+    if schema.get("type") == "object" and isinstance(schema.get("additionalProperties"), Mapping):
+        return f"table by name: {type_words(schema['additionalProperties'])}"
+    return str(schema.get("type", "anything")) + bounds(schema)
+
+
+def array_words(schema: Schema) -> str:
+    """Return what a list may hold, in words."""
+    if "prefixItems" in schema:
+        items = list(dict.fromkeys(type_words(item) for item in schema["prefixItems"]))
+        return f"list of {len(schema['prefixItems'])}: {', '.join(items)}"
+    least, most = schema.get("minItems"), schema.get("maxItems")
+    size = f" of {least}" if least is not None and least == most else " of"
+    return f"list{size} {type_words(schema.get('items', {}))}"
+
+
+def bounds(schema: Schema) -> str:
+    """Return the bounds of a number, in words."""
+    signs = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
+    found = [f"{sign} {schema[key]:g}" for key, sign in signs.items() if key in schema]
+    return f" {', '.join(found)}" if found else ""
+
+
+def properties(schema: Schema) -> str:
+    """Return the keys of an object as a table."""
+    required = set(schema.get("required", ()))
+
+    def fallback(key: str, value: Schema) -> str:
+        if key in required:
+            return "required"
+        return code(value["default"]) if value.get("default") is not None else ""
+
+    rows = (
+        (f"`{key}`", type_words(value), fallback(key, value), value.get("description", ""))
+        for key, value in schema.get("properties", {}).items()
+    )
+    return table(("key", "value", "default", "meaning"), rows)
+
+
+def case_page(schema: Schema) -> str:
+    """Return the reference page of the case file."""
+    parts = [f"# Case file\n\n{schema.get('description', '')}\n", properties(schema)]
+    for name, part in schema.get("$defs", {}).items():
+        body = properties(part) or f"{type_words(part)}\n"
+        parts.append(f"({name.lower()})=\n## {name}\n\n{part.get('description', '')}\n\n{body}")
+    return "\n".join(parts)
+
+
+# --- command -----------------------------------------------------------------------------------
+
+
+def subparsers(parser: argparse.ArgumentParser) -> dict[str, argparse.ArgumentParser]:
+    """Return the subcommands of a parser."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            return dict(action.choices)
+    return {}
+
+
+def arguments(parser: argparse.ArgumentParser) -> Iterator[tuple[str, str]]:
+    """Yield each argument of a parser and what it does."""
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction | argparse._HelpAction):
+            continue
+        name = ", ".join(action.option_strings) or str(action.metavar or action.dest)
+        if action.option_strings and action.nargs != 0:
+            name += f" {action.metavar or action.dest.upper()}"
+        text = action.help or ""
+        yield f"`{name}`", text % {**vars(action), "prog": parser.prog}
+
+
+def command_page(parser: argparse.ArgumentParser) -> str:
+    """Return the reference page of the command."""
+    parts = [f"# Command\n\n{parser.description or ''}\n"]
+    top = table(("argument", "meaning"), arguments(parser))
+    for name, sub in [("", parser), *subparsers(parser).items()]:
+        usage = " ".join(sub.format_usage().removeprefix("usage: ").split())
+        if name:
+            about = (sub.description or "").strip()
+            body = table(("argument", "meaning"), arguments(sub))
+            parts.append(f"## {name}\n\n{about}\n\n```console\n$ {usage}\n```\n\n{body}")
+        else:
+            parts.append(f"```console\n$ {usage}\n```\n\n{top}")
+    return "\n".join(parts)
+
+
+# --- surfaces, laws, rules ---------------------------------------------------------------------
+
+
+def registry_page(rooms: Mapping[str, Iterable[Any]]) -> str:
+    """Return the page of everything that is registered."""
+    parts = [
+        "# Surfaces, directions, laws and rules\n",
+        "`anisocontact info` prints the same. An angle is in radians in Python; in a case file "
+        "its key ends in `_deg`.\n",
+    ]
+    for title, entries in rooms.items():
+        parts.append(f"## {title}\n")
+        for entry in entries:
+            rows = (
+                (f"`{p.name}`", parameter_form(p), p.unit, parameter_default(p), p.doc)
+                for p in entry.parameters
+            )
+            body = table(("parameter", "value", "unit", "default", "meaning"), rows)
+            parts.append(f"### `{entry.name}`\n\n{entry.doc}\n\n{body or 'No parameters.'}\n")
+    return "\n".join(parts)
+
+
+def parameter_form(parameter: Any) -> str:
+    """Return the form and bound of a parameter."""
+    if parameter.choices:
+        return ", ".join(code(choice) for choice in parameter.choices)
+    return parameter.kind if parameter.bound == "any" else f"{parameter.kind}, {parameter.bound}"
+
+
+def parameter_default(parameter: Any) -> str:
+    """Return what holds where the parameter is left out."""
+    if parameter.required:
+        return "required"
+    if parameter.choices:
+        return code(parameter.choices[int(parameter.default[0])])
+    return ", ".join(f"{value:g}" for value in parameter.default)
+
+
+# --- Python ------------------------------------------------------------------------------------
+
+
+def public_modules(folder: Path) -> list[str]:
+    """Return the names of the modules a user imports from: what is inside a package, it exports."""
+    names = (module.name for module in pkgutil.iter_modules([str(folder)]))
+    return [f"anisocontact.{name}" for name in sorted(names) if not name.startswith("_")]
+
+
+def module_page(name: str) -> str:
+    """Return the reference page of a module."""
+    return f"# `{name}`\n\n```{{eval-rst}}\n.. automodule:: {name}\n```\n"
+
+
+# --- Sphinx ------------------------------------------------------------------------------------
+
+
+def escape_bars(
+    _app: Sphinx, _what: str, _name: str, _object: Any, _options: Any, lines: list[str]
+) -> None:
+    """Keep |N| in docstrings what it is; reStructuredText would look for a substitution."""
+    lines[:] = [
+        line if "``" in line or line.lstrip().startswith(">>>") else line.replace("|", r"\|")
+        for line in lines
+    ]
+
+
+def write_pages(app: Sphinx) -> None:
+    """Write the pages that changed and remove those whose origin is gone."""
+    from anisocontact import registry
+    from anisocontact.case import json_schema
+    from anisocontact.cli import build_parser
+
+    rooms = {
+        "Surfaces": registry.surfaces(),
+        "Direction fields": registry.direction_fields(),
+        "Normal laws": registry.normal_laws(),
+        "Adhesion models": registry.adhesion_models(),
+        "Friction models": registry.friction_models(),
+        "Sliding rules": registry.sliding_rules(),
+    }
+    pages = {
+        "case-file": case_page(json_schema()),
+        "command": command_page(build_parser()),
+        "laws": registry_page(rooms),
+    }
+    source = Path(app.srcdir).parent / "src" / "anisocontact"
+    for name in public_modules(source):
+        pages[f"python/{name}"] = module_page(name)
+
+    folder = Path(app.srcdir) / "reference" / "generated"
+    for old in folder.rglob("*.md"):
+        if old.relative_to(folder).with_suffix("").as_posix() not in pages:
+            old.unlink()
+    for name, text in pages.items():
+        path = folder / f"{name}.md"
+        if not path.is_file() or path.read_text() != text:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Write the pages before Sphinx looks for sources."""
+    app.connect("builder-inited", write_pages)
+    app.connect("autodoc-process-docstring", escape_bars)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
