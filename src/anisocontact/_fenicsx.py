@@ -1,0 +1,147 @@
+"""DOLFINx, PETSc and MPI as the finite-element level uses them.
+
+Every call whose name or signature differs between DOLFINx releases sits here, and so does the
+order of the imports: the wheel `dolfinx-solver-real` brings its own PETSc, which has to be
+loaded before `dolfinx` and `petsc4py`. Installations from conda-forge or Debian have no such
+package and need none.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+with contextlib.suppress(ImportError):
+    import dolfinx_solver  # noqa: F401
+
+try:
+    import basix
+    import basix.ufl
+    import dolfinx
+    import ufl as _ufl
+    from dolfinx import cpp, fem, graph, io
+    from dolfinx import mesh as dmesh
+    from dolfinx.fem import petsc as fem_petsc
+    from mpi4py import MPI
+    from petsc4py import PETSc as _PETSc
+except ImportError as missing:
+    raise ImportError(
+        "the finite-element level needs DOLFINx 0.11 with PETSc: "
+        "pip install 'anisocontact[fem]', or fenics-dolfinx from conda-forge"
+    ) from missing
+
+__all__ = [
+    "MPI",
+    "SNES",
+    "Mat",
+    "PETSc",
+    "Vec",
+    "basix",
+    "cell_permutation",
+    "create_mesh",
+    "create_stiffness",
+    "dolfinx",
+    "facet_sides",
+    "fem",
+    "geometry",
+    "locate_entities",
+    "scalar_element",
+    "ufl",
+    "vector_space",
+]
+
+# UFL has no types, and those of petsc4py take enumerations and sums of vectors for errors.
+ufl: Any = _ufl
+PETSc: Any = _PETSc
+type Mat = Any
+type Vec = Any
+type SNES = Any
+
+Ints = npt.NDArray[np.int32]
+Nodes = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+
+
+def create_mesh(comm: MPI.Comm, cell: str, degree: int, cells: Nodes, points: Floats) -> Any:
+    """Distributed DOLFINx mesh of Lagrange cells.
+
+    Args:
+        comm: Communicator; ranks without data pass arrays of length zero.
+        cell: "tetrahedron" or "hexahedron".
+        degree: Degree of the geometry.
+        cells: Node numbers of each cell in DOLFINx order, (cells, nodes).
+        points: Coordinates of the nodes, (nodes, 3), length.
+
+    Returns:
+        The mesh.
+    """
+    element = basix.ufl.element(
+        "Lagrange", cell, degree, basix.LagrangeVariant.equispaced, shape=(3,)
+    )
+    return dmesh.create_mesh(comm, cells, ufl.Mesh(element), points)
+
+
+def cell_permutation(cell: str, nodes: int) -> Nodes:
+    """Order `p` that takes a gmsh cell to DOLFINx: `dolfinx = gmsh[:, p]`."""
+    return np.asarray(cpp.io.perm_gmsh(cpp.mesh.to_type(cell), nodes), dtype=np.int64)
+
+
+def locate_entities(mesh: Any, dim: int, nodes: Nodes, values: Ints) -> tuple[Ints, Ints]:
+    """Local entities with the given nodes and the value of each.
+
+    Args:
+        mesh: DOLFINx mesh.
+        dim: Topological dimension of the entities.
+        nodes: Input numbers of the nodes of each entity, (entities, nodes).
+        values: A number for each entity, (entities,). Collective: other ranks may pass none.
+
+    Returns:
+        Local indices (sorted) and values.
+    """
+    mesh.topology.create_connectivity(dim, mesh.topology.dim)
+    vertices, local = io.distribute_entity_data(mesh, dim, nodes, values)
+    tags = dmesh.meshtags_from_entities(
+        mesh, dim, graph.adjacencylist(vertices), local.astype(np.int32, copy=False)
+    )
+    return tags.indices, tags.values
+
+
+def facet_sides(mesh: Any, facets: Ints) -> tuple[Ints, Ints]:
+    """Cell and local number of each boundary facet this rank owns, in the order given."""
+    topology = mesh.topology
+    topology.create_connectivity(2, 3)
+    topology.create_connectivity(3, 2)
+    pairs = fem.compute_integration_domains(fem.IntegralType.exterior_facet, topology, facets)
+    sides = np.asarray(pairs, dtype=np.int32).reshape(-1, 2)
+    return sides[:, 0], sides[:, 1]
+
+
+def geometry(mesh: Any) -> tuple[Any, Ints, Floats]:
+    """Basix element, node numbers of every cell and node coordinates of the geometry."""
+    element = mesh.ufl_domain().ufl_coordinate_element().basix_element
+    return element, mesh.geometry.dofmaps[0], mesh.geometry.x
+
+
+def vector_space(mesh: Any, degree: int) -> Any:
+    """Continuous Lagrange vectors in space."""
+    return fem.functionspace(mesh, ("Lagrange", degree, (3,)))
+
+
+def scalar_element(space: Any) -> Any:
+    """Basix element of one component of a vector space."""
+    return space.element.basix_element
+
+
+def create_stiffness(form: Any) -> Mat:
+    """Assembled matrix of a bilinear form, without boundary conditions.
+
+    Rows that are emptied later keep their place in the pattern, so that one symbolic
+    factorisation serves a whole run.
+    """
+    matrix = fem_petsc.assemble_matrix(form)
+    matrix.assemble()
+    matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+    return matrix

@@ -1,0 +1,51 @@
+"""Bodies whose stiffness does not change: assembled once for a whole run."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from anisocontact._fenicsx import Mat, PETSc, Vec, create_stiffness, fem, ufl
+from anisocontact.bulk.materials import Material
+from anisocontact.mesh import Model
+
+
+class LinearBulk:
+    """Stiffness of all bodies, `K u` and `u.K u / 2`.
+
+    Args:
+        model: Mesh with its bodies.
+        materials: Body name -> linear material, one for each body.
+    """
+
+    def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
+        self.stiffness = create_stiffness(fem.form(_bilinear_form(model, materials)))
+        self._force = self.stiffness.createVecLeft()
+        #: Diagonal of K: the scale of forces that displacements of one unit make.
+        self.diagonal = self.stiffness.getDiagonal()
+
+    def force(self, u: Vec) -> Vec:
+        """Internal force `K u`; the vector is overwritten by the next call."""
+        self.stiffness.mult(u, self._force)
+        return self._force
+
+    def energy(self, u: Vec) -> float:
+        """Elastic energy `u.K u / 2`."""
+        return 0.5 * float(u.dot(self.force(u)))
+
+    def tangent(self, out: Mat) -> None:
+        """Write the stiffness into a matrix of the same pattern."""
+        self.stiffness.copy(out, structure=PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+
+
+def _bilinear_form(model: Model, materials: Mapping[str, Material]) -> Any:
+    u, v = ufl.TrialFunction(model.space), ufl.TestFunction(model.space)
+    names = model.body_names()
+    cells = [(i, np.sort(model.cells(name))) for i, name in enumerate(names)]
+    dx = ufl.Measure("dx", domain=model.mesh, subdomain_data=cells)
+    return sum(
+        ufl.inner(materials[name].stress(u), ufl.sym(ufl.grad(v))) * dx(i)
+        for i, name in enumerate(names)
+    )

@@ -1,0 +1,38 @@
+"""Default of the normal penalty."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from anisocontact.bulk import Material
+from anisocontact.contact.quadrature import facet_quadrature
+from anisocontact.mesh import Model
+
+#: Penalty in units of Young's modulus over the facet size: a pressure p lets the surfaces overlap
+#: by `h p / (10 E)`, a tenth of what one layer of elements gives way.
+PENALTY_FACTOR = 10.0
+
+
+def facet_size(model: Model, facet_group: str) -> float:
+    """Length of a facet: square root of the mean facet area of a group."""
+    quadrature = facet_quadrature(model.space, model.facets(facet_group), degree=2)
+    local = np.array([quadrature.areas.sum(), len(quadrature.nodes)])
+    area, count = model.mesh.comm.allreduce(local)
+    return float(np.sqrt(area / count))
+
+
+def auto_penalty(
+    model: Model, slave: str, material: Material, factor: float = PENALTY_FACTOR
+) -> float:
+    """Normal penalty `factor E / h`, the same physical stiffness in any units.
+
+    Args:
+        model: Mesh with the facet group.
+        slave: Facet group "body.group"; h is the square root of its mean facet area.
+        material: Material of the slave's body, E its Young's modulus.
+        factor: Dimensionless factor, > 0.
+
+    Returns:
+        The penalty, stress/length.
+    """
+    return factor * material.young / facet_size(model, slave)

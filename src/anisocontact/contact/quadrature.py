@@ -1,0 +1,129 @@
+"""Integration on facets: points, areas and basis of the displacement there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+
+from anisocontact._fenicsx import basix, facet_sides, geometry, scalar_element
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FacetQuadrature:
+    """Quadrature points of m facets, q on each, with the k nodes of a facet.
+
+    Attributes:
+        nodes: Local nodes (blocks of three unknowns) of each facet, (m, k).
+        basis: Value of each node's basis function at each point, (m, q, k).
+        weights: Area that belongs to each point in the reference configuration, (m, q), length^2.
+        reference: Position of each point in the reference configuration, (m q, 3), length.
+    """
+
+    nodes: Ints
+    basis: Floats
+    weights: Floats
+    reference: Floats
+
+    @property
+    def count(self) -> int:
+        """Number of points on this rank."""
+        return self.weights.size
+
+    @property
+    def areas(self) -> Floats:
+        """Area of each point, (m q,), length^2."""
+        return self.weights.reshape(-1)
+
+    @cached_property
+    def interpolation(self) -> scipy.sparse.csr_array:
+        """Matrix that takes a nodal field to the points, (m q, local nodes touched)."""
+        m, q, k = self.basis.shape
+        columns = np.broadcast_to(self.nodes[:, None, :], (m, q, k))
+        starts = np.arange(0, m * q * k + 1, k)
+        shape = (m * q, int(self.nodes.max(initial=-1)) + 1)
+        entries = (self.basis.reshape(-1), columns.reshape(-1).astype(np.int64), starts)
+        return scipy.sparse.csr_array(entries, shape=shape)
+
+    def at_points(self, nodal: Floats) -> Floats:
+        """Nodal vectors interpolated to the points: (local nodes, 3) -> (m q, 3)."""
+        return np.asarray(self.interpolation @ nodal[: self.interpolation.shape[1]])
+
+    def to_nodes(self, traction: Floats, out: Floats) -> None:
+        """Add `integral of basis * traction` to the nodal vectors `out`, (local nodes, 3)."""
+        forces = self.interpolation.T @ (self.areas[:, None] * traction)
+        out[: len(forces)] += forces
+
+    def facet_matrices(self, point_matrices: Floats) -> Floats:
+        """`integral of basis_a D basis_b` on each facet.
+
+        Args:
+            point_matrices: D at each point, (m q, 3, 3), stress/length.
+
+        Returns:
+            One matrix for each facet, rows and columns node by node, (m, 3 k, 3 k).
+        """
+        m, q, k = self.basis.shape
+        weighted = self.weights[..., None, None] * point_matrices.reshape(m, q, 3, 3)
+        pairs = self.basis[:, :, :, None] * self.basis[:, :, None, :]
+        # (m, k k, q) (m, q, 9): one product of small matrices per facet.
+        product = pairs.reshape(m, q, k * k).swapaxes(1, 2) @ weighted.reshape(m, q, 9)
+        blocks = product.reshape(m, k, k, 3, 3).swapaxes(2, 3)
+        return blocks.reshape(m, 3 * k, 3 * k)
+
+
+def default_degree(order: int) -> int:
+    """Degree that integrates the product of two basis functions: twice the order."""
+    return 2 * order
+
+
+def facet_quadrature(space: Any, facets: Ints, degree: int) -> FacetQuadrature:
+    """Quadrature of the given degree on boundary facets.
+
+    Args:
+        space: Vector Lagrange space of order 1 or 2.
+        facets: Local facets on the boundary; those of other ranks are left out.
+        degree: Polynomials up to this degree are integrated exactly on flat facets.
+
+    Returns:
+        Points, areas and basis.
+    """
+    cells, local = facet_sides(space.mesh, np.sort(facets))
+    element = scalar_element(space)
+    shape_element, shape_nodes, shape_points = geometry(space.mesh)
+    rule, weights = _facet_rule(element.cell_type, degree)
+    corners = basix.geometry(element.cell_type)
+    topology = basix.topology(element.cell_type)[2]
+    closure = element.entity_closure_dofs[2]
+    basis, position, jacobian = [], [], []
+    for side, vertices in enumerate(topology):
+        origin = corners[vertices[0]]
+        edges = corners[vertices[1:3]] - origin
+        at = origin + rule @ edges
+        basis.append(element.tabulate(0, at)[0, :, :, 0][:, closure[side]])
+        table = shape_element.tabulate(1, at)[..., 0]
+        position.append(table[0])
+        jacobian.append(np.einsum("td,dqb->tqb", edges, table[1:]))
+    nodes = shape_points[shape_nodes[cells]]
+    tangents = np.einsum("mtqb,mbi->mtqi", np.stack(jacobian)[local], nodes)
+    area = np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=-1)
+    return FacetQuadrature(
+        nodes=space.dofmap.list[cells[:, None], np.array(closure)[local]],
+        basis=np.stack(basis)[local],
+        weights=weights * area,
+        reference=np.einsum("mqb,mbi->mqi", np.stack(position)[local], nodes).reshape(-1, 3),
+    )
+
+
+def _facet_rule(cell: Any, degree: int) -> tuple[Floats, Floats]:
+    simplex = cell == basix.CellType.tetrahedron
+    facet = basix.CellType.triangle if simplex else basix.CellType.quadrilateral
+    points, weights = basix.make_quadrature(facet, degree)
+    return np.asarray(points), np.asarray(weights)

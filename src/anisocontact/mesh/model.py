@@ -1,0 +1,124 @@
+"""One DOLFINx mesh with named bodies and facet groups."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import MPI, create_mesh, locate_entities, vector_space
+from anisocontact.errors import InputError
+from anisocontact.mesh.arrays import MeshArrays
+
+Ints = npt.NDArray[np.int32]
+
+
+class Model:
+    """Mesh, names and the displacement space on it.
+
+    Args:
+        mesh: DOLFINx mesh of tetrahedra or hexahedra in space.
+        bodies: Body name -> local cells.
+        facets: "body.group" -> local facets on the boundary of that body.
+        order: Order of the displacement, 1 or 2.
+
+    Raises:
+        InputError: The order is not 1 or 2.
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+        >>> len(model.facets("block.bottom"))
+        4
+    """
+
+    def __init__(
+        self, mesh: Any, bodies: Mapping[str, Ints], facets: Mapping[str, Ints], order: int = 1
+    ) -> None:
+        if order not in (1, 2):
+            raise InputError(f"order: got {order!r}, allowed: 1, 2", "order")
+        self.mesh = mesh
+        self.order = order
+        self._bodies = dict(bodies)
+        self._facets = dict(facets)
+
+    @classmethod
+    def from_arrays(cls, arrays: MeshArrays, comm: MPI.Comm = MPI.COMM_WORLD) -> Model:
+        """Distribute plain arrays (the same on every rank) and name what is in them."""
+        root = comm.rank == 0
+        own = slice(None) if root else slice(0, 0)
+        mesh = create_mesh(comm, arrays.cell, arrays.degree, arrays.cells[own], arrays.points[own])
+        bodies = {
+            name: _located(mesh, 3, arrays.cells[cells][own])
+            for name, cells in arrays.bodies.items()
+        }
+        facets = {
+            name: _located(mesh, 2, nodes[own].astype(np.int64))
+            for name, nodes in arrays.facets.items()
+        }
+        return cls(mesh, bodies, facets, arrays.order)
+
+    @cached_property
+    def space(self) -> Any:
+        """Vector Lagrange space of the displacement."""
+        return vector_space(self.mesh, self.order)
+
+    def body_names(self) -> list[str]:
+        """Names of the bodies."""
+        return list(self._bodies)
+
+    def facet_names(self) -> list[str]:
+        """Names of the facet groups, "body.group"."""
+        return list(self._facets)
+
+    def cells(self, name: str, field: str = "") -> Ints:
+        """Local cells of a body.
+
+        Args:
+            name: Body.
+            field: Where the name was written, for the message.
+
+        Raises:
+            InputError: No such body.
+        """
+        return _looked_up(self._bodies, name, "body", field)
+
+    def facets(self, name: str, field: str = "") -> Ints:
+        """Local facets of a group.
+
+        Args:
+            name: "body.group".
+            field: Where the name was written, for the message.
+
+        Raises:
+            InputError: No such group; the line suggests the nearest name.
+        """
+        return _looked_up(self._facets, name, "facet group", field)
+
+    def body_of(self, facet_group: str, field: str = "") -> str:
+        """Name of the body a facet group bounds."""
+        self.facets(facet_group, field)
+        return facet_group.partition(".")[0]
+
+    def count_facets(self, name: str) -> int:
+        """Number of facets of a group, over all ranks."""
+        index_map = self.mesh.topology.index_map(2)
+        owned = int(np.sum(self.facets(name) < index_map.size_local))
+        return int(self.mesh.comm.allreduce(owned))
+
+
+def _located(mesh: Any, dim: int, nodes: npt.NDArray[np.int64]) -> Ints:
+    found, _ = locate_entities(mesh, dim, nodes, np.zeros(len(nodes), dtype=np.int32))
+    return found
+
+
+def _looked_up(known: dict[str, Ints], name: str, kind: str, field: str) -> Ints:
+    if name in known:
+        return known[name]
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    hint = f"did you mean {near[0]!r}?" if near else f"the mesh has: {', '.join(known) or 'none'}"
+    raise InputError(f"no {kind} {name!r} in the mesh; {hint}", field)

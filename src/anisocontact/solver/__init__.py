@@ -1,0 +1,7 @@
+"""Newton's method, load steps and what a run reports."""
+
+from anisocontact.solver.problem import Problem
+from anisocontact.solver.solver import Solver
+from anisocontact.solver.steps import Accepted, Progress, Step, StoppedError
+
+__all__ = ["Accepted", "Problem", "Progress", "Solver", "Step", "StoppedError"]

@@ -1,0 +1,152 @@
+"""Newton's method on the whole system with PETSc SNES."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from anisocontact._fenicsx import SNES, Mat, PETSc, Vec
+from anisocontact.solver.problem import Problem
+
+OptionValue = str | int | float | bool | None
+
+DEFAULTS: dict[str, OptionValue] = {
+    "snes_type": "newtonls",
+    "snes_linesearch_type": "basic",
+    "ksp_type": "preonly",
+    "pc_type": "lu",
+    "pc_factor_mat_solver_type": "mumps",
+}
+#: Residual over the forces at work at which an increment is accepted.
+TOLERANCE = 1e-8
+MAX_ITERATIONS = 25
+#: Residual over its smallest value at which an iteration is given up.
+DIVERGED = 1e8
+
+
+@dataclass(frozen=True)
+class NewtonResult:
+    """Outcome of an increment.
+
+    Attributes:
+        iterations: Number of corrections.
+        residuals: Residual over the forces at work, of the start and after each correction.
+        reason: Empty if it converged, else why it did not.
+    """
+
+    iterations: int
+    residuals: list[float]
+    reason: str
+
+
+class Newton:
+    """SNES with the exact tangent and convergence relative to the forces at work.
+
+    An iterate is accepted when the norm of the residual is below `snes_rtol` times
+    `Problem.force_scale`, or below what floating point can resolve. Both are forces, so the
+    choice of units changes nothing. Every PETSc option works with the prefix, for example
+    `-anisocontact_snes_linesearch_type bt`.
+
+    Args:
+        problem: The system.
+        prefix: Prefix of the PETSc options.
+        options: PETSc options without prefix; those already in the PETSc database come first.
+        on_iteration: Called with the number of the iteration and the residual.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        prefix: str,
+        options: Mapping[str, OptionValue],
+        on_iteration: Callable[[int, float], None],
+    ) -> None:
+        self._problem = problem
+        self._on_iteration = on_iteration
+        self._residuals: list[float] = []
+        self.snes = PETSc.SNES().create(problem.model.mesh.comm)
+        self.snes.setOptionsPrefix(prefix)
+        self.snes.setFunction(self._function, problem.new_vector())
+        self.snes.setJacobian(self._jacobian, problem.new_tangent())
+        self.snes.setTolerances(rtol=TOLERANCE, atol=0.0, stol=0.0, max_it=MAX_ITERATIONS)
+        with _database(prefix, DEFAULTS | dict(options)):
+            self.snes.setFromOptions()
+            self.snes.getKSP().setFromOptions()
+            self.snes.getKSP().getPC().setFromOptions()
+        self.snes.setConvergenceTest(self._converged)
+
+    def close(self) -> None:
+        """Give back PETSc's objects, which hold this one and would keep it for ever."""
+        self.snes.destroy()
+
+    def solve(self, x: Vec) -> NewtonResult:
+        """Correct `x` until it is in equilibrium or no more can be done."""
+        self._residuals = []
+        try:
+            self.snes.solve(None, x)
+        except PETSc.Error as error:
+            # What a callback raises (an interrupt too) comes wrapped by PETSc.
+            raise error.__cause__ or error from None
+        reason = self.snes.getConvergedReason()
+        text = "" if reason > 0 else self._explain(reason)
+        return NewtonResult(self.snes.getIterationNumber(), self._residuals, text)
+
+    def _function(self, _: SNES, x: Vec, f: Vec) -> None:
+        f.array[:] = self._problem.evaluate(x)
+
+    def _jacobian(self, _: SNES, x: Vec, matrix: Mat, __: Mat) -> None:
+        self._problem.tangent(x, matrix)
+
+    def _converged(
+        self, snes: SNES, iteration: int, norms: tuple[float, float, float]
+    ) -> PETSc.SNES.ConvergedReason:
+        reasons = PETSc.SNES.ConvergedReason
+        norm = norms[2]
+        rtol, atol, _, _ = snes.getTolerances()
+        relative = norm / max(self._problem.force_scale, self._problem.round_off, _TINY)
+        self._residuals.append(relative)
+        self._on_iteration(iteration, relative)
+        if not np.isfinite(norm):
+            return reasons.DIVERGED_FUNCTION_NANORINF
+        if norm <= max(rtol * self._problem.force_scale, self._problem.round_off, atol):
+            return reasons.CONVERGED_FNORM_RELATIVE
+        if relative > DIVERGED * min(self._residuals[1:], default=np.inf):
+            return reasons.DIVERGED_DTOL
+        return reasons.ITERATING
+
+    def _explain(self, reason: int) -> str:
+        reasons = PETSc.SNES.ConvergedReason
+        last = self._residuals[-1] if self._residuals else np.nan
+        known = {
+            reasons.DIVERGED_MAX_IT: "no convergence in {n} Newton iterations, residual {r:.1e}",
+            reasons.DIVERGED_FUNCTION_NANORINF: "the residual is not a number",
+            reasons.DIVERGED_FUNCTION_DOMAIN: "the residual is not a number",
+            reasons.DIVERGED_LINEAR_SOLVE: "the tangent matrix could not be factorised "
+            "(a body without support?)",
+            reasons.DIVERGED_LINE_SEARCH: "the line search found no descent, residual {r:.1e}",
+            reasons.DIVERGED_DTOL: "the Newton iteration diverged, residual {r:.1e}",
+        }
+        text = known.get(reason, f"SNES stopped with reason {reason}")
+        return text.format(n=self.snes.getIterationNumber(), r=last)
+
+
+# Stands for the forces where there are none, so that zero over zero is zero.
+_TINY = float(np.finfo(np.float64).tiny)
+
+
+class _database:  # noqa: N801 (used as a function)
+    """PETSc options set for a while, unless the user has set them."""
+
+    def __init__(self, prefix: str, options: Mapping[str, OptionValue]) -> None:
+        self._options = PETSc.Options(prefix)
+        self._set = {k: v for k, v in options.items() if not self._options.hasName(k)}
+
+    def __enter__(self) -> None:
+        for name, value in self._set.items():
+            self._options.setValue(name, value)
+
+    def __exit__(self, *_: object) -> None:
+        for name in self._set:
+            self._options.delValue(name)

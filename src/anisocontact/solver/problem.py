@@ -1,0 +1,233 @@
+"""Bodies, contacts and loads as one system of equations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import Mat, PETSc, Vec, fem
+from anisocontact.bulk import LinearBulk, Material
+from anisocontact.contact import Contact
+from anisocontact.errors import InputError
+from anisocontact.mesh import Model
+from anisocontact.solver.loads import Supports, Tractions
+from anisocontact.solver.steps import Step
+
+Floats = npt.NDArray[np.float64]
+
+#: Share of `|diag(K) u|` that is round-off of the internal forces.
+ROUND_OFF = 64.0 * float(np.finfo(np.float64).eps)
+
+
+class Problem:
+    """Equilibrium `K u - contact - loads = 0` with prescribed displacements.
+
+    A prescribed unknown has the row `s (u - g) = 0`, `s` the mean diagonal of K, and its column
+    stays: the first Newton correction then carries the increment of the supports into the bodies
+    with the tangent of the last accepted state.
+
+    Args:
+        model: Mesh with named bodies and facets.
+        materials: Body name -> material, one for each body.
+        contacts: Contacts on the same model.
+
+    Attributes:
+        u: Displacement, a DOLFINx function; holds the accepted state between increments.
+        force_scale: Norm of the forces at work in the last evaluation: of supports, contacts,
+            loads or supports still to be moved, the largest.
+        round_off: Residual that floating point leaves in the last evaluation, force.
+
+    Raises:
+        InputError: A body without material, a material without body, or two contacts of one name.
+
+    Example:
+        >>> from anisocontact.bulk import make_material
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+        >>> steel = make_material("linear-elastic", E=210e3, nu=0.3)
+        >>> Problem(model, {"block": steel}, []).unknowns
+        24
+    """
+
+    def __init__(
+        self, model: Model, materials: Mapping[str, Material], contacts: Sequence[Contact] = ()
+    ) -> None:
+        _check(model, materials, contacts)
+        self.model = model
+        self.materials = dict(materials)
+        self.contacts = list(contacts)
+        self.bulk = LinearBulk(model, materials)
+        self.supports = Supports(model)
+        self.tractions = Tractions(model)
+        self.u: Any = fem.Function(model.space, name="displacement")
+        self.force_scale = 0.0
+        self.round_off = 0.0
+        self._comm = model.mesh.comm
+        self._ghosted = self.u.x.petsc_vec.duplicate()
+        self._load: Floats = np.zeros(self._owned)
+        self._level = 0.0
+        self._dt = 0.0
+        self._outside: Floats = np.zeros(self._owned)
+        self._accepted = self.new_vector()
+        self._accepted_outside: Floats = np.zeros(self._owned)
+        self._external_work = 0.0
+        diagonal = self.bulk.diagonal
+        self._support_scale = diagonal.sum() / diagonal.getSize()
+
+    @property
+    def unknowns(self) -> int:
+        """Number of unknowns over all ranks."""
+        return int(self._accepted.getSize())
+
+    @property
+    def _owned(self) -> int:
+        return int(3 * self.model.space.dofmap.index_map.size_local)
+
+    def new_vector(self) -> Vec:
+        """Vector of the unknowns, zero."""
+        return self.bulk.stiffness.createVecRight()
+
+    def new_tangent(self) -> Mat:
+        """Matrix for `tangent`."""
+        matrix = self.bulk.stiffness.duplicate()
+        matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+        return matrix
+
+    def begin(self, step: Step) -> None:
+        """Take over the loads of a step from the accepted state.
+
+        Raises:
+            InputError: See `Supports.begin` and `Tractions.begin`.
+        """
+        held = self.supports.unknowns
+        self.supports.begin(step, self.u.x.array.copy())
+        gone = np.setdiff1d(held, self.supports.unknowns)
+        released = np.zeros(len(self.u.x.array))
+        released[gone] = self._accepted_outside[gone]
+        self.tractions.begin(step, released)
+
+    def set_level(self, fraction: float, dt: float) -> None:
+        """Loads at a fraction of the step, time increment `dt` to there."""
+        self._level = fraction
+        self._dt = dt
+        self._load = self._assembled(self.tractions.at(fraction))
+
+    def evaluate(self, x: Vec) -> Floats:
+        """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer.
+
+        Args:
+            x: Displacements, length.
+
+        Returns:
+            Residual, force.
+        """
+        self._set_displacement(x)
+        forces = np.zeros(len(self.u.x.array))
+        failed = False
+        for contact in self.contacts:
+            response = contact.update(self.u.x.array.reshape(-1, 3), self._dt)
+            failed = failed or bool(response.failed.any())
+            contact.add_force(forces.reshape(-1, 3))
+        contact_force = self._assembled(forces)
+        self._outside = self.bulk.force(x).array_r - contact_force
+        residual = self._outside - self._load
+        rows = self.supports.unknowns
+        residual[rows] = self._support_scale * (x.array_r[rows] - self.supports.at(self._level))
+        at_work = (self._outside[rows], contact_force, self._load, residual[rows])
+        self.force_scale = max(map(self._norm, at_work))
+        self.round_off = ROUND_OFF * self._norm(self.bulk.diagonal.array_r * x.array_r)
+        if self._comm.allreduce(failed):
+            residual[:] = np.nan
+        return residual
+
+    def tangent(self, x: Vec, out: Mat) -> None:
+        """Write d residual / d x into a matrix of `new_tangent`."""
+        owned = self.u.x.array[: self._owned]
+        if not np.array_equal(owned, x.array_r):
+            self.evaluate(x)
+        self.bulk.tangent(out)
+        for contact in self.contacts:
+            contact.add_tangent(out)
+        out.assemble()
+        out.zeroRowsLocal(self.supports.unknowns.astype(PETSc.IntType), self._support_scale)
+
+    def commit(self, x: Vec) -> None:
+        """Accept a state: the history of the contacts advances and energies are summed."""
+        self.evaluate(x)
+        # Everything the bodies get from outside, over the mean of both ends (trapezoidal rule).
+        mean = 0.5 * (self._accepted_outside + self._outside)
+        work = float(mean @ (x.array_r - self._accepted.array_r))
+        self._external_work += self._comm.allreduce(work)
+        self._accepted_outside = self._outside
+        x.copy(self._accepted)
+        for contact in self.contacts:
+            contact.commit()
+
+    def roll_back(self) -> None:
+        """Return to the accepted state."""
+        self._set_displacement(self._accepted)
+        for contact in self.contacts:
+            contact.roll_back()
+
+    def failed_points(self) -> Floats:
+        """Positions at which a law had no answer in the last evaluation, over all ranks, (n, 3)."""
+        local = [contact.failed_points() for contact in self.contacts]
+        everywhere = self._comm.allgather(np.concatenate([np.zeros((0, 3)), *local]))
+        return np.concatenate(everywhere)
+
+    def accepted(self) -> Vec:
+        """Copy of the accepted displacements."""
+        return self._accepted.copy()
+
+    def reactions(self) -> dict[str, Floats]:
+        """Force of the supports of each facet group on the bodies, (3,), force.
+
+        Unknowns on an edge that several groups prescribe count for the first of them.
+        """
+        return self.supports.reactions(self._accepted_outside)
+
+    def energies(self) -> dict[str, float]:
+        """Energies of the accepted state, force times length.
+
+        Returns:
+            "external" work of supports and loads since the start (trapezoidal rule), stored
+            "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
+            "friction", energy of "stabilisation", and "residual", what the balance
+            `external - all others` leaves: first order in the size of the increments.
+        """
+        stored = {"elastic": self.bulk.energy(self._accepted)}
+        stored |= dict.fromkeys(("adhesion", "normal", "friction", "stabilisation"), 0.0)
+        for contact in self.contacts:
+            for name, value in contact.energies().items():
+                stored[name] += value
+        residual = self._external_work - sum(stored.values())
+        return {"external": self._external_work} | stored | {"residual": residual}
+
+    def _set_displacement(self, x: Vec) -> None:
+        self.u.x.array[: self._owned] = x.array_r
+        self.u.x.scatter_forward()
+
+    def _assembled(self, local: Floats) -> Floats:
+        """Owned entries of forces on local unknowns, with what other ranks add to them."""
+        with self._ghosted.localForm() as form:
+            form.array[:] = local
+        self._ghosted.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
+        return np.array(self._ghosted.array_r)
+
+    def _norm(self, owned: Floats) -> float:
+        return float(np.sqrt(self._comm.allreduce(float(owned @ owned))))
+
+
+def _check(model: Model, materials: Mapping[str, Material], contacts: Sequence[Contact]) -> None:
+    for body in materials:
+        model.cells(body, f"material.{body}")
+    for body in model.body_names():
+        if body not in materials:
+            raise InputError(f"body {body!r} has no material", "material")
+    names = [contact.name for contact in contacts]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"two contacts have the name {name!r}", "contact")
