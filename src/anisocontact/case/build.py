@@ -1,0 +1,128 @@
+"""From a case to the problem and the steps of the finite-element level."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from anisocontact.case import objects
+from anisocontact.case.model import Case, ContactSection
+from anisocontact.case.quantity import FREE
+from anisocontact.case.read import CaseFile
+from anisocontact.contact import Contact, auto_penalty
+from anisocontact.errors import InputError
+from anisocontact.mesh import BoxSpec, Model, build_box, read_gmsh
+from anisocontact.solver import Problem, Solver, Step
+
+__all__ = ["Built", "build"]
+
+
+@dataclass(frozen=True)
+class Built:
+    """What a case describes, ready to run.
+
+    Args:
+        file: The case.
+        problem: Bodies, contacts and loads.
+        steps: Load steps.
+        solver: Runs the steps.
+    """
+
+    file: CaseFile
+    problem: Problem
+    steps: list[Step]
+    solver: Solver
+
+
+def build(file: CaseFile) -> Built:
+    """Mesh the bodies and put contacts, loads and solver together.
+
+    Args:
+        file: A checked case.
+
+    Returns:
+        The problem, its steps and a solver.
+
+    Raises:
+        InputError: The mesh is missing or damaged, or lacks a body or group that the case names.
+
+    Example:
+        >>> from anisocontact.case import load
+        >>> build(load("no-such-case.toml"))
+        Traceback (most recent call last):
+        anisocontact.errors.InputError: case file 'no-such-case.toml' does not exist
+    """
+    case = file.case
+    model = _model(file)
+    _check_bodies(case, model)
+    materials = {
+        name: objects.material(section, f"material.{name}")
+        for name, section in case.material.items()
+    }
+    contacts = []
+    for i, section in enumerate(case.contact):
+        place = f"contact[{i}]"
+        model.facets(section.slave, f"{place}.slave")
+        body = materials[model.body_of(section.slave)]
+        auto = auto_penalty(model, section.slave, body)
+        contacts.append(_contact(case, section, model, auto, place))
+    steps = _steps(case, model)
+    problem = Problem(model, materials, contacts)
+    with objects.within("solver"):
+        solver = Solver(problem, steps, options=case.solver.options)
+    return Built(file, problem, steps, solver)
+
+
+def _model(file: CaseFile) -> Model:
+    mesh = file.case.mesh
+    if mesh.file is not None:
+        return read_gmsh(file.resolve(mesh.file), bodies=list(file.case.material))
+    specs = {}
+    for name, box in mesh.box.items():
+        with objects.within(f"mesh.box.{name}"):
+            specs[name] = BoxSpec(**dict(box))
+    with objects.within("mesh.box"):
+        return build_box(specs)
+
+
+def _check_bodies(case: Case, model: Model) -> None:
+    for name in case.material:
+        model.cells(name, f"material.{name}")
+
+
+def _contact(case: Case, section: ContactSection, model: Model, auto: float, place: str) -> Contact:
+    master = objects.surface(case.surface[section.master], f"surface.{section.master}")
+    interface = objects.interface(section, master, place, auto)
+    name = f"{section.slave} on {section.master}"
+    with objects.within(place):
+        contact = Contact(model, section.slave, interface, name=name)
+    for law in ("adhesion", "friction"):
+        field = getattr(interface, law).directions
+        if field is not None:
+            _, regular = field.axes(master, master.project(contact.points).xi)
+            if not np.any(regular):
+                raise InputError(
+                    "no direction on the surface: the field is singular or parallel to its normal "
+                    "at every slave point",
+                    field=f"{place}.{law}.directions",
+                )
+    return contact
+
+
+def _steps(case: Case, model: Model) -> list[Step]:
+    steps = []
+    for i, section in enumerate(case.step):
+        for what in ("displacement", "traction"):
+            for group in getattr(section, what):
+                model.facets(group, f"step[{i}].{what}")
+        displacement = {
+            group: {axis: None if v == FREE else v for axis, v in given.given().items()}
+            for group, given in section.displacement.items()
+        }
+        traction = {group: given.given() for group, given in section.traction.items()}
+        with objects.within(f"step[{i}]"):
+            steps.append(
+                Step(section.name, section.increments, displacement, traction, section.duration)
+            )
+    return steps

@@ -1,0 +1,99 @@
+"""What the file says as a whole: names that must exist, values that only an object can judge."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from anisocontact.case import objects
+from anisocontact.case.model import Case, ContactSection
+from anisocontact.case.section import near
+from anisocontact.errors import InputError
+from anisocontact.surfaces import Surface
+
+__all__ = ["check"]
+
+
+def check(case: Case) -> Iterator[InputError]:
+    """Mistakes that can be found without a mesh, each as an error that is not raised."""
+    yield from _mesh(case)
+    yield from _names(case)
+    for name, section in case.material.items():
+        _, error = _tried(objects.material, section, f"material.{name}")
+        yield from error
+    surfaces: dict[str, Surface | None] = {}
+    for name, section in case.surface.items():
+        surfaces[name], error = _tried(objects.surface, section, f"surface.{name}")
+        yield from error
+    pairs = [(contact.slave, contact.master) for contact in case.contact]
+    for i, contact in enumerate(case.contact):
+        yield from _contact(case, contact, f"contact[{i}]", surfaces)
+        if (first := pairs.index(pairs[i])) != i:
+            yield InputError(f"same slave and master as contact[{first}]", field=f"contact[{i}]")
+    yield from _steps(case)
+
+
+def _mesh(case: Case) -> Iterator[InputError]:
+    if (case.mesh.file is None) == (not case.mesh.box):
+        given = "both given" if case.mesh.box else "nothing given"
+        yield InputError(f"{given}, either mesh.file or boxes [mesh.box.<body>]", field="mesh")
+    for name in case.mesh.box:
+        if name not in case.material:
+            yield InputError("missing; every body needs a material", field=f"material.{name}")
+    if case.mesh.box:
+        for name in case.material:
+            if name not in case.mesh.box:
+                text = f"no such body; {near(name, list(case.mesh.box))}"
+                yield InputError(text, field=f"material.{name}")
+
+
+def _names(case: Case) -> Iterator[InputError]:
+    for table, names in (
+        ("mesh.box", case.mesh.box),
+        ("material", case.material),
+        ("surface", case.surface),
+    ):
+        for name in names:
+            if not name or "." in name:
+                yield InputError(f'"{name}" given, a name without a dot needed', field=table)
+
+
+def _contact(
+    case: Case, contact: ContactSection, place: str, surfaces: dict[str, Surface | None]
+) -> Iterator[InputError]:
+    yield from _group(case, contact.slave, f"{place}.slave")
+    master = surfaces.get(contact.master)
+    if contact.master not in surfaces:
+        text = f'"{contact.master}" given, no such surface; {near(contact.master, list(surfaces))}'
+        yield InputError(text, field=f"{place}.master")
+    elif master is not None:
+        yield from _tried(objects.interface, contact, master, place)[1]
+
+
+def _group(case: Case, name: str, field: str) -> Iterator[InputError]:
+    body, dot, group = name.partition(".")
+    if not (body and dot and group):
+        yield InputError(f'"{name}" given, "body.group" needed', field=field)
+    elif body not in case.material:
+        text = f'"{name}" given, no such body; {near(body, list(case.material))}'
+        yield InputError(text, field=field)
+
+
+def _steps(case: Case) -> Iterator[InputError]:
+    seen: dict[str, int] = {}
+    for i, step in enumerate(case.step):
+        first = seen.setdefault(step.name, i)
+        if first != i:
+            text = f'"{step.name}" given, step[{first}] has that name already'
+            yield InputError(text, field=f"step[{i}].name")
+        for what in ("displacement", "traction"):
+            for group in getattr(step, what):
+                yield from _group(case, group, f"step[{i}].{what}")
+
+
+def _tried(make: Callable[..., Any], *arguments: Any) -> tuple[Any, tuple[InputError, ...]]:
+    """What `make` makes, or the error it raises."""
+    try:
+        return make(*arguments), ()
+    except InputError as error:
+        return None, (error,)

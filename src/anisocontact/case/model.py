@@ -1,0 +1,262 @@
+"""The case file as types: what may stand in it, with units, bounds and defaults.
+
+Tables of surfaces, direction fields, laws, rules and materials are made from the registries, so
+that a new entry can be written in a case file without a change here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Annotated, Any, Self
+
+from pydantic import Field, create_model, model_validator
+from pydantic_core import ErrorDetails
+
+from anisocontact import registry
+from anisocontact.bulk.materials import materials
+from anisocontact.case.quantity import FREE, Quantity, line
+from anisocontact.case.registered import Key, OneOf, Registered, default_of
+from anisocontact.case.section import Section
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.registry import Entry, Parameter
+
+__all__ = [
+    "Box",
+    "Case",
+    "ContactSection",
+    "Directed",
+    "Mesh",
+    "Output",
+    "Registries",
+    "Solver",
+    "StepSection",
+    "case_type",
+]
+
+# More cells than fit in the memory of any one machine: a slip of the keyboard, not a mesh.
+_MOST_CELLS = 10_000
+
+_DIRECTIONS = "direction field of the axes; needed where the two values of a pair differ"
+
+
+def _number(kind: str, unit: str, doc: str, bound: str = "any", **more: Any) -> Quantity:
+    return Quantity(Parameter("", kind, unit, doc, bound), **more)
+
+
+def _word(doc: str, *choices: str) -> Quantity:
+    return Quantity(Parameter("", "choice", "1", doc, choices=choices))
+
+
+Point = tuple[float, float, float]
+
+
+class Box(Section):
+    """A box parallel to the axes.
+
+    It is a body with the facet groups left, right, front, back, bottom and top: its faces at
+    x-, x+, y-, y+, z- and z+.
+    """
+
+    origin: Annotated[Point, _number("vector", "length", "lowest corner")]
+    size: Annotated[Point, _number("vector", "length", "edge lengths", "positive")]
+    cells: Annotated[
+        tuple[int, int, int],
+        _number("integers", "1", "cells along x, y, z", "positive", most=_MOST_CELLS, count=3),
+    ]
+    cell: Annotated[str, _word("shape of the cells", "hexahedron", "tetrahedron")] = "hexahedron"
+    order: Annotated[
+        int, _number("integer", "1", "order of the displacement", "positive", most=2)
+    ] = 1
+
+
+class Mesh(Section):
+    """The bodies: a gmsh file, or boxes."""
+
+    file: str | None = Field(
+        None,
+        description="gmsh file, relative to the case file; physical volumes name the bodies, "
+        "physical surfaces the facet groups",
+    )
+    box: dict[str, Box] = Field(default_factory=dict, description="boxes by body name")
+
+
+class Components(Section):
+    """Components of a vector; what is left out is not prescribed."""
+
+    @model_validator(mode="after")
+    def _some(self) -> Self:
+        if not self.given():
+            raise line("nothing given, at least one of x, y, z needed")
+        return self
+
+    @classmethod
+    def _text(cls, e: ErrorDetails) -> str:
+        text = super()._text(e)
+        in_pieces = e["type"] == "extra_forbidden" and isinstance(e["input"], dict)
+        return f'{text}; a group is written in quotes: "body.group"' if in_pieces else text
+
+    def given(self) -> dict[str, Any]:
+        """The components that are prescribed."""
+        return {key: value for key, value in self if value is not None}
+
+
+class Displacement(Components):
+    """Displacement of a facet group at the end of the step; "free" releases the support."""
+
+    x: Annotated[float | str | None, _number("scalar", "length", "along x", word=FREE)] = None
+    y: Annotated[float | str | None, _number("scalar", "length", "along y", word=FREE)] = None
+    z: Annotated[float | str | None, _number("scalar", "length", "along z", word=FREE)] = None
+
+
+class Traction(Components):
+    """Force per reference area on a facet group at the end of the step."""
+
+    x: Annotated[float | None, _number("scalar", "stress", "along x")] = None
+    y: Annotated[float | None, _number("scalar", "stress", "along y")] = None
+    z: Annotated[float | None, _number("scalar", "stress", "along z")] = None
+
+
+class StepSection(Section):
+    """A load step: values are reached at its end, linearly; what is not named is held."""
+
+    name: str = Field(description="name of the step, used once")
+    increments: Annotated[int, _number("integer", "1", "number of equal increments", "positive")]
+    duration: Annotated[float, _number("scalar", "time", "time the step takes", "positive")] = 1.0
+    displacement: dict[str, Displacement] = Field(
+        default_factory=dict, description='prescribed displacements by "body.group"'
+    )
+    traction: dict[str, Traction] = Field(
+        default_factory=dict, description='prescribed tractions by "body.group"'
+    )
+
+
+class Output(Section):
+    """What is written."""
+
+    every: Annotated[
+        int,
+        _number("integer", "1", "fields are written every so many increments", "positive"),
+    ] = 1
+
+
+class Solver(Section):
+    """How it is solved."""
+
+    options: dict[str, str | int | float | bool] = Field(
+        default_factory=dict,
+        description="PETSc options without the prefix `anisocontact_`, such as `snes_max_it = 50`",
+    )
+
+
+class Directed(Registered):
+    """A law whose axes follow a direction field."""
+
+    directions: Any = None
+
+
+class ContactSection(Section):
+    """A pair in contact: slave facets against a master."""
+
+    slave: str = Field(description='slave facets, "body.group"')
+    master: str = Field(description="name of a surface")
+    normal: Any
+    adhesion: Any
+    friction: Any
+
+
+class Case(Section):
+    """A whole case file; `case_type()` adds the tables made from the registries."""
+
+    title: str = Field("", description="heading of the report")
+    mesh: Mesh
+    material: dict[str, Any]
+    surface: dict[str, Any] = Field(default_factory=dict)
+    contact: list[Any] = Field(default_factory=list)
+    step: list[StepSection] = Field(min_length=1, description="load steps, one after the other")
+    output: Output = Output()
+    solver: Solver = Solver()
+
+
+@dataclass(frozen=True)
+class Registries:
+    """Everything that can be named in a case file."""
+
+    surfaces: tuple[Entry, ...]
+    direction_fields: tuple[Entry, ...]
+    normal_laws: tuple[Entry, ...]
+    adhesion_models: tuple[Entry, ...]
+    friction_models: tuple[Entry, ...]
+    sliding_rules: tuple[Entry, ...]
+    materials: tuple[Entry, ...]
+
+    @classmethod
+    def current(cls) -> Registries:
+        """What is registered now."""
+        return cls(
+            registry.surfaces(),
+            registry.direction_fields(),
+            registry.normal_laws(),
+            registry.adhesion_models(),
+            registry.friction_models(),
+            registry.sliding_rules(),
+            materials(),
+        )
+
+
+@cache
+def case_type(known: Registries) -> type[Case]:
+    """The type of a case file that can name what is in the registries.
+
+    Args:
+        known: The registries.
+
+    Returns:
+        A subclass of `Case`.
+    """
+    contact = create_model("Contact", __base__=ContactSection, **_laws(known))
+    surface = OneOf("Surface", Key("shape", known.surfaces))
+    material = OneOf("Material", Key("model", known.materials))
+    return create_model(
+        "Case",
+        __base__=Case,
+        material=(
+            dict[str, Annotated[Any, material]],
+            Field(description="material of each body, by body name"),
+        ),
+        surface=(
+            dict[str, Annotated[Any, surface]],
+            Field(default_factory=dict, description="rigid surfaces by name"),
+        ),
+        contact=(
+            list[contact],  # type: ignore[valid-type]
+            Field(default_factory=list, description="pairs in contact"),
+        ),
+    )
+
+
+def _laws(known: Registries) -> dict[str, Any]:
+    field = Annotated[Any, OneOf("Directions", Key("kind", known.direction_fields))]
+    directed = create_model(
+        "Directed", __base__=Directed, directions=(field, Field(None, description=_DIRECTIONS))
+    )
+    normal = OneOf("Normal", Key("model", known.normal_laws, default_of(NormalLaw, "model")))
+    adhesion = OneOf(
+        "Adhesion",
+        Key("model", known.adhesion_models, default_of(Adhesion, "model")),
+        base=directed,
+    )
+    friction = OneOf(
+        "Friction",
+        Key("model", known.friction_models, default_of(Friction, "model")),
+        Key("sliding_rule", known.sliding_rules, default_of(Friction, "sliding_rule")),
+        base=directed,
+    )
+    return {
+        "normal": (Annotated[Any, normal], Field(normal.validate({}), description="pressure law")),
+        "adhesion": (
+            Annotated[Any, adhesion],
+            Field(adhesion.validate({}), description="tangential law inside the yield ellipse"),
+        ),
+        "friction": (Annotated[Any, friction], Field(description="yield ellipse and sliding rule")),
+    }

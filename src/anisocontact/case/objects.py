@@ -1,0 +1,87 @@
+"""Point-level objects of the tables made from the registries."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from anisocontact.anisotropy import DirectionField, make_directions
+from anisocontact.bulk.materials import Material, make_material
+from anisocontact.case.model import ContactSection, Directed
+from anisocontact.case.quantity import AUTO
+from anisocontact.case.registered import Registered
+from anisocontact.errors import InputError
+from anisocontact.interface import Interface
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.surfaces import Surface, make_surface
+
+__all__ = ["interface", "material", "surface", "within"]
+
+
+@contextmanager
+def within(place: str) -> Iterator[None]:
+    """Put the place in the case file in front of the field an error names."""
+    try:
+        yield
+    except InputError as error:
+        said = str(error).removeprefix(error.field).removeprefix(": ")
+        field = ".".join(part for part in (place, error.field) if part)
+        raise InputError(said, field=field) from None
+
+
+def surface(section: Registered, place: str) -> Surface:
+    """The surface of a `surface.*` table."""
+    with within(place):
+        return make_surface(section.chosen["shape"], **section.parameters())
+
+
+def material(section: Registered, place: str) -> Material:
+    """The material of a `material.*` table."""
+    with within(place):
+        return make_material(section.chosen["model"], **section.parameters())
+
+
+def interface(section: ContactSection, master: Surface, place: str, auto: float = 1.0) -> Interface:
+    """The interface of a `[[contact]]` table.
+
+    Args:
+        section: The table.
+        master: Its surface.
+        place: Its path, for messages.
+        auto: Stiffness where the table says "auto" [stress/length].
+
+    Returns:
+        The interface.
+
+    Raises:
+        InputError: A direction is missing, or a value only the laws can judge is wrong.
+    """
+    with within(place):
+        normal = NormalLaw(**section.normal.chosen, **_numbers(section.normal, auto))
+        adhesion = Adhesion(
+            **section.adhesion.chosen,
+            **_numbers(section.adhesion, auto),
+            directions=_directions(section.adhesion, "adhesion.directions"),
+        )
+        friction = Friction(
+            **section.friction.chosen,
+            **_numbers(section.friction, auto),
+            directions=_directions(section.friction, "friction.directions"),
+        )
+        return Interface(master, normal, adhesion, friction)
+
+
+def _directions(law: Directed, place: str) -> DirectionField | None:
+    if law.directions is None:
+        return None
+    with within(place):
+        return make_directions(law.directions.chosen["kind"], **law.directions.parameters())
+
+
+def _numbers(section: Registered, auto: float) -> dict[str, Any]:
+    pairs = {p.name for entry in section.entries for p in entry.parameters if p.kind == "pair"}
+    return {
+        name: ((auto, auto) if name in pairs else auto) if value == AUTO else value
+        for name, value in section.parameters().items()
+    }

@@ -1,0 +1,153 @@
+"""Reading a case file: from TOML to a checked `Case`, or to a list of what is wrong."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from anisocontact.case.checks import check
+from anisocontact.case.model import Case, Registries, case_type
+from anisocontact.errors import InputError
+
+__all__ = ["CaseError", "CaseFile", "json_schema", "load", "validate"]
+
+_BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+class CaseError(InputError):
+    """One or several mistakes in a case file.
+
+    Attributes:
+        errors: One for each mistake.
+    """
+
+    def __init__(self, errors: list[InputError]) -> None:
+        more = f" (and {len(errors) - 1} more)" if len(errors) > 1 else ""
+        super().__init__(f"{errors[0]}{more}", errors[0].field)
+        self.errors = errors
+
+
+@dataclass(frozen=True)
+class CaseFile:
+    """A case with the file it came from.
+
+    Args:
+        case: The checked content.
+        path: The file; paths inside the case are relative to its folder.
+    """
+
+    case: Case
+    path: Path
+
+    @property
+    def name(self) -> str:
+        """Name of the case: that of the file, or of its folder where the file is `case.toml`."""
+        path = self.path.resolve()
+        return path.parent.name if path.stem == "case" and path.parent.name else path.stem
+
+    def resolve(self, path: str) -> Path:
+        """A path written in the case."""
+        return self.path.parent / path
+
+
+def load(path: str | Path) -> CaseFile:
+    """Read and check a case file; nothing is meshed.
+
+    Args:
+        path: The TOML file.
+
+    Returns:
+        The case and where it came from.
+
+    Raises:
+        InputError: The file is missing or is not TOML.
+        CaseError: Something in it is wrong; `errors` has a line for each mistake.
+    """
+    path = Path(path)
+    return CaseFile(validate(_table(path)), path)
+
+
+def validate(data: Mapping[str, Any]) -> Case:
+    """A case from nested tables, as `tomllib` returns them.
+
+    Args:
+        data: The tables.
+
+    Returns:
+        The checked case.
+
+    Raises:
+        CaseError: Something in it is wrong.
+    """
+    try:
+        case = case_type(Registries.current()).model_validate(data)
+    except ValidationError as error:
+        raise CaseError([_as_input(e) for e in error.errors(include_url=False)]) from None
+    errors = list(check(case))
+    if errors:
+        raise CaseError(errors)
+    return case
+
+
+def json_schema() -> dict[str, Any]:
+    """JSON Schema of the case file: every key with its description, unit, bounds and default."""
+    schema = case_type(Registries.current()).model_json_schema()
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        **_without_null(schema),
+        "title": "anisocontact case file",
+    }
+
+
+def dotted(loc: tuple[str | int, ...]) -> str:
+    """Path of a place in the file, such as `contact[0].friction.coefficients`."""
+    text = ""
+    for part in loc:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        else:
+            text += f".{part}" if _BARE.fullmatch(part) else f'."{part}"'
+    return text.removeprefix(".")
+
+
+def _as_input(error: Any) -> InputError:
+    return InputError(error["msg"], field=dotted(error["loc"]))
+
+
+def _table(path: Path) -> dict[str, Any]:
+    try:
+        return tomllib.loads(path.read_bytes().decode("utf-8"))
+    except FileNotFoundError:
+        raise InputError(f"case file '{path}' does not exist") from None
+    except OSError as error:
+        raise InputError(f"case file '{path}' cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise InputError(f"case file '{path}' is not UTF-8 text: byte {error.start}") from None
+    except (tomllib.TOMLDecodeError, ValueError) as error:
+        raise InputError(f"case file '{path}' is not TOML: {error}") from None
+    except RecursionError:
+        raise InputError(f"case file '{path}' is nested too deeply") from None
+
+
+def _without_null(schema: Any) -> Any:
+    """TOML has no null: what may be left out is said by `required` alone."""
+    if isinstance(schema, list):
+        return [_without_null(item) for item in schema]
+    if not isinstance(schema, dict):
+        return schema
+    kept = {
+        key: _without_null(value)
+        for key, value in schema.items()
+        if not (key == "default" and value is None)
+    }
+    options = [option for option in kept.get("anyOf", []) if option != {"type": "null"}]
+    if len(options) == 1:
+        del kept["anyOf"]
+        return {**options[0], **kept}
+    return kept

@@ -1,0 +1,146 @@
+"""Tables made from the registries: an entry and its parameters become a table and its keys."""
+
+from __future__ import annotations
+
+import inspect
+import itertools
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, ClassVar
+
+from pydantic import GetJsonSchemaHandler, ValidationError, WithJsonSchema, create_model
+from pydantic_core import CoreSchema, InitErrorDetails, core_schema
+
+from anisocontact.case.quantity import AUTO, Quantity, key_of, line, shown
+from anisocontact.case.section import Section, near
+from anisocontact.registry import Entry, Parameter
+
+__all__ = ["Key", "OneOf", "Registered", "default_of", "table"]
+
+
+class Registered(Section):
+    """A table whose keys are the parameters of one or several registry entries.
+
+    Attributes:
+        chosen: Choosing key -> name of the entry it has chosen.
+        entries: The chosen entries.
+    """
+
+    chosen: ClassVar[dict[str, str]] = {}
+    entries: ClassVar[tuple[Entry, ...]] = ()
+
+    def parameters(self) -> dict[str, Any]:
+        """Values by the parameters' names in Python: angles in radians, "auto" as it stands."""
+        found = {}
+        for p in (p for entry in self.entries for p in entry.parameters):
+            value = getattr(self, key_of(p))
+            found[p.name] = math.radians(value) if p.unit == "angle" else value
+        return found
+
+
+@dataclass(frozen=True)
+class Key:
+    """A key that chooses an entry.
+
+    Args:
+        name: The key, such as "shape".
+        entries: What it chooses from.
+        default: Name of the entry where the key is left out; None if it has to be given.
+    """
+
+    name: str
+    entries: tuple[Entry, ...]
+    default: str | None = None
+
+
+def default_of(function: Callable[..., object], argument: str) -> str:
+    """Default of an argument in Python, so that the case file has the same."""
+    return str(inspect.signature(function).parameters[argument].default)
+
+
+def table(name: str, keys: Mapping[Key, Entry], base: type[Registered]) -> type[Registered]:
+    """Table of one choice: the choosing keys, the parameters of the entries, the keys of `base`.
+
+    Args:
+        name: Name of the class; titles of the schema.
+        keys: Each choosing key with the entry it has chosen.
+        base: Class with the keys that do not come from a registry.
+
+    Returns:
+        The class.
+    """
+    fields: dict[str, Any] = {}
+    for key, entry in keys.items():
+        default = entry.name if entry.name == key.default else ...
+        schema = WithJsonSchema({"const": entry.name, "description": entry.doc})
+        fields[key.name] = (Annotated[str, schema], default)
+    for p in (p for entry in keys.values() for p in entry.parameters):
+        fields[key_of(p)] = _field(p)
+    doc = " ".join(entry.doc for entry in keys.values())
+    model: type[Registered] = create_model(name, __base__=base, __doc__=doc, **fields)
+    model.chosen = {key.name: entry.name for key, entry in keys.items()}
+    model.entries = tuple(keys.values())
+    return model
+
+
+def _field(p: Parameter) -> tuple[Any, Any]:
+    # Stiffnesses are what a user without measurements cannot know: the run can choose them.
+    quantity = Quantity(p, word=AUTO if p.unit == "stress/length" else None)
+    if quantity.word and p.required:
+        return Annotated[Any, quantity], AUTO
+    return Annotated[Any, quantity], ... if p.required else quantity.default()
+
+
+class OneOf:
+    """Annotation of a table that is one of several, chosen by the value of its keys.
+
+    Args:
+        what: Name of the classes, such as "Surface".
+        *keys: The keys that choose.
+        base: Class with further keys.
+    """
+
+    def __init__(self, what: str, *keys: Key, base: type[Registered] = Registered) -> None:
+        self.keys = keys
+        self.models: dict[tuple[str, ...], type[Registered]] = {}
+        for entries in itertools.product(*(key.entries for key in keys)):
+            chosen = dict(zip(keys, entries, strict=True))
+            names = tuple(entry.name for entry in chosen.values())
+            title = what + "".join(n.title().replace("-", "") for n in names)
+            self.models[names] = table(title, chosen, base)
+
+    def validate(self, data: object) -> Registered:
+        """The table as an object of the class its keys choose."""
+        if isinstance(data, Registered):
+            return data
+        if not isinstance(data, Mapping):
+            raise line(f"{shown(data)} given, a table needed")
+        return self.models[tuple(self._chosen(key, data) for key in self.keys)].model_validate(data)
+
+    def _chosen(self, key: Key, data: Mapping[str, object]) -> str:
+        known = [entry.name for entry in key.entries]
+        name = data.get(key.name, key.default)
+        if name in known:
+            return str(name)
+        if key.name not in data:
+            raise _at(key.name, f"missing; {near('', known)}")
+        raise _at(key.name, f"{shown(name)} given; {near(str(name), known)}")
+
+    def __get_pydantic_core_schema__(self, source: object, handler: Any) -> CoreSchema:
+        """Pydantic asks: check by hand, describe as a union."""
+        return core_schema.no_info_plain_validator_function(self.validate)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        """Pydantic asks: all tables it may be."""
+        tables = [handler(model.__pydantic_core_schema__) for model in self.models.values()]
+        return tables[0] if len(tables) == 1 else {"oneOf": tables}
+
+
+def _at(key: str, text: str) -> ValidationError:
+    """The error of a key inside the table that is being checked."""
+    return ValidationError.from_exception_data(
+        "table", [InitErrorDetails(type=line(text), loc=(key,), input=None)]
+    )

@@ -1,0 +1,75 @@
+"""A table of the case file: it knows its keys and says what is wrong in one line each."""
+
+from __future__ import annotations
+
+import difflib
+from typing import Any, Self
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    ModelWrapValidatorHandler,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core import ErrorDetails, InitErrorDetails
+
+from anisocontact.case.quantity import Quantity, line, shown
+
+__all__ = ["Section", "near"]
+
+_NEEDED = {
+    "string_type": "a text in quotes",
+    "dict_type": "a table",
+    "model_type": "a table",
+    "list_type": "a list",
+}
+
+
+def near(name: str, known: list[str]) -> str:
+    """The end of a message: the nearest known name, then all of them."""
+    close = difflib.get_close_matches(name, known, 1)
+    hint = f'did you mean "{close[0]}"? ' if close else ""
+    return f"{hint}allowed: {', '.join(known) or 'none'}"
+
+
+class Section(BaseModel):
+    """Base of all tables: fixed keys, nothing converted, every message finished where it arises."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _say(cls, data: Any, handler: ModelWrapValidatorHandler[Self]) -> Self:
+        try:
+            return handler(data)
+        except ValidationError as error:
+            raise ValidationError.from_exception_data(
+                cls.__name__, [cls._finished(e) for e in error.errors(include_url=False)]
+            ) from None
+
+    @classmethod
+    def _finished(cls, e: ErrorDetails) -> InitErrorDetails:
+        return InitErrorDetails(type=line(cls._text(e)), loc=e["loc"], input=e["input"])
+
+    @classmethod
+    def _text(cls, e: ErrorDetails) -> str:
+        kind, key = e["type"], str(e["loc"][-1]) if e["loc"] else ""
+        if kind == "line":
+            return e["msg"]
+        if kind == "missing":
+            return f"missing; {cls._doc(key)}"
+        if kind == "extra_forbidden":
+            return f"unknown key; {near(key, list(cls.model_fields))}"
+        if kind in _NEEDED:
+            return f"{shown(e['input'])} given, {_NEEDED[kind]} needed"
+        return f"{shown(e['input'])} given: {e['msg']}"
+
+    @classmethod
+    def _doc(cls, key: str) -> str:
+        field = cls.model_fields[key]
+        for quantity in field.metadata:
+            if isinstance(quantity, Quantity):
+                unit = "" if quantity.unit == "1" else f" [{quantity.unit}]"
+                return f"{quantity.parameter.doc}, {quantity.allowed()}{unit}"
+        return field.description or "it must be given"
