@@ -172,7 +172,7 @@ class Interface:
         failed = np.flatnonzero(r["failure"])
         if failed.size:
             raise InputError(f"{FAILURE[1]} for the point {x[failed[0]].tolist()}", field="x")
-        return _as_state(r["state"])
+        return as_state(r["state"])
 
     def update(
         self, state: State, x: npt.ArrayLike, dt: float = 1.0, *, tangent: bool = True
@@ -189,12 +189,11 @@ class Interface:
             Tractions, tangent and trial state.
         """
         x = points(x, 3)
-        raw = np.ascontiguousarray(state).view(np.uint8).reshape(len(state), STATE.itemsize)
-        r = self.core.update(raw, x, dt, tangent, self.threads)
+        r = self.core.update(raw_state(state), x, dt, tangent, self.threads)
         return Response(
             traction=r["traction"],
             tangent=r["tangent"],
-            state=_as_state(r["state"]),
+            state=as_state(r["state"]),
             normal=r["normal"],
             directions_adhesion=r["adhesion_axes"],
             directions_friction=r["friction_axes"],
@@ -202,5 +201,11 @@ class Interface:
         )
 
 
-def _as_state(raw: npt.NDArray[np.uint8]) -> State:
+def as_state(raw: npt.NDArray[np.uint8]) -> State:
+    """States from rows of bytes, without a copy."""
     return raw.reshape(-1).view(STATE)
+
+
+def raw_state(state: State) -> npt.NDArray[np.uint8]:
+    """States as rows of bytes, as the core takes them."""
+    return np.ascontiguousarray(state).view(np.uint8).reshape(len(state), STATE.itemsize)

@@ -6,13 +6,13 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <cstring>
 #include <utility>
 
 #include "anisocontact/kernel/parallel.hpp"
 #include "anisocontact/kernel/point.hpp"
 #include "arrays.hpp"
 #include "rooms.hpp"
+#include "states.hpp"
 #include "types.hpp"
 
 namespace anisocontact::bindings {
@@ -25,10 +25,6 @@ using Named = std::pair<std::string, ValueMap>;
 struct InterfaceHandle {
   kernel::Interface itf;
 };
-
-std::optional<anisotropy::AnyField> unwrap(const FieldHandle* f) {
-  return f == nullptr ? std::nullopt : std::optional(f->any);
-}
 
 /// Name, offset, count and NumPy type of each field of a point's state.
 nb::list state_layout() {
@@ -53,36 +49,10 @@ nb::list state_layout() {
   return l;
 }
 
-PointState load(const std::uint8_t* bytes, std::size_t i) {
-  PointState s;
-  std::memcpy(&s, bytes + i * sizeof(PointState), sizeof(PointState));
-  return s;
-}
-
-void store(std::uint8_t* bytes, std::size_t i, const PointState& s) {
-  std::memcpy(bytes + i * sizeof(PointState), &s, sizeof(PointState));
-}
-
-nb::dict initial_state(const InterfaceHandle& h, const Points& x) {
-  const std::size_t n = x.shape(0);
-  Array<std::uint8_t> state({n, sizeof(PointState)});
-  Array<std::int8_t> failure({n});
-  for (std::size_t i = 0; i < n; ++i) {
-    auto f = kernel::Failure::none;
-    store(state.data, i, kernel::initial_state(h.itf.surface, row3(x.data(), i), f));
-    failure.data[i] = static_cast<std::int8_t>(f);
-  }
-  nb::dict r;
-  r["state"] = state.array;
-  r["failure"] = failure.array;
-  return r;
-}
-
 nb::dict update(const InterfaceHandle& h, const Bytes& state, const Points& x, double dt,
                 bool with_tangent, std::size_t threads) {
   const std::size_t n = x.shape(0);
-  if (state.shape(0) != n || state.shape(1) != sizeof(PointState))
-    throw std::invalid_argument("state does not belong to these points");
+  check_states(state, n);
   Array<std::uint8_t> next({n, sizeof(PointState)});
   Array<double> traction({n, 3}), tangent({with_tangent ? n : 0, 3, 3}), normal({n, 3}),
       adhesion({n, 2, 3}), friction({n, 2, 3});
@@ -144,7 +114,12 @@ void bind_kernel(nb::module_& m) {
           nb::arg("surface"), nb::arg("normal"), nb::arg("adhesion"),
           nb::arg("adhesion_directions").none(), nb::arg("friction"),
           nb::arg("friction_directions").none(), nb::arg("rule"), nb::arg("evolution"))
-      .def("initial_state", &initial_state, nb::arg("x"))
+      .def(
+          "initial_state",
+          [](const InterfaceHandle& h, const Points& x) {
+            return initial_states(h.itf.surface, x);
+          },
+          nb::arg("x"))
       .def("update", &update, nb::arg("state"), nb::arg("x"), nb::arg("dt"), nb::arg("tangent"),
            nb::arg("threads"));
 }

@@ -10,4 +10,5 @@ NB_MODULE(_core, m) {
   anisocontact::bindings::bind_anisotropy(m);
   anisocontact::bindings::bind_law(m);
   anisocontact::bindings::bind_kernel(m);
+  anisocontact::bindings::bind_framed(m);
 }

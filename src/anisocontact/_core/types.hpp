@@ -2,6 +2,7 @@
 // The handles that Python holds.
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,9 @@ struct SurfaceHandle {
 struct FieldHandle {
   anisotropy::AnyField any;
 };
+
+inline std::optional<anisotropy::AnyField> unwrap(const FieldHandle* f) {
+  return f == nullptr ? std::nullopt : std::optional(f->any);
+}
 
 }  // namespace anisocontact::bindings

@@ -1,0 +1,92 @@
+#pragma once
+// Kinematics of a point in an orthonormal frame of the tangent plane, for laws that are not in the
+// core: values and exact derivatives with respect to the position of the slave.
+
+#include "anisocontact/kernel/point.hpp"
+
+namespace anisocontact::kernel {
+
+/// Frame e_1, e_2, n and what a law needs in it; every quantity carries d/dx.
+struct Framed {
+  std::array<Vec3<Dual<3>>, 3> frame;
+  std::array<Dual<3>, 2> increment{};  ///< slip increment
+  std::array<Dual<3>, 2> stored{};     ///< committed elastic force, turned to here
+  std::array<Dual<3>, 2> elastic{};    ///< committed elastic slip, turned to here
+  Dual<3> gap{0.0};
+  Dual<3> pressure{0.0};
+  Vector<double> xi{};
+  Failure failure{Failure::none};
+};
+
+/// Projection, pressure and transported history of one point.
+inline Framed framed(const surface::AnySurface& surface, const law::NormalModel& normal,
+                     const std::optional<anisotropy::AnyField>& directions, const PointState& state,
+                     const Vec3<double>& x, double dt) noexcept {
+  using S = Dual<3>;
+  Framed out;
+  const auto p = projection::closest_point(surface, x);
+  if (p.status == projection::Status::failed) {
+    out.failure = Failure::projection;
+    return out;
+  }
+  const auto k = kinematics<S>(surface, state, p.xi, seeded<S>(x), dt);
+  const auto axes = axes_of(directions, k.now, k.xi);
+  if (!axes.valid) {
+    out.failure = Failure::direction;
+    return out;
+  }
+  out.frame = {axes.e[0], k.now.normal.cross(axes.e[0]), k.now.normal};
+  const auto t = history<S>(AnyEvolution{Transport{}}, state, k, {});
+  const Vec3<S> increment = k.now.spatial(t.increment), stored = k.now.spatial(t.stored),
+                elastic = k.now.spatial(t.elastic);
+  for (std::size_t i = 0; i < 2; ++i) {
+    out.increment[i] = increment.dot(out.frame[i]);
+    out.stored[i] = stored.dot(out.frame[i]);
+    out.elastic[i] = elastic.dot(out.frame[i]);
+  }
+  out.gap = k.gap;
+  out.pressure = law::pressure(normal, k.gap, state.gap, state.pressure, dt);
+  out.xi = value(k.xi);
+  return out;
+}
+
+/// Committed state from what a law returned in the frame.
+struct FramedResult {
+  std::array<double, 2> traction, stored, slip;
+  double dissipation, energy;
+  Contact status;
+};
+
+inline PointState commit(const law::NormalModel& normal, const PointState& old, const Framed& f,
+                         const surface::Geometry<double>& g, const FramedResult& r, double dt) {
+  PointState s;
+  s.xi = f.xi.c;
+  s.gap = f.gap.v;
+  s.slip_accumulated = old.slip_accumulated;
+  s.dissipation = old.dissipation;
+  s.dissipation_viscous = old.dissipation_viscous;
+  s.origin = s.xi;
+  if (r.status == Contact::open) return s;
+  const auto spatial = [&](const std::array<double, 2>& u) -> Vec3<double> {
+    return u[0] * value(f.frame[0]) + u[1] * value(f.frame[1]);
+  };
+  const bool begins = old.status == static_cast<std::int64_t>(Contact::open);
+  if (!begins) s.origin = old.origin;
+  s.traction = g.project_co(spatial(r.traction)).c;
+  s.stored = g.project_co(spatial(r.stored)).c;
+  s.slip = g.project_contra(spatial(r.slip)).c;
+  const std::array<double, 2> elastic{f.elastic[0].v + f.increment[0].v - r.slip[0],
+                                      f.elastic[1].v + f.increment[1].v - r.slip[1]};
+  s.elastic = g.project_contra(spatial(elastic)).c;
+  s.pressure = f.pressure.v;
+  s.slip_accumulated += std::hypot(r.slip[0], r.slip[1]);
+  s.dissipation += r.dissipation;
+  s.energy_adhesion = r.energy;
+  const auto e = law::energies(normal, s.gap, s.gap - std::min(old.gap, 0.0), s.pressure, dt);
+  s.energy_normal = e.elastic;
+  s.dissipation_viscous += e.viscous;
+  s.status = static_cast<std::int64_t>(r.status);
+  return s;
+}
+
+}  // namespace anisocontact::kernel

@@ -1,0 +1,305 @@
+"""Tangential laws written in Python: batched NumPy in, batched NumPy out.
+
+A law gives the tangential force of many points at once in an orthonormal frame of the tangent
+plane. `PythonInterface` does the rest (projection, pressure, transport of the history, tangent in
+space) and can be used wherever an `Interface` can.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact import _core
+from anisocontact.anisotropy import DirectionField
+from anisocontact.errors import InputError
+from anisocontact.interface import FAILURE, STATE, Response, State, as_state, raw_state
+from anisocontact.laws import NormalLaw
+from anisocontact.surfaces import Floats, Surface, default_threads, points
+
+
+@dataclass(frozen=True)
+class LawState:
+    """What n points remember, turned to where they are now.
+
+    Args:
+        traction: Elastic force, (n, 2) [stress].
+        elastic: Elastic slip, (n, 2) [length].
+        internal: The law's own variables, (n, k).
+    """
+
+    traction: Floats
+    elastic: Floats
+    internal: Floats
+
+
+@dataclass(frozen=True)
+class LawKinematics:
+    """What happens to n points in contact in this step.
+
+    Args:
+        increment: Slip increment, (n, 2) [length].
+        pressure: N at the end of the step, (n,) [stress].
+        gap: xi^3 at the end of the step, (n,) [length].
+        xi: Coordinates of the projection, (n, 2).
+        dt: Time step [time].
+    """
+
+    increment: Floats
+    pressure: Floats
+    gap: Floats
+    xi: Floats
+    dt: float
+
+
+@dataclass(frozen=True)
+class LawResult:
+    """Force, tangent and new state of n points.
+
+    Args:
+        traction: T on the slave, (n, 2) [stress].
+        slip: Sliding increment, (n, 2) [length]; zero where the point sticks.
+        d_increment: dT/d(increment), (n, 2, 2).
+        d_pressure: dT/dN, (n, 2).
+        d_traction: dT/d(state.traction), (n, 2, 2).
+        d_elastic: dT/d(state.elastic), (n, 2, 2).
+        internal: The law's own variables at the end of the step, (n, k).
+        dissipation: Frictional dissipation of the step, (n,) [energy/area].
+        energy: Elastic energy at the end of the step, (n,) [energy/area].
+        stored: Elastic force that the next step starts from, (n, 2); T if left out.
+    """
+
+    traction: Floats
+    slip: Floats
+    d_increment: Floats
+    d_pressure: Floats
+    d_traction: Floats
+    d_elastic: Floats
+    internal: Floats
+    dissipation: Floats
+    energy: Floats
+    stored: Floats | None = field(default=None)
+
+
+class TangentialLaw(Protocol):
+    """A law of the tangential force; `internal` is the number of its own variables."""
+
+    internal: int
+
+    def update(self, state: LawState, kinematics: LawKinematics) -> LawResult:
+        """Force, tangent and new state; must not change its arguments."""
+        ...
+
+
+class PythonInterface:
+    """An interface whose tangential law is written in Python.
+
+    The frame of the law has its first axis along the first axis of `directions`, its second
+    along n x e_1. The tangent in space is exact if the law's blocks are.
+
+    Args:
+        surface: The master.
+        normal: Law of the pressure.
+        law: The tangential law.
+        directions: First axis of the frame; along the first coordinate line if left out, which
+            does for isotropic laws.
+        threads: Number of threads of the kinematics; all processors if left out.
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> class Spring:
+        ...     internal = 0
+        ...     def update(self, state, kinematics):
+        ...         n, eye = len(kinematics.pressure), np.eye(2)
+        ...         t = state.traction - 10.0 * kinematics.increment
+        ...         block = np.tile(eye, (n, 1, 1))
+        ...         zero = np.zeros(n)
+        ...         return LawResult(
+        ...             traction=t, slip=np.zeros((n, 2)), d_increment=-10.0 * block,
+        ...             d_pressure=np.zeros((n, 2)), d_traction=block, d_elastic=0.0 * block,
+        ...             internal=state.internal, dissipation=zero, energy=(t**2).sum(1) / 20.0)
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> itf = PythonInterface(plane, NormalLaw(penalty=1e3), Spring())
+        >>> r = itf.update(itf.initial_state([[0.0, 0.0, 0.0]]), [[0.1, 0.0, -0.01]])
+        >>> r.traction.round(12).tolist()
+        [[-1.0, 0.0, 10.0]]
+    """
+
+    def __init__(
+        self,
+        surface: Surface,
+        normal: NormalLaw,
+        law: TangentialLaw,
+        *,
+        directions: DirectionField | None = None,
+        threads: int | None = None,
+    ) -> None:
+        self.surface, self.normal, self.law, self.directions = surface, normal, law, directions
+        self.threads = threads or default_threads()
+        self.core = _core.FramedInterface(
+            surface.core, normal.named, directions.core if directions else None
+        )
+        self.dtype = np.dtype(
+            {
+                "names": [*(STATE.names or ()), "internal"],
+                "formats": [
+                    *(STATE[name] for name in STATE.names or ()),
+                    (np.float64, (law.internal,)),
+                ],
+            }
+        )
+
+    def initial_state(self, x: npt.ArrayLike) -> State:
+        """State before the first step: projected, free of force, own variables zero.
+
+        Args:
+            x: Slave points, (n, 3) [length].
+
+        Returns:
+            The state, (n,), with the fields of `STATE` and `internal` (n, k).
+
+        Raises:
+            InputError: A point has no closest point on the surface.
+        """
+        x = points(x, 3)
+        r = self.core.initial_state(x)
+        failed = np.flatnonzero(r["failure"])
+        if failed.size:
+            raise InputError(f"{FAILURE[1]} for the point {x[failed[0]].tolist()}", field="x")
+        return self._with_internal(as_state(r["state"]), np.zeros((len(x), self.law.internal)))
+
+    def update(
+        self, state: State, x: npt.ArrayLike, dt: float = 1.0, *, tangent: bool = True
+    ) -> Response:
+        """Tractions at new positions; the committed state is not changed.
+
+        Args:
+            state: Committed state, (n,), from `initial_state` or a `Response`.
+            x: Slave points, (n, 3) [length].
+            dt: Time step [time].
+            tangent: Whether dt/dx is wanted.
+
+        Returns:
+            Tractions, tangent and trial state, as of `Interface.update`.
+        """
+        x = points(x, 3)
+        raw = raw_state(_common(state))
+        k = self.core.kinematics(raw, x, dt, self.threads)
+        n = len(x)
+        frame = k["frame"].reshape(n, 3, 3)
+        active = np.flatnonzero((k["pressure"][:, 0] > 0.0) & (k["failure"] == 0))
+        result = self._ask(state, k, active, dt)
+        traction = k["pressure"] * frame[:, 2]
+        traction[active] += np.einsum("ni,nij->nj", result.traction, frame[active, :2])
+        return Response(
+            traction=traction,
+            tangent=self._tangent(k, frame, active, result) if tangent else np.empty((0, 3, 3)),
+            state=self._commit(raw, x, dt, active, result),
+            normal=frame[:, 2].copy(),
+            directions_adhesion=_in_contact(frame, active),
+            directions_friction=_in_contact(frame, active),
+            failure=k["failure"],
+        )
+
+    def _ask(
+        self,
+        state: State,
+        k: dict[str, npt.NDArray[np.float64]],
+        active: npt.NDArray[np.intp],
+        dt: float,
+    ) -> LawResult:
+        remembered = LawState(k["stored"][active], k["elastic"][active], state["internal"][active])
+        now = LawKinematics(
+            k["increment"][active],
+            k["pressure"][active, 0],
+            k["gap"][active, 0],
+            k["xi"][active],
+            dt,
+        )
+        result = self.law.update(remembered, now)
+        shape = (len(active), 2)
+        for name in ("traction", "slip"):
+            got = np.shape(getattr(result, name))
+            if got != shape:
+                raise InputError(
+                    f"the law returned an array of shape {got}, {shape} needed", field=name
+                )
+        return result
+
+    def _tangent(
+        self,
+        k: dict[str, npt.NDArray[np.float64]],
+        frame: Floats,
+        active: npt.NDArray[np.intp],
+        r: LawResult,
+    ) -> Floats:
+        """dt/dx = n (x) dN + N dn + e_a (x) dT_a + T_a de_a."""
+        frame_dx = k["frame_dx"].reshape(len(frame), 3, 3, 3)
+        tangent = np.einsum("ni,nj->nij", frame[:, 2], k["pressure_dx"][:, 0])
+        tangent += k["pressure"][:, :, None] * frame_dx[:, 2]
+        dt_dx = (
+            np.einsum("nab,nbj->naj", r.d_increment, k["increment_dx"][active])
+            + np.einsum("nab,nbj->naj", r.d_traction, k["stored_dx"][active])
+            + np.einsum("nab,nbj->naj", r.d_elastic, k["elastic_dx"][active])
+            + np.einsum("na,nj->naj", r.d_pressure, k["pressure_dx"][active, 0])
+        )
+        tangent[active] += np.einsum("nai,naj->nij", frame[active, :2], dt_dx)
+        tangent[active] += np.einsum("na,naij->nij", r.traction, frame_dx[active, :2])
+        return tangent
+
+    def _commit(
+        self,
+        raw: npt.NDArray[np.uint8],
+        x: Floats,
+        dt: float,
+        active: npt.NDArray[np.intp],
+        r: LawResult,
+    ) -> State:
+        n = len(x)
+        pairs = {name: np.zeros((n, 2)) for name in ("traction", "stored", "slip")}
+        pairs["traction"][active] = r.traction
+        pairs["stored"][active] = r.traction if r.stored is None else r.stored
+        pairs["slip"][active] = r.slip
+        dissipation, energy = np.zeros(n), np.zeros(n)
+        dissipation[active], energy[active] = r.dissipation, r.energy
+        status = np.zeros(n, dtype=np.int8)
+        status[active] = 1 + np.any(r.slip != 0.0, axis=1)
+        new = self.core.commit(
+            raw,
+            x,
+            dt,
+            pairs["traction"],
+            pairs["stored"],
+            pairs["slip"],
+            dissipation,
+            energy,
+            status,
+        )
+        internal = np.zeros((n, self.law.internal))
+        internal[active] = r.internal
+        return self._with_internal(as_state(new), internal)
+
+    def _with_internal(self, common: State, internal: Floats) -> State:
+        state = np.zeros(len(common), dtype=self.dtype)
+        for name in STATE.names or ():
+            state[name] = common[name]
+        state["internal"] = internal
+        return state
+
+
+def _common(state: State) -> State:
+    """The fields of `STATE` alone."""
+    common = np.zeros(len(state), dtype=STATE)
+    for name in STATE.names or ():
+        common[name] = state[name]
+    return common
+
+
+def _in_contact(frame: Floats, active: npt.NDArray[np.intp]) -> Floats:
+    """Axes at points in contact, zero elsewhere."""
+    axes = np.zeros((len(frame), 2, 3))
+    axes[active] = frame[active, :2]
+    return axes

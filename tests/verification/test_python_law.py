@@ -1,0 +1,126 @@
+"""A law written in Python gives what the same law in the core gives.
+
+Requirement: an open interface; source: `anisocontact.Interface` with isotropic friction, and order
+of convergence of the tangent.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from anisocontact.errors import InputError
+from anisocontact.interface import Interface
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.python_law import LawKinematics, LawResult, LawState, PythonInterface
+from anisocontact.surfaces import Surface, make_surface
+
+STIFFNESS, MU = 2e3, 0.3
+
+SURFACES = {
+    "plane": make_surface("plane", point=(0, 0, 0), normal=(0.1, 0.2, 1)),
+}
+
+
+class Coulomb:
+    """Isotropic Coulomb friction by radial return; remembers the largest pressure."""
+
+    internal = 1
+
+    def update(self, state: LawState, kinematics: LawKinematics) -> LawResult:
+        n = len(kinematics.pressure)
+        eye = np.tile(np.eye(2), (n, 1, 1))
+        trial = state.traction - STIFFNESS * kinematics.increment
+        size = np.linalg.norm(trial, axis=1)
+        limit = MU * kinematics.pressure
+        slides = size > limit
+        unit = trial / np.where(size > 0, size, 1.0)[:, None]
+        scale = np.where(slides, limit / np.where(size > 0, size, 1.0), 1.0)
+        traction = scale[:, None] * trial
+        d_trial = scale[:, None, None] * (
+            eye - slides[:, None, None] * np.einsum("ni,nj->nij", unit, unit)
+        )
+        slip = (traction - trial) / STIFFNESS
+        return LawResult(
+            traction=traction,
+            slip=slip,
+            d_increment=-STIFFNESS * d_trial,
+            d_pressure=MU * slides[:, None] * unit,
+            d_traction=d_trial,
+            d_elastic=0.0 * eye,
+            internal=np.maximum(state.internal, kinematics.pressure[:, None]),
+            dissipation=-np.einsum("ni,ni->n", traction, slip),
+            energy=0.5 / STIFFNESS * np.einsum("ni,ni->n", traction, traction),
+        )
+
+
+def _pair(surface: Surface) -> tuple[PythonInterface, Interface]:
+    normal = NormalLaw(penalty=1e3)
+    built_in = Interface(
+        surface,
+        normal,
+        Adhesion(stiffness=(STIFFNESS, STIFFNESS)),
+        Friction(coefficients=(MU, MU)),
+    )
+    return PythonInterface(surface, normal, Coulomb()), built_in
+
+
+def _path(surface: Surface, rng: np.random.Generator) -> list[np.ndarray]:
+    """Positions of 60 points: approach, press, drag in random directions."""
+    xi = rng.uniform(-1.0, 1.0, (60, 2))
+    jet, normal = surface.jet(xi), surface.geometry(xi).normal
+    path, along = [], np.zeros((60, 3))
+    for depth in (0.01, -0.004, -0.01, -0.008, 0.002):
+        along = along + np.einsum("ni,nij->nj", rng.normal(0, 0.004, (60, 2)), jet.d1)
+        path.append(jet.position + along + (depth + rng.normal(0, 0.002, 60))[:, None] * normal)
+    return path
+
+
+@pytest.mark.parametrize("name", SURFACES)
+def test_same_as_the_core(name: str) -> None:
+    """Forces, states and tangents agree along a path with contact, stick, slip and loss.
+
+    Tolerance 1e-10 relative: rounding of two orders of the same operations over five steps.
+    """
+    python, core = _pair(SURFACES[name])
+    path = _path(SURFACES[name], np.random.default_rng(3))
+    a, b = python.initial_state(path[0]), core.initial_state(path[0])
+    seen = set()
+    for x in path:
+        ra, rb = python.update(a, x), core.update(b, x)
+        scale = np.abs(rb.traction).max() or 1.0
+        assert np.abs(ra.traction - rb.traction).max() <= 1e-10 * scale
+        assert np.abs(ra.tangent - rb.tangent).max() <= 1e-10 * max(np.abs(rb.tangent).max(), 1.0)
+        np.testing.assert_array_equal(ra.status, rb.status)
+        for f in ("traction", "elastic", "dissipation", "slip_accumulated", "energy_adhesion"):
+            assert np.abs(ra.state[f] - rb.state[f]).max() <= 1e-10 * max(
+                np.abs(rb.state[f]).max(), 1e-3
+            )
+        seen |= set(rb.status.tolist())
+        a, b = ra.state, rb.state
+    assert seen == {0, 1, 2}
+    assert a["internal"].max() > 0.0
+
+
+def test_state_is_not_changed() -> None:
+    """`update` is pure: the committed state is the same after it."""
+    python, _ = _pair(SURFACES["plane"])
+    x = _path(SURFACES["plane"], np.random.default_rng(5))
+    state = python.initial_state(x[0])
+    copy = state.copy()
+    python.update(state, x[2])
+    assert state.tobytes() == copy.tobytes()
+
+
+def test_wrong_shape_is_said() -> None:
+    """A law that returns the wrong shape is told which array."""
+
+    class Wrong(Coulomb):
+        def update(self, state: LawState, kinematics: LawKinematics) -> LawResult:
+            r = super().update(state, kinematics)
+            return LawResult(**{**vars(r), "traction": r.traction[:, :1]})
+
+    itf = PythonInterface(SURFACES["plane"], NormalLaw(penalty=1e3), Wrong())
+    x = [[0.0, 0.0, -0.01]]
+    with pytest.raises(InputError, match=r"traction: the law returned an array of shape \(1, 1\)"):
+        itf.update(itf.initial_state([[0.0, 0.0, 0.1]]), x)
