@@ -18,6 +18,7 @@ from anisocontact.bulk.materials import materials
 from anisocontact.case.quantity import FREE, Quantity, line
 from anisocontact.case.registered import Key, OneOf, Registered, default_of
 from anisocontact.case.section import Section
+from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.registry import Entry, Parameter
 
@@ -163,6 +164,7 @@ class ContactSection(Section):
     normal: Any
     adhesion: Any
     friction: Any
+    evolution: str
 
 
 class Case(Section):
@@ -188,6 +190,7 @@ class Registries:
     adhesion_models: tuple[Entry, ...]
     friction_models: tuple[Entry, ...]
     sliding_rules: tuple[Entry, ...]
+    evolution_forms: tuple[Entry, ...]
     materials: tuple[Entry, ...]
 
     @classmethod
@@ -200,6 +203,7 @@ class Registries:
             registry.adhesion_models(),
             registry.friction_models(),
             registry.sliding_rules(),
+            registry.evolution_forms(),
             materials(),
         )
 
@@ -259,4 +263,12 @@ def _laws(known: Registries) -> dict[str, Any]:
             Field(adhesion.validate({}), description="tangential law inside the yield ellipse"),
         ),
         "friction": (Annotated[Any, friction], Field(description="yield ellipse and sliding rule")),
+        "evolution": (
+            Annotated[str, _word("how the history enters a step", *_names(known.evolution_forms))],
+            default_of(Interface, "evolution"),
+        ),
     }
+
+
+def _names(entries: tuple[Entry, ...]) -> list[str]:
+    return [entry.name for entry in entries]

@@ -69,7 +69,7 @@ def interface(section: ContactSection, master: Surface, place: str, auto: float 
             **_numbers(section.friction, auto),
             directions=_directions(section.friction, "friction.directions"),
         )
-        return Interface(master, normal, adhesion, friction)
+        return Interface(master, normal, adhesion, friction, evolution=section.evolution)
 
 
 def _directions(law: Directed, place: str) -> DirectionField | None:

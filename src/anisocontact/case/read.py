@@ -141,11 +141,7 @@ def _without_null(schema: Any) -> Any:
         return [_without_null(item) for item in schema]
     if not isinstance(schema, dict):
         return schema
-    kept = {
-        key: _without_null(value)
-        for key, value in schema.items()
-        if not (key == "default" and value is None)
-    }
+    kept = {key: _without_null(value) for key, value in schema.items() if value is not None}
     options = [option for option in kept.get("anyOf", []) if option != {"type": "null"}]
     if len(options) == 1:
         del kept["anyOf"]

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from pydantic import GetJsonSchemaHandler, ValidationError, WithJsonSchema, create_model
+from pydantic import GetCoreSchemaHandler, ValidationError, WithJsonSchema, create_model
 from pydantic_core import CoreSchema, InitErrorDetails, core_schema
 
 from anisocontact.case.quantity import AUTO, Quantity, key_of, line, shown
@@ -127,16 +127,14 @@ class OneOf:
             raise _at(key.name, f"missing; {near('', known)}")
         raise _at(key.name, f"{shown(name)} given; {near(str(name), known)}")
 
-    def __get_pydantic_core_schema__(self, source: object, handler: Any) -> CoreSchema:
+    def __get_pydantic_core_schema__(
+        self, source: object, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
         """Pydantic asks: check by hand, describe as a union."""
-        return core_schema.no_info_plain_validator_function(self.validate)
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        """Pydantic asks: all tables it may be."""
-        tables = [handler(model.__pydantic_core_schema__) for model in self.models.values()]
-        return tables[0] if len(tables) == 1 else {"oneOf": tables}
+        tables = [handler.generate_schema(model) for model in self.models.values()]
+        return core_schema.no_info_wrap_validator_function(
+            lambda data, _: self.validate(data), core_schema.union_schema(tables)
+        )
 
 
 def _at(key: str, text: str) -> ValidationError:
