@@ -46,6 +46,7 @@ nb::list state_layout() {
   add("energy_adhesion", offsetof(PointState, energy_adhesion), 1, "f8");
   add("energy_normal", offsetof(PointState, energy_normal), 1, "f8");
   add("status", offsetof(PointState, status), 1, "i8");
+  add("facet", offsetof(PointState, facet), 1, "i8");
   return l;
 }
 

@@ -15,7 +15,7 @@ namespace anisocontact::kernel {
 template <class S>
 struct Kinematics {
   surface::Geometry<S> now;
-  surface::Geometry<double> before;  ///< at the committed coordinates, today's configuration
+  surface::Geometry<S> before;  ///< at the committed coordinates, today's configuration
   Vector<S> xi;
   surface::Domain domain;
   S gap;
@@ -66,16 +66,14 @@ class Transport {
 
   template <class S>
   Transported<S> apply(const PointState& state, const Kinematics<S>& k, const CoCo<S>&) const {
-    const Vec3<S> n0 = constant<S>(k.before.normal);
-    const auto turned = [&](const Vec3<double>& v) {
-      return turn_with_normal<S>(constant<S>(v), n0, k.now.normal);
+    const auto turned = [&](const Vec3<S>& v) {
+      return turn_with_normal<S>(v, k.before.normal, k.now.normal);
     };
-    const Covector<double> stored{state.stored};
-    const Vector<double> elastic{state.elastic};
+    const auto stored = constant<S>(Covector<double>{state.stored});
+    const auto elastic = constant<S>(Vector<double>{state.elastic});
     return {k.now.project_co(turned(k.before.spatial(stored))),
             k.now.project_contra(turned(k.before.spatial(elastic))),
-            k.now.project_contra(k.now.jet.position - constant<S>(k.before.jet.position)),
-            unit<S, Place::co>()};
+            k.now.project_contra(k.now.jet.position - k.before.jet.position), unit<S, Place::co>()};
   }
 };
 

@@ -122,17 +122,18 @@ PointState advanced(const InterfaceLaw& l, const PointState& old, const Kinemati
   return s;
 }
 
-/// The whole law at a point.
-template <class S>
-Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinematics<S>& k) {
+/// The whole law at a point; `axes_at(field)` gives the axes of a direction field there.
+template <class S, class AxesAt>
+Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinematics<S>& k,
+                  const AxesAt& axes_at) {
   Reaction<S> r;
   r.pressure = law::pressure(law::normal_model(l.normal), k.gap, state.gap, state.pressure, k.dt);
   if (!(value(r.pressure) > 0.0)) {
     r.state = opened(state, k);
     return r;
   }
-  r.adhesion_axes = axes_of(l.adhesion_directions, k.now, k.xi);
-  r.friction_axes = axes_of(l.friction_directions, k.now, k.xi);
+  r.adhesion_axes = axes_at(l.adhesion_directions);
+  r.friction_axes = axes_at(l.friction_directions);
   if (!r.adhesion_axes.valid || !r.friction_axes.valid) {
     r.failure = Failure::direction;
     return r;

@@ -46,7 +46,8 @@ Kinematics<S> kinematics(const surface::AnySurface& surface, const PointState& s
     k.xi = projection::linearised(here, xi, x);
     k.now = surface::geometry(surface::jet(surface, k.xi[0], k.xi[1]));
   }
-  k.before = surface::geometry(surface::jet(surface, state.xi[0], state.xi[1]));
+  k.before = surface::constant_geometry<S>(
+      surface::geometry(surface::jet(surface, state.xi[0], state.xi[1])));
   k.domain = surface::domain(surface);
   k.gap = (x - k.now.jet.position).dot(k.now.normal);
   k.dt = dt;
@@ -66,7 +67,8 @@ PointResult update(const Interface& itf, const PointState& state, const Vec3<dou
   }
   const auto k = kinematics<S>(itf.surface, state, p.xi, seeded<S>(x), dt);
   out.normal = value(k.now.normal);
-  const auto r = react(itf.law, state, k);
+  const auto r =
+      react(itf.law, state, k, [&](const auto& field) { return axes_of(field, k.now, k.xi); });
   out.failure = r.failure;
   if (r.failure != Failure::none) return out;
   out.state = r.state;

@@ -28,6 +28,7 @@ struct PointState {
   double energy_adhesion{0.0};       ///< elastic energy of the tangential law, per area
   double energy_normal{0.0};         ///< elastic energy of the normal law, per area
   std::int64_t status{0};
+  std::int64_t facet{-1};  ///< facet of a meshed master; -1 on an analytic one
 };
 
 }  // namespace anisocontact::kernel

@@ -5,6 +5,7 @@
 #include <array>
 #include <concepts>
 #include <limits>
+#include <type_traits>
 
 #include "anisocontact/registry/descriptor.hpp"
 #include "anisocontact/tensor/dual.hpp"
@@ -51,12 +52,12 @@ concept Surface = requires(const T& s, double u, Dual<3> x) {
 template <class S>
 struct Geometry {
   Jet<S> jet;
-  CoCo<S> a_co;                     ///< a_ij = rho_i . rho_j
-  ContraContra<S> a_contra;         ///< a^ij
-  S area;                           ///< sqrt(det a_ij)
-  Vec3<S> normal;                   ///< n = rho_1 x rho_2 / area
-  CoCo<S> h_co;                     ///< h_ij = rho_ij . n
-  ContraCo<S> h_mixed;              ///< h^i_j = a^ik h_kj, n_j = -h^i_j rho_i (Weingarten)
+  CoCo<S> a_co;                        ///< a_ij = rho_i . rho_j
+  ContraContra<S> a_contra;            ///< a^ij
+  S area;                              ///< sqrt(det a_ij)
+  Vec3<S> normal;                      ///< n = rho_1 x rho_2 / area
+  CoCo<S> h_co;                        ///< h_ij = rho_ij . n
+  ContraCo<S> h_mixed;                 ///< h^i_j = a^ik h_kj, n_j = -h^i_j rho_i (Weingarten)
   std::array<CoCo<S>, 2> christoffel;  ///< Gamma^k_ij = rho_ij . rho^k, first index k
 
   /// rho^i = a^ij rho_j.
@@ -99,6 +100,31 @@ Geometry<S> geometry(const Jet<S>& jet) {
   return g;
 }
 
+/// A geometry of constants in the scalar type S.
+template <class S>
+Geometry<S> constant_geometry(const Geometry<double>& g) {
+  if constexpr (std::is_same_v<S, double>) {
+    return g;
+  } else {
+    Geometry<S> r;
+    r.jet.position = constant<S>(g.jet.position);
+    for (std::size_t i = 0; i < 2; ++i) {
+      r.jet.d1[i] = constant<S>(g.jet.d1[i]);
+      for (std::size_t j = 0; j < 2; ++j) {
+        r.a_co(i, j) = S(g.a_co(i, j));
+        r.a_contra(i, j) = S(g.a_contra(i, j));
+        r.h_co(i, j) = S(g.h_co(i, j));
+        r.h_mixed(i, j) = S(g.h_mixed(i, j));
+        for (std::size_t m = 0; m < 2; ++m) r.christoffel[m](i, j) = S(g.christoffel[m](i, j));
+      }
+    }
+    for (std::size_t i = 0; i < 3; ++i) r.jet.d2[i] = constant<S>(g.jet.d2[i]);
+    r.area = S(g.area);
+    r.normal = constant<S>(g.normal);
+    return r;
+  }
+}
+
 /// The geometry in plain numbers.
 template <class S>
 Geometry<double> value(const Geometry<S>& g) {
@@ -123,8 +149,7 @@ template <class S>
 std::array<Vec3<S>, 3> spatial_basis(const Geometry<S>& g, const S& gap) {
   std::array<Vec3<S>, 3> r;
   for (std::size_t i = 0; i < 2; ++i)
-    r[i] = g.jet.d1[i] -
-           gap * (g.h_mixed(0, i) * g.jet.d1[0] + g.h_mixed(1, i) * g.jet.d1[1]);
+    r[i] = g.jet.d1[i] - gap * (g.h_mixed(0, i) * g.jet.d1[0] + g.h_mixed(1, i) * g.jet.d1[1]);
   r[2] = g.normal;
   return r;
 }
