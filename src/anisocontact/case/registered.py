@@ -86,7 +86,8 @@ def table(name: str, keys: Mapping[Key, Entry], base: type[Registered]) -> type[
 
 def _field(p: Parameter) -> tuple[Any, Any]:
     # Stiffnesses are what a user without measurements cannot know: the run can choose them.
-    quantity = Quantity(p, word=AUTO if p.unit == "stress/length" else None)
+    may_be_auto = p.unit == "stress/length" and p.kind in ("scalar", "pair")
+    quantity = Quantity(p, word=AUTO if may_be_auto else None)
     if quantity.word and p.required:
         return Annotated[Any, quantity], AUTO
     return Annotated[Any, quantity], ... if p.required else quantity.default()
@@ -131,7 +132,9 @@ class OneOf:
         self, source: object, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
         """Pydantic asks: check by hand, describe as a union."""
-        tables = [handler.generate_schema(model) for model in self.models.values()]
+        tables: list[CoreSchema | tuple[CoreSchema, str]] = [
+            handler.generate_schema(model) for model in self.models.values()
+        ]
         return core_schema.no_info_wrap_validator_function(
             lambda data, _: self.validate(data), core_schema.union_schema(tables)
         )

@@ -1,0 +1,8 @@
+"""`python -m anisocontact` is the command `anisocontact`."""
+
+import sys
+
+from anisocontact.cli import main
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,155 @@
+"""Running a case: solve, write, and always end in one of done or stopped."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import FrameType
+from typing import Any, Protocol
+
+from anisocontact.case.build import Built
+from anisocontact.results.writer import Writer
+from anisocontact.solver import Accepted, Progress, StoppedError
+
+__all__ = ["Listener", "Outcome", "RunError", "run"]
+
+
+class Listener(Protocol):
+    """Who wants to know how a run goes on."""
+
+    def iteration(self, progress: Progress) -> None:
+        """A Newton iteration has been made."""
+
+    def accepted(self, accepted: Accepted, numbers: dict[str, Any]) -> None:
+        """An increment has converged; `numbers` is the summary so far."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How a run ended.
+
+    Args:
+        status: "done" or "stopped".
+        message: Why it stopped; empty if it is done.
+        folder: Where its results are.
+    """
+
+    status: str
+    message: str
+    folder: Path
+
+
+class RunError(RuntimeError):
+    """A run ended in an error of the program; the results folder has what converged."""
+
+
+def run(built: Built, folder: str | Path, listener: Listener) -> Outcome:
+    """Solve the steps of a case and write its results.
+
+    A first Ctrl-C ends the run after the current increment, a second one at once.
+
+    Args:
+        built: The case with its problem.
+        folder: Results folder; an earlier run in it is replaced.
+        listener: Is told of iterations and increments.
+
+    Returns:
+        Done, or stopped and why; what converged is in the folder.
+
+    Raises:
+        RunError: Something unforeseen happened; `run.log` has the details.
+    """
+    case = built.file.case
+    writer = Writer(
+        folder,
+        built.problem,
+        built.steps,
+        masters=[contact.master for contact in case.contact],
+        title=case.title or built.file.name,
+        every=case.output.every,
+        case=built.file.path.read_text(encoding="utf-8"),
+    )
+    try:
+        status, message = _solve(built, writer, listener)
+    except KeyboardInterrupt:
+        status, message = "stopped", "interrupted"
+    except Exception as error:
+        writer.log(traceback.format_exc())
+        text = " ".join(f"{type(error).__name__}: {error}".split())
+        writer.close("stopped", f"internal error: {text}")
+        raise RunError(f"{text}; details in {writer.folder / 'run.log'}") from error
+    writer.close(status, message)
+    return Outcome(status, message, writer.folder)
+
+
+def _solve(built: Built, writer: Writer, listener: Listener) -> tuple[str, str]:
+    def on_iteration(progress: Progress) -> None:
+        writer.log(_iteration_line(progress))
+        listener.iteration(progress)
+
+    try:
+        with _interrupt() as interrupted:
+            for accepted in built.solver.run(on_iteration):
+                writer.accept(accepted)
+                listener.accepted(accepted, writer.summary)
+                writer.log(accepted_line(accepted, writer.summary))
+                if interrupted.is_set():
+                    where = f"step {accepted.step!r}, increment {accepted.increment}"
+                    return "stopped", f"interrupted after {where}"
+    except StoppedError as stop:
+        writer.log(f"stopped: {stop}")
+        return "stopped", str(stop)
+    return "done", ""
+
+
+def _iteration_line(progress: Progress) -> str:
+    counts = "; ".join(points_text(points) for points in progress.contacts.values())
+    return f"  iteration {progress.iteration}  residual {progress.residual:.2e}  {counts}"
+
+
+def accepted_line(accepted: Accepted, numbers: dict[str, Any]) -> str:
+    """One line for an accepted increment."""
+    contacts = "; ".join(
+        f"{points_text(contact['points'])}  force {_force_text(contact['force'])}"
+        for contact in numbers["contacts"]
+    )
+    return (
+        f"{accepted.step} {accepted.increment}  {accepted.iterations} iterations  "
+        f"residual {accepted.residuals[-1]:.1e}  {contacts}"
+    )
+
+
+def points_text(points: dict[str, int]) -> str:
+    """Numbers of open, sticking and slipping points."""
+    return " ".join(f"{name} {count}" for name, count in points.items())
+
+
+def _force_text(force: list[float]) -> str:
+    # What is nothing but round-off of the largest component is shown as zero.
+    least = 1e-9 * max(map(abs, force))
+    return f"({', '.join(f'{v if abs(v) > least else 0.0:.4g}' for v in force)})"
+
+
+@contextmanager
+def _interrupt() -> Iterator[threading.Event]:
+    """An event that the first Ctrl-C sets; the second one interrupts as ever."""
+    asked = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield asked  # only the main thread may handle signals
+        return
+
+    def handle(number: int, frame: FrameType | None) -> None:
+        if asked.is_set():
+            signal.default_int_handler(number, frame)
+        asked.set()
+
+    before = signal.signal(signal.SIGINT, handle)
+    try:
+        yield asked
+    finally:
+        signal.signal(signal.SIGINT, before)

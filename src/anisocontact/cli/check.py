@@ -1,0 +1,43 @@
+"""`anisocontact check`."""
+
+from __future__ import annotations
+
+import argparse
+
+from anisocontact.case import load
+from anisocontact.case.build import Built, build
+
+__all__ = ["command", "contents"]
+
+
+def command(arguments: argparse.Namespace) -> int:
+    """Build the case and say what is in it."""
+    for line in contents(build(load(arguments.case))):
+        print(line)
+    return 0
+
+
+def contents(built: Built) -> list[str]:
+    """What a case contains, in a few lines."""
+    case, problem = built.file.case, built.problem
+    model = problem.model
+    cells = model.mesh.topology.index_map(3).size_global
+    nodes = model.space.dofmap.index_map.size_global
+    lines = [f"case      {case.title or built.file.name}"]
+    for body in model.body_names():
+        lines.append(f"body      {body}: {case.material[body].chosen['model']}")
+    lines.append(
+        f"mesh      {nodes} nodes, {cells} cells of order {model.order}, "
+        f"{problem.unknowns} unknowns"
+    )
+    for section, contact in zip(case.contact, problem.contacts, strict=True):
+        _, values = contact.interface.normal.named
+        penalty = f", penalty {values['penalty'][0]:.4g}" if "penalty" in values else ""
+        lines.append(
+            f"contact   {section.slave} on {section.master}: {model.count_facets(section.slave)} "
+            f"slave facets{penalty}, {section.friction.sliding_rule}"
+        )
+    for step in built.steps:
+        driven = ", ".join(dict.fromkeys([*step.displacement, *step.traction])) or "nothing new"
+        lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
+    return lines

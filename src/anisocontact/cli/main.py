@@ -1,0 +1,101 @@
+"""Arguments and exit codes; what a command needs is imported when it runs."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+
+from anisocontact import __version__
+from anisocontact.errors import InputError
+
+__all__ = ["BAD_INPUT", "DONE", "INTERNAL", "STOPPED", "build_parser", "main"]
+
+DONE, INTERNAL, BAD_INPUT, STOPPED = 0, 1, 2, 3
+
+_EPILOG = """\
+exit codes: 0 done, 2 bad input (nothing is written), 3 stopped before the end (what converged
+is kept), 1 an error of the program itself
+"""
+
+
+def build_parser() -> argparse.ArgumentParser:
+    """The parser of the command; the reference page is made from it."""
+    parser = argparse.ArgumentParser(
+        prog="anisocontact",
+        description="Frictional contact of surfaces that have a direction.",
+        epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"anisocontact {__version__}")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
+
+    run = _command(commands, "run", "solve a case and write its results")
+    _case_argument(run)
+    run.add_argument(
+        "-o",
+        "--output",
+        metavar="DIR",
+        help="results folder; results/<name of the case> if left out",
+    )
+    run.add_argument(
+        "--overwrite", action="store_true", help="replace the results of an earlier run"
+    )
+
+    check = _command(commands, "check", "read a case and its mesh and say what it contains")
+    _case_argument(check)
+
+    _command(commands, "schema", "print the JSON Schema of the case file")
+
+    info = _command(
+        commands, "info", "print versions and the surfaces, laws, rules and materials there are"
+    )
+    info.add_argument("--json", action="store_true", help="print it as JSON")
+    return parser
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command.
+
+    Args:
+        argv: Arguments without the name of the program; those of the process if left out.
+
+    Returns:
+        The exit code: 0 done, 1 internal error, 2 bad input, 3 stopped before the end.
+    """
+    try:
+        arguments = build_parser().parse_args(argv)
+    except SystemExit as end:  # argparse has said what is wrong, or printed the help
+        return end.code if isinstance(end.code, int) else BAD_INPUT
+    try:
+        command = import_module(f"anisocontact.cli.{arguments.command}")
+        code: int = command.command(arguments)
+        sys.stdout.flush()
+        return code
+    except InputError as error:
+        for one in getattr(error, "errors", [error]):
+            print(f"error: {one}", file=sys.stderr)
+        return BAD_INPUT
+    except KeyboardInterrupt:
+        print("error: interrupted", file=sys.stderr)
+        return STOPPED
+    except BrokenPipeError:  # the reader of our output has gone; that is its right
+        sys.stdout = None
+        return DONE
+    except Exception as error:
+        text = " ".join(f"{type(error).__name__}: {error}".split())
+        print(f"error: internal: {text}", file=sys.stderr)
+        return INTERNAL
+
+
+def _command(
+    commands: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str
+) -> argparse.ArgumentParser:
+    description = f"{text[0].upper()}{text[1:]}."
+    return commands.add_parser(name, help=text, description=description, allow_abbrev=False)
+
+
+def _case_argument(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("case", metavar="CASE.toml", help="the case file")

@@ -1,0 +1,81 @@
+"""What a run shows: a bar on a terminal, a line for each increment in a pipe."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, TextIO
+
+from rich.console import Console
+from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
+from rich.progress import Progress as Bar
+
+from anisocontact.case.run import Listener, accepted_line, points_text
+from anisocontact.solver import Accepted, Progress, Step
+
+__all__ = ["progress_on"]
+
+
+@contextmanager
+def progress_on(stream: TextIO, steps: Sequence[Step]) -> Iterator[Listener]:
+    """A listener that shows the run on a stream."""
+    if not stream.isatty():
+        yield Lines(stream)
+        return
+    columns = (
+        TextColumn("{task.description}"),
+        BarColumn(bar_width=24),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("{task.fields[state]}"),
+    )
+    with Bar(*columns, console=Console(file=stream)) as bar:
+        yield Terminal(bar, steps)
+
+
+class Lines:
+    """A line for each increment.
+
+    Args:
+        stream: Where they go.
+    """
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+
+    def iteration(self, progress: Progress) -> None:
+        """Nothing: `run.log` has the iterations."""
+
+    def accepted(self, accepted: Accepted, numbers: dict[str, Any]) -> None:
+        """Print the increment."""
+        print(accepted_line(accepted, numbers), file=self._stream, flush=True)
+
+
+class Terminal:
+    """One bar for the whole run, with the iteration that is going on; a line for each step.
+
+    Args:
+        bar: Where it is drawn.
+        steps: The steps.
+    """
+
+    def __init__(self, bar: Bar, steps: Sequence[Step]) -> None:
+        self._bar = bar
+        self._increments = {step.name: step.increments for step in steps}
+        self._task = bar.add_task("start", total=sum(self._increments.values()), state="")
+
+    def iteration(self, progress: Progress) -> None:
+        """Show iteration, residual and contact points."""
+        counts = "; ".join(points_text(points) for points in progress.contacts.values())
+        self._bar.update(
+            self._task,
+            description=f"{progress.step} {progress.increment}/{self._increments[progress.step]}",
+            state=f"iteration {progress.iteration:2}  residual {progress.residual:.0e}  {counts}",
+        )
+
+    def accepted(self, accepted: Accepted, numbers: dict[str, Any]) -> None:
+        """Move the bar on; say how a step ended."""
+        self._bar.update(self._task, advance=1)
+        if accepted.increment == self._increments[accepted.step]:
+            text = accepted_line(accepted, numbers)
+            self._bar.console.print(text, highlight=False, soft_wrap=True)

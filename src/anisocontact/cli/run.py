@@ -1,0 +1,39 @@
+"""`anisocontact run`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from anisocontact.case import load
+from anisocontact.cli.main import DONE, INTERNAL, STOPPED
+from anisocontact.results.files import check_folder
+
+__all__ = ["command"]
+
+
+def command(arguments: argparse.Namespace) -> int:
+    """Solve a case; 0 if it is done, 3 if it stopped before its end."""
+    file = load(arguments.case)
+    folder = Path(arguments.output or Path("results") / file.name)
+    check_folder(folder, arguments.overwrite)
+
+    from anisocontact.case.build import build
+    from anisocontact.case.run import RunError, run
+    from anisocontact.cli.check import contents
+    from anisocontact.cli.progress import progress_on
+
+    built = build(file)
+    print("\n".join(contents(built)), flush=True)
+    try:
+        with progress_on(sys.stdout, built.steps) as listener:
+            outcome = run(built, folder, listener)
+    except RunError as error:
+        print(f"error: internal: {error}", file=sys.stderr)
+        return INTERNAL
+    if outcome.status == "done":
+        print(f"done      {folder}")
+        return DONE
+    print(f"error: stopped: {outcome.message}; what converged is in {folder}", file=sys.stderr)
+    return STOPPED

@@ -1,0 +1,5 @@
+"""Results of a run: `Results` reads a folder, `results.writer` writes one."""
+
+from anisocontact.results.read import Results
+
+__all__ = ["Results"]

@@ -1,0 +1,206 @@
+"""Files for ParaView: the bodies, the slave points, and the collections that put them in time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import dolfinx, fem, ufl
+from anisocontact.contact import Contact
+from anisocontact.results.files import replacing, write_text
+from anisocontact.results.snapshot import elastic_slip
+from anisocontact.solver import Problem
+
+if TYPE_CHECKING:
+    import pyvista
+
+__all__ = ["Bodies", "Collection", "slave_points"]
+
+Floats = npt.NDArray[np.float64]
+
+#: Rows and columns of the stress components, in the order VTK has them.
+_SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
+
+
+class Collection:
+    """A `.pvd` file and the folder of the data sets it lists.
+
+    Args:
+        path: The `.pvd` file; its data sets go into the folder of the same name.
+        suffix: Of the data sets, ".vtu" or ".vtp".
+    """
+
+    def __init__(self, path: Path, suffix: str) -> None:
+        self._path = path
+        self._suffix = suffix
+        self._entries: list[tuple[float, str]] = []
+
+    def add(self, time: float, data: pyvista.DataSet) -> None:
+        """Write a data set and then the list with it."""
+        folder = self._path.with_suffix("")
+        folder.mkdir(exist_ok=True)
+        target = folder / f"{len(self._entries):04d}{self._suffix}"
+        with replacing(target) as draft:
+            data.save(str(draft), binary=True)
+        self._entries.append((time, f"{folder.name}/{target.name}"))
+        rows = "".join(
+            f'    <DataSet timestep="{t!r}" part="0" file={quoteattr(name)}/>\n'
+            for t, name in self._entries
+        )
+        write_text(
+            self._path,
+            '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
+            f"{rows}  </Collection>\n</VTKFile>\n",
+        )
+
+
+class Bodies:
+    """Displacement and stress of all bodies as a grid of VTK.
+
+    Args:
+        problem: The problem.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem = problem
+        model = problem.model
+        self._comm = model.mesh.comm
+        discontinuous = fem.functionspace(
+            model.mesh, ("Discontinuous Lagrange", model.order, (len(_SYMMETRIC),))
+        )
+        self._stress = fem.Function(discontinuous)
+        self._expressions = [
+            (_stress_at(problem, body, discontinuous), model.cells(body))
+            for body in model.body_names()
+        ]
+        continuous = fem.functionspace(model.mesh, ("Lagrange", model.order, (len(_SYMMETRIC),)))
+        self._mean = fem.Function(continuous)
+        ones: Floats = np.ones(self._stress.x.array.shape)
+        self._share = 1.0 / self._summed(ones).clip(1.0)
+        cells, kinds, points = dolfinx.plot.vtk_mesh(model.space)
+        self._topology = self._comm.gather((cells, kinds, points, self._body_numbers(len(kinds))))
+
+    def grid(self) -> pyvista.UnstructuredGrid | None:
+        """The accepted state; None but on the first rank.
+
+        Point data: `displacement` (3) [length], `stress` (6: XX YY ZZ XY YZ XZ, mean of the cells
+        at a node) and `von_mises` [stress]. Cell data: `body`, its number.
+        """
+        import pyvista
+
+        u = self._problem.u.x.array.reshape(-1, 3)
+        for expression, cells in self._expressions:
+            self._stress.interpolate(expression, cells0=cells)
+        stress = self._summed(np.asarray(self._stress.x.array, dtype=np.float64)) * self._share
+        values = self._comm.gather((u.copy(), stress.reshape(-1, len(_SYMMETRIC))))
+        if self._topology is None or values is None:
+            return None
+        grid = pyvista.UnstructuredGrid(*_joined(self._topology))
+        grid.cell_data["body"] = np.concatenate([part[3] for part in self._topology])
+        grid.point_data["displacement"] = np.concatenate([part[0] for part in values])
+        components = np.concatenate([part[1] for part in values])
+        grid.point_data["stress"] = components
+        grid.point_data["von_mises"] = von_mises(components)
+        return grid
+
+    def _summed(self, at_cells: Floats) -> Floats:
+        """Sum over the cells at each node of values at the nodes of each cell."""
+        rows = self._stress.function_space.dofmap.list
+        nodes = self._mean.function_space.dofmap.list
+        owned = self._problem.model.mesh.topology.index_map(3).size_local
+        width = len(_SYMMETRIC)
+        self._mean.x.array[:] = 0.0
+        target = self._mean.x.array.reshape(-1, width)
+        np.add.at(target, nodes[:owned], at_cells.reshape(-1, width)[rows[:owned]])
+        self._mean.x.scatter_reverse(dolfinx.la.InsertMode.add)
+        self._mean.x.scatter_forward()
+        return np.array(self._mean.x.array, dtype=np.float64)
+
+    def _body_numbers(self, count: int) -> npt.NDArray[np.int32]:
+        numbers = np.zeros(count, dtype=np.int32)
+        for i, body in enumerate(self._problem.model.body_names()):
+            cells = self._problem.model.cells(body)
+            numbers[cells[cells < count]] = i
+        return numbers
+
+
+def von_mises(stress: Floats) -> Floats:
+    """Equivalent stress of (n, 6) components XX YY ZZ XY YZ XZ, (n,)."""
+    xx, yy, zz, xy, yz, xz = stress.T
+    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
+
+
+def slave_points(contacts: Iterable[Contact], comm: Any) -> pyvista.PolyData | None:
+    """The slave points of all contacts where they are now; None but on the first rank.
+
+    Args:
+        contacts: The contacts.
+        comm: Communicator of the mesh.
+
+    Returns:
+        Points with `contact` (its number), `area` [length^2], `gap` [length], `pressure`,
+        `traction` and its tangential part `traction_t` [stress], `traction_principal` along the
+        friction axes,
+        `elastic_slip` and `slip_accumulated` [length], `status` (0 open, 1 stick, 2 slip),
+        `dissipation` [stress length], `normal` of the master, and both axes of adhesion and
+        friction, `direction_adhesion_1` and so on.
+    """
+    import pyvista
+
+    local = [_point_data(i, contact) for i, contact in enumerate(contacts)]
+    parts = [part for rank in comm.gather(local) or [] for part in rank]
+    if not parts:
+        return None
+    joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    cloud = pyvista.PolyData(joined.pop("points"))
+    for name, values in joined.items():
+        cloud.point_data[name] = values
+    return cloud
+
+
+def _point_data(number: int, contact: Contact) -> dict[str, npt.NDArray[Any]]:
+    last, state = contact.last, contact.state
+    return {
+        "points": contact.points,
+        "contact": np.full(len(contact.areas), number, dtype=np.int32),
+        "area": contact.areas,
+        "gap": last.gap,
+        "pressure": last.pressure,
+        "traction": last.traction,
+        "traction_t": last.traction_t,
+        "traction_principal": last.traction_principal,
+        "elastic_slip": elastic_slip(contact),
+        "slip_accumulated": state["slip_accumulated"],
+        "status": last.status.astype(np.int32),
+        "dissipation": state["dissipation"],
+        "normal": last.normal,
+        "direction_adhesion_1": last.directions_adhesion[:, 0],
+        "direction_adhesion_2": last.directions_adhesion[:, 1],
+        "direction_friction_1": last.directions_friction[:, 0],
+        "direction_friction_2": last.directions_friction[:, 1],
+    }
+
+
+def _stress_at(problem: Problem, body: str, space: Any) -> Any:
+    stress = problem.materials[body].stress(problem.u)
+    components = ufl.as_vector([stress[i, j] for i, j in _SYMMETRIC])
+    return fem.Expression(components, space.element.interpolation_points)
+
+
+def _joined(parts: list[tuple[Any, ...]]) -> tuple[Any, Any, Any]:
+    """Cells, kinds and points of all ranks as one grid."""
+    starts = np.cumsum([0] + [len(points) for _, _, points, _ in parts])
+    cells = []
+    for (listed, kinds, _, _), start in zip(parts, starts[:-1], strict=True):
+        # VTK's list of cells: the number of nodes, the same for all of them, then the nodes.
+        rows = listed.reshape(len(kinds), -1).copy()
+        rows[:, 1:] += start
+        cells.append(rows.reshape(-1))
+    kinds = np.concatenate([part[1] for part in parts])
+    return np.concatenate(cells), kinds, np.concatenate([part[2] for part in parts])

@@ -1,0 +1,93 @@
+"""Reading a results folder, also while the run goes on."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from xml.etree import ElementTree
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.errors import InputError
+from anisocontact.results.history import read_history
+
+if TYPE_CHECKING:
+    import pyvista
+
+__all__ = ["Results"]
+
+
+class Results:
+    """Results of a run.
+
+    Args:
+        folder: The results folder.
+
+    Raises:
+        InputError: It holds no `summary.json`.
+
+    Example:
+        >>> Results("no-such-folder")
+        Traceback (most recent call last):
+        anisocontact.errors.InputError: 'no-such-folder' holds no results: no summary.json in it
+    """
+
+    def __init__(self, folder: str | Path) -> None:
+        self.folder = Path(folder)
+        if not (self.folder / "summary.json").is_file():
+            raise InputError(f"'{folder}' holds no results: no summary.json in it")
+
+    @property
+    def summary(self) -> dict[str, Any]:
+        """Content of `summary.json`."""
+        found: dict[str, Any] = json.loads((self.folder / "summary.json").read_text("utf-8"))
+        return found
+
+    @property
+    def history(self) -> dict[str, npt.NDArray[Any]]:
+        """Columns of `history.csv`, a value for each accepted increment."""
+        path = self.folder / "history.csv"
+        return read_history(path) if path.is_file() else {}
+
+    @property
+    def times(self) -> npt.NDArray[np.float64]:
+        """Times at which fields were written, the first is the start."""
+        return np.array([time for time, _ in self._listed("fields.pvd")])
+
+    def fields(self, index: int = -1) -> pyvista.UnstructuredGrid:
+        """Displacement and stress of the bodies.
+
+        Args:
+            index: Which of `times`, the last one if not given.
+
+        Returns:
+            A grid of pyvista in the reference configuration.
+        """
+        grid: pyvista.UnstructuredGrid = self._read("fields.pvd", index)
+        return grid
+
+    def contact(self, index: int = -1) -> pyvista.PolyData:
+        """The slave points with gap, pressure, tractions, slip, status and directions.
+
+        Args:
+            index: Which of `times`, the last one if not given.
+
+        Returns:
+            Points of pyvista, where they are at that time.
+        """
+        points: pyvista.PolyData = self._read("contact.pvd", index)
+        return points
+
+    def _listed(self, name: str) -> list[tuple[float, str]]:
+        path = self.folder / name
+        if not path.is_file():
+            return []
+        sets = ElementTree.parse(path).iter("DataSet")
+        return [(float(entry.attrib["timestep"]), entry.attrib["file"]) for entry in sets]
+
+    def _read(self, name: str, index: int) -> Any:
+        import pyvista
+
+        return pyvista.read(self.folder / self._listed(name)[index][1])

@@ -1,0 +1,108 @@
+"""The numbers of an accepted increment, as `summary.json` and `history.csv` have them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact import Contact, FacetQuadrature, facet_quadrature
+from anisocontact.interface import STATUS
+from anisocontact.solver import Accepted, Problem, Step
+
+__all__ = ["Observer", "elastic_slip", "laws", "named_groups"]
+
+Floats = npt.NDArray[np.float64]
+
+
+class Observer:
+    """Takes the numbers of a problem after each accepted increment.
+
+    Args:
+        problem: The problem.
+        steps: Its steps; their facet groups are the ones that are watched.
+    """
+
+    def __init__(self, problem: Problem, steps: Iterable[Step]) -> None:
+        self._problem = problem
+        self._comm = problem.model.mesh.comm
+        model = problem.model
+        steps = list(steps)
+        self._supports = named_groups(step.displacement for step in steps)
+        self._watched: dict[str, FacetQuadrature] = {
+            group: facet_quadrature(model.space, model.facets(group), degree=2)
+            for group in named_groups(
+                loads for step in steps for loads in (step.displacement, step.traction)
+            )
+        }
+
+    def numbers(self, accepted: Accepted | None = None) -> dict[str, Any]:
+        """Resultants, energies and counts of the accepted state.
+
+        Args:
+            accepted: What the solver said of it; None before the first increment.
+
+        Returns:
+            Nested numbers: `contacts`, `reactions`, `displacements`, `energy`.
+        """
+        zero = np.zeros(3)
+        reactions = accepted.reactions if accepted else {}
+        return {
+            "contacts": [self._contact(contact) for contact in self._problem.contacts],
+            "reactions": {g: reactions.get(g, zero).tolist() for g in self._supports},
+            "displacements": {g: self._mean(q).tolist() for g, q in self._watched.items()},
+            "energy": accepted.energies if accepted else self._problem.energies(),
+        }
+
+    def _mean(self, quadrature: FacetQuadrature) -> Floats:
+        """Mean displacement of a facet group, (3,)."""
+        u = self._problem.u.x.array.reshape(-1, 3)
+        local = np.append(quadrature.areas @ quadrature.at_points(u), quadrature.areas.sum())
+        total = self._comm.allreduce(local)
+        return np.asarray(total[:3] / total[3])
+
+    def _contact(self, contact: Contact) -> dict[str, Any]:
+        """Resultant, extremes and counts; the means are over the area that touches."""
+        force, moment = contact.resultant()
+        last = contact.last
+        touching = contact.areas * (last.status != STATUS.index("open"))
+        slips = np.column_stack([elastic_slip(contact), contact.state["slip_accumulated"]])
+        total = self._comm.allreduce(np.append(touching @ slips, touching.sum()))
+        area = float(total[4])
+        mean = total[:4] / area if area > 0.0 else np.zeros(4)
+        return {
+            "force": force.tolist(),
+            "moment": moment.tolist(),
+            "max_pressure": contact.extreme(last.pressure),
+            "max_penetration": contact.extreme(-last.gap),
+            "area": area,
+            "elastic_slip": mean[:3].tolist(),
+            "slip": float(mean[3]),
+            "points": contact.counts(),
+        }
+
+
+def named_groups(loads: Iterable[Iterable[str]]) -> list[str]:
+    """Facet groups in the order in which they are first named."""
+    return list(dict.fromkeys(group for groups in loads for group in groups))
+
+
+def elastic_slip(contact: Contact) -> Floats:
+    """Elastic part of the relative displacement `e^i rho_i` at each slave point, (n, 3), length."""
+    state = contact.state
+    jet = contact.interface.surface.jet(state["xi"])
+    return np.asarray(np.einsum("ni,nij->nj", state["elastic"], jet.d1))
+
+
+def laws(contact: Contact) -> dict[str, Any]:
+    """Laws of a contact with the numbers they were given, by name."""
+    interface = contact.interface
+    named = {
+        "normal": interface.normal.named,
+        "adhesion": interface.adhesion.named,
+        "friction": interface.friction.named,
+        "sliding_rule": interface.friction.rule,
+    }
+    return {what: {"name": name, **values} for what, (name, values) in named.items()}

@@ -1,0 +1,181 @@
+"""The results folder while a run goes on."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from anisocontact import __version__
+from anisocontact.contact import facet_size
+from anisocontact.interface import STATUS
+from anisocontact.results.files import clear, write_text
+from anisocontact.results.history import History
+from anisocontact.results.paraview import Bodies, Collection, slave_points
+from anisocontact.results.snapshot import Observer, laws
+from anisocontact.solver import Accepted, Problem, Step
+
+__all__ = ["Writer"]
+
+#: Share of the facet size beyond which a penetration is worth a warning.
+DEEP = 0.1
+
+
+class Writer:
+    """Writes a run into a folder; every file in it is whole at any moment.
+
+    Only the first MPI rank writes; every rank makes the same calls.
+
+    Args:
+        folder: Where; what an earlier run left there is removed.
+        problem: The problem, not yet solved.
+        steps: Its steps.
+        masters: Name of the master of each contact; the name of the contact if not given.
+        title: Heading of the report.
+        every: Fields are written every so many increments, and at the end of each step.
+        case: Text of the case file, kept beside the results.
+
+    Attributes:
+        folder: The folder.
+        summary: What `summary.json` says.
+    """
+
+    def __init__(
+        self,
+        folder: str | Path,
+        problem: Problem,
+        steps: Sequence[Step],
+        *,
+        masters: Sequence[str] = (),
+        title: str = "",
+        every: int = 1,
+        case: str = "",
+    ) -> None:
+        self._began = time.perf_counter()
+        self._problem = problem
+        self._steps = list(steps)
+        self._every = every
+        self._first = problem.model.mesh.comm.rank == 0
+        self.folder = Path(folder)
+        if self._first:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            clear(self.folder)
+            write_text(self.folder / "run.log", f"anisocontact {__version__}\n")
+            if case:
+                write_text(self.folder / "case.toml", case)
+        names = masters or [contact.name for contact in problem.contacts]
+        self._observer = Observer(problem, self._steps)
+        self._constants = [
+            {
+                "slave": contact.slave,
+                "master": name,
+                "facet_size": facet_size(problem.model, contact.slave),
+                "laws": laws(contact),
+            }
+            for contact, name in zip(problem.contacts, names, strict=True)
+        ]
+        self._history = History(self.folder / "history.csv")
+        self._bodies = Bodies(problem)
+        self._fields = Collection(self.folder / "fields.pvd", ".vtu")
+        self._points = Collection(self.folder / "contact.pvd", ".vtp")
+        self.summary: dict[str, Any] = self._head(title)
+        self._take(self._observer.numbers())
+        self._write_fields(0.0)
+        self._write_summary()
+
+    def log(self, text: str) -> None:
+        """Add a line to `run.log`."""
+        if self._first:
+            with (self.folder / "run.log").open("a", encoding="utf-8") as file:
+                file.write(text + "\n")
+
+    def accept(self, accepted: Accepted) -> None:
+        """Write an accepted increment: table and summary, and fields where they are due."""
+        numbers = self._observer.numbers(accepted)
+        row = {
+            "step": accepted.step,
+            "increment": accepted.increment,
+            "time": accepted.time,
+            "newton_iterations": accepted.iterations,
+            "residual": accepted.residuals[-1],
+        }
+        if self._first:
+            self._history.append(row | numbers)
+        self.summary["steps"] += 1
+        self.summary["newton_iterations"] += accepted.iterations
+        self.summary["time"] = accepted.time
+        self._take(numbers)
+        last = accepted.increment == self._steps[accepted.step_index].increments
+        if last or self.summary["steps"] % self._every == 0:
+            self._write_fields(accepted.time)
+        self._write_summary()
+
+    def close(self, status: str, message: str = "") -> None:
+        """Write the end of the run and its report.
+
+        Args:
+            status: "done" or "stopped".
+            message: Why it stopped.
+        """
+        if self._written != self.summary["time"]:
+            self._write_fields(self.summary["time"])
+        self.summary["status"] = status
+        self.summary["message"] = message
+        self.summary["warnings"] = self._warnings()
+        self._write_summary()
+
+    def _head(self, title: str) -> dict[str, Any]:
+        model = self._problem.model
+        topology = model.mesh.topology
+        return {
+            "status": "stopped",
+            "message": "not finished: the run still goes on or was killed",
+            "title": title,
+            "version": __version__,
+            "wall_time_s": 0.0,
+            "unknowns": self._problem.unknowns,
+            "nodes": model.space.dofmap.index_map.size_global,
+            "cells": topology.index_map(3).size_global,
+            "bodies": model.body_names(),
+            "ranks": model.mesh.comm.size,
+            "steps": 0,
+            "newton_iterations": 0,
+            "time": 0.0,
+            "warnings": [],
+        }
+
+    def _take(self, numbers: dict[str, Any]) -> None:
+        pairs = zip(numbers["contacts"], self._constants, strict=True)
+        contacts = [constant | changing for changing, constant in pairs]
+        self.summary.update(numbers, contacts=contacts)
+
+    def _write_fields(self, at: float) -> None:
+        grid = self._bodies.grid()
+        points = slave_points(self._problem.contacts, self._problem.model.mesh.comm)
+        if grid is not None:
+            self._fields.add(at, grid)
+        if points is not None:
+            self._points.add(at, points)
+        self._written = at
+
+    def _write_summary(self) -> None:
+        self.summary["wall_time_s"] = round(time.perf_counter() - self._began, 3)
+        if self._first:
+            text = json.dumps(self.summary, indent=2, allow_nan=False)
+            write_text(self.folder / "summary.json", text + "\n")
+
+    def _warnings(self) -> list[str]:
+        found = []
+        for contact in self.summary["contacts"]:
+            pair = f"contact of {contact['slave']} with {contact['master']}"
+            share = contact["max_penetration"] / contact["facet_size"]
+            if share > DEEP:
+                found.append(
+                    f"{pair}: the penetration is {share:.0%} of the facet size; "
+                    "a larger normal penalty makes it smaller"
+                )
+            if contact["points"]["open"] == sum(contact["points"][name] for name in STATUS):
+                found.append(f"{pair}: no point touches at the end")
+        return found
