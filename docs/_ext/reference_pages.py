@@ -12,88 +12,8 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-Schema = Mapping[str, Any]
-
-
-def table(header: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
-    """Return a Markdown table; empty without rows."""
-    cells = ([cell.replace("|", r"\|").replace("\n", " ") for cell in row] for row in rows)
-    lines = [[*header], *cells]
-    if len(lines) == 1:
-        return ""
-    lines.insert(1, ["---"] * len(lines[0]))
-    return "\n".join(f"| {' | '.join(line)} |" for line in lines) + "\n"
-
-
-def code(value: object) -> str:
-    """Return a value as TOML would show it, in code style."""
-    text = {True: "true", False: "false"}.get(value) if isinstance(value, bool) else None
-    if text is None:
-        text = f'"{value}"' if isinstance(value, str) else str(value)
-    return f"`{text}`"
-
-
-# --- case file ---------------------------------------------------------------------------------
-
-
-def type_words(schema: Schema) -> str:
-    """Return what a value may be, in words."""
-    if "$ref" in schema:
-        name = schema["$ref"].rsplit("/", 1)[-1]
-        return f"[{name}](#{name.lower()})"
-    if "const" in schema or "enum" in schema:
-        return ", ".join(map(code, schema.get("enum", [schema.get("const")])))
-    for key in ("anyOf", "oneOf", "allOf"):
-        if key in schema:
-            return " or ".join(dict.fromkeys(type_words(option) for option in schema[key]))
-    if schema.get("type") == "array":
-        return array_words(schema)
-    if schema.get("type") == "object" and isinstance(schema.get("additionalProperties"), Mapping):
-        return f"table by name: {type_words(schema['additionalProperties'])}"
-    return str(schema.get("type", "anything")) + bounds(schema)
-
-
-def array_words(schema: Schema) -> str:
-    """Return what a list may hold, in words."""
-    if "prefixItems" in schema:
-        items = list(dict.fromkeys(type_words(item) for item in schema["prefixItems"]))
-        return f"list of {len(schema['prefixItems'])}: {', '.join(items)}"
-    least, most = schema.get("minItems"), schema.get("maxItems")
-    size = f" of {least}" if least is not None and least == most else " of"
-    return f"list{size} {type_words(schema.get('items', {}))}"
-
-
-def bounds(schema: Schema) -> str:
-    """Return the bounds of a number, in words."""
-    signs = {"exclusiveMinimum": ">", "minimum": ">=", "exclusiveMaximum": "<", "maximum": "<="}
-    found = [f"{sign} {schema[key]:g}" for key, sign in signs.items() if key in schema]
-    return f" {', '.join(found)}" if found else ""
-
-
-def properties(schema: Schema) -> str:
-    """Return the keys of an object as a table."""
-    required = set(schema.get("required", ()))
-
-    def fallback(key: str, value: Schema) -> str:
-        if key in required:
-            return "required"
-        return code(value["default"]) if value.get("default") is not None else ""
-
-    rows = (
-        (f"`{key}`", type_words(value), fallback(key, value), value.get("description", ""))
-        for key, value in schema.get("properties", {}).items()
-    )
-    return table(("key", "value", "default", "meaning"), rows)
-
-
-def case_page(schema: Schema) -> str:
-    """Return the reference page of the case file."""
-    parts = [f"# Case file\n\n{schema.get('description', '')}\n", properties(schema)]
-    for name, part in schema.get("$defs", {}).items():
-        body = properties(part) or f"{type_words(part)}\n"
-        parts.append(f"({name.lower()})=\n## {name}\n\n{part.get('description', '')}\n\n{body}")
-    return "\n".join(parts)
-
+from case_reference import CaseReference
+from markdown_parts import code, table
 
 # --- command -----------------------------------------------------------------------------------
 
@@ -213,7 +133,7 @@ def write_pages(app: Sphinx) -> None:
         "Sliding rules": registry.sliding_rules(),
     }
     pages = {
-        "case-file": case_page(json_schema()),
+        "case-file": CaseReference(json_schema()).page(),
         "command": command_page(build_parser()),
         "laws": registry_page(rooms),
     }

@@ -2,8 +2,9 @@
 
 import argparse
 import fnmatch
-import importlib.util
+import importlib
 import re
+from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
 
@@ -12,6 +13,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 TOCTREE = re.compile(r"```\{toctree\}\n(.*?)```", re.DOTALL)
+NUMBERS = {"items": {"type": "number"}}
 PYTHON_BLOCK = re.compile(r"^```python\n(.*?)^```", re.DOTALL | re.MULTILINE)
 
 
@@ -54,50 +56,50 @@ def test_page_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
 
 
 @pytest.fixture
-def reference() -> ModuleType:
+def extension(monkeypatch: pytest.MonkeyPatch) -> Callable[[str], ModuleType]:
+    """Import a module of the documentation's extensions."""
     pytest.importorskip("sphinx")
-    path = DOCS / "_ext" / "reference_pages.py"
-    spec = importlib.util.spec_from_file_location("reference_pages", path)
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    monkeypatch.syspath_prepend(str(DOCS / "_ext"))
+    return importlib.import_module
 
 
-def test_case_page_shows_keys_bounds_and_defaults(reference: ModuleType) -> None:
+def test_case_page_shows_places_bounds_and_defaults(
+    extension: Callable[[str], ModuleType],
+) -> None:
     schema = {
-        "description": "A case.",
-        "properties": {"body": {"$ref": "#/$defs/Body"}, "note": {"type": "string", "default": ""}},
+        "properties": {
+            "body": {"additionalProperties": {"$ref": "#/$defs/Body"}},
+            "pair": {"type": "array", "items": {"$ref": "#/$defs/Pair"}},
+        },
         "required": ["body"],
         "$defs": {
             "Body": {
                 "properties": {
                     "E": {"type": "number", "exclusiveMinimum": 0, "description": "a | b"},
-                    "kind": {"enum": ["x", "y"], "default": "x"},
-                    "size": {
-                        "type": "array",
-                        "items": {"type": "number"},
-                        "minItems": 3,
-                        "maxItems": 3,
-                    },
+                    "on": {"type": "boolean", "default": True},
+                    "axis": {"type": "array", "minItems": 3, "maxItems": 3} | NUMBERS,
                 }
-            }
+            },
+            "Pair": {"properties": {"law": {"anyOf": [{"$ref": "#/$defs/Soft"}, {"const": "no"}]}}},
+            "Soft": {"properties": {"model": {"const": "soft"}}},
         },
     }
-    page = reference.case_page(schema)
-    assert "| `body` | [Body](#body) | required |" in page
-    assert '| `note` | string | `""` |' in page
+    page = extension("case_reference").CaseReference(schema).page()
+    assert "| `body` | by name: [table](#body) | required |" in page
+    assert "## `body.NAME`\n" in page
     assert r"| `E` | number > 0 |  | a \| b |" in page
-    assert '| `kind` | `"x"`, `"y"` | `"x"` |' in page
-    assert "| `size` | list of 3 number |" in page
+    assert "| `on` | boolean | `true` |" in page
+    assert "| `axis` | list of 3: number |" in page
+    assert '| `law` | [`"soft"`](#soft) or `"no"` |' in page
+    assert '## `pair[].law`: `"soft"`\n' in page
 
 
-def test_command_page_shows_every_subcommand(reference: ModuleType) -> None:
+def test_command_page_shows_every_subcommand(extension: Callable[[str], ModuleType]) -> None:
     parser = argparse.ArgumentParser("tool", description="A tool.")
     run = parser.add_subparsers().add_parser("run", description="Solve.")
     run.add_argument("case", help="the case")
     run.add_argument("-o", "--output", metavar="DIR", default="out", help="into (%(default)s)")
-    page = reference.command_page(parser)
+    page = extension("reference_pages").command_page(parser)
     assert "## run\n\nSolve." in page
     assert "$ tool run [-h] [-o DIR] case" in page
     assert "| `case` | the case |" in page
