@@ -20,12 +20,13 @@ with contextlib.suppress(ImportError):
 try:
     import basix
     import basix.ufl
-    import dolfinx
     import ufl as _ufl
+    from mpi4py import MPI
+
+    import dolfinx
     from dolfinx import cpp, fem, graph, io
     from dolfinx import mesh as dmesh
     from dolfinx.fem import petsc as fem_petsc
-    from mpi4py import MPI
     from petsc4py import PETSc as _PETSc
 except ImportError as missing:
     raise ImportError(
