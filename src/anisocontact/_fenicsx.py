@@ -40,6 +40,8 @@ __all__ = [
     "Mat",
     "PETSc",
     "Vec",
+    "assemble_force",
+    "assemble_into",
     "basix",
     "cell_permutation",
     "create_mesh",
@@ -146,3 +148,16 @@ def create_stiffness(form: Any) -> Mat:
     matrix.assemble()
     matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
     return matrix
+
+
+def assemble_force(form: Any, out: Vec) -> None:
+    """Write the vector of a linear form, ghosts added up, into `out`."""
+    assembled = fem_petsc.assemble_vector(form)
+    assembled.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
+    out.array[:] = assembled.array_r
+    assembled.destroy()
+
+
+def assemble_into(matrix: Mat, form: Any) -> None:
+    """Add the matrix of a bilinear form to a matrix of its pattern; not assembled yet."""
+    fem_petsc.assemble_matrix(matrix, form)

@@ -251,7 +251,7 @@ def test_friction_limits_every_model(name: str, rule: str) -> None:
 
 @pytest.mark.parametrize("name", MODELS)
 def test_energy_balance(name: str) -> None:
-    """Work on the point = elastic energy + viscous and frictional dissipation, at least first order.
+    """Work = elastic energy + viscous and frictional dissipation, at least to first order.
 
     The path sticks, slides and turns back; dissipations never fall. The work is that of the
     mean force of each step, so the balance is off by the error of backward Euler.

@@ -20,6 +20,9 @@ class LinearBulk:
         materials: Body name -> linear material, one for each body.
     """
 
+    #: Length whose strain is round-off where nothing moves: none, `K 0` is exactly zero.
+    rest_length = 0.0
+
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
         self.stiffness = create_stiffness(fem.form(_bilinear_form(model, materials)))
         self._force = self.stiffness.createVecLeft()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Protocol
 
 from anisocontact import registry
@@ -14,6 +13,10 @@ from anisocontact.registry import Entry, Parameter
 class Material(Protocol):
     """What the solver asks of a material.
 
+    Linear materials have `stress(u)`, the stress conjugate to `sym(grad(v))`. The others have
+    `piola(u)`, the first Piola-Kirchhoff stress conjugate to `grad(v)`, and `energy(u)`, terms of
+    the energy per reference volume, or one of the two.
+
     Attributes:
         linear: Whether the stress is linear in the displacement, so that the stiffness is constant.
         young: Young's modulus at rest, stress; scale of the default penalty.
@@ -22,9 +25,24 @@ class Material(Protocol):
     linear: bool
     young: float
 
-    def stress(self, u: Any) -> Any:
-        """UFL stress, work conjugate to `sym(grad(v))`, of the UFL displacement `u`."""
-        ...
+
+#: A term of an energy per reference volume, UFL, and the degree of its quadrature, None for the
+#: default.
+type Density = tuple[Any, int | None]
+
+
+def elastic_moduli(entry: Entry, E: float, nu: float, field: str) -> tuple[float, float]:
+    """Checked Young's modulus and Poisson's ratio.
+
+    Raises:
+        InputError: A value is out of range.
+    """
+    given = registry.values(entry, {"E": E, "nu": nu}, field)
+    (young,), (ratio,) = given["E"], given["nu"]
+    if not -1.0 < ratio < 0.5:
+        path = f"{field}.nu" if field else "nu"
+        raise InputError(f"{nu!r} given, must be > -1 and < 0.5", field=path)
+    return young, ratio
 
 
 class LinearElastic:
@@ -40,13 +58,18 @@ class LinearElastic:
     """
 
     linear = True
+    entry = Entry(
+        "linear-elastic",
+        "material",
+        "isotropic linear elasticity at small strain",
+        (
+            Parameter("E", "scalar", "stress", "Young's modulus", "positive"),
+            Parameter("nu", "scalar", "1", "Poisson's ratio, between -1 and 0.5"),
+        ),
+    )
 
     def __init__(self, *, E: float, nu: float, field: str = "") -> None:
-        given = registry.values(LINEAR_ELASTIC, {"E": E, "nu": nu}, field)
-        (self.young,), (self.nu,) = given["E"], given["nu"]
-        if not -1.0 < self.nu < 0.5:
-            path = f"{field}.nu" if field else "nu"
-            raise InputError(f"{nu!r} given, must be > -1 and < 0.5", field=path)
+        self.young, self.nu = elastic_moduli(self.entry, E, nu, field)
 
     @property
     def shear(self) -> float:
@@ -64,46 +87,3 @@ class LinearElastic:
         lame, shear = fem.Constant(domain, self.lame), fem.Constant(domain, self.shear)
         strain = ufl.sym(ufl.grad(u))
         return lame * ufl.tr(strain) * ufl.Identity(3) + 2.0 * shear * strain
-
-
-LINEAR_ELASTIC = Entry(
-    "linear-elastic",
-    "material",
-    "isotropic linear elasticity at small strain",
-    (
-        Parameter("E", "scalar", "stress", "Young's modulus", "positive"),
-        Parameter("nu", "scalar", "1", "Poisson's ratio, between -1 and 0.5"),
-    ),
-)
-
-_MATERIALS: dict[str, tuple[Entry, Callable[..., Material]]] = {
-    LINEAR_ELASTIC.name: (LINEAR_ELASTIC, LinearElastic),
-}
-
-
-def materials() -> tuple[Entry, ...]:
-    """The registered materials with their parameters."""
-    return tuple(entry for entry, _ in _MATERIALS.values())
-
-
-def make_material(model: str, *, field: str = "", **parameters: float) -> Material:
-    """Material by name.
-
-    Args:
-        model: Name of a registered material.
-        field: Where the material was written, for messages.
-        **parameters: Its parameters.
-
-    Returns:
-        The material.
-
-    Raises:
-        InputError: Unknown name or parameter, a parameter missing or out of range.
-
-    Example:
-        >>> make_material("linear-elastic", E=210e3, nu=0.3).young
-        210000.0
-    """
-    entry = registry.entry(materials(), model, f"{field}.model" if field else "model")
-    registry.values(entry, parameters, field)
-    return _MATERIALS[model][1](**parameters, field=field)

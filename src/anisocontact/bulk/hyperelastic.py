@@ -1,0 +1,184 @@
+"""Materials at finite strain, by their energy per reference volume or their stress."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from anisocontact._fenicsx import fem, ufl
+from anisocontact.bulk.materials import Density, elastic_moduli
+from anisocontact.registry import Entry, Parameter
+
+_MODULI = (
+    Parameter("E", "scalar", "stress", "Young's modulus at rest", "positive"),
+    Parameter("nu", "scalar", "1", "Poisson's ratio at rest, between -1 and 0.5"),
+)
+
+
+def deformation_gradient(u: Any) -> Any:
+    """`F = I + grad(u)`, UFL."""
+    return ufl.Identity(3) + ufl.grad(u)
+
+
+class _Isotropic:
+    """Two moduli at rest, from Young's modulus and Poisson's ratio."""
+
+    linear = False
+    entry: Entry
+
+    def __init__(self, *, E: float, nu: float, field: str = "") -> None:
+        self.young, self.nu = elastic_moduli(self.entry, E, nu, field)
+
+    def constants(self, u: Any) -> tuple[Any, Any]:
+        """Lame constant and shear modulus as constants of the form, stress."""
+        domain = ufl.domain.extract_unique_domain(u)
+        shear = self.young / (2.0 * (1.0 + self.nu))
+        lame = 2.0 * shear * self.nu / (1.0 - 2.0 * self.nu)
+        return fem.Constant(domain, lame), fem.Constant(domain, shear)
+
+    def piola(self, u: Any) -> Any:
+        """First Piola-Kirchhoff stress, the derivative of the energy with respect to F, UFL."""
+        gradient = ufl.variable(deformation_gradient(u))
+        return ufl.diff(sum(w for w, _ in self._terms(u, gradient)), gradient)
+
+    def energy(self, u: Any) -> list[Density]:
+        """Terms of the energy with the degree of the quadrature each asks for."""
+        return self._terms(u, deformation_gradient(u))
+
+    def _terms(self, u: Any, gradient: Any) -> list[Density]:
+        raise NotImplementedError
+
+
+class StVenantKirchhoff(_Isotropic):
+    """`W = lambda/2 (tr E)^2 + G E:E` of the Green-Lagrange strain E.
+
+    For large rotations at small strain; it softens in strong compression.
+
+    Args:
+        E: Young's modulus, > 0, stress.
+        nu: Poisson's ratio, -1 < nu < 0.5.
+        field: Where the material was written, for messages.
+
+    Raises:
+        InputError: A value is out of range.
+    """
+
+    entry = Entry(
+        "st-venant-kirchhoff",
+        "material",
+        "linear in the Green-Lagrange strain, for large rotations at small strain",
+        _MODULI,
+    )
+
+    def _terms(self, u: Any, gradient: Any) -> list[Density]:
+        lame, shear = self.constants(u)
+        strain = 0.5 * (gradient.T * gradient - ufl.Identity(3))
+        return [
+            (0.5 * lame * ufl.tr(strain) ** 2 + shear * ufl.inner(strain, strain), None),
+        ]
+
+
+class NeoHookean(_Isotropic):
+    """`W = G/2 (tr C - 3 - 2 ln J) + lambda/2 (ln J)^2`, compressible.
+
+    Args:
+        E: Young's modulus at rest, > 0, stress.
+        nu: Poisson's ratio at rest, -1 < nu < 0.5.
+        field: Where the material was written, for messages.
+
+    Raises:
+        InputError: A value is out of range.
+    """
+
+    entry = Entry("neo-hookean", "material", "compressible neo-Hookean rubber", _MODULI)
+
+    def _terms(self, u: Any, gradient: Any) -> list[Density]:
+        lame, shear = self.constants(u)
+        log_j = ufl.ln(ufl.det(gradient))
+        first = ufl.tr(gradient.T * gradient)
+        return [(0.5 * shear * (first - 3.0 - 2.0 * log_j) + 0.5 * lame * log_j**2, None)]
+
+
+class NeoHookeanIncompressible(_Isotropic):
+    """`W = G/2 (J^(-2/3) tr C - 3) + K/2 (J - 1)^2`, nearly incompressible without locking.
+
+    The volumetric term is integrated at one point of a cell, of second-order hexahedra at eight,
+    which leaves as many constraints as the displacement can meet [Malkus Hughes 1978, equivalence
+    of reduced integration and a pressure of lower order]. Hexahedra and second-order tetrahedra do
+    not lock with it; first-order tetrahedra have one point anyway, and do.
+
+    Args:
+        E: Young's modulus at rest, > 0, stress.
+        nu: Poisson's ratio at rest, up to 0.49999.
+        field: Where the material was written, for messages.
+
+    Raises:
+        InputError: A value is out of range.
+    """
+
+    entry = Entry(
+        "neo-hookean-incompressible",
+        "material",
+        "nearly incompressible neo-Hookean rubber, volume term by reduced integration",
+        _MODULI,
+    )
+
+    def _terms(self, u: Any, gradient: Any) -> list[Density]:
+        lame, shear = self.constants(u)
+        j = ufl.det(gradient)
+        first = ufl.tr(gradient.T * gradient)
+        element = u.function_space.element.basix_element
+        second_order_hexahedra = element.degree == 2 and element.cell_type.name == "hexahedron"
+        distortion = 0.5 * shear * (j ** (-2.0 / 3.0) * first - 3.0)
+        return [
+            (distortion, None),
+            (0.5 * (lame + 2.0 / 3.0 * shear) * (j - 1.0) ** 2, 2 if second_order_hexahedra else 1),
+        ]
+
+
+class UserEnergy:
+    """A material by the user's own energy.
+
+    Args:
+        energy: Takes the UFL deformation gradient, returns the energy per reference volume.
+        young: Young's modulus at rest, the scale of the default penalty, stress.
+
+    Example:
+        >>> rubber = UserEnergy(lambda F: 0.5 * (ufl.inner(F, F) - 3), young=1.0)
+        >>> rubber.linear
+        False
+    """
+
+    linear = False
+
+    def __init__(self, energy: Callable[[Any], Any], young: float) -> None:
+        self._energy = energy
+        self.young = young
+
+    def energy(self, u: Any) -> list[Density]:
+        """The energy with the default quadrature."""
+        return [(self._energy(deformation_gradient(u)), None)]
+
+    def piola(self, u: Any) -> Any:
+        """First Piola-Kirchhoff stress, UFL."""
+        gradient = ufl.variable(deformation_gradient(u))
+        return ufl.diff(self._energy(gradient), gradient)
+
+
+class UserStress:
+    """A material by the user's own stress; it need not come from an energy.
+
+    Args:
+        piola: Takes the UFL deformation gradient, returns the first Piola-Kirchhoff stress.
+        young: Young's modulus at rest, the scale of the default penalty, stress.
+    """
+
+    linear = False
+
+    def __init__(self, piola: Callable[[Any], Any], young: float) -> None:
+        self._piola = piola
+        self.young = young
+
+    def piola(self, u: Any) -> Any:
+        """First Piola-Kirchhoff stress, UFL."""
+        return self._piola(deformation_gradient(u))

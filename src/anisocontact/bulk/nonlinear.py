@@ -1,0 +1,105 @@
+"""Bodies at finite strain: forces and tangent assembled anew at every state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from anisocontact._fenicsx import (
+    Mat,
+    PETSc,
+    Vec,
+    assemble_force,
+    assemble_into,
+    create_stiffness,
+    fem,
+    ufl,
+)
+from anisocontact.bulk.materials import Material
+from anisocontact.mesh import Model
+
+
+class NonlinearBulk:
+    """Internal forces of bodies of any material, with the exact tangent by UFL.
+
+    Args:
+        model: Mesh with its bodies.
+        materials: Body name -> material, one for each body; linear ones may be among them.
+    """
+
+    def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
+        self._u: Any = fem.Function(model.space)
+        v, du = ufl.TestFunction(model.space), ufl.TrialFunction(model.space)
+        work, energy = _forms(model, materials, self._u, v)
+        self._work = fem.form(work)
+        self._tangent = fem.form(ufl.derivative(work, self._u, du))
+        self._energy = None if energy is None else fem.form(energy)
+        self._comm = model.mesh.comm
+        self.stiffness = create_stiffness(self._tangent)
+        self._force = self.stiffness.createVecLeft()
+        #: Length whose strain is round-off where nothing moves: F = I + grad(u) is rounded over
+        #: the size of a cell.
+        self.rest_length = _cell_size(model)
+        #: Diagonal of the tangent at rest: the scale of forces that displacements of one unit make.
+        self.diagonal = self.stiffness.getDiagonal()
+
+    def force(self, u: Vec) -> Vec:
+        """Internal force; the vector is overwritten by the next call."""
+        self._set(u)
+        assemble_force(self._work, self._force)
+        return self._force
+
+    def energy(self, u: Vec) -> float:
+        """Elastic energy; 0 where a material has a stress but no energy."""
+        if self._energy is None:
+            return 0.0
+        self._set(u)
+        return float(self._comm.allreduce(fem.assemble_scalar(self._energy)))
+
+    def tangent(self, out: Mat) -> None:
+        """Write the tangent of the last `force` into a matrix of the same pattern."""
+        out.zeroEntries()
+        assemble_into(out, self._tangent)
+        out.assemble(PETSc.Mat.AssemblyType.FINAL)
+
+    def _set(self, u: Vec) -> None:
+        self._u.x.array[: len(u.array_r)] = u.array_r
+        self._u.x.scatter_forward()
+
+
+def _cell_size(model: Model) -> float:
+    """Cube root of the mean volume of a cell."""
+    comm, cells = model.mesh.comm, model.mesh.topology.index_map(3)
+    one = fem.form(fem.Constant(model.mesh, 1.0) * ufl.dx(domain=model.mesh))
+    volume = comm.allreduce(fem.assemble_scalar(one))
+    return float(np.cbrt(volume / cells.size_global))
+
+
+def _forms(
+    model: Model, materials: Mapping[str, Material], u: Any, v: Any
+) -> tuple[Any, Any | None]:
+    """Virtual work of the stresses and, where every material has one, the energy."""
+    names = model.body_names()
+    cells = [(i, np.sort(model.cells(name))) for i, name in enumerate(names)]
+    dx = ufl.Measure("dx", domain=model.mesh, subdomain_data=cells)
+    # full integration of the stiffness at rest; UFL's own estimate grows with every power of J
+    full = 2 * model.order
+    work, energy, complete = 0, 0, True
+    for i, name in enumerate(names):
+        material: Any = materials[name]
+        if material.linear:
+            half = 0.5 * ufl.inner(material.stress(u), ufl.sym(ufl.grad(u)))
+            terms = [(half, None)]
+        elif hasattr(material, "energy"):
+            terms = material.energy(u)
+        else:
+            complete = False
+            work += ufl.inner(material.piola(u), ufl.grad(v)) * dx(i, degree=full)
+            continue
+        for density, degree in terms:
+            part = density * dx(i, degree=full if degree is None else degree)
+            energy += part
+            work += ufl.derivative(part, u, v)
+    return work, energy if complete else None
