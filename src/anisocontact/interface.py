@@ -18,7 +18,7 @@ STATUS = ("open", "stick", "slip")
 FAILURE = (
     "",
     "no closest point on the surface",
-    "the direction field is singular or parallel to the normal",
+    "the direction field has no direction there: singular, along the normal or out of its table",
     "the sliding rule found no force",
 )
 
@@ -151,6 +151,7 @@ class Interface:
             adhesion.directions.core if adhesion.directions else None,
             friction.named,
             friction.directions.core if friction.directions else None,
+            friction.directions_second.core if friction.directions_second else None,
             friction.rule,
             evolution,
         )

@@ -9,10 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core, registry
-from anisocontact.anisotropy import DirectionField
+from anisocontact.anisotropy import DirectionField, components, require_regular
 from anisocontact.errors import InputError
 from anisocontact.registry import Entry
-from anisocontact.surfaces import Floats, default_threads
+from anisocontact.surfaces import Floats, Surface, default_threads, points
 
 Named = tuple[str, dict[str, list[float]]]
 
@@ -89,13 +89,14 @@ class Friction:
         model: Name in `registry.friction_models()`.
         directions: Axes of the friction tensor; may be left out where both values of every pair
             are equal.
+        directions_second: Axes of the second surface, for a model of two surfaces.
         sliding_rule: Name in `registry.sliding_rules()`.
         **parameters: Parameters of the model, such as `coefficients`, and of the sliding rule,
             such as `history`.
 
     Raises:
-        InputError: Unknown name or parameter, a value out of range, or no directions where the
-            values differ.
+        InputError: Unknown name or parameter, a value out of range, or directions that are missing
+            or too many.
 
     Example:
         >>> Friction(coefficients=(0.3, 0.3)).rule[0]
@@ -107,6 +108,7 @@ class Friction:
         model: str = "orthotropic",
         *,
         directions: DirectionField | None = None,
+        directions_second: DirectionField | None = None,
         sliding_rule: str = "maximum-dissipation",
         **parameters: object,
     ) -> None:
@@ -119,7 +121,59 @@ class Friction:
             registry.values(rule, {k: v for k, v in parameters.items() if k in of_rule}),
         )
         _need_directions("friction", directions, self.named, parameters)
-        self.directions = directions
+        _need_both(model, directions, directions_second)
+        self.directions, self.directions_second = directions, directions_second
+        try:
+            self.core = _core.FrictionModel(*self.named)
+        except ValueError as error:
+            name, _, line = str(error).partition(": ")
+            raise InputError(line, field=f"friction.{name}") from None
+
+    def tensor(self, surface: Surface, xi: npt.ArrayLike, placement: str = "contra") -> Floats:
+        """Friction tensor F of the yield ellipse T.FT = N^2.
+
+        Args:
+            surface: The surface.
+            xi: Coordinates, (n, 2).
+            placement: "co", "contra", "mixed" or "spatial".
+
+        Returns:
+            Components, (n, 2, 2), or the spatial tensor, (n, 3, 3)
+            [Konyukhov Schweizerhof 2006, eq. (36), (43), (57)].
+
+        Raises:
+            InputError: A point where a direction field has no direction.
+
+        Example:
+            >>> from anisocontact.surfaces import make_surface
+            >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+            >>> Friction(coefficients=(0.5, 0.5)).tensor(plane, [[0, 0]])[0].tolist()
+            [[4.0, 0.0], [0.0, 4.0]]
+        """
+        xi = points(xi, 2, "xi")
+        first, second = (d.core if d else None for d in (self.directions, self.directions_second))
+        r = self.core.tensor(surface.core, xi, first, second)
+        require_regular(surface, xi, r["valid"])
+        a = surface.geometry(xi).a_co
+        return components(surface, xi, a @ r["contra"] @ a, placement)
+
+
+def _need_both(
+    model: str, directions: DirectionField | None, second: DirectionField | None
+) -> None:
+    """Checks that a model of two surfaces has the directions of both, and no other has."""
+    two = registry.entry(registry.friction_models(), model).directions == 2
+    for name, given in (("directions", directions), ("directions_second", second)):
+        if two and given is None:
+            raise InputError(
+                f"missing; friction model {model!r} needs the directions of both surfaces",
+                field=f"friction.{name}",
+            )
+    if second is not None and not two:
+        raise InputError(
+            f"given, but friction model {model!r} has one surface with directions",
+            field="friction.directions_second",
+        )
 
 
 def _need_directions(

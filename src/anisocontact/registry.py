@@ -8,13 +8,16 @@ from __future__ import annotations
 
 import difflib
 import math
+import reprlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+
+import numpy as np
 
 from anisocontact import _core
 from anisocontact.errors import InputError
 
-_SIZES = {"scalar": 1, "integer": 1, "flag": 1, "choice": 1, "pair": 2, "vector": 3}
+_SIZES = {"scalar": 1, "integer": 1, "flag": 1, "choice": 1, "pair": 2, "vector": 3, "axis": 6}
 
 
 @dataclass(frozen=True)
@@ -23,7 +26,8 @@ class Parameter:
 
     Args:
         name: Identifier; with the unit "angle" it is in radians, in a case file `<name>_deg`.
-        kind: "scalar", "pair", "vector", "array", "integer", "integers", "flag" or "choice".
+        kind: "scalar", "pair", "vector", "axis" (a point and a direction), "array", "integer",
+            "integers", "flag" or "choice".
         unit: Dimension, such as "length" or "stress/length"; "1" where there is none.
         doc: One line.
         bound: "any", "nonzero", "positive" or "non-negative".
@@ -51,12 +55,14 @@ class Entry:
         kind: The registry it belongs to, such as "surface".
         doc: One line.
         parameters: Its parameters.
+        directions: Of a friction model, how many direction fields it is built on.
     """
 
     name: str
     kind: str
     doc: str
     parameters: tuple[Parameter, ...]
+    directions: int = 0
 
 
 def _entries(kind: str, describe: Callable[[], list[_core.Descriptor]]) -> tuple[Entry, ...]:
@@ -78,6 +84,7 @@ def _entries(kind: str, describe: Callable[[], list[_core.Descriptor]]) -> tuple
                 )
                 for p in d.parameters
             ),
+            d.directions,
         )
         for d in describe()
     )
@@ -212,7 +219,7 @@ def check(p: Parameter, given: object, field: str = "") -> list[float]:
         return [float(p.choices.index(str(given)))]
     numbers = _numbers(p, given, field)
     if not all(math.isfinite(v) for v in numbers):
-        raise InputError(f"{given!r} given, finite numbers are needed", field=field)
+        raise InputError(f"{reprlib.repr(given)} given, finite numbers are needed", field=field)
     _check_bound(p, numbers, given, field)
     return numbers
 
@@ -222,6 +229,8 @@ def _numbers(p: Parameter, given: object, field: str) -> list[float]:
         if not isinstance(given, bool):
             raise InputError(f"{given!r} given, true or false is needed", field=field)
         return [float(given)]
+    if p.kind in ("axis", "array"):
+        return _nested_numbers(p, given, field)
     is_list = isinstance(given, Iterable) and not isinstance(given, str | bytes)
     items = list(given) if is_list else [given]  # type: ignore[call-overload]
     if any(isinstance(v, bool) or not hasattr(v, "__float__") for v in items):
@@ -236,11 +245,24 @@ def _numbers(p: Parameter, given: object, field: str) -> list[float]:
     return numbers
 
 
+def _nested_numbers(p: Parameter, given: object, field: str) -> list[float]:
+    """Numbers of a list that may be nested, as a list of points is, in the order they stand in."""
+    try:
+        a = np.asarray(given)
+    except ValueError:  # rows of different lengths
+        a = np.asarray(None)
+    fits = p.kind == "array" or a.shape in ((2, 3), (6,))
+    if a.ndim == 0 or a.dtype.kind not in "iuf" or not fits:
+        raise InputError(f"{reprlib.repr(given)} given, {_form(p)} needed", field=field)
+    return [float(v) for v in a.ravel()]
+
+
 def _form(p: Parameter) -> str:
     forms = {
         "scalar": "one number is",
         "pair": "two numbers are",
         "vector": "three numbers are",
+        "axis": "a point and a direction, [[x, y, z], [x, y, z]], are",
         "array": "a list of numbers is",
         "integer": "a whole number is",
         "integers": "a list of whole numbers is",
@@ -251,7 +273,7 @@ def _form(p: Parameter) -> str:
 def _check_bound(p: Parameter, numbers: list[float], given: object, field: str) -> None:
     wrong = {
         "any": False,
-        "nonzero": not any(v != 0.0 for v in numbers),
+        "nonzero": not any(v != 0.0 for v in (numbers[3:] if p.kind == "axis" else numbers)),
         "positive": any(v <= 0.0 for v in numbers),
         "non-negative": any(v < 0.0 for v in numbers),
     }[p.bound]
@@ -259,4 +281,6 @@ def _check_bound(p: Parameter, numbers: list[float], given: object, field: str) 
         bound = {"nonzero": "must not be zero", "positive": "must be > 0"}.get(
             p.bound, "must be >= 0"
         )
+        if p.kind == "axis":
+            bound = f"its direction {bound}"
         raise InputError(f"{given!r} given, {bound}", field=field)

@@ -100,7 +100,8 @@ void bind_kernel(nb::module_& m) {
           "__init__",
           [](InterfaceHandle* self, const SurfaceHandle& surface, const Named& normal,
              const Named& adhesion, const FieldHandle* adhesion_directions, const Named& friction,
-             const FieldHandle* friction_directions, const Named& rule,
+             const FieldHandle* friction_directions,
+             const FieldHandle* friction_directions_second, const Named& rule,
              const std::string& evolution) {
             new (self) InterfaceHandle{
                 {surface.any,
@@ -109,12 +110,14 @@ void bind_kernel(nb::module_& m) {
                   unwrap(adhesion_directions),
                   law::FrictionModels::make(friction.first, Values(friction.second)),
                   unwrap(friction_directions),
+                  unwrap(friction_directions_second),
                   law::SlidingRules::make(rule.first, Values(rule.second)),
                   kernel::EvolutionForms::make(evolution, Values())}}};
           },
           nb::arg("surface"), nb::arg("normal"), nb::arg("adhesion"),
           nb::arg("adhesion_directions").none(), nb::arg("friction"),
-          nb::arg("friction_directions").none(), nb::arg("rule"), nb::arg("evolution"))
+          nb::arg("friction_directions").none(), nb::arg("friction_directions_second").none(),
+          nb::arg("rule"), nb::arg("evolution"))
       .def(
           "initial_state",
           [](const InterfaceHandle& h, const Points& x) {

@@ -20,6 +20,7 @@ const char* word(Kind k) {
     case Kind::scalar: return "scalar";
     case Kind::pair: return "pair";
     case Kind::vector: return "vector";
+    case Kind::axis: return "axis";
     case Kind::array: return "array";
     case Kind::integer: return "integer";
     case Kind::integers: return "integers";
@@ -54,7 +55,8 @@ void bind_registry(nb::module_& m) {
   nb::class_<Descriptor>(m, "Descriptor")
       .def_ro("name", &Descriptor::name)
       .def_ro("doc", &Descriptor::doc)
-      .def_ro("parameters", &Descriptor::parameters);
+      .def_ro("parameters", &Descriptor::parameters)
+      .def_ro("directions", &Descriptor::directions);
   m.def("surfaces", &surface::Surfaces::describe);
   m.def("direction_fields", &anisotropy::Fields::describe);
   m.def("normal_laws", &law::NormalLaws::describe);

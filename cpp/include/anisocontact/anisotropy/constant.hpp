@@ -10,15 +10,20 @@ namespace anisocontact::anisotropy {
 class Constant {
  public:
   Constant() = default;
-  Constant(const Vec3<double>& vector, double angle) : vector_(vector), angle_(angle) {}
+  Constant(const Vec3<double>& vector, double angle) : vector_(vector), turn_(angle) {}
 
   static Descriptor describe() {
     return {"constant",
             "One direction in space, projected on the surface and turned about its normal.",
             {{"vector", Kind::vector, "1", "direction of the first axis before it is turned",
               Bound::nonzero},
-             {"angle", Kind::scalar, "angle", "turn of the axes about the outward normal",
-              Bound::any, false, {0.0}}}};
+             {"angle",
+              Kind::scalar,
+              "angle",
+              "turn of the axes about the outward normal",
+              Bound::any,
+              false,
+              {0.0}}}};
   }
   static Constant make(const Values& v) {
     const auto& d = v.vector("vector");
@@ -27,12 +32,14 @@ class Constant {
 
   template <class S>
   Axes<S> axes(const surface::Geometry<S>& g, const Vector<S>&) const {
-    return axes_from<S>(g, constant<S>(vector_), angle_);
+    return axes_from<S>(g, constant<S>(vector_), turn_);
   }
 
  private:
   Vec3<double> vector_{Vec3<double>::UnitX()};
-  double angle_{0.0};
+  Turn turn_;
 };
+
+static_assert(Field<Constant>);
 
 }  // namespace anisocontact::anisotropy

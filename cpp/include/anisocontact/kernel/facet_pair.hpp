@@ -133,7 +133,7 @@ inline anisotropy::Axes<PairDual> carried(const std::optional<anisotropy::AnyFie
                                           const PairPoint& p, const std::array<PairDual, 2>& dxi,
                                           const surface::Jet<PairDual>& now,
                                           const surface::Geometry<PairDual>& g) {
-  if (!field) return anisotropy::axes_from(g, g.jet.d1[0], 0.0);
+  if (!field) return anisotropy::axes_from(g, g.jet.d1[0], anisotropy::Turn{});
   const surface::Jet<double>& ref = p.reference;
   const auto reference = surface::geometry(
       moving(ref, constant<PairDual>(ref.position),

@@ -20,6 +20,7 @@ struct InterfaceLaw {
   std::optional<anisotropy::AnyField> adhesion_directions;
   law::AnyFriction friction;
   std::optional<anisotropy::AnyField> friction_directions;
+  std::optional<anisotropy::AnyField> friction_directions_second;  ///< of the second surface
   law::AnyRule rule;
   AnyEvolution evolution{};
 };
@@ -29,7 +30,7 @@ template <class S>
 anisotropy::Axes<S> axes_of(const std::optional<anisotropy::AnyField>& field,
                             const surface::Geometry<S>& g, const Vector<S>& xi) {
   if (field) return anisotropy::axes(*field, g, xi);
-  return anisotropy::axes_from(g, g.jet.d1[0], 0.0);
+  return anisotropy::axes_from(g, g.jet.d1[0], anisotropy::Turn{});
 }
 
 /// N, T and the trial state.
@@ -134,15 +135,16 @@ Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinemati
   }
   r.adhesion_axes = axes_at(l.adhesion_directions);
   r.friction_axes = axes_at(l.friction_directions);
-  if (!r.adhesion_axes.valid || !r.friction_axes.valid) {
+  const auto second =
+      l.friction_directions_second ? axes_at(l.friction_directions_second) : r.friction_axes;
+  if (!r.adhesion_axes.valid || !r.friction_axes.valid || !second.valid) {
     r.failure = Failure::direction;
     return r;
   }
   const auto tensors = law::pull_back(law::linear_model(l.adhesion), k.now, r.adhesion_axes);
   const Transported<S> t = history(l.evolution, state, k, tensors.b);
   const auto trial = law::trial(tensors, t.connection, t.stored, t.elastic, t.increment, k.dt);
-  const auto friction =
-      std::visit([&](const auto& f) { return f.tensor(k.now, r.friction_axes); }, l.friction);
+  const auto friction = law::friction_tensor(l.friction, k.now, r.friction_axes, second);
   const law::SlideProblem<S> p{
       trial.stiffness,
       friction,

@@ -1,12 +1,28 @@
 #pragma once
 // Friction tensors: what the yield ellipse T . F T = N^2 is built from.
 
+#include <algorithm>
 #include <array>
+#include <concepts>
+#include <sstream>
+#include <stdexcept>
+#include <string>
 
 #include "anisocontact/anisotropy/field.hpp"
 #include "anisocontact/registry/descriptor.hpp"
 
 namespace anisocontact::law {
+
+/// A friction model gives f^ij from the axes of its direction fields; `second` are those of the
+/// second surface, for a model that is built on two.
+template <class T>
+concept Friction =
+    requires(const T& f, const surface::Geometry<double>& g, const anisotropy::Axes<double>& e,
+             const surface::Geometry<Dual<3>>& h, const anisotropy::Axes<Dual<3>>& d) {
+      { f.tensor(g, e, e) } -> std::same_as<ContraContra<double>>;
+      { f.tensor(h, d, d) } -> std::same_as<ContraContra<Dual<3>>>;
+      { T::describe() } -> std::same_as<Descriptor>;
+    };
 
 /// F = e_1 (x) e_1 / mu_1^2 + e_2 (x) e_2 / mu_2^2 [Konyukhov Schweizerhof 2006, eq. (43), (57)].
 class Orthotropic {
@@ -15,7 +31,8 @@ class Orthotropic {
     return {"orthotropic",
             "Two coefficients of friction along two axes.",
             {{"coefficients", Kind::pair, "1", "coefficients of friction along the two axes",
-              Bound::positive}}};
+              Bound::positive}},
+            1};
   }
   static Orthotropic make(const Values& v) {
     const auto& m = v.pair("coefficients");
@@ -25,12 +42,68 @@ class Orthotropic {
   }
 
   template <class S>
-  ContraContra<S> tensor(const surface::Geometry<S>& g, const anisotropy::Axes<S>& axes) const {
+  ContraContra<S> tensor(const surface::Geometry<S>& g, const anisotropy::Axes<S>& axes,
+                         const anisotropy::Axes<S>&) const {
     return anisotropy::pull_back_contra(g, axes, lambda_);
   }
 
  private:
   std::array<double, 2> lambda_{1.0, 1.0};
 };
+
+static_assert(Friction<Orthotropic>);
+
+/// Two orthotropic surfaces, T = -N C u for the direction of slip u with
+/// C = alpha_1 I + alpha_2 m (x) m + alpha_3 k (x) k [He Curnier 1993; Konyukhov Schweizerhof 2006,
+/// eq. (30) with constant alpha]; as |u| = 1, the limit is T . C^-2 T = N^2, so F = C^-2. The unit
+/// vectors m and k are the first axes of the two surfaces.
+class HeCurnier {
+ public:
+  static Descriptor describe() {
+    return {"he-curnier",
+            "Friction of two orthotropic surfaces, each with its own directions: F = C^-2, "
+            "C = alpha_1 I + alpha_2 m (x) m + alpha_3 k (x) k.",
+            {{"alpha", Kind::vector, "1",
+              "isotropic part, part along the first axis m of the first surface, part along the "
+              "first axis k of the second"}},
+            2};
+  }
+
+  /// The eigenvalues of C are alpha_1 + (alpha_2 + alpha_3)/2 +- 1/2 sqrt(alpha_2^2 + alpha_3^2 +
+  /// 2 alpha_2 alpha_3 cos 2 theta); over all angles theta of m and k the smallest of them is
+  /// alpha_1 + min(alpha_2, 0) + min(alpha_3, 0).
+  static HeCurnier make(const Values& v) {
+    const auto& a = v.vector("alpha");
+    const double least2 = std::min(a[1], 0.0), least3 = std::min(a[2], 0.0);
+    if (!(a[0] > 0.0)) refuse("alpha_1", a[0], 0.0);
+    if (!(a[0] + least2 > 0.0)) refuse("alpha_2", a[1], -a[0]);
+    if (!(a[0] + least3 > 0.0)) refuse("alpha_3", a[2], -a[0]);
+    if (!(a[0] + least2 + least3 > 0.0)) refuse("alpha_2 + alpha_3", a[1] + a[2], -a[0]);
+    HeCurnier f;
+    f.alpha_ = {a[0], a[1], a[2]};
+    return f;
+  }
+
+  template <class S>
+  ContraContra<S> tensor(const surface::Geometry<S>& g, const anisotropy::Axes<S>& axes,
+                         const anisotropy::Axes<S>& second) const {
+    const auto m = g.project_contra(axes.e[0]), k = g.project_contra(second.e[0]);
+    const ContraContra<S> c =
+        S(alpha_[0]) * g.a_contra + S(alpha_[1]) * outer(m, m) + S(alpha_[2]) * outer(k, k);
+    const CoCo<S> c_inv = inverse(c);  // covariant components of C^-1
+    return g.a_contra * c_inv * g.a_contra * c_inv * g.a_contra;
+  }
+
+ private:
+  [[noreturn]] static void refuse(const std::string& which, double given, double least) {
+    std::ostringstream s;
+    s << "alpha: " << which << " = " << given << " given, must be > " << least
+      << " for C to be positive definite at every angle of m and k";
+    throw std::invalid_argument(s.str());
+  }
+  std::array<double, 3> alpha_{1.0, 0.0, 0.0};
+};
+
+static_assert(Friction<HeCurnier>);
 
 }  // namespace anisocontact::law

@@ -22,8 +22,15 @@ using NormalLaws =
     Registry<Penalty, NormalKelvinVoigt, NormalMaxwell, NormalStandardLinearSolid, NormalGeneral>;
 using AnyNormalLaw = NormalLaws::Any;
 
-using FrictionModels = Registry<Orthotropic>;
+using FrictionModels = Registry<Orthotropic, HeCurnier>;
 using AnyFriction = FrictionModels::Any;
+
+template <class S>
+ContraContra<S> friction_tensor(const AnyFriction& f, const surface::Geometry<S>& g,
+                                const anisotropy::Axes<S>& axes,
+                                const anisotropy::Axes<S>& second) {
+  return std::visit([&](const auto& m) { return m.tensor(g, axes, second); }, f);
+}
 
 inline const LinearModel& linear_model(const AnyAdhesion& a) {
   return std::visit([](const auto& m) -> const LinearModel& { return m.model(); }, a);

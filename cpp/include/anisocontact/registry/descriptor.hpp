@@ -10,9 +10,9 @@
 
 namespace anisocontact {
 
-/// Form of a parameter: one number, a pair, a spatial vector, a list, whole numbers, a switch, or
-/// one of a few words (whose place in `choices` is its value).
-enum class Kind { scalar, pair, vector, array, integer, integers, flag, choice };
+/// Form of a parameter: one number, a pair, a spatial vector, an axis (a point and a direction), a
+/// list, whole numbers, a switch, or one of a few words (whose place in `choices` is its value).
+enum class Kind { scalar, pair, vector, axis, array, integer, integers, flag, choice };
 
 /// What values a parameter may take.
 enum class Bound { any, nonzero, positive, non_negative };
@@ -32,6 +32,7 @@ struct Descriptor {
   std::string name;
   std::string doc;
   std::vector<Parameter> parameters;
+  std::size_t directions{0};  ///< of a friction model: how many direction fields it is built on
 };
 
 /// Values of the parameters by name; every kind is a flat list of numbers.
@@ -50,6 +51,7 @@ class Values {
   bool flag(const std::string& name) const { return scalar(name) != 0.0; }
   const std::vector<double>& pair(const std::string& name) const { return at_least(name, 2); }
   const std::vector<double>& vector(const std::string& name) const { return at_least(name, 3); }
+  const std::vector<double>& axis(const std::string& name) const { return at_least(name, 6); }
   bool has(const std::string& name) const { return values_.contains(name); }
 
  private:

@@ -1,0 +1,48 @@
+#pragma once
+// Rays and rings about an axis: a turned surface.
+
+#include "anisocontact/anisotropy/axis.hpp"
+
+namespace anisocontact::anisotropy {
+
+/// Second axis around the axis, first axis across it, both turned by `angle` about the normal
+/// [Konyukhov Schweizerhof 2006, eq. (61)-(63)]. The rings are what is projected on the surface:
+/// they are tangent to every surface of revolution about the axis, its equator included, where a
+/// projected ray would vanish. Singular on the axis.
+class Polar {
+ public:
+  Polar() = default;
+  Polar(const Axis& axis, double angle) : axis_(axis), turn_(angle) {}
+
+  static Descriptor describe() {
+    return {
+        "polar",
+        "Rays (first axis) and rings (second axis) about an axis; singular on the axis.",
+        {{"axis", Kind::axis, "length", "a point of the axis and its direction", Bound::nonzero},
+         {"angle",
+          Kind::scalar,
+          "angle",
+          "turn of the axes about the outward normal",
+          Bound::any,
+          false,
+          {0.0}}}};
+  }
+  static Polar make(const Values& v) { return {Axis::from(v.axis("axis")), v.scalar("angle")}; }
+
+  template <class S>
+  Axes<S> axes(const surface::Geometry<S>& g, const Vector<S>&) const {
+    const auto around = axis_.around(g.jet.position);
+    if (!around) return no_axes(g);
+    const auto ring = unit_tangent(g, *around);
+    if (!ring) return no_axes(g);
+    return orthonormal_axes<S>(g, Vec3<S>(ring->cross(g.normal)), turn_);
+  }
+
+ private:
+  Axis axis_;
+  Turn turn_;
+};
+
+static_assert(Field<Polar>);
+
+}  // namespace anisocontact::anisotropy
