@@ -39,6 +39,7 @@ __all__ = [
 _MOST_CELLS = 10_000
 
 _DIRECTIONS = "direction field of the axes; needed where the two values of a pair differ"
+_DIRECTIONS_SECOND = "directions of the second surface, for a friction model of two surfaces"
 
 
 def _number(kind: str, unit: str, doc: str, bound: str = "any", **more: Any) -> Quantity:
@@ -244,6 +245,11 @@ def _laws(known: Registries) -> dict[str, Any]:
     directed = create_model(
         "Directed", __base__=Directed, directions=(field, Field(None, description=_DIRECTIONS))
     )
+    twice_directed = create_model(
+        "TwiceDirected",
+        __base__=directed,
+        directions_second=(field, Field(None, description=_DIRECTIONS_SECOND)),
+    )
     normal = OneOf("Normal", Key("model", known.normal_laws, default_of(NormalLaw, "model")))
     adhesion = OneOf(
         "Adhesion",
@@ -254,7 +260,7 @@ def _laws(known: Registries) -> dict[str, Any]:
         "Friction",
         Key("model", known.friction_models, default_of(Friction, "model")),
         Key("sliding_rule", known.sliding_rules, default_of(Friction, "sliding_rule")),
-        base=directed,
+        base=twice_directed,
     )
     return {
         "normal": (Annotated[Any, normal], Field(normal.validate({}), description="pressure law")),

@@ -8,7 +8,7 @@ from typing import Any
 
 from anisocontact.anisotropy import DirectionField, make_directions
 from anisocontact.bulk.materials import Material, make_material
-from anisocontact.case.model import ContactSection, Directed
+from anisocontact.case.model import ContactSection
 from anisocontact.case.quantity import AUTO
 from anisocontact.case.registered import Registered
 from anisocontact.errors import InputError
@@ -62,21 +62,24 @@ def interface(section: ContactSection, master: Surface, place: str, auto: float 
         adhesion = Adhesion(
             **section.adhesion.chosen,
             **_numbers(section.adhesion, auto),
-            directions=_directions(section.adhesion, "adhesion.directions"),
+            directions=_directions(section.adhesion.directions, "adhesion.directions"),
         )
         friction = Friction(
             **section.friction.chosen,
             **_numbers(section.friction, auto),
-            directions=_directions(section.friction, "friction.directions"),
+            directions=_directions(section.friction.directions, "friction.directions"),
+            directions_second=_directions(
+                section.friction.directions_second, "friction.directions_second"
+            ),
         )
         return Interface(master, normal, adhesion, friction, evolution=section.evolution)
 
 
-def _directions(law: Directed, place: str) -> DirectionField | None:
-    if law.directions is None:
+def _directions(section: Registered | None, place: str) -> DirectionField | None:
+    if section is None:
         return None
     with within(place):
-        return make_directions(law.directions.chosen["kind"], **law.directions.parameters())
+        return make_directions(section.chosen["kind"], **section.parameters())
 
 
 def _numbers(section: Registered, auto: float) -> dict[str, Any]:

@@ -113,6 +113,7 @@ class Quantity:
             "scalar": "a number",
             "pair": "one or two numbers",
             "vector": "three numbers",
+            "axis": "a point and a direction, [[x, y, z], [x, y, z]]",
             "array": "a list of numbers",
             "integer": "a whole number",
             "integers": "a list of whole numbers",
@@ -155,6 +156,12 @@ class Quantity:
             number["maximum"] = self.most
         if p.kind in ("scalar", "integer"):
             return number
+        if p.kind == "axis":
+            three = {"type": "array", "items": number, "minItems": 3, "maxItems": 3}
+            return {"type": "array", "items": three, "minItems": 2, "maxItems": 2}
+        if p.kind == "array":  # of numbers, or of lists of them, as points are
+            row = {"type": "array", "items": number}
+            return {"type": "array", "items": {"anyOf": [number, row]}}
         array: dict[str, Any] = {"type": "array", "items": number}
         count = _ITEMS.get(p.kind, self.count)
         if count:
