@@ -4,6 +4,8 @@ import argparse
 import fnmatch
 import importlib
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -104,3 +106,10 @@ def test_command_page_shows_every_subcommand(extension: Callable[[str], ModuleTy
     assert "$ tool run [-h] [-o DIR] case" in page
     assert "| `case` | the case |" in page
     assert "| `-o, --output DIR` | into (out) |" in page
+
+
+@pytest.mark.slow
+def test_site_builds_without_warnings(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", str(DOCS), str(tmp_path)]
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stderr
