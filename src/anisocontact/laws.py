@@ -121,6 +121,7 @@ class Friction:
             registry.values(rule, {k: v for k, v in parameters.items() if k in of_rule}),
         )
         _need_directions("friction", directions, self.named, parameters)
+        _need_directions("friction", directions, self.rule, parameters)
         _need_both(model, directions, directions_second)
         self.directions, self.directions_second = directions, directions_second
         try:
@@ -192,14 +193,14 @@ def _need_directions(
 
 @dataclass(frozen=True)
 class Slide:
-    """Forces of a batch of n points in an orthonormal frame.
+    """Forces of a batch of n points.
 
     Args:
-        traction: T, (n, 2).
-        stored: Elastic force the next trial starts from, (n, 2).
-        slip: Sliding increment, (n, 2); zero where the point sticks.
-        d_trial: dT_i/dT_tr,j, (n, 2, 2).
-        d_pressure: dT_i/dN, (n, 2).
+        traction: T_i, (n, 2) [stress].
+        stored: Elastic force the next trial starts from, (n, 2) [stress].
+        slip: Sliding increment, (n, 2) [length]; zero where the point sticks.
+        d_trial: dT_i/dT_tr,j, (n, 2, 2); empty where it was not asked for.
+        d_pressure: dT_i/dN, (n, 2); empty where it was not asked for.
         slides: Whether the trial force was outside the ellipse, (n,).
         converged: Whether the rule found its force, (n,).
     """
@@ -219,23 +220,35 @@ def slide(
     trial: npt.ArrayLike,
     pressure: npt.ArrayLike,
     sliding_rule: str = "maximum-dissipation",
+    *,
+    metric: npt.ArrayLike | None = None,
+    axes: npt.ArrayLike | None = None,
+    increment: npt.ArrayLike | None = None,
+    tangent: bool = True,
     threads: int | None = None,
     **parameters: object,
 ) -> Slide:
     """The sliding rule by itself: trial force to force, with the consistent tangent.
 
+    Components are those of any basis rho_1, rho_2 of the tangent plane; without a metric the basis
+    is orthonormal, without axes its first vector lies along the first friction axis.
+
     Args:
-        stiffness: S = -B, (n, 2, 2) [stress/length].
-        friction: F of the yield ellipse T.FT = N^2, (n, 2, 2).
-        trial: T_tr, (n, 2) [stress].
+        stiffness: S_ij = -b_ij, (n, 2, 2) [stress/length].
+        friction: f^ij of the yield ellipse T.FT = N^2, (n, 2, 2).
+        trial: T_tr,i, (n, 2) [stress].
         pressure: N > 0, (n,) [stress].
         sliding_rule: Name in `registry.sliding_rules()`.
+        metric: a_ij, (n, 2, 2); the unit matrix if left out.
+        axes: Components e_a^i of the unit vectors along the two friction axes, row a, (n, 2, 2).
+        increment: Increment of displacement dxi^i that led to the trial force, (n, 2) [length]; if
+            left out, the one that leads there from no force.
+        tangent: Whether the tangent is wanted.
         threads: Number of threads; all processors if left out.
         **parameters: Parameters of the rule.
 
     Returns:
-        Force, slip and tangent of every point. The frame is orthonormal with its first axis
-        along the first friction axis.
+        Force, slip and tangent of every point.
 
     Raises:
         InputError: Unknown rule or parameter, or arrays that do not fit.
@@ -247,16 +260,27 @@ def slide(
     """
     rule = registry.entry(registry.sliding_rules(), sliding_rule, "sliding_rule")
     core = _core.SlidingRule(sliding_rule, registry.values(rule, parameters))
-    arrays = [
-        np.ascontiguousarray(a, dtype=np.float64) for a in (stiffness, friction, trial, pressure)
-    ]
-    n = arrays[3].size
-    for a, name, shape in zip(
-        arrays,
-        ("stiffness", "friction", "trial", "pressure"),
-        ((n, 2, 2), (n, 2, 2), (n, 2), (n,)),
-        strict=True,
-    ):
-        if a.shape != shape:
-            raise InputError(f"an array of shape {a.shape} given, {shape} needed", field=name)
-    return Slide(**core.slide(*arrays, threads or default_threads()))
+    n = np.size(pressure)
+    return Slide(
+        **core.slide(
+            _checked(stiffness, "stiffness", (n, 2, 2)),
+            _checked(friction, "friction", (n, 2, 2)),
+            _checked(trial, "trial", (n, 2)),
+            _checked(pressure, "pressure", (n,)),
+            None if metric is None else _checked(metric, "metric", (n, 2, 2)),
+            None if axes is None else _checked(axes, "axes", (n, 2, 2)),
+            None if increment is None else _checked(increment, "increment", (n, 2)),
+            tangent,
+            threads or default_threads(),
+        )
+    )
+
+
+def _checked(given: npt.ArrayLike, name: str, shape: tuple[int, ...]) -> Floats:
+    try:
+        a = np.ascontiguousarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise InputError("an array of numbers is needed", field=name) from None
+    if a.shape != shape:
+        raise InputError(f"an array of shape {a.shape} given, {shape} needed", field=name)
+    return a

@@ -1,6 +1,7 @@
 // The tangential law by itself: trial force to force, without a surface.
 
 #include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -17,24 +18,29 @@ struct RuleHandle {
   law::AnyRule any;
 };
 
-/// Inputs of a batch of slides in the orthonormal frame of the friction axes, a_ij = delta_ij.
+/// Inputs of a batch of slides; what is left out is null.
 struct SlideInput {
   const double *stiffness, *friction, *trial, *pressure;
+  const double *metric, *axes, *increment;
 
   law::SlideProblem<double> problem(std::size_t i) const {
     law::SlideProblem<double> p;
     for (std::size_t k = 0; k < 4; ++k) {
       p.stiffness(k / 2, k % 2) = stiffness[4 * i + k];
       p.friction(k / 2, k % 2) = friction[4 * i + k];
+      p.a_co(k / 2, k % 2) = metric ? metric[4 * i + k] : unit_[k];
+      p.axes[k / 2][k % 2] = axes ? axes[4 * i + k] : unit_[k];
     }
-    p.a_co(0, 0) = p.a_co(1, 1) = 1.0;
-    p.axes = {Vector<double>{{1.0, 0.0}}, Vector<double>{{0.0, 1.0}}};
     p.trial = {{trial[2 * i], trial[2 * i + 1]}};
-    p.elastic = -(inverse(p.stiffness) * p.trial);
-    p.increment = p.elastic;
     p.pressure = pressure[i];
+    p.increment = increment ? Vector<double>{{increment[2 * i], increment[2 * i + 1]}}
+                            : -slip_from_force(p, p.trial);
+    p.elastic = p.increment;
     return p;
   }
+
+ private:
+  static constexpr std::array<double, 4> unit_{1.0, 0.0, 0.0, 1.0};
 };
 
 struct SlideOutput {
@@ -42,7 +48,7 @@ struct SlideOutput {
   bool *slides, *converged;
 };
 
-template <class Rule>
+template <bool with_tangent, class Rule>
 void slide_one(const Rule& rule, const SlideInput& in, const SlideOutput& out,
                std::size_t i) noexcept {
   const auto p = in.problem(i);
@@ -51,34 +57,51 @@ void slide_one(const Rule& rule, const SlideInput& in, const SlideOutput& out,
   out.slides[i] = law::friction_norm(p.friction, p.trial) > p.pressure;
   if (out.slides[i]) {
     r = rule.slide(p);
-    t = rule.tangent(p, r);
+    if constexpr (with_tangent) t = rule.tangent(p, r);
   }
   for (std::size_t k = 0; k < 2; ++k) {
     out.traction[2 * i + k] = r.traction[k];
     out.stored[2 * i + k] = r.stored[k];
     out.slip[2 * i + k] = r.slip[k];
-    out.d_pressure[2 * i + k] = t.d_pressure[k];
-    for (std::size_t j = 0; j < 2; ++j) out.d_trial[4 * i + 2 * k + j] = t.d_trial(k, j);
   }
   out.converged[i] = r.converged;
+  if constexpr (with_tangent)
+    for (std::size_t k = 0; k < 2; ++k) {
+      out.d_pressure[2 * i + k] = t.d_pressure[k];
+      for (std::size_t j = 0; j < 2; ++j) out.d_trial[4 * i + 2 * k + j] = t.d_trial(k, j);
+    }
+}
+
+/// The data of an optional array, whose length is checked.
+template <class A>
+const double* data_of(const std::optional<A>& a, std::size_t n) {
+  if (a && a->shape(0) != n)
+    throw std::invalid_argument("metric, axes or increment differs in length");
+  return a ? a->data() : nullptr;
 }
 
 nb::dict slide(const RuleHandle& rule, const Matrices& stiffness, const Matrices& friction,
-               const Coordinates& trial, const Scalars& pressure, std::size_t threads) {
-  const std::size_t n = pressure.shape(0);
+               const Coordinates& trial, const Scalars& pressure,
+               const std::optional<Matrices>& metric, const std::optional<Matrices>& axes,
+               const std::optional<Coordinates>& increment, bool with_tangent,
+               std::size_t threads) {
+  const std::size_t n = pressure.shape(0), n_tangent = with_tangent ? n : 0;
   if (stiffness.shape(0) != n || friction.shape(0) != n || trial.shape(0) != n)
     throw std::invalid_argument("stiffness, friction, trial and pressure differ in length");
-  Array<double> traction({n, 2}), stored({n, 2}), slip({n, 2}), d_trial({n, 2, 2}),
-      d_pressure({n, 2});
+  Array<double> traction({n, 2}), stored({n, 2}), slip({n, 2}), d_trial({n_tangent, 2, 2}),
+      d_pressure({n_tangent, 2});
   Array<bool> slides({n}), converged({n});
-  const SlideInput in{stiffness.data(), friction.data(), trial.data(), pressure.data()};
+  const SlideInput in{stiffness.data(),   friction.data(),  trial.data(),         pressure.data(),
+                      data_of(metric, n), data_of(axes, n), data_of(increment, n)};
   const SlideOutput out{traction.data,   stored.data, slip.data,     d_trial.data,
                         d_pressure.data, slides.data, converged.data};
   {
     nb::gil_scoped_release free;
     std::visit(
         [&](const auto& r) {
-          kernel::parallel_for(n, threads, [&](std::size_t i) { slide_one(r, in, out, i); });
+          kernel::parallel_for(n, threads, [&](std::size_t i) {
+            with_tangent ? slide_one<true>(r, in, out, i) : slide_one<false>(r, in, out, i);
+          });
         },
         rule.any);
   }
@@ -97,13 +120,15 @@ nb::dict slide(const RuleHandle& rule, const Matrices& stiffness, const Matrices
 
 void bind_law(nb::module_& m) {
   nb::class_<RuleHandle>(m, "SlidingRule")
-      .def("__init__",
-           [](RuleHandle* self, const std::string& name, const ValueMap& values) {
-             new (self) RuleHandle{law::SlidingRules::make(name, Values(values))};
-           },
-           nb::arg("name"), nb::arg("values"))
+      .def(
+          "__init__",
+          [](RuleHandle* self, const std::string& name, const ValueMap& values) {
+            new (self) RuleHandle{law::SlidingRules::make(name, Values(values))};
+          },
+          nb::arg("name"), nb::arg("values"))
       .def("slide", &slide, nb::arg("stiffness"), nb::arg("friction"), nb::arg("trial"),
-           nb::arg("pressure"), nb::arg("threads"));
+           nb::arg("pressure"), nb::arg("metric").none(), nb::arg("axes").none(),
+           nb::arg("increment").none(), nb::arg("tangent"), nb::arg("threads"));
 }
 
 }  // namespace anisocontact::bindings

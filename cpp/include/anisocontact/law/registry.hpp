@@ -5,14 +5,18 @@
 #include "anisocontact/law/energy.hpp"
 #include "anisocontact/law/friction.hpp"
 #include "anisocontact/law/normal.hpp"
+#include "anisocontact/law/rules/coaxial.hpp"
 #include "anisocontact/law/rules/explicit.hpp"
+#include "anisocontact/law/rules/linear.hpp"
 #include "anisocontact/law/rules/maximum_dissipation.hpp"
 #include "anisocontact/law/rules/radial.hpp"
+#include "anisocontact/law/rules/slip_ellipse.hpp"
 #include "anisocontact/registry/descriptor.hpp"
 
 namespace anisocontact::law {
 
-using SlidingRules = Registry<MaximumDissipation, Explicit, Radial>;
+using SlidingRules =
+    Registry<MaximumDissipation, Explicit, Radial, LinearRule, Coaxial, SlipEllipse>;
 using AnyRule = SlidingRules::Any;
 
 using AdhesionModels = Registry<Elastic, Maxwell, KelvinVoigt, StandardLinearSolid, GeneralLinear>;

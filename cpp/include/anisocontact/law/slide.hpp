@@ -12,14 +12,14 @@ namespace anisocontact::law {
 /// A trial force outside the yield ellipse: find T on it with T = T_tr + S dxi_sl.
 template <class S>
 struct SlideProblem {
-  CoCo<S> stiffness;             ///< S = -B, or its algorithmic counterpart in time
-  ContraContra<S> friction;      ///< f^ij of T.FT = N^2
-  CoCo<S> a_co;                  ///< metric
-  std::array<Vector<S>, 2> axes; ///< friction axes e_1, e_2
-  Covector<S> trial;             ///< T_tr
-  Vector<S> elastic;             ///< elastic slip if the whole increment were elastic
-  Vector<S> increment;           ///< whole slip increment dxi
-  S pressure;                    ///< N > 0
+  CoCo<S> stiffness;              ///< S = -B, or its algorithmic counterpart in time
+  ContraContra<S> friction;       ///< f^ij of T.FT = N^2
+  CoCo<S> a_co;                   ///< metric
+  std::array<Vector<S>, 2> axes;  ///< friction axes e_1, e_2
+  Covector<S> trial;              ///< T_tr
+  Vector<S> elastic;              ///< elastic slip if the whole increment were elastic
+  Vector<S> increment;            ///< whole slip increment dxi
+  S pressure;                     ///< N > 0
 };
 
 template <class S>
@@ -28,12 +28,13 @@ struct SlideResult {
   Covector<S> stored;    ///< elastic force the next trial starts from; T but for the explicit rule
   Vector<S> slip;        ///< dxi_sl
   bool converged{true};
+  S multiplier{0.0};  ///< lambda of an implicit rule; infinite where the strip cannot yield
 };
 
 /// Consistent tangent of T at fixed stiffness and friction tensors.
 struct SlideTangent {
-  CoContra<double> d_trial;    ///< dT_i / dT_tr,j
-  Covector<double> d_pressure; ///< dT_i / dN
+  CoContra<double> d_trial;     ///< dT_i / dT_tr,j
+  Covector<double> d_pressure;  ///< dT_i / dN
 };
 
 template <class T>
@@ -52,15 +53,21 @@ S friction_norm(const ContraContra<S>& friction, const Covector<S>& t) {
   return sqrt(dot(t, friction * t));
 }
 
-/// dxi_sl that a change of force T - T_tr stands for; in the degenerate strip, where S has rank
-/// one, the slip of least length (the force then lies in the range of S).
+/// Whether S has rank one: the strip, where one of the adhesion stiffnesses is zero.
+template <class S>
+bool is_strip(const SlideProblem<S>& p) {
+  constexpr double rank_limit = 1e-14;  // relative; rounding of a rank-one S is some 1e-16
+  const double tr = value(contract(adjugate(p.a_co), p.stiffness));  // of S a^-1, times det a
+  return value(det(p.stiffness)) * value(det(p.a_co)) <= rank_limit * tr * tr;
+}
+
+/// dxi_sl that a change of force T - T_tr stands for; in the strip the slip of least length (the
+/// force then lies in the range of S).
 template <class S>
 Vector<S> slip_from_force(const SlideProblem<S>& p, const Covector<S>& change) {
+  if (!is_strip(p)) return inverse(p.stiffness) * change;
   const ContraContra<S> a_contra = inverse(p.a_co);
-  const CoContra<S> mixed = p.stiffness * a_contra;
-  const S tr = trace(mixed);
-  constexpr double rank_limit = 1e-12;  // relative; rounding of a rank-one S is some 1e-16
-  if (value(det(mixed)) > rank_limit * value(tr * tr)) return inverse(p.stiffness) * change;
+  const S tr = trace(p.stiffness * a_contra);
   return (S(1.0) / (tr * tr)) * (a_contra * (p.stiffness * (a_contra * change)));
 }
 

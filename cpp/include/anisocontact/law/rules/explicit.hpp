@@ -1,6 +1,8 @@
 #pragma once
 // The rule of the paper to the letter: the force (96), with a choice of what is remembered.
 
+#include <cmath>
+
 #include "anisocontact/law/rules/radial.hpp"
 
 namespace anisocontact::law {
@@ -9,9 +11,10 @@ namespace anisocontact::law {
 /// The history decides the elastic force that the next step starts from.
 class Explicit {
  public:
-  /// `centre`: the centre of the adhesion ellipse moves by (114), so the radial return of T_tr is
-  /// remembered.
-  enum class History { centre };
+  /// `centre`: the centre of the adhesion ellipse moves by (114), so that the radial return of T_tr
+  /// is remembered. `incremental`: the force itself, (112). `kuhn-tucker`: what is left after a slip
+  /// along the increment, (102)-(111).
+  enum class History { centre, incremental, kuhn_tucker };
 
   Explicit() = default;
   explicit Explicit(History history) : history_(history) {}
@@ -19,8 +22,14 @@ class Explicit {
   static Descriptor describe() {
     return {"explicit",
             "Force -N BFT_tr/sqrt(BFT_tr.FBFT_tr) of Konyukhov and Schweizerhof, eq. (96).",
-            {{"history", Kind::choice, "1", "what is remembered of a sliding step", Bound::any,
-              false, {0.0}, {"centre"}}}};
+            {{"history",
+              Kind::choice,
+              "1",
+              "what is remembered of a sliding step; incremental does not converge",
+              Bound::any,
+              false,
+              {0.0},
+              {"centre", "incremental", "kuhn-tucker"}}}};
   }
   static Explicit make(const Values& v) {
     return Explicit(static_cast<History>(static_cast<int>(v.scalar("history"))));
@@ -29,23 +38,42 @@ class Explicit {
   template <class S>
   SlideResult<S> slide(const SlideProblem<S>& p) const noexcept {
     const Covector<S> h = transpose(p.stiffness) * (p.friction * p.trial);
-    const Covector<S> t = (p.pressure / friction_norm(p.friction, h)) * h;
-    const Covector<S> stored = radial_return(p);
-    return {t, stored, slip_from_force(p, stored - p.trial), true};
+    SlideResult<S> r;
+    r.traction = (p.pressure / friction_norm(p.friction, h)) * h;
+    if (history_ == History::kuhn_tucker && slip_along_increment(p, r)) return r;
+    r.stored = history_ == History::incremental ? r.traction : radial_return(p);
+    r.slip = slip_from_force(p, r.stored - p.trial);
+    return r;
   }
 
-  /// dT = (N/s)(I - h (x) F h/s^2) S^T F dT_tr + (h/s) dN.
+  /// dT = (N/s)(I - h (x) F h/s^2) S^T F dT_tr + (h/s) dN, whatever the history.
   SlideTangent tangent(const SlideProblem<double>& p, const SlideResult<double>&) const noexcept {
     const CoContra<double> sf = transpose(p.stiffness) * p.friction;
     const Covector<double> h = sf * p.trial;
     const double s = friction_norm(p.friction, h);
     const Covector<double> e = (1.0 / s) * h;
-    const CoContra<double> normalised =
-        unit<double, Place::co>() - outer(e, p.friction * e);
+    const CoContra<double> normalised = unit<double, Place::co>() - outer(e, p.friction * e);
     return {(p.pressure / s) * (normalised * sf), e};
   }
 
  private:
+  /// Slip lambda dxi with |T_tr + lambda S dxi|_F = N, the smaller root of (111), whose larger one
+  /// would create energy. False where there is none (N has dropped, or dxi leads back): the
+  /// return is then radial.
+  template <class S>
+  static bool slip_along_increment(const SlideProblem<S>& p, SlideResult<S>& r) {
+    using std::sqrt;
+    const Covector<S> s = p.stiffness * p.increment;
+    const Vector<S> fs = p.friction * s;
+    const S a = dot(s, fs), b = -dot(p.trial, fs);
+    const S c = dot(p.trial, p.friction * p.trial) - p.pressure * p.pressure;
+    const S discriminant = b * b - a * c;
+    if (!(value(b) > 0.0) || !(value(discriminant) > 0.0)) return false;
+    r.slip = (c / (b + sqrt(discriminant))) * p.increment;
+    r.stored = p.trial + p.stiffness * r.slip;
+    return true;
+  }
+
   History history_{History::centre};
 };
 
