@@ -38,8 +38,10 @@ class Explicit {
   template <class S>
   SlideResult<S> slide(const SlideProblem<S>& p) const noexcept {
     const Covector<S> h = transpose(p.stiffness) * (p.friction * p.trial);
+    const S norm = friction_norm(p.friction, h);
     SlideResult<S> r;
-    r.traction = (p.pressure / friction_norm(p.friction, h)) * h;
+    r.converged = value(norm) > 0.0;  // in the strip F T_tr may lie along it
+    r.traction = (p.pressure / norm) * h;
     if (history_ == History::kuhn_tucker && slip_along_increment(p, r)) return r;
     r.stored = history_ == History::incremental ? r.traction : radial_return(p);
     r.slip = slip_from_force(p, r.stored - p.trial);

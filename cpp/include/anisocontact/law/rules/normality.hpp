@@ -17,7 +17,8 @@ class Normality {
   SlideResult<S> slide(const SlideProblem<S>& p) const noexcept {
     const ContraContra<S> k = self().conjugate(p);
     const auto secular = Secular<S>::of(p, k);
-    const Root root = SmallestRoot(plain(secular), value(p.pressure)).find();
+    const Secular<double> numbers = plain(secular);
+    const Root root = SmallestRoot(numbers, value(p.pressure)).find();
     SlideResult<S> r;
     r.converged = root.converged;
     r.multiplier = S(root.lambda);
@@ -77,7 +78,7 @@ class Normality {
     if constexpr (std::is_same_v<S, double>)
       return s;
     else
-      return {{}, s.tr.v, s.det_sk.v, s.q0.v, s.q1.v, s.q2.v};
+      return {value(s.friction), value(s.trial), value(s.m), value(s.tr), value(s.det_sk)};
   }
 };
 

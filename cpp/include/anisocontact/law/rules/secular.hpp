@@ -1,10 +1,11 @@
 #pragma once
 // The scalar equation of the implicit rules: the smallest lambda >= 0 at which
-//   T(lambda) = (I + lambda S K)^-1 T_tr = (T_tr + lambda m)/D,   m = adj(S K) T_tr,
+//   T(lambda) = (I + lambda S K)^-1 T_tr = u/D,   u = T_tr + lambda m,   m = adj(S K) T_tr,
 //   D = 1 + lambda tr(S K) + lambda^2 det(S K)     (exact for a 2 x 2 tensor)
 // meets the yield ellipse, |T|_F = N.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,30 +13,22 @@
 
 namespace anisocontact::law {
 
-/// Coefficients of D and of p(lambda) = |T_tr + lambda m|_F^2 = q0 + 2 q1 lambda + q2 lambda^2.
 template <class S>
 struct Secular {
-  Covector<S> m;
+  ContraContra<S> friction;
+  Covector<S> trial, m;
   S tr, det_sk;
-  S q0, q1, q2;
 
   static Secular of(const SlideProblem<S>& p, const ContraContra<S>& k) {
     const CoContra<S> sk = p.stiffness * k;
-    const Covector<S> m = adjugate(sk) * p.trial;
-    const Vector<S> ft = p.friction * p.trial;
-    return {m,
-            trace(sk),
-            is_strip(p) ? S(0.0) : det(p.stiffness) * det(k),
-            dot(p.trial, ft),
-            dot(m, ft),
-            dot(m, p.friction * m)};
+    return {p.friction, p.trial, adjugate(sk) * p.trial, trace(sk),
+            is_strip(p) ? S(0.0) : det(p.stiffness) * det(k)};
   }
 
-  /// h = N D/|T_tr + lambda m|_F - 1, zero at the solution and nearly linear in lambda.
+  /// h = N D/|u|_F - 1, zero at the solution and nearly linear in lambda.
   S residual(const S& l, const S& pressure) const {
-    using std::sqrt;
     const S d = S(1.0) + l * (tr + l * det_sk);
-    return pressure * d / sqrt(q0 + l * (S(2.0) * q1 + l * q2)) - S(1.0);
+    return pressure * d / friction_norm(friction, trial + l * m) - S(1.0);
   }
 };
 
@@ -46,7 +39,7 @@ struct Root {
   bool converged{false};
 };
 
-/// Finds the smallest root. With P = N^2 D^2 - p = a0 + a1 l + ... + a4 l^4, a0 < 0 <= a3, a4:
+/// Finds the smallest root. With P = N^2 D^2 - |u|_F^2 = a0 + a1 l + ... + a4 l^4, a0 < 0 <= a3, a4:
 /// by Descartes' rule P has one positive root, unless a2 < 0 < a1, when it may have three. P is
 /// then concave up to its inflection, where Newton on P from the left cannot pass the first root;
 /// where it finds none there, exactly one root lies beyond the inflection. For K = F there is
@@ -57,11 +50,14 @@ class SmallestRoot {
   SmallestRoot(const Secular<double>& s, double pressure) noexcept
       : tr_(s.tr),
         det_(s.det_sk),
-        q0_(s.q0),
-        q1_(s.q1),
-        q2_(s.q2),
+        norm_(s.friction),
+        trial_(norm_.reduce(s.trial)),
+        m_(norm_.reduce(s.m)),
+        q0_(norm_.product(trial_, trial_)),
+        q1_(norm_.product(trial_, m_)),
+        q2_(norm_.product(m_, m_)),
         // below this ratio the direction of T changes no more, and D would overflow
-        n_(std::max(pressure, 1e-60 * std::sqrt(s.q0))) {}
+        n_(std::max(pressure, 1e-60 * std::sqrt(q0_))) {}
 
   Root find() const noexcept {
     const double n2 = n_ * n_;
@@ -83,22 +79,39 @@ class SmallestRoot {
 
  private:
   struct Point {
-    double h, slope, p, dp;  // h, dh/dl, p, dp/dl
+    double h, slope, p, half_dp;  // h, dh/dlambda; p = |u|_F^2, half of dp/dlambda
+  };
+  using Pair = std::array<double, 2>;
+
+  /// |T|_F^2 = w_0 (T_0 + r T_1)^2 + w_1 T_1^2, the factors of Cholesky: as smooth in lambda as
+  /// rounding allows, whatever the condition of F.
+  struct Norm {
+    double r;
+    Pair w;
+
+    explicit Norm(const ContraContra<double>& f)
+        : r(f(0, 1) / f(0, 0)), w{f(0, 0), det(f) / f(0, 0)} {}
+    Pair reduce(const Covector<double>& t) const { return {t[0] + r * t[1], t[1]}; }
+    double product(const Pair& a, const Pair& b) const {
+      return w[0] * a[0] * b[0] + w[1] * a[1] * b[1];
+    }
   };
   static constexpr int most_ = 200;
 
   Point at(double l) const noexcept {
     const double d = 1.0 + l * (tr_ + l * det_);
-    const double p = q0_ + l * (2.0 * q1_ + l * q2_);
-    const double half_dp = q1_ + l * q2_;
+    // from u, not as a quadratic in lambda: that would lose the digits of (N/|T_tr|)^2
+    const Pair u{trial_[0] + l * m_[0], trial_[1] + l * m_[1]};
+    const double p = norm_.product(u, u), half_dp = norm_.product(u, m_);
     const double scaled = n_ / std::sqrt(p);
-    return {scaled * d - 1.0, scaled * ((tr_ + 2.0 * l * det_) - d * half_dp / p), p,
-            2.0 * half_dp};
+    return {scaled * d - 1.0, scaled * ((tr_ + 2.0 * l * det_) - d * half_dp / p), p, half_dp};
   }
 
-  /// Zero up to a few roundings, or as near as they let it come.
-  static bool is_root(double h, double previous) noexcept {
-    return std::abs(h) <= 4e-15 || (std::abs(h) < 1e-13 && std::abs(h) >= previous);
+  /// Zero up to a few roundings; or no longer falling and within the rounding of u.
+  bool is_root(double l, const Point& x, double previous) const noexcept {
+    if (std::abs(x.h) <= 4e-15) return true;
+    constexpr double rounding2 = 1e-29;
+    return std::abs(x.h) >= previous && x.h * x.h * x.p <= rounding2 * (q0_ + l * l * q2_);
   }
 
   /// Newton on P = p h (h + 2), monotone from lambda = 0.
@@ -108,13 +121,14 @@ class SmallestRoot {
     for (int k = 0; k < most_; ++k) {
       const Point x = at(r.lambda);
       r.slope = x.slope;
-      if (is_root(x.h, previous)) {
+      if (is_root(r.lambda, x, previous)) {
         r.converged = r.slope > 0.0;
         return r;
       }
-      const double slope = x.dp * x.h * (x.h + 2.0) + 2.0 * x.p * (x.h + 1.0) * x.slope;
+      const double value = x.p * x.h * (x.h + 2.0);
+      const double slope = 2.0 * (x.half_dp * x.h * (x.h + 2.0) + x.p * (x.h + 1.0) * x.slope);
       if (!(slope > 0.0)) return r;
-      r.lambda -= x.p * x.h * (x.h + 2.0) / slope;
+      r.lambda -= value / slope;
       if (!(r.lambda < inflection)) return r;
       previous = std::abs(x.h);
     }
@@ -128,7 +142,7 @@ class SmallestRoot {
     for (int k = 0; k < most_; ++k) {
       const Point x = at(r.lambda);
       r.slope = x.slope;
-      if (is_root(x.h, previous)) {
+      if (is_root(r.lambda, x, previous)) {
         r.converged = r.slope > 0.0;
         return r;
       }
@@ -141,14 +155,17 @@ class SmallestRoot {
     return r;
   }
 
-  /// A point inside the bracket: by its powers of two where it is wide.
+  /// A point inside the bracket: in the middle of the powers of two where it is wide.
   double between(double low, double high) const noexcept {
     if (std::isinf(high)) return 8.0 * low + 1.0 / tr_;
     const double least = std::max(low, 1e-3 / tr_);
     return high > 4.0 * least ? std::sqrt(least) * std::sqrt(high) : 0.5 * (low + high);
   }
 
-  double tr_, det_, q0_, q1_, q2_, n_;
+  double tr_, det_;
+  Norm norm_;
+  Pair trial_, m_;
+  double q0_, q1_, q2_, n_;
 };
 
 }  // namespace anisocontact::law
