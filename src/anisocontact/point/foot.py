@@ -1,0 +1,70 @@
+"""Where a point is over a surface: its foot, gap and the derivative of the normal there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from anisocontact.surfaces import Floats, Surface
+
+# Of the distance to the foot: a point that is not on the normal of its foot is beyond an edge.
+_OFF_NORMAL = 1e-6
+
+
+@dataclass(frozen=True)
+class Foot:
+    """Closest point of a surface.
+
+    Args:
+        position: rho, (3,) [length].
+        basis: rho_i, (2, 3).
+        xi: Coordinates, (2,).
+        gap: xi^3 [length].
+        normal: n, (3,).
+        d_normal: dn/dx of the point above it, (3, 3) [1/length].
+        reached: Whether the point lies on the normal of the foot.
+    """
+
+    position: Floats
+    basis: Floats
+    xi: Floats
+    gap: float
+    normal: Floats
+    d_normal: Floats
+    reached: bool
+
+    @property
+    def tangent_plane(self) -> Floats:
+        """Projector I - n (x) n, (3, 3)."""
+        return np.eye(3) - np.outer(self.normal, self.normal)
+
+
+def foot(surface: Surface, x: Floats) -> Foot:
+    """Foot of the point x [Konyukhov Schweizerhof 2006, eq. (1), (2)].
+
+    dn/dx = -rho_j h^j_i (a_ik - xi^3 h_ik)^-1 rho_k, by Weingarten and the derivative of the
+    closest point.
+    """
+    p = surface.project(x[None])
+    at = foot_at(surface, p.xi[0], float(p.gap[0]))
+    off = np.linalg.norm(x - at.position - at.gap * at.normal)
+    scale = np.linalg.norm(x - at.position) + 1e-9 * np.linalg.norm(x)
+    ok = p.status[0] != 2 and off <= _OFF_NORMAL * scale
+    return Foot(**{**at.__dict__, "reached": bool(ok)})
+
+
+def foot_at(surface: Surface, xi: Floats, gap: float) -> Foot:
+    """The foot with coordinates `xi`, of the point at distance `gap` above it."""
+    jet, g = surface.jet(xi[None]), surface.geometry(xi[None])
+    basis = jet.d1[0]
+    inverse = np.linalg.inv(g.a_co[0] - gap * g.h_co[0])
+    return Foot(
+        position=jet.position[0],
+        basis=basis,
+        xi=np.asarray(xi, dtype=np.float64),
+        gap=gap,
+        normal=g.normal[0],
+        d_normal=-basis.T @ g.h_mixed[0] @ inverse @ basis,
+        reached=True,
+    )

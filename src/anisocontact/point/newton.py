@@ -1,0 +1,78 @@
+"""Newton's method for the equations of a step, with a line search."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from anisocontact.point.balance import Balance, StepError, Trial
+from anisocontact.point.press import pressed
+from anisocontact.surfaces import Floats
+
+#: Of the forces at the trial position.
+TOLERANCE = 1e-11
+#: Iterations before the step is cut.
+MOST_ITERATIONS = 40
+# A correction this small against the position is rounding.
+_ROUNDING = 8.0 * np.finfo(np.float64).eps
+
+
+def solve(balance: Balance, guess: Floats) -> tuple[Trial, int]:
+    """Solve the equations of a step.
+
+    Args:
+        balance: The equations.
+        guess: Unknowns to start from.
+
+    Returns:
+        The solution and the number of iterations.
+
+    Raises:
+        StepError: Not converged; the message has the residual.
+    """
+    trial = balance.at(pressed(balance, guess))
+    for iteration in range(MOST_ITERATIONS):
+        size = float(np.linalg.norm(trial.residual))
+        if size <= TOLERANCE * trial.scale:
+            return trial, iteration
+        step = _direction(trial)
+        rounding = _ROUNDING * np.abs(trial.q[:3]).max()
+        if np.abs(step[:3]).max() <= rounding and iteration > 0:
+            return trial, iteration
+        trial = _searched(balance, trial, step)
+    size = float(np.linalg.norm(trial.residual))
+    raise StepError(
+        f"no equilibrium after {MOST_ITERATIONS} iterations, residual {size:.3g}, "
+        f"forces {trial.scale:.3g}"
+    )
+
+
+def _direction(trial: Trial) -> Floats:
+    """Newton step; of least length where the equations do not fix all unknowns."""
+    try:
+        step = np.linalg.solve(trial.jacobian, -trial.residual)
+        if np.isfinite(step).all():
+            return step
+    except np.linalg.LinAlgError:
+        pass
+    return np.linalg.lstsq(trial.jacobian, -trial.residual, rcond=1e-13)[0]
+
+
+def _searched(balance: Balance, trial: Trial, step: Floats) -> Trial:
+    """The step, halved until the residual falls; the best of what was tried if it does not."""
+    before = float(np.linalg.norm(trial.residual))
+    best: Trial | None = None
+    reason: StepError | None = None
+    for k in range(12):
+        try:
+            new = balance.at(trial.q + 0.5**k * step)
+        except StepError as failure:
+            reason = failure
+            continue
+        if best is None or np.linalg.norm(new.residual) < np.linalg.norm(best.residual):
+            best = new
+        if np.linalg.norm(new.residual) < (1.0 - 1e-4 * 0.5**k) * before:
+            return new
+    if best is None:
+        assert reason is not None
+        raise reason
+    return best

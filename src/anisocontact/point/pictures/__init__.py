@@ -1,0 +1,43 @@
+"""Pictures of a history: the path on the surface, the force plane, and everything over time.
+
+Each function returns a `matplotlib.figure.Figure`; `save` writes all of them.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from anisocontact.point.balance import PointInterface
+from anisocontact.point.history import History
+from anisocontact.point.pictures.forces import force_plane
+from anisocontact.point.pictures.path import path_on_surface
+from anisocontact.point.pictures.time import over_time
+
+__all__ = ["force_plane", "over_time", "path_on_surface", "save"]
+
+
+def save(
+    history: History, interface: PointInterface, folder: str | Path, title: str = ""
+) -> list[Path]:
+    """Write `path.png`, `forces.png` and `time.png`.
+
+    Args:
+        history: What was driven.
+        interface: Through what.
+        folder: Where; made if it is not there.
+        title: Heading.
+
+    Returns:
+        The files.
+    """
+    target = Path(folder)
+    target.mkdir(parents=True, exist_ok=True)
+    figures = {
+        "path": path_on_surface(history, interface, title=title),
+        "forces": force_plane(history, interface, title=title),
+        "time": over_time(history, title=title),
+    }
+    files = [target / f"{name}.png" for name in figures]
+    for file, figure in zip(files, figures.values(), strict=True):
+        figure.savefig(file, dpi=120)
+    return files

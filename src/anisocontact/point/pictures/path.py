@@ -1,0 +1,222 @@
+"""The path of the points on the surface, with directions, adhesion ellipses and forces."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.ticker import FormatStrFormatter, MaxNLocator
+
+from anisocontact.point.balance import PointInterface
+from anisocontact.point.history import History
+from anisocontact.point.pictures.ellipse import adhesion_ellipse
+from anisocontact.point.pictures.style import AXES, COLOURS, INK, UNITS, chosen, number, runs, size
+from anisocontact.surfaces import Floats, Surface
+
+# An ellipse smaller than this share of the picture is drawn enlarged.
+_SMALL = 0.04
+_MARKS = 11
+
+
+def path_on_surface(
+    history: History, interface: PointInterface, *, title: str = "", forces: int = 7
+) -> Figure:
+    """Draw surface, friction axes, path by status, tangential forces and adhesion ellipses.
+
+    Args:
+        history: What was driven.
+        interface: Through what.
+        title: Heading.
+        forces: How many forces are drawn along the path.
+
+    Returns:
+        The figure.
+    """
+    figure = Figure(figsize=(8.5, 6.8), layout="constrained")
+    ax: Any = figure.add_subplot(projection="3d", computed_zorder=False)
+    feet = history.feet
+    extent = max(size(feet), 1e-12 * float(np.abs(feet).max()), 1e-300)
+    box, patch = _patch(interface.surface, history, extent)
+    toward = _view(ax, history)
+    ax.plot_surface(*patch, color="#f1eee7", alpha=0.6, linewidth=0, zorder=0, shade=False)
+    ax.plot_wireframe(*patch, color="#c9c4b8", linewidth=0.4, rcount=12, ccount=12, zorder=1)
+    lines = _directions(ax, interface, box, extent, toward)
+    lines += _path(ax, history, toward)
+    rows = chosen(history, forces)
+    lines += _forces(ax, history, rows, extent, toward)
+    lines += _ellipses(ax, history, interface, rows, extent, toward)
+    figure.legend(handles=lines, loc="outside lower center", ncols=3, fontsize=8)
+    ax.set(xlabel="x", ylabel="y", zlabel="z")
+    _limits(ax, np.stack(patch, axis=-1).reshape(-1, 3))
+    ax.set_title(
+        "\n".join(filter(None, [title, f"Path on the surface, lengths {UNITS}"])), fontsize=11
+    )
+    return figure
+
+
+def _patch(surface: Surface, history: History, extent: float) -> tuple[Floats, list[Floats]]:
+    """Box of coordinates (2, 2) around the path, and the grid of positions in it."""
+    xi = history.points["xi"].reshape(-1, 2).copy()
+    low, high, periodic = surface.domain
+    lengths = np.linalg.norm(surface.jet(xi).d1, axis=2).max(axis=0)
+    margin = 0.35 * extent / np.maximum(lengths, 1e-300)
+    box = np.empty((2, 2))
+    for i in range(2):
+        if periodic[i]:
+            xi[:, i] = np.unwrap(xi[:, i], period=high[i] - low[i])
+        box[i] = xi[:, i].min() - margin[i], xi[:, i].max() + margin[i]
+        if periodic[i] and np.ptp(box[i]) > 0.4 * (high[i] - low[i]):
+            box[i] = box[i].mean() + 0.5 * (high[i] - low[i]) * np.array([-1.0, 1.0])
+        elif not periodic[i]:
+            box[i] = np.clip(box[i], low[i], high[i])
+    lines = [np.linspace(a, b, 61) for a, b in box.tolist()]
+    u, v = np.meshgrid(*lines, indexing="ij")
+    x = surface.position(np.stack([u.ravel(), v.ravel()], axis=1)).reshape(61, 61, 3)
+    return box, [x[..., i] for i in range(3)]
+
+
+def _view(ax: Any, history: History) -> Floats:
+    """Turn the camera to the side of the slave, a little from aside; the direction to it, (3,)."""
+    normal = history.points["normal"].reshape(-1, 3).sum(axis=0)
+    normal /= max(float(np.linalg.norm(normal)), 1e-300)
+    if np.linalg.norm(normal[:2]) > 0.3:
+        azimuth = float(np.degrees(np.arctan2(normal[1], normal[0]))) - 25.0
+        elevation = float(np.degrees(np.arcsin(normal[2]))) * 0.7 + 18.0
+    else:
+        azimuth, elevation = -65.0, float(np.sign(normal[2]) or 1.0) * 52.0
+    ax.view_init(elev=elevation, azim=azimuth)
+    a, e = np.radians([azimuth, elevation])
+    return np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+
+
+def _faded(normal: Floats, toward: Floats) -> float:
+    """Opacity: what is on the far side is faint."""
+    return 1.0 if float(normal @ toward) > -0.05 else 0.15
+
+
+def _directions(
+    ax: Any, interface: PointInterface, box: Floats, extent: float, toward: Floats
+) -> list[Line2D]:
+    """Both friction axes on a grid of the patch."""
+    field = getattr(getattr(interface, "friction", interface), "directions", None)
+    if field is None:
+        return []
+    inner = [np.linspace(a, b, _MARKS + 2)[1:-1] for a, b in box.tolist()]
+    xi = np.stack([m.ravel() for m in np.meshgrid(*inner, indexing="ij")], axis=1)
+    axes, valid = field.axes(interface.surface, xi)
+    at, n = interface.surface.position(xi), interface.surface.geometry(xi).normal
+    half = 0.035 * extent
+    for k in np.flatnonzero(valid):
+        for a, (length, width) in enumerate(((1.0, 1.3), (0.45, 0.8))):
+            ends = at[k] + half * length * np.outer([-1.0, 1.0], axes[k, a])
+            ax.plot(*ends.T, color=AXES[a], linewidth=width, zorder=2, alpha=_faded(n[k], toward))
+    return [
+        Line2D([], [], color=AXES[0], linewidth=1.3, label="first friction axis"),
+        Line2D([], [], color=AXES[1], linewidth=0.8, label="second friction axis"),
+    ]
+
+
+def _path(ax: Any, history: History, toward: Floats) -> list[Line2D]:
+    """The paths of the feet in the colour of their status."""
+    feet, normals = history.feet, history.points["normal"]
+    seen = set()
+    for p in range(feet.shape[1]):
+        for status, rows in runs(history.points["status"][:, p]):
+            seen.add(status)
+            # In pieces, so that the far side can be faint.
+            for i in range(rows.start, rows.stop - 1):
+                piece = feet[i : i + 2, p]
+                alpha = _faded(normals[i, p], toward)
+                ax.plot(
+                    *piece.T,
+                    color=COLOURS[status],
+                    linewidth=3.2,
+                    zorder=4,
+                    alpha=alpha,
+                    solid_capstyle="round",
+                )
+        ax.plot(*feet[:1, p].T, "o", color=INK, markersize=5, zorder=6)
+    lines = [Line2D([], [], color=COLOURS[s], linewidth=3.2, label=s) for s in COLOURS if s in seen]
+    start = Line2D([], [], color=INK, marker="o", linestyle="", markersize=5, label="start")
+    return [start, *lines]
+
+
+def _forces(
+    ax: Any, history: History, rows: list[int], extent: float, toward: Floats
+) -> list[Line2D]:
+    """Tangential tractions as arrows."""
+    t = history.traction_t
+    longest = float(np.linalg.norm(t[rows], axis=2).max()) if rows else 0.0
+    if longest == 0.0:
+        return []
+    scale = 0.22 * extent / longest
+    for i in rows:
+        for p in range(t.shape[1]):
+            if np.linalg.norm(t[i, p]) > 1e-9 * longest:
+                normal = history.points["normal"][i, p]
+                ax.quiver(
+                    *history.feet[i, p],
+                    *(scale * t[i, p]),
+                    color=INK,
+                    linewidth=1.1,
+                    arrow_length_ratio=0.2,
+                    zorder=5,
+                    alpha=_faded(normal, toward),
+                )
+    label = f"T on the slave, longest {number(longest)}"
+    return [Line2D([], [], color=INK, linewidth=1.5, marker=">", label=label)]
+
+
+def _ellipses(
+    ax: Any,
+    history: History,
+    interface: PointInterface,
+    rows: list[int],
+    extent: float,
+    toward: Floats,
+) -> list[Line2D]:
+    """Adhesion ellipses about their centres, enlarged about the point where they are small."""
+    found = {
+        (i, p): ellipse
+        for i in rows
+        for p in range(history.points.shape[1])
+        if (ellipse := adhesion_ellipse(interface, history.points[i, p])) is not None
+    }
+    if not found:
+        return []
+    largest = max(float(np.linalg.norm(e, axis=1).max()) for e in found.values())
+    if largest == 0.0:
+        return []
+    factor = 1.0 if largest > _SMALL * extent else 0.08 * extent / largest
+    if factor != 1.0:
+        factor = float(f"{factor:.1g}")
+    for (i, p), ellipse in found.items():
+        row = history.points[i, p]
+        centre = history.feet[i, p] - factor * row["elastic"]
+        alpha = _faded(row["normal"], toward)
+        colour = COLOURS["stick"]
+        ax.plot(*(centre + factor * ellipse).T, color=colour, linewidth=1.0, zorder=3, alpha=alpha)
+        ax.plot(*centre[:, None], "+", color=colour, markersize=5, zorder=3, alpha=alpha)
+    times = "" if factor == 1.0 else f", enlarged {factor:g} times"
+    label = f"adhesion ellipse and its centre{times}"
+    return [Line2D([], [], color=COLOURS["stick"], linewidth=1.0, marker="+", label=label)]
+
+
+def _limits(ax: Any, points: Floats) -> None:
+    """Equal scales; a flat direction gets a little height."""
+    low, high = points.min(axis=0), points.max(axis=0)
+    middle, span = 0.5 * (low + high), high - low
+    span = np.maximum(span, 0.12 * span.max())
+    ax.set(
+        xlim=middle[0] + 0.5 * span[0] * np.array([-1, 1]),
+        ylim=middle[1] + 0.5 * span[1] * np.array([-1, 1]),
+        zlim=middle[2] + 0.5 * span[2] * np.array([-1, 1]),
+    )
+    ax.set_box_aspect(span, zoom=1.05)
+    for axis, part in zip((ax.xaxis, ax.yaxis, ax.zaxis), span / span.max(), strict=True):
+        axis.set_major_locator(MaxNLocator(6 if part > 0.5 else 1 if part < 0.2 else 3))
+        axis.set_major_formatter(FormatStrFormatter("%g"))
+        axis.pane.set_visible(False)
+        axis.set_tick_params(labelsize=8)

@@ -1,0 +1,69 @@
+"""The gap that gives a pressure."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from anisocontact.point.balance import Balance, StepError, shown
+from anisocontact.point.foot import foot
+from anisocontact.surfaces import Floats
+
+
+def pressed(balance: Balance, guess: Floats) -> Floats:
+    """The guess, moved along its normal until the resultant pressure is the one that is given.
+
+    The pressure grows with the penetration, so a bracketed Newton iteration in the gap always
+    finds it; for the penalty law one step does. Without a given pressure the guess is returned.
+
+    Args:
+        balance: The equations.
+        guess: Unknowns, whose foot is kept.
+
+    Returns:
+        Unknowns.
+
+    Raises:
+        StepError: No penetration gives the pressure.
+    """
+    if balance.control.pressure is None:
+        return guess
+    target = balance.normal_force
+    here = foot(balance.interface.surface, guess[:3])
+    if not here.reached:
+        raise StepError(f"no point of the surface is under {shown(guess[:3])}")
+
+    def miss(gap: float) -> tuple[float, float, Floats]:
+        q = guess.copy()
+        q[:3] = here.position + gap * here.normal
+        trial = balance.at(q)
+        slope = float(here.normal @ trial.d_force[:, :3] @ here.normal)
+        return float(here.normal @ trial.force) - target, slope, q
+
+    return _root(miss, here.gap, target, balance)
+
+
+def _root(
+    miss: Callable[[float], tuple[float, float, Floats]],
+    gap: float,
+    target: float,
+    balance: Balance,
+) -> Floats:
+    """Gap at which `miss` vanishes: positive for more penetration, negative for less."""
+    low, high = -np.inf, np.inf  # the gap is in between
+    size = max(abs(gap), 1e-9 * float(np.abs(balance.pose.position).max()), 1e-9)
+    for _ in range(200):
+        value, slope, q = miss(gap)
+        if abs(value) <= 1e-13 * target or high - low <= 4e-16 * abs(gap):
+            return q
+        if value < 0.0:
+            high = gap
+        else:
+            low = gap
+        following = gap - value / slope if slope < 0.0 else np.nan
+        if not low < following < high:
+            following = 0.5 * (low + high) if np.isfinite(low + high) else gap - size
+            size *= 2.0
+        gap = float(following)
+    raise StepError(f"no penetration gives the pressure {balance.control.pressure:g}")

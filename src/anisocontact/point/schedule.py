@@ -1,0 +1,137 @@
+"""Quantities over time: a constant, straight lines between knots, or a function."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.errors import InputError
+from anisocontact.surfaces import Floats
+
+#: A number or vector, knots of it, or a function of time.
+OverTime = npt.ArrayLike | Callable[[float], npt.ArrayLike]
+
+
+class Schedule:
+    """A number or vector over time.
+
+    Args:
+        given: A constant; one value for each knot of `times`, linear between them; or a function
+            of time.
+        times: Times of the knots, (k,) [time].
+        sizes: Allowed numbers of components; 0 stands for a plain number.
+        field: Name for messages.
+
+    Raises:
+        InputError: The form fits neither a constant nor the knots, or a number is not finite.
+
+    Example:
+        >>> float(Schedule([0.0, 4.0], np.array([0.0, 2.0]), (0,), "pressure")(0.5))
+        1.0
+    """
+
+    def __init__(self, given: OverTime, times: Floats, sizes: Sequence[int], field: str) -> None:
+        self.times, self.field, self.sizes = times, field, sizes
+        self._function = given if callable(given) else None
+        self._knots = None if callable(given) else self._checked(given)
+
+    def __call__(self, t: float) -> Floats:
+        """Value at time t, shape () or (size,)."""
+        if self._function is not None:
+            return self._value(self._function(t), t)
+        assert self._knots is not None
+        if len(self._knots) == 1:
+            return np.asarray(self._knots[0])
+        i = int(np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.times) - 2))
+        s = (t - self.times[i]) / (self.times[i + 1] - self.times[i])
+        # The end of a segment is its knot to the last digit.
+        a, b = self._knots[i], self._knots[i + 1]
+        return np.asarray(b if s == 1.0 else a + s * (b - a))
+
+    def _checked(self, given: npt.ArrayLike) -> Floats:
+        """Knots, or one value in a list of its own."""
+        try:
+            a = np.asarray(given, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InputError(f"numbers needed, {self._needed()}", field=self.field) from None
+        if a.ndim == 0 or (a.ndim == 1 and 0 not in self.sizes):
+            a = a[None]
+        k = len(self.times)
+        size = 0 if a.ndim == 1 else a.shape[-1]
+        if a.ndim > 2 or size not in self.sizes or len(a) not in (1, k):
+            raise InputError(
+                f"an array of shape {np.shape(given)} given, {self._needed()}", field=self.field
+            )
+        if not np.isfinite(a).all():
+            raise InputError("a number that is not finite given", field=self.field)
+        return a
+
+    def _needed(self) -> str:
+        what = " or ".join("a number" if s == 0 else f"{s} numbers" for s in self.sizes)
+        return f"{what} or {len(self.times)} knots of it needed"
+
+    def _value(self, v: npt.ArrayLike, t: float) -> Floats:
+        a = np.asarray(v, dtype=np.float64)
+        if (0 if a.ndim == 0 else a.size) not in self.sizes or a.ndim > 1:
+            raise InputError(
+                f"the function gives an array of shape {a.shape} at time {t:g}", field=self.field
+            )
+        if not np.isfinite(a).all():
+            raise InputError(f"the function gives {a.tolist()} at time {t:g}", field=self.field)
+        return a
+
+
+def knot_times(given: npt.ArrayLike | None, value: object, field: str = "times") -> Floats:
+    """Times of the knots: as given, or 0, 1, 2, ... for the knots of `value`.
+
+    Args:
+        given: Times, increasing, (k,) [time].
+        value: The knots the times belong to, a constant or a function.
+        field: Name for messages.
+
+    Returns:
+        Times, (k,), at least two.
+
+    Raises:
+        InputError: Not increasing, or missing where they cannot be counted.
+    """
+    if given is None:
+        n = 0 if callable(value) or not hasattr(value, "__len__") else len(value)
+        if n < 2:
+            raise InputError("missing; times of start and end are needed", field=field)
+        return np.arange(float(n))
+    times = np.asarray(given, dtype=np.float64)
+    if times.ndim != 1 or len(times) < 2 or not np.isfinite(times).all():
+        raise InputError("a list of at least two times is needed", field=field)
+    if not (np.diff(times) > 0.0).all():
+        raise InputError(f"{times.tolist()} given, increasing times needed", field=field)
+    return times
+
+
+def instants(times: Floats, increments: int | Sequence[int], field: str = "increments") -> Floats:
+    """Ends of the time steps: every segment between knots in equal steps.
+
+    Args:
+        times: Times of the knots, (k,).
+        increments: Steps of each segment, one number for all or a list of k - 1.
+        field: Name for messages.
+
+    Returns:
+        Instants, the first is the start, (m + 1,).
+
+    Raises:
+        InputError: Numbers that are not positive, or not one for each segment.
+    """
+    n = len(times) - 1
+    counts = [increments] * n if isinstance(increments, int) else list(increments)
+    if len(counts) != n:
+        raise InputError(f"{len(counts)} given, one or {n} needed, one a segment", field=field)
+    if any(isinstance(c, bool) or int(c) != c or c < 1 for c in counts):
+        raise InputError(f"{increments!r} given, whole numbers > 0 needed", field=field)
+    parts = [
+        np.linspace(a, b, int(c) + 1)[1:]
+        for a, b, c in zip(times[:-1], times[1:], counts, strict=True)
+    ]
+    return np.concatenate([times[:1], *parts])
