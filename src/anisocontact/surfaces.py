@@ -9,9 +9,22 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core, registry
+from anisocontact.arrays import Floats, points
 from anisocontact.errors import InputError
+from anisocontact.geometry import Geometry, GeometryDerivatives
 
-Floats = npt.NDArray[np.float64]
+__all__ = [
+    "PROJECTION_STATUS",
+    "Floats",
+    "Geometry",
+    "GeometryDerivatives",
+    "Jet",
+    "Projection",
+    "Surface",
+    "default_threads",
+    "make_surface",
+    "points",
+]
 
 
 @dataclass(frozen=True)
@@ -29,43 +42,8 @@ class Jet:
     d2: Floats
 
 
-@dataclass(frozen=True)
-class Geometry:
-    """Metric, normal, curvature and connection of a surface at n points.
-
-    Symbols are those of the notation table; index order is that of the name.
-
-    Args:
-        a_co: Metric a_ij, (n, 2, 2).
-        a_contra: Its inverse a^ij, (n, 2, 2).
-        area: sqrt(det a_ij), (n,).
-        normal: Unit normal n, (n, 3).
-        h_co: Curvature h_ij = rho_ij . n, (n, 2, 2).
-        h_mixed: h^i_j = a^ik h_kj, (n, 2, 2).
-        christoffel: Gamma^k_ij, k first, (n, 2, 2, 2).
-    """
-
-    a_co: Floats
-    a_contra: Floats
-    area: Floats
-    normal: Floats
-    h_co: Floats
-    h_mixed: Floats
-    christoffel: Floats
-
-    @property
-    def gaussian_curvature(self) -> Floats:
-        """Determinant of h^i_j, (n,) [1/length^2]."""
-        return np.linalg.det(self.h_mixed)
-
-    @property
-    def mean_curvature(self) -> Floats:
-        """Half the trace of h^i_j, (n,) [1/length]; its sign follows the normal."""
-        return 0.5 * np.trace(self.h_mixed, axis1=1, axis2=2)
-
-
 #: Names of the status codes of a projection.
-PROJECTION_STATUS = ("interior", "edge", "failed")
+PROJECTION_STATUS = ("interior", "edge", "corner", "singular", "ambiguous", "failed")
 
 
 @dataclass(frozen=True)
@@ -75,24 +53,19 @@ class Projection:
     Args:
         xi: Coordinates of the closest points, (n, 2).
         gap: xi^3 = (x - rho) . n, (n,) [length].
-        status: 0 interior, 1 on an edge, 2 failed, (n,).
+        status: A code of `PROJECTION_STATUS`, (n,): 0 interior, x - rho is normal to the surface;
+            1 on an edge; 2 in a corner; 3 at a pole or apex, where the coordinates are singular;
+            4 ambiguous, others are as near or x is a centre of curvature; 5 failed, the numbers
+            are NaN.
+        dxi_dx: d xi^i/dx, (n, 2, 3); empty where derivatives were not asked for.
+        dgap_dx: d xi^3/dx, (n, 3).
     """
 
     xi: Floats
     gap: Floats
     status: npt.NDArray[np.int8]
-
-
-def points(x: npt.ArrayLike, columns: int, name: str = "x") -> Floats:
-    """`x` as a contiguous (n, columns) array of doubles.
-
-    Raises:
-        InputError: Another shape was given.
-    """
-    a = np.ascontiguousarray(np.atleast_2d(np.asarray(x, dtype=np.float64)))
-    if a.ndim != 2 or a.shape[1] != columns:
-        raise InputError(f"an array of shape {a.shape} given, (n, {columns}) needed", field=name)
-    return a
+    dxi_dx: Floats
+    dgap_dx: Floats
 
 
 def default_threads() -> int:
@@ -144,19 +117,53 @@ class Surface:
             >>> plane.geometry([[1.0, 2.0]]).a_co[0].tolist()
             [[1.0, 0.0], [0.0, 1.0]]
         """
-        return Geometry(**self.core.geometry(points(xi, 2, "xi")))
+        xi = points(xi, 2, "xi")
+        return Geometry(self.core, xi, **self.core.geometry(xi))
 
-    def project(self, x: npt.ArrayLike, threads: int | None = None) -> Projection:
+    def geometry_derivatives(self, xi: npt.ArrayLike) -> GeometryDerivatives:
+        """Exact derivatives of metric, normal and curvature along the coordinates.
+
+        Args:
+            xi: Coordinates, (n, 2).
+
+        Returns:
+            a_ij,k and n_k and h_ij,k, by dual numbers.
+        """
+        return GeometryDerivatives(**self.core.geometry_derivatives(points(xi, 2, "xi")))
+
+    def project(
+        self,
+        x: npt.ArrayLike,
+        guess: npt.ArrayLike | None = None,
+        *,
+        derivatives: bool = True,
+        threads: int | None = None,
+    ) -> Projection:
         """Closest points [Konyukhov Schweizerhof 2006, eq. (1), (2)].
 
         Args:
             x: Points, (n, 3) [length].
+            guess: Coordinates that may be near, such as the last ones, (n, 2). They can save time
+                and never change the result.
+            derivatives: Whether the derivatives with respect to x are wanted.
             threads: Number of threads; all processors if left out.
 
         Returns:
-            Coordinates, gap and status of each point.
+            Coordinates, gap, status and derivatives of each point.
+
+        Raises:
+            InputError: An array of another shape was given.
+
+        Example:
+            >>> sphere = make_surface("sphere", centre=(0, 0, 0), radius=2.0)
+            >>> p = sphere.project([[0.0, 3.0, 0.0]])
+            >>> p.gap.round(12).tolist(), np.allclose(p.dgap_dx, [[0.0, 1.0, 0.0]])
+            ([1.0], True)
         """
-        return Projection(**self.core.project(points(x, 3), threads or default_threads()))
+        x = points(x, 3)
+        if guess is not None:
+            guess = points(guess, 2, "guess", rows=len(x))
+        return Projection(**self.core.project(x, guess, derivatives, threads or default_threads()))
 
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float], tuple[bool, bool]]:

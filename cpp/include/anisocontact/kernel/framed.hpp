@@ -29,7 +29,7 @@ inline Framed framed(const surface::AnySurface& surface, const law::NormalModel&
     out.failure = Failure::projection;
     return out;
   }
-  const auto k = kinematics<S>(surface, state, p.xi, seeded<S>(x), dt);
+  const auto k = kinematics<S>(surface, state, p, seeded<S>(x), dt);
   const auto axes = axes_of(directions, k.now, k.xi);
   if (!axes.valid) {
     out.failure = Failure::direction;

@@ -4,6 +4,7 @@
 
 #include "anisocontact/kernel/interface.hpp"
 #include "anisocontact/projection/closest_point.hpp"
+#include "anisocontact/projection/linearisation.hpp"
 
 namespace anisocontact::kernel {
 
@@ -36,14 +37,14 @@ Vec3<S> seeded(const Vec3<double>& x) {
 /// Kinematics of a projected point.
 template <class S>
 Kinematics<S> kinematics(const surface::AnySurface& surface, const PointState& state,
-                         const std::array<double, 2>& xi, const Vec3<S>& x, double dt) {
+                         const projection::Projection& p, const Vec3<S>& x, double dt) {
   Kinematics<S> k;
-  const auto here = surface::geometry(surface::jet(surface, xi[0], xi[1]));
+  const auto here = surface::geometry(surface::jet(surface, p.xi[0], p.xi[1]));
   if constexpr (std::is_same_v<S, double>) {
-    k.xi = {xi};
+    k.xi = {p.xi};
     k.now = here;
   } else {
-    k.xi = projection::linearised(here, xi, x);
+    k.xi = projection::linearised(here, p, x);
     k.now = surface::geometry(surface::jet(surface, k.xi[0], k.xi[1]));
   }
   k.before = surface::constant_geometry<S>(
@@ -65,7 +66,7 @@ PointResult update(const Interface& itf, const PointState& state, const Vec3<dou
     out.failure = Failure::projection;
     return out;
   }
-  const auto k = kinematics<S>(itf.surface, state, p.xi, seeded<S>(x), dt);
+  const auto k = kinematics<S>(itf.surface, state, p, seeded<S>(x), dt);
   out.normal = value(k.now.normal);
   const auto r =
       react(itf.law, state, k, [&](const auto& field) { return axes_of(field, k.now, k.xi); });

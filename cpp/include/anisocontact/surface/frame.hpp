@@ -1,7 +1,8 @@
 #pragma once
-// Right-handed orthonormal frame that places an analytic surface in space.
+// Orthonormal frame that places an analytic surface in space.
 
 #include <array>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,9 +13,11 @@ namespace anisocontact::surface {
 
 class Frame {
  public:
-  Frame() : Frame(Vec3<double>::Zero(), {Vec3<double>::UnitX(), Vec3<double>::UnitY(), Vec3<double>::UnitZ()}) {}
+  Frame()
+      : Frame(Vec3<double>::Zero(),
+              {Vec3<double>::UnitX(), Vec3<double>::UnitY(), Vec3<double>::UnitZ()}) {}
   Frame(const Vec3<double>& origin, const std::array<Vec3<double>, 3>& axes)
-      : origin_(origin), axes_(axes) {}
+      : origin_(origin), axes_(axes), reach_(origin.cwiseAbs().maxCoeff()) {}
 
   /// Third axis along `third`; first axis along `first` made orthogonal to it. Where `first` is
   /// zero the global axis least aligned with `third` is taken. The names are for the message.
@@ -39,6 +42,10 @@ class Frame {
     return {o, {x, z.cross(x), z}};
   }
 
+  /// The frame with its second axis reversed. It is left-handed: the coordinate that runs from the
+  /// first to the second axis runs the other way, and rho_1 x rho_2 points to the other side.
+  Frame mirrored() const { return {origin_, {axes_[0], -axes_[1], axes_[2]}}; }
+
   const Vec3<double>& origin() const { return origin_; }
   const Vec3<double>& axis(std::size_t i) const { return axes_[i]; }
 
@@ -56,6 +63,11 @@ class Frame {
     const Vec3<double> r = x - origin_;
     return {r.dot(axes_[0]), r.dot(axes_[1]), r.dot(axes_[2])};
   }
+  /// Length that local coordinates of x cannot resolve.
+  double rounding(const Vec3<double>& x) const {
+    constexpr double digits = 8.0 * std::numeric_limits<double>::epsilon();
+    return digits * (reach_ + x.cwiseAbs().maxCoeff());
+  }
 
  private:
   /// Sine of the angle below which two directions count as parallel: far above rounding, far
@@ -63,6 +75,7 @@ class Frame {
   static constexpr double parallel_limit = 1e-8;
   Vec3<double> origin_;
   std::array<Vec3<double>, 3> axes_;
+  double reach_;
 };
 
 }  // namespace anisocontact::surface

@@ -154,4 +154,26 @@ std::array<Vec3<S>, 3> spatial_basis(const Geometry<S>& g, const S& gap) {
   return r;
 }
 
+/// v^i_|j = v^i_,j + Gamma^i_jk v^k of a field with components v^i and derivatives v^i_,j.
+template <class S>
+ContraCo<S> covariant_derivative(const Geometry<S>& g, const Vector<S>& v,
+                                 const ContraCo<S>& derivatives) {
+  ContraCo<S> r = derivatives;
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j)
+      r(i, j) += g.christoffel[i](j, 0) * v[0] + g.christoffel[i](j, 1) * v[1];
+  return r;
+}
+
+/// T_i|j = T_i,j - Gamma^k_ij T_k of a field with components T_i and derivatives T_i,j.
+template <class S>
+CoCo<S> covariant_derivative(const Geometry<S>& g, const Covector<S>& t,
+                             const CoCo<S>& derivatives) {
+  CoCo<S> r = derivatives;
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j)
+      r(i, j) -= g.christoffel[0](i, j) * t[0] + g.christoffel[1](i, j) * t[1];
+  return r;
+}
+
 }  // namespace anisocontact::surface

@@ -2,11 +2,13 @@
 // The surfaces there are. A new one: its header in analytic/, and its name here.
 
 #include "anisocontact/registry/descriptor.hpp"
+#include "anisocontact/surface/analytic/cylinder.hpp"
 #include "anisocontact/surface/analytic/plane.hpp"
+#include "anisocontact/surface/analytic/sphere.hpp"
 
 namespace anisocontact::surface {
 
-using Surfaces = Registry<Plane>;
+using Surfaces = Registry<Plane, Cylinder, Sphere>;
 using AnySurface = Surfaces::Any;
 
 inline Domain domain(const AnySurface& s) {

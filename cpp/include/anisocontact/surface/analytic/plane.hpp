@@ -1,6 +1,7 @@
 #pragma once
 // Plane through a point; the coordinates are lengths along two orthonormal tangents.
 
+#include "anisocontact/surface/foot.hpp"
 #include "anisocontact/surface/frame.hpp"
 #include "anisocontact/surface/geometry.hpp"
 
@@ -17,9 +18,13 @@ class Plane {
             "Plane through a point; xi are lengths along two orthonormal tangents.",
             {{"point", Kind::vector, "length", "a point of the plane"},
              {"normal", Kind::vector, "1", "outward normal of the master", Bound::nonzero},
-             {"tangent", Kind::vector, "1",
+             {"tangent",
+              Kind::vector,
+              "1",
               "direction of the first coordinate, projected on the plane; any tangent if left out",
-              Bound::any, false, {0.0, 0.0, 0.0}}}};
+              Bound::any,
+              false,
+              {0.0, 0.0, 0.0}}}};
   }
   static Plane make(const Values& v) {
     return Plane(Frame::from(v.vector("point"), v.vector("normal"), v.vector("tangent"), "normal",
@@ -37,9 +42,9 @@ class Plane {
   }
 
   /// Closest point in closed form.
-  std::array<double, 2> closest(const Vec3<double>& x) const {
+  Foot closest(const Vec3<double>& x) const {
     const Vec3<double> y = frame_.to_local(x);
-    return {y[0], y[1]};
+    return {{y[0], y[1]}, Status::interior};
   }
 
  private:
