@@ -14,7 +14,6 @@ from pydantic import Field, create_model, model_validator
 from pydantic_core import ErrorDetails
 
 from anisocontact import registry
-from anisocontact.bulk.materials import materials
 from anisocontact.case.quantity import FREE, Quantity, line
 from anisocontact.case.registered import Key, OneOf, Registered, default_of
 from anisocontact.case.section import Section
@@ -205,8 +204,17 @@ class Registries:
             registry.friction_models(),
             registry.sliding_rules(),
             registry.evolution_forms(),
-            materials(),
+            _materials(),
         )
+
+
+def _materials() -> tuple[Entry, ...]:
+    """The materials; none where the finite-element level is not installed."""
+    try:
+        from anisocontact.bulk import materials
+    except ImportError:
+        return ()
+    return materials()
 
 
 @cache

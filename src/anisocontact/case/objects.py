@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from anisocontact.anisotropy import DirectionField, make_directions
-from anisocontact.bulk.materials import Material, make_material
 from anisocontact.case.model import ContactSection
 from anisocontact.case.quantity import AUTO
 from anisocontact.case.registered import Registered
@@ -15,6 +14,9 @@ from anisocontact.errors import InputError
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import Surface, make_surface
+
+if TYPE_CHECKING:
+    from anisocontact.bulk import Material
 
 __all__ = ["interface", "material", "surface", "within"]
 
@@ -38,6 +40,8 @@ def surface(section: Registered, place: str) -> Surface:
 
 def material(section: Registered, place: str) -> Material:
     """The material of a `material.*` table."""
+    from anisocontact.bulk import make_material
+
     with within(place):
         return make_material(section.chosen["model"], **section.parameters())
 

@@ -83,10 +83,17 @@ def validate(data: Mapping[str, Any]) -> Case:
         The checked case.
 
     Raises:
+        InputError: The finite-element level is not installed.
         CaseError: Something in it is wrong.
     """
+    registries = Registries.current()
+    if not registries.materials:
+        raise InputError(
+            "the finite-element level is not installed: pip install 'anisocontact[fem]', "
+            "or fenics-dolfinx from conda-forge"
+        )
     try:
-        case = case_type(Registries.current()).model_validate(data)
+        case = case_type(registries).model_validate(data)
     except ValidationError as error:
         raise CaseError([_as_input(e) for e in error.errors(include_url=False)]) from None
     errors = list(check(case))

@@ -80,6 +80,13 @@ class Results:
         points: pyvista.PolyData = self._read("contact.pvd", index)
         return points
 
+    def fields_file(self, index: int = -1) -> Path:
+        """File that `fields` reads."""
+        return self._file("fields.pvd", index)
+
+    def _file(self, name: str, index: int) -> Path:
+        return self.folder / self._listed(name)[index][1]
+
     def _listed(self, name: str) -> list[tuple[float, str]]:
         path = self.folder / name
         if not path.is_file():
@@ -90,4 +97,4 @@ class Results:
     def _read(self, name: str, index: int) -> Any:
         import pyvista
 
-        return pyvista.read(self.folder / self._listed(name)[index][1])
+        return pyvista.read(self._file(name, index))

@@ -14,6 +14,7 @@ from anisocontact.interface import STATUS
 from anisocontact.results.files import clear, write_text
 from anisocontact.results.history import History
 from anisocontact.results.paraview import Bodies, Collection, slave_points
+from anisocontact.results.report import write_report
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.solver import Accepted, Problem, Step
 
@@ -125,6 +126,9 @@ class Writer:
         self.summary["message"] = message
         self.summary["warnings"] = self._warnings()
         self._write_summary()
+        if self._first:
+            for line in write_report(self.folder):
+                self.log(line)
 
     def _head(self, title: str) -> dict[str, Any]:
         model = self._problem.model

@@ -1,0 +1,122 @@
+"""The report of a run: pictures in `pictures/` and `report.html`, made from the results folder."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from anisocontact.results.files import write_text
+from anisocontact.results.report import curves, maps, shape
+from anisocontact.results.report.page import Picture, page
+from anisocontact.results.report.run_data import RunData
+from anisocontact.results.report.style import save
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+__all__ = ["write_report"]
+
+#: Of each contact: name of the picture, who draws it, heading and caption.
+_OF_CONTACT: tuple[tuple[str, Callable[[RunData, int], Figure], str, str], ...] = (
+    (
+        "pressure",
+        maps.pressure,
+        "Pressure",
+        "Pressure on the slave at the end of the steps, at the deformed position.",
+    ),
+    (
+        "status",
+        maps.status,
+        "Status",
+        "Open, sticking and slipping points, each step where stick and slip are most mixed.",
+    ),
+    (
+        "traction",
+        maps.traction,
+        "Traction in principal axes",
+        "Components of the tangential traction along the two axes of friction, at the end.",
+    ),
+    (
+        "domain",
+        curves.domain,
+        "Path of the resultant and adhesion domain",
+        "Left: the resultant tangential force over the normal force; it cannot leave the friction "
+        "ellipse. Right: the mean elastic slip around the centre of the adhesion domain, with the "
+        "ellipse e.(BFB)e = N² for the mean pressure at the end of each step.",
+    ),
+    (
+        "force",
+        curves.force,
+        "Force over displacement",
+        "Resultant of the contact on the slave; the steps are shaded.",
+    ),
+)
+
+
+def write_report(folder: str | Path) -> list[str]:
+    """Draw the pictures and write the report from what is in a results folder.
+
+    Args:
+        folder: Results folder of a run that has ended.
+
+    Returns:
+        What could not be drawn and why, a line each; the report is written all the same.
+    """
+    folder = Path(folder)
+    run = RunData(folder)
+    failed: list[str] = []
+    pictures = _pictures(run, folder / "pictures", failed) if run.moments else []
+    write_text(folder / "report.html", page(run.summary, _step_rows(run), pictures))
+    return failed
+
+
+def _pictures(run: RunData, folder: Path, failed: list[str]) -> list[Picture]:
+    folder.mkdir(exist_ok=True)
+    pictures = []
+
+    def attempt(name: str, title: str, caption: str, make: Callable[[Path], str]) -> None:
+        path = folder / f"{name}.png"
+        try:
+            text = make(path)
+        except Exception as error:  # a picture is no reason to lose a run
+            failed.append(f"picture {name}: {type(error).__name__}: {error}")
+            return
+        pictures.append(Picture(path, title, f"{caption} {text}".strip()))
+
+    def deformed(path: Path) -> str:
+        shape.draw(run.results.fields(), run.results.fields_file(), path)
+        return f"State: {run.moments[-1].title}."
+
+    attempt("deformed", "Deformed bodies", "Colour: size of the displacement.", deformed)
+    for number, contact in enumerate(run.summary["contacts"]):
+        many = len(run.summary["contacts"]) > 1
+        pair = f": {contact['slave']} on {contact['master']}" if many else ""
+        for name, draw, title, caption in _OF_CONTACT:
+
+            def drawn(path: Path, draw: Any = draw, number: int = number) -> str:
+                save(draw(run, number), path)
+                return ""
+
+            attempt(f"{name}-{number}" if many else name, f"{title}{pair}", caption, drawn)
+    return pictures
+
+
+def _step_rows(run: RunData) -> list[dict[str, Any]]:
+    rows = []
+    for name, at in run.steps:
+        iterations = run.history["newton_iterations"][at]
+        row: dict[str, Any] = {
+            "step": name,
+            "increments": len(at),
+            "iterations": int(iterations.sum()),
+            "most": int(iterations.max()),
+            "largest residual": float(run.history["residual"][at].max()),
+        }
+        for number, contact in enumerate(run.summary["contacts"]):
+            end = {key: run.history[f"contacts.{number}.force.{key}"][at[-1]] for key in "xyz"}
+            row |= {f"{contact['slave']} {axis}": float(np.asarray(v)) for axis, v in end.items()}
+        rows.append(row | {"energy residual": float(run.history["energy.residual"][at[-1]])})
+    return rows

@@ -1,0 +1,179 @@
+"""Curves: force over displacement, and the path of the force against its ellipse."""
+
+from __future__ import annotations
+
+from itertools import cycle
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.ticker import MaxNLocator
+
+from anisocontact.results.report.run_data import RunData
+from anisocontact.results.report.style import ACCENT, GREY, STEP_COLOURS, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["domain", "force"]
+
+Floats = npt.NDArray[np.float64]
+
+_DOMAIN = "adhesion domain at the end of each step"
+
+
+def force(run: RunData, contact: int) -> Figure:
+    """Force on the slave over the distance moved: tangential components and normal force."""
+    frame = run.view(-1, contact).frame
+    normal = np.cross(*frame.axes)
+    forces = np.vstack([np.zeros(3), run.vectors(f"contacts.{contact}.force")])
+    tangential = frame.of(forces)
+    label, distance = run.path_length()
+    at = np.append(0.0, distance)
+    figure = new_figure(9.0, 6.0)
+    upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
+    first, second = frame.names()
+    upper.plot(at, tangential[:, 0], "-", color="#1d4ed8", label=f"along {first}")
+    upper.plot(at, tangential[:, 1], "--", color="#c2410c", label=f"along {second}")
+    size = np.linalg.norm(tangential, axis=1)
+    upper.plot(at, size, "-", color="black", lw=1.0, label="size")
+    upper.set_ylabel("tangential force on the slave [force]")
+    upper.legend(loc="best")
+    lower.plot(at, forces @ normal, color="black")
+    lower.set_ylabel("normal force [force]")
+    lower.set_ylim(bottom=min(0.0, float((forces @ normal).min())))
+    lower.set_xlabel(label)
+    for axes in (upper, lower):
+        _shade(run, axes, at)
+        axes.margins(x=0.0)
+        axes.grid(alpha=0.3)
+    _name_steps(run, upper, at)
+    return figure
+
+
+def domain(run: RunData, contact: int) -> Figure:
+    """Path of the force and of the mean elastic slip, each with the ellipse it stays in.
+
+    As figure 5 of the paper: the friction ellipse `T.FT = N^2` in the plane of the force, and what
+    it becomes on the tangent plane, the adhesion domain `e.(BFB)e = N^2` around its centre.
+    """
+    view = run.view(run.moments[-1].index, contact)
+    frame = view.frame
+    normal = np.cross(*frame.axes)
+    forces = run.vectors(f"contacts.{contact}.force")
+    pressing = forces @ normal
+    pressed = pressing > 1e-9 * np.abs(pressing).max(initial=0.0)
+    ratio = frame.of(forces) / np.where(pressed, pressing, np.inf)[:, None]
+    slip = frame.of(run.vectors(f"contacts.{contact}.elastic_slip"))
+    figure = new_figure(11.0, 6.4)
+    left, right = figure.subplots(1, 2)
+    ellipse = _friction_ellipse(run, contact)
+    first, second = frame.names()
+    if ellipse is not None:
+        left.plot(*ellipse.T, color=ACCENT, label="friction ellipse T.FT = N²")
+    _path(run, left, ratio)
+    _centre_view(left)
+    _axis_lines(left, view.mean_axes("friction"), "axes of friction and of adhesion")
+    left.set_title("resultant tangential force over normal force")
+    left.set_xlabel(f"T/N along {first} [1]")
+    left.set_ylabel(f"T/N along {second} [1]")
+    softness = _softness(run, contact)
+    if ellipse is not None and softness is not None:
+        area = run.history[f"contacts.{contact}.area"]
+        mean = pressing / np.where(area > 0.0, area, np.inf)
+        for (_, rows), colour in zip(run.steps, cycle(STEP_COLOURS)):
+            around = mean[rows[-1]] * ellipse @ softness
+            right.plot(*around.T, color=colour, lw=1.0, ls="-.", label=_DOMAIN)
+    _path(run, right, slip)
+    right.plot(0.0, 0.0, "+", color="black", ms=10, label="centre")
+    _centre_view(right)
+    _axis_lines(right, view.mean_axes("adhesion"), "axes of friction and of adhesion")
+    right.set_title("mean elastic slip of the points in contact")
+    right.set_xlabel(f"elastic slip along {first} [length]")
+    right.set_ylabel(f"elastic slip along {second} [length]")
+    for axes in (left, right):
+        axes.set_aspect("equal")
+        axes.grid(alpha=0.3)
+        for axis in (axes.xaxis, axes.yaxis):
+            axis.set_major_locator(MaxNLocator(5))
+            axis.set_major_formatter("{x:.3g}")
+    shown = {
+        label: line
+        for axes in (left, right)
+        for line, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    figure.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=3)
+    return figure
+
+
+def _friction_ellipse(run: RunData, contact: int) -> Floats | None:
+    """Points of `T.FT = N^2` for N = 1 in the frame, (n, 2); None without one for all points."""
+    law = run.summary["contacts"][contact]["laws"]["friction"]
+    axes = run.view(run.moments[-1].index, contact).mean_axes("friction")
+    if axes is None or "coefficients" not in law:
+        return None
+    turn = np.linspace(0.0, 2.0 * np.pi, 361)
+    circle = np.column_stack([np.cos(turn), np.sin(turn)])
+    return np.asarray((circle * law["coefficients"]) @ axes)
+
+
+def _softness(run: RunData, contact: int) -> Floats | None:
+    """Inverse of S = -B in the frame, (2, 2): elastic slip `e = -S^-1 T`."""
+    law = run.summary["contacts"][contact]["laws"]["adhesion"]
+    axes = run.view(run.moments[-1].index, contact).mean_axes("adhesion")
+    if axes is None or law["name"] != "elastic" or min(law["stiffness"]) <= 0.0:
+        return None
+    return np.asarray(axes.T @ np.diag(1.0 / np.array(law["stiffness"])) @ axes)
+
+
+def _path(run: RunData, axes: Axes, points: Floats) -> None:
+    start = np.zeros((1, 2))
+    for (name, rows), colour in zip(run.steps, cycle(STEP_COLOURS)):
+        path = np.vstack([start, points[rows]])
+        axes.plot(*path.T, "o-", color=colour, ms=2.5, lw=1.2, label=name)
+        axes.plot(*path[-1], "s", color=colour, ms=6)
+        start = path[-1:]
+
+
+def _centre_view(axes: Axes) -> None:
+    """Limits around the origin that hold what has been drawn."""
+    drawn = np.concatenate([line.get_xydata() for line in axes.lines])
+    reach = 1.15 * float(np.abs(drawn).max()) or 1.0
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
+
+
+def _axis_lines(axes: Axes, directions: Floats | None, name: str) -> None:
+    if directions is None:
+        return
+    for i, direction in enumerate(directions):
+        label = name if i == 0 else None
+        style = (0, (6, 3)) if i == 0 else (0, (2, 3))
+        axes.axline((0.0, 0.0), tuple(direction), color=GREY, lw=0.8, ls=style, label=label)
+
+
+def _spans(run: RunData, at: Floats) -> list[tuple[str, float, float, str]]:
+    spans = []
+    for (name, rows), colour in zip(run.steps, cycle(STEP_COLOURS)):
+        spans.append((name, float(at[rows[0]]), float(at[rows[-1] + 1]), colour))
+    return spans
+
+
+def _shade(run: RunData, axes: Axes, at: Floats) -> None:
+    for _, start, end, colour in _spans(run, at):
+        axes.axvspan(start, end, color=colour, alpha=0.08, lw=0.0)
+
+
+def _name_steps(run: RunData, axes: Axes, at: Floats) -> None:
+    for name, start, end, colour in _spans(run, at):
+        narrow = end - start < 0.1 * (at[-1] - at[0])
+        axes.annotate(
+            name,
+            (0.5 * (start + end), 1.0),
+            xycoords=("data", "axes fraction"),
+            xytext=(0, 4),
+            textcoords="offset points",
+            ha="left" if narrow else "center",
+            rotation=45.0 if narrow else 0.0,
+            color=colour,
+        )

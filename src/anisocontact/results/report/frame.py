@@ -1,0 +1,148 @@
+"""Plane views of a contact: axes in its mean tangent plane, filled maps of point values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.colors import ListedColormap
+from scipy.spatial import KDTree
+
+from anisocontact.results.report.style import STATUS_COLOURS
+
+if TYPE_CHECKING:
+    import pyvista
+    from matplotlib.axes import Axes
+    from matplotlib.image import AxesImage
+
+__all__ = ["ContactView", "Frame"]
+
+Floats = npt.NDArray[np.float64]
+
+#: Pixels of a map along its longer side.
+PIXELS = 500
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Two axes in a plane.
+
+    Args:
+        axes: Unit vectors, (2, 3).
+    """
+
+    axes: Floats
+
+    @classmethod
+    def across(cls, normal: Floats) -> Frame:
+        """Axes across a normal, the first one along x, or y where x is the normal."""
+        n = normal / np.linalg.norm(normal)
+        along = np.eye(3)[0 if abs(n[0]) < 0.9 else 1]
+        first = along - (along @ n) * n
+        first /= np.linalg.norm(first)
+        return cls(np.stack([first, np.cross(n, first)]))
+
+    def names(self) -> tuple[str, str]:
+        """What the axes are called: x, y, z where they are those, else their components."""
+        first, second = (_axis_name(axis) for axis in self.axes)
+        return first, second
+
+    def of(self, vectors: Floats) -> Floats:
+        """Components of vectors along the axes, (..., 2)."""
+        return np.asarray(vectors @ self.axes.T)
+
+
+class ContactView:
+    """The slave points of one contact, seen against the normal of the master.
+
+    Args:
+        points: All slave points of a run.
+        number: Which contact.
+    """
+
+    def __init__(self, points: pyvista.PolyData, number: int) -> None:
+        chosen = np.asarray(points.point_data["contact"]) == number
+        self.data: dict[str, npt.NDArray[Any]] = {
+            name: np.asarray(points.point_data[name])[chosen] for name in points.point_data
+        }
+        self.position: Floats = np.asarray(points.points, dtype=float)[chosen]
+        self.frame = Frame.across(self.data["normal"].sum(axis=0))
+        self.touching = self.data["status"] > 0
+
+    @cached_property
+    def flat(self) -> Floats:
+        """Positions along the axes of the frame, (n, 2)."""
+        return self.frame.of(self.position)
+
+    def mean_axes(self, law: str) -> Floats | None:
+        """Axes of "adhesion" or "friction" in the frame, (2, 2); None where they vary."""
+        axes = np.stack([self.data[f"direction_{law}_{i}"] for i in (1, 2)], axis=1)[self.touching]
+        if not len(axes):
+            return None
+        mean = self.frame.of(axes.mean(axis=0))
+        # The mean of equal unit vectors has length one.
+        return mean if np.all(np.linalg.norm(mean, axis=1) > 1.0 - 1e-6) else None
+
+    @cached_property
+    def box(self) -> Floats:
+        """Lowest and highest position along the axes of the frame with a margin, (2, 2)."""
+        low, high = self.flat.min(axis=0), self.flat.max(axis=0)
+        margin = 0.04 * (high - low).max() + np.sqrt(self.data["area"].max())
+        return np.stack([low - margin, high + margin])
+
+    @property
+    def aspect(self) -> float:
+        """Height of a map over its width."""
+        width, height = self.box[1] - self.box[0]
+        return float(height / width)
+
+    @cached_property
+    def _nearest(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+        """The point nearest to each pixel and whether it is too far to speak for the pixel."""
+        size = self.box[1] - self.box[0]
+        counts = np.maximum((PIXELS * size / size.max()).astype(int), 2)
+        sides = [np.linspace(self.box[0, i], self.box[1, i], int(counts[i])) for i in (0, 1)]
+        distance, nearest = KDTree(self.flat).query(np.stack(np.meshgrid(*sides), axis=-1))
+        return nearest, distance > 1.2 * np.sqrt(self.data["area"])[nearest]
+
+    def draw(self, axes: Axes, values: npt.NDArray[Any], **style: Any) -> AxesImage:
+        """Draw values at the points as a filled map: every pixel shows the nearest point.
+
+        Args:
+            axes: Where.
+            values: A value for each point, NaN where it is to be left blank, (n,).
+            **style: Of `imshow`.
+
+        Returns:
+            The image.
+        """
+        nearest, outside = self._nearest
+        picked = values.astype(float)[nearest]
+        (left, bottom), (right, top) = self.box.tolist()
+        image = axes.imshow(
+            np.ma.masked_where(outside | np.isnan(picked), picked),
+            origin="lower",
+            extent=(left, right, bottom, top),
+            interpolation="nearest",
+            **style,
+        )
+        first, second = self.frame.names()
+        axes.set_xlabel(f"{first} [length]")
+        axes.set_ylabel(f"{second} [length]")
+        return image
+
+    def draw_touching(self, axes: Axes, values: npt.NDArray[Any], **style: Any) -> AxesImage:
+        """As `draw`, with the open points in grey."""
+        grey = ListedColormap([STATUS_COLOURS[0]])
+        self.draw(axes, np.where(self.touching, np.nan, 0.0), cmap=grey)
+        return self.draw(axes, np.where(self.touching, values, np.nan), **style)
+
+
+def _axis_name(axis: Floats) -> str:
+    for letter, unit in zip("xyz", np.eye(3), strict=True):
+        if abs(axis @ unit) > 1.0 - 1e-9:
+            return letter if axis @ unit > 0.0 else f"-{letter}"
+    return f"({', '.join(f'{v:.3g}' for v in axis)})"

@@ -1,0 +1,95 @@
+"""Maps on the contact surface: pressure, status, traction along the principal axes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.colors import BoundaryNorm, ListedColormap
+from matplotlib.patches import Patch
+
+from anisocontact.results.report.frame import ContactView
+from anisocontact.results.report.run_data import Moment, RunData
+from anisocontact.results.report.style import STATUS_COLOURS, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+__all__ = ["pressure", "status", "traction"]
+
+#: Panels side by side; of more steps the last ones are shown.
+MOST = 3
+
+
+def pressure(run: RunData, contact: int) -> Figure:
+    """Pressure at the end of each step, one scale for all."""
+    moments = run.ends()[-MOST:]
+    figure, panels = _panels(run, contact, moments)
+    top = max(float(view.data["pressure"].max()) for _, view, _ in panels)
+    for axes, view, moment in panels:
+        axes.set_title(moment.title)
+        image = view.draw_touching(
+            axes, view.data["pressure"], cmap="viridis", vmin=0.0, vmax=top or 1.0
+        )
+    figure.colorbar(image, ax=[p[0] for p in panels], label="pressure [stress]")
+    _legend(figure, ["open"])
+    return figure
+
+
+def status(run: RunData, contact: int) -> Figure:
+    """Open, sticking and slipping points, each step at its most mixed moment."""
+    figure, panels = _panels(run, contact, run.mixed(contact)[-MOST:])
+    colours = ListedColormap(STATUS_COLOURS)
+    for axes, view, moment in panels:
+        view.draw(axes, view.data["status"], cmap=colours, norm=BoundaryNorm([0, 1, 2, 3], 3))
+        axes.set_title(moment.title)
+    _legend(figure, ["open", "stick", "slip"])
+    return figure
+
+
+def traction(run: RunData, contact: int) -> Figure:
+    """Tangential traction on the slave along the first and the second friction axis, at the end."""
+    view = run.view(run.moments[-1].index, contact)
+    figure = new_figure(10.0, 4.2 * view.aspect + 1.4)
+    left, right = figure.subplots(1, 2, sharex=True, sharey=True)
+    values = view.data["traction_principal"]
+    limit = float(np.abs(values[view.touching]).max(initial=0.0)) or 1.0
+    for axes, i, name in ((left, 0, "first"), (right, 1, "second")):
+        image = view.draw_touching(axes, values[:, i], cmap="RdBu_r", vmin=-limit, vmax=limit)
+        axes.set_title(f"along the {name} axis of friction")
+        _arrows(axes, view, i)
+    figure.colorbar(image, ax=[left, right], label="tangential traction on the slave [stress]")
+    figure.suptitle(f"{run.moments[-1].title}; arrows: direction of the axis")
+    _legend(figure, ["open"])
+    return figure
+
+
+def _panels(
+    run: RunData, contact: int, moments: list[Moment]
+) -> tuple[Figure, list[tuple[Axes, ContactView, Moment]]]:
+    views = [run.view(moment.index, contact) for moment in moments]
+    figure = new_figure(3.9 * len(moments) + 1.0, 3.6 * views[0].aspect + 1.4)
+    row = figure.subplots(1, len(moments), sharex=True, sharey=True, squeeze=False)[0]
+    return figure, list(zip(row, views, moments, strict=True))
+
+
+def _legend(figure: Figure, names: list[str]) -> None:
+    handles = [
+        Patch(facecolor=colour, edgecolor="black", label=name)
+        for colour, name in zip(STATUS_COLOURS, names, strict=False)
+    ]
+    figure.legend(handles=handles, loc="outside lower center", ncols=len(names))
+
+
+def _arrows(axes: Axes, view: ContactView, which: int) -> None:
+    """Some arrows along a friction axis, spread over the touching points."""
+    touching = np.flatnonzero(view.touching)
+    if not touching.size:
+        return
+    low, high = view.flat.min(axis=0), view.flat.max(axis=0)
+    cell = (high - low).max() / 6.0
+    _, some = np.unique(((view.flat[touching] - low) // cell), axis=0, return_index=True)
+    at = touching[some]
+    arrow = view.frame.of(view.data[f"direction_friction_{which + 1}"][at])
+    axes.quiver(*view.flat[at].T, *arrow.T, color="black", width=0.004, scale=16.0, pivot="mid")

@@ -1,0 +1,150 @@
+"""`report.html`: one file with everything in it."""
+
+from __future__ import annotations
+
+import base64
+import html
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+__all__ = ["Picture", "page"]
+
+_STYLE = """
+body { font: 16px/1.5 system-ui, sans-serif; color: #111827; max-width: 72rem; margin: 2rem auto;
+  padding: 0 1rem; }
+h1 { font-size: 1.6rem; } h2 { font-size: 1.2rem; margin-top: 2.5rem; }
+table { border-collapse: collapse; margin: 0.5rem 0; font-size: 0.9rem; }
+th, td { padding: 0.25rem 0.7rem; border-bottom: 1px solid #e5e7eb; text-align: right; }
+th:first-child, td:first-child { text-align: left; }
+figure { margin: 1rem 0; } figure img { max-width: 100%; height: auto; }
+figcaption { color: #4b5563; font-size: 0.9rem; }
+.wide { overflow-x: auto; }
+.stopped, .warning { background: #fef3c7; padding: 0.5rem 1rem; border-left: 4px solid #d97706; }
+"""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture of the report.
+
+    Args:
+        path: The PNG.
+        title: Heading.
+        caption: What is to be seen.
+    """
+
+    path: Path
+    title: str
+    caption: str
+
+
+def page(
+    summary: dict[str, Any], steps: Sequence[dict[str, Any]], pictures: Sequence[Picture]
+) -> str:
+    """The report as one HTML text without anything outside of it.
+
+    Args:
+        summary: Content of `summary.json`.
+        steps: A row of numbers for each step.
+        pictures: The pictures, in order.
+
+    Returns:
+        The page.
+    """
+    title = html.escape(summary["title"] or "anisocontact")
+    body = [f"<h1>{title}</h1>", *_state(summary), *_overview(summary)]
+    if steps:
+        body += ["<h2>Steps</h2>", _table(steps)]
+    body += ["<h2>Contacts at the end</h2>", _table(_contacts(summary))]
+    body += ["<h2>Supports at the end</h2>", _table(_reactions(summary))]
+    body += ["<h2>Energies at the end</h2>", _table([summary["energy"]])]
+    body += [_figure(picture) for picture in pictures]
+    return (
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+        f"<title>{title}</title><style>{_STYLE}</style></head>\n<body>\n"
+        + "\n".join(body)
+        + "\n</body></html>\n"
+    )
+
+
+def _state(summary: dict[str, Any]) -> list[str]:
+    lines = []
+    if summary["status"] != "done":
+        text = html.escape(summary["message"])
+        lines.append(
+            f'<p class="stopped">Stopped before the end: {text}. What converged is shown.</p>'
+        )
+    lines += [f'<p class="warning">{html.escape(text)}</p>' for text in summary["warnings"]]
+    return lines
+
+
+def _overview(summary: dict[str, Any]) -> list[str]:
+    increments = max(summary["steps"], 1)
+    row = {
+        "bodies": ", ".join(summary["bodies"]),
+        "nodes": summary["nodes"],
+        "cells": summary["cells"],
+        "unknowns": summary["unknowns"],
+        "increments": summary["steps"],
+        "Newton iterations": summary["newton_iterations"],
+        "per increment": round(summary["newton_iterations"] / increments, 2),
+        "wall time [s]": summary["wall_time_s"],
+    }
+    note = (
+        "All numbers are in the units of the case: [length], [force], [stress] and so on stand for "
+        f"whatever the case file was written in. Made by anisocontact {summary['version']}."
+    )
+    return [_table([row]), f"<p>{html.escape(note)}</p>"]
+
+
+def _contacts(summary: dict[str, Any]) -> list[dict[str, Any]]:
+    rows = []
+    for contact in summary["contacts"]:
+        row = {"slave": contact["slave"], "master": contact["master"]}
+        row |= _vector("force", contact["force"]) | _vector("moment", contact["moment"])
+        row |= {
+            "largest pressure": contact["max_pressure"],
+            "largest penetration": contact["max_penetration"],
+            "... over facet size": contact["max_penetration"] / contact["facet_size"],
+            **contact["points"],
+        }
+        rows.append(row)
+    return rows
+
+
+def _reactions(summary: dict[str, Any]) -> list[dict[str, Any]]:
+    moved = summary["displacements"]
+    return [
+        {"facets": group, **_vector("force", force), **_vector("displacement", moved[group])}
+        for group, force in summary["reactions"].items()
+    ]
+
+
+def _vector(name: str, values: Iterable[float]) -> dict[str, float]:
+    return {f"{name} {axis}": value for axis, value in zip("xyz", values, strict=True)}
+
+
+def _table(rows: Sequence[dict[str, Any]]) -> str:
+    if not rows:
+        return "<p>None.</p>"
+    head = "".join(f"<th>{html.escape(str(key))}</th>" for key in rows[0])
+    body = "".join(
+        "<tr>" + "".join(f"<td>{_cell(value)}</td>" for value in row.values()) + "</tr>"
+        for row in rows
+    )
+    return f'<div class="wide"><table><tr>{head}</tr>{body}</table></div>'
+
+
+def _cell(value: Any) -> str:
+    return f"{value:.5g}" if isinstance(value, float) else html.escape(str(value))
+
+
+def _figure(picture: Picture) -> str:
+    data = base64.b64encode(picture.path.read_bytes()).decode("ascii")
+    title, caption = html.escape(picture.title), html.escape(picture.caption)
+    return (
+        f'<h2>{title}</h2>\n<figure><img alt="{title}" src="data:image/png;base64,{data}">'
+        f"<figcaption>{caption}</figcaption></figure>"
+    )

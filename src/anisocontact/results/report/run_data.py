@@ -1,0 +1,112 @@
+"""A run as the pictures need it: history by step, fields at chosen moments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.results.read import Results
+from anisocontact.results.report.frame import ContactView
+
+__all__ = ["Moment", "RunData"]
+
+Floats = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A written state.
+
+    Args:
+        title: Step and increment.
+        index: Its number in the collections of fields.
+        row: Its row of the history.
+    """
+
+    title: str
+    index: int
+    row: int
+
+
+class RunData:
+    """Results with what the pictures ask of them.
+
+    Args:
+        folder: Results folder.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.results = Results(folder)
+        self.summary: dict[str, Any] = self.results.summary
+        self.history = self.results.history
+        self.rows = len(self.history.get("time", ()))
+
+    @cached_property
+    def steps(self) -> list[tuple[str, Indices]]:
+        """Name of each step that was begun, and the rows of its accepted increments."""
+        names = self.history["step"] if self.rows else np.array([], dtype=str)
+        order = list(dict.fromkeys(names.tolist()))
+        return [(name, np.flatnonzero(names == name)) for name in order]
+
+    @cached_property
+    def moments(self) -> list[Moment]:
+        """Written states, the start left out."""
+        found = []
+        times = self.results.times
+        for row in range(self.rows):
+            same = np.flatnonzero(np.isclose(times, self.history["time"][row], rtol=1e-12))
+            if same.size:
+                step, increment = self.history["step"][row], self.history["increment"][row]
+                found.append(Moment(f"{step}, increment {increment:.0f}", int(same[-1]), row))
+        return found
+
+    def ends(self) -> list[Moment]:
+        """The last written state of each step."""
+        return [m for m in (self._last_of(rows) for _, rows in self.steps) if m is not None]
+
+    def _last_of(self, rows: Indices) -> Moment | None:
+        inside = [m for m in self.moments if m.row in rows]
+        return inside[-1] if inside else None
+
+    def mixed(self, contact: int) -> list[Moment]:
+        """The written state of each step in which stick and slip are most mixed."""
+        chosen = []
+        for _, rows in self.steps:
+            inside = [m for m in self.moments if m.row in rows]
+            if inside:
+                chosen.append(max(inside, key=lambda m: self._mixture(contact, m.row)))
+        return chosen
+
+    def _mixture(self, contact: int, row: int) -> float:
+        counts = np.array(
+            [self.history[f"contacts.{contact}.points.{s}"][row] for s in ("stick", "slip")]
+        )
+        # The least of both, and among states that are all the same the last one.
+        return float(counts.min() + 1e-9 * row)
+
+    def vectors(self, name: str) -> Floats:
+        """A vector column of the history, (rows, 3)."""
+        return np.column_stack([self.history[f"{name}.{axis}"] for axis in "xyz"])
+
+    @cache  # noqa: B019 (one object for one report)
+    def view(self, index: int, contact: int) -> ContactView:
+        """A contact in a written state."""
+        return ContactView(self.results.contact(index), contact)
+
+    def path_length(self) -> tuple[str, Floats]:
+        """How far the group that moves most has come, or the time where nothing is moved."""
+        best, name = np.zeros(0), ""
+        for group in self.summary["displacements"]:
+            moved = np.vstack([np.zeros(3), self.vectors(f"displacements.{group}")])
+            length = np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))
+            if length.size and (not best.size or length[-1] > best[-1]):
+                best, name = length, group
+        if not best.size or best[-1] == 0.0:
+            return "time [time]", self.history["time"]
+        return f"distance that {name} has moved [length]", best

@@ -1,0 +1,131 @@
+"""The deformed bodies in space, with the outline they had before.
+
+Drawn by VTK in a process of its own, because a machine without graphics can end a process that
+asks for them; where that fails, matplotlib draws the same.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from anisocontact.results.files import replacing
+from anisocontact.results.report.style import new_figure, save
+
+if TYPE_CHECKING:
+    import pyvista
+
+__all__ = ["LABEL", "caption", "draw", "magnification", "round_box", "surfaces"]
+
+#: Seconds that VTK may take.
+PATIENCE = 120.0
+#: Largest displacement in the picture as a share of the size of the bodies.
+VISIBLE = 0.1
+LABEL = "displacement [length]"
+
+_RENDERER = "anisocontact.results.report.render"
+
+
+def draw(grid: pyvista.UnstructuredGrid, source: Path, picture: Path) -> float:
+    """Draw the deformed bodies.
+
+    Args:
+        grid: Bodies with `displacement`.
+        source: The file the grid was read from.
+        picture: PNG to write.
+
+    Returns:
+        How many times the displacement was magnified.
+    """
+    scale = magnification(grid)
+    if not _by_vtk(source, picture, scale):
+        _by_matplotlib(grid, picture, scale)
+    return scale
+
+
+def magnification(grid: pyvista.UnstructuredGrid) -> float:
+    """A round number that makes the displacement visible; 1 if it is so as it is."""
+    largest = float(np.linalg.norm(grid.point_data["displacement"], axis=1).max())
+    if largest == 0.0:
+        return 1.0
+    wanted = VISIBLE * float(grid.length) / largest
+    if 0.3 < wanted < 3.0:
+        return 1.0
+    power = 10.0 ** math.floor(math.log10(wanted))
+    return next(f * power for f in (5.0, 2.0, 1.0) if f * power <= wanted * (1.0 + 1e-12))
+
+
+def surfaces(
+    grid: pyvista.UnstructuredGrid, scale: float
+) -> tuple[pyvista.PolyData, pyvista.PolyData]:
+    """Surface of the bodies as triangles: deformed, with the `size` of the movement, and not."""
+    grid = grid.copy()
+    grid.point_data["size"] = np.linalg.norm(grid.point_data["displacement"], axis=1)
+    skin: pyvista.PolyData = grid.extract_surface(algorithm="dataset_surface").triangulate()
+    return skin.warp_by_vector("displacement", factor=scale), skin
+
+
+def _by_vtk(source: Path, picture: Path, scale: float) -> bool:
+    environment = dict(os.environ)
+    if sys.platform == "linux" and not environment.get("DISPLAY"):
+        environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    with replacing(picture) as draft:
+        command = [sys.executable, "-m", _RENDERER, str(source), str(draft), repr(scale)]
+        try:
+            done = subprocess.run(
+                command, env=environment, capture_output=True, timeout=PATIENCE, check=False
+            )
+        except (OSError, subprocess.TimeoutExpired):
+            return False
+        if done.returncode == 0 and draft.is_file():
+            return True
+        draft.touch()
+    picture.unlink(missing_ok=True)
+    return False
+
+
+def _by_matplotlib(grid: pyvista.UnstructuredGrid, picture: Path, scale: float) -> None:
+    from mpl_toolkits.mplot3d.art3d import (  # type: ignore[import-untyped]
+        Poly3DCollection,
+    )
+
+    skin, before = surfaces(grid, scale)
+    figure = new_figure(9.0, 6.0)
+    axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
+    outline = Poly3DCollection(before.points[before.regular_faces], facecolor=(0, 0, 0, 0.04))
+    faces = Poly3DCollection(skin.points[skin.regular_faces], cmap="viridis")
+    faces.set_array(skin.point_data["size"][skin.regular_faces].mean(axis=1))
+    axes.add_collection3d(outline)
+    axes.add_collection3d(faces)
+    low, high, _ = round_box(skin, before)
+    for axis, start, end in zip("xyz", low, high, strict=True):
+        axes.set(**{f"{axis}lim": (start, end), f"{axis}label": f"{axis} [length]"})
+    axes.set_box_aspect(high - low)
+    axes.view_init(elev=25.0, azim=-60.0)
+    figure.colorbar(faces, ax=axes, label=LABEL, shrink=0.6)
+    axes.set_title(caption(scale))
+    save(figure, picture)
+
+
+def caption(scale: float) -> str:
+    """Heading of the picture: how much the displacement is magnified."""
+    times = "true to scale" if scale == 1.0 else f"displacement times {scale:g}"
+    return f"{times}; grey: before"
+
+
+def round_box(*meshes: pyvista.PolyData) -> tuple[Any, Any, Any]:
+    """Box of round numbers around meshes: low and high corner, number of labels along each axis."""
+    corners = np.concatenate([np.reshape(mesh.bounds, (3, 2)).T for mesh in meshes])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    least = float((high - low).max()) / 8.0
+    power = 10.0 ** math.floor(math.log10(least))
+    step = next(f * power for f in (1.0, 2.0, 5.0, 10.0) if f * power >= least)
+    # What sticks out by a tenth of a step needs no further one.
+    low, high = np.floor(low / step + 0.1) * step, np.ceil(high / step - 0.1) * step
+    return low, high, np.rint((high - low) / step).astype(int) + 1

@@ -1,0 +1,35 @@
+"""How all pictures look, and how they are kept."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from anisocontact.results.files import replacing
+
+__all__ = ["ACCENT", "GREY", "STATUS_COLOURS", "STEP_COLOURS", "new_figure", "save"]
+
+GREY = "#6b7280"
+ACCENT = "#b91c1c"
+#: Open, stick, slip; told apart without colour vision as well.
+STATUS_COLOURS = ("#d1d5db", "#1d4ed8", "#f59e0b")
+#: One for each step, repeated where there are more.
+STEP_COLOURS = ("#0f766e", "#7c3aed", "#c2410c", "#0369a1", "#a16207", "#be185d")
+
+
+def new_figure(width: float, height: float) -> Figure:
+    """A figure of the given size in inches that needs no display."""
+    figure = Figure(figsize=(width, height), layout="constrained", dpi=120)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a picture as PNG, without the date so that equal runs give equal files."""
+    out = io.BytesIO()
+    figure.savefig(out, format="png", metadata={"Software": None})
+    with replacing(path) as draft:
+        draft.write_bytes(out.getvalue())
