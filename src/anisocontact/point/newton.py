@@ -29,7 +29,7 @@ def solve(balance: Balance, guess: Floats) -> tuple[Trial, int]:
     Raises:
         StepError: Not converged; the message has the residual.
     """
-    trial = balance.at(pressed(balance, guess))
+    trial = pressed(balance, guess)
     for iteration in range(MOST_ITERATIONS):
         size = float(np.linalg.norm(trial.residual))
         if size <= TOLERANCE * trial.scale:

@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from anisocontact.point.balance import Balance, StepError, shown
+from anisocontact.point.balance import Balance, StepError, Trial, shown
 from anisocontact.point.foot import foot
 from anisocontact.surfaces import Floats
 
 
-def pressed(balance: Balance, guess: Floats) -> Floats:
+def pressed(balance: Balance, guess: Floats) -> Trial:
     """The guess, moved along its normal until the resultant pressure is the one that is given.
 
     The pressure grows with the penetration, so a bracketed Newton iteration in the gap always
@@ -22,41 +22,42 @@ def pressed(balance: Balance, guess: Floats) -> Floats:
         guess: Unknowns, whose foot is kept.
 
     Returns:
-        Unknowns.
+        The equations there.
 
     Raises:
         StepError: No penetration gives the pressure.
     """
     if balance.control.pressure is None:
-        return guess
+        return balance.at(guess)
     target = balance.normal_force
     here = foot(balance.interface.surface, guess[:3])
     if not here.reached:
         raise StepError(f"no point of the surface is under {shown(guess[:3])}")
 
-    def miss(gap: float) -> tuple[float, float, Floats]:
+    def miss(gap: float) -> tuple[float, float, Trial]:
         q = guess.copy()
         q[:3] = here.position + gap * here.normal
         trial = balance.at(q)
         slope = float(here.normal @ trial.d_force[:, :3] @ here.normal)
-        return float(here.normal @ trial.force) - target, slope, q
+        return float(here.normal @ trial.force) - target, slope, trial
 
     return _root(miss, here.gap, target, balance)
 
 
 def _root(
-    miss: Callable[[float], tuple[float, float, Floats]],
+    miss: Callable[[float], tuple[float, float, Trial]],
     gap: float,
     target: float,
     balance: Balance,
-) -> Floats:
+) -> Trial:
     """Gap at which `miss` vanishes: positive for more penetration, negative for less."""
     low, high = -np.inf, np.inf  # the gap is in between
-    size = max(abs(gap), 1e-9 * float(np.abs(balance.pose.position).max()), 1e-9)
+    # The first guess of a penetration has no scale of its own: it is only made to grow.
+    size = max(abs(gap), 1e-12 * float(np.abs(balance.pose.position).max()), 1e-30)
     for _ in range(200):
-        value, slope, q = miss(gap)
+        value, slope, trial = miss(gap)
         if abs(value) <= 1e-13 * target or high - low <= 4e-16 * abs(gap):
-            return q
+            return trial
         if value < 0.0:
             high = gap
         else:
@@ -64,6 +65,6 @@ def _root(
         following = gap - value / slope if slope < 0.0 else np.nan
         if not low < following < high:
             following = 0.5 * (low + high) if np.isfinite(low + high) else gap - size
-            size *= 2.0
+            size *= 10.0
         gap = float(following)
     raise StepError(f"no penetration gives the pressure {balance.control.pressure:g}")
