@@ -51,6 +51,7 @@ __all__ = [
     "fem",
     "geometry",
     "locate_entities",
+    "middle_nodes",
     "scalar_element",
     "ufl",
     "vector_space",
@@ -90,6 +91,18 @@ def create_mesh(comm: MPI.Comm, cell: str, degree: int, cells: Nodes, points: Fl
 def cell_permutation(cell: str, nodes: int) -> Nodes:
     """Order `p` that takes a gmsh cell to DOLFINx: `dolfinx = gmsh[:, p]`."""
     return np.asarray(cpp.io.perm_gmsh(cpp.mesh.to_type(cell), nodes), dtype=np.int64)
+
+
+def middle_nodes(cell: str) -> list[tuple[Nodes, Nodes]]:
+    """Corners and middle node of the edges, and of the faces that have one, of a quadratic cell."""
+    kind = basix.CellType[cell]
+    variant = basix.LagrangeVariant.equispaced
+    element = basix.create_element(basix.ElementFamily.P, kind, 2, variant)
+    out = []
+    for corners, nodes in zip(basix.topology(kind)[1:3], element.entity_dofs[1:3], strict=True):
+        if nodes[0]:
+            out.append((np.array(corners), np.array(nodes)[:, 0]))
+    return out
 
 
 def locate_entities(mesh: Any, dim: int, nodes: Nodes, values: Ints) -> tuple[Ints, Ints]:

@@ -48,7 +48,7 @@ def _bilinear_form(model: Model, materials: Mapping[str, Material]) -> Any:
     names = model.body_names()
     cells = [(i, np.sort(model.cells(name))) for i, name in enumerate(names)]
     dx = ufl.Measure("dx", domain=model.mesh, subdomain_data=cells)
+    law: Mapping[str, Any] = materials
     return sum(
-        ufl.inner(materials[name].stress(u), ufl.sym(ufl.grad(v))) * dx(i)
-        for i, name in enumerate(names)
+        ufl.inner(law[name].stress(u), ufl.sym(ufl.grad(v))) * dx(i) for i, name in enumerate(names)
     )

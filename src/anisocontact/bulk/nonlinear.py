@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from anisocontact._fenicsx import (
     fem,
     ufl,
 )
-from anisocontact.bulk.materials import Material
+from anisocontact.bulk.materials import Density, Material
 from anisocontact.mesh import Model
 
 
@@ -86,16 +86,17 @@ def _forms(
     dx = ufl.Measure("dx", domain=model.mesh, subdomain_data=cells)
     # full integration of the stiffness at rest; UFL's own estimate grows with every power of J
     full = 2 * model.order
-    work, energy, complete = 0, 0, True
+    work, energy = 0, 0
+    laws: Mapping[str, Any] = materials
+    complete = all(law.linear or hasattr(law, "energy") for law in laws.values())
     for i, name in enumerate(names):
-        material: Any = materials[name]
+        material = laws[name]
         if material.linear:
             half = 0.5 * ufl.inner(material.stress(u), ufl.sym(ufl.grad(u)))
-            terms = [(half, None)]
+            terms: Sequence[Density] = [(half, None)]
         elif hasattr(material, "energy"):
             terms = material.energy(u)
         else:
-            complete = False
             work += ufl.inner(material.piola(u), ufl.grad(v)) * dx(i, degree=full)
             continue
         for density, degree in terms:

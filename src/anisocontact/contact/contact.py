@@ -111,6 +111,16 @@ class Contact:
         nodes = self.quadrature.nodes
         matrix.setValuesBlockedLocalRCV(nodes, nodes, blocks, PETSc.InsertMode.ADD_VALUES)
 
+    def lever(self) -> float:
+        """Forces that would move every point of the trial to the origin, norm over this rank.
+
+        The machine's precision times this is the round-off of the contact forces: positions are
+        known to a share of their distance from the origin.
+        """
+        x, response = self._trial if self._trial else (self._points, self.last)
+        stiffness = np.linalg.norm(response.tangent, axis=(1, 2)) * self.areas
+        return float(np.linalg.norm(stiffness * np.linalg.norm(x, axis=1)))
+
     def commit(self) -> None:
         """Make the trial the history."""
         if self._trial is not None:

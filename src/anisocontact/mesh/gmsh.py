@@ -15,6 +15,7 @@ from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import MeshArrays, check_boundary, facet_owners
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.msh import Block, MshError, MshFile, read_msh
+from anisocontact.mesh.quality import check_cells
 
 Nodes = npt.NDArray[np.int64]
 
@@ -83,6 +84,7 @@ def _arrays(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:
     used, compact = np.unique(cells, return_inverse=True)
     cells = compact.reshape(cells.shape)
     volumes_only = MeshArrays(cell, degree, msh.points[used], cells, ranges, {}, order=degree)
+    check_cells(volumes_only)
     return replace(volumes_only, facets=_facet_groups(msh, volumes_only, used))
 
 

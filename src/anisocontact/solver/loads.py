@@ -76,7 +76,7 @@ class Supports:
         """Force of each group's supports on the body.
 
         Args:
-            force: Force that the outside exerts on the local unknowns.
+            force: Force of the supports on the unknowns this rank owns.
 
         Returns:
             Facet group -> force, (3,), over all ranks.
@@ -115,7 +115,8 @@ class Tractions:
         self._quadrature: dict[str, FacetQuadrature] = {}
         self._start: dict[str, Floats] = {}
         self._end: dict[str, Floats] = {}
-        self._released: Floats = np.zeros(0)
+        index_map = model.space.dofmap.index_map
+        self._released: Floats = np.zeros(3 * (index_map.size_local + index_map.num_ghosts))
 
     def begin(self, step: Step, released: Floats) -> None:
         """Take over the tractions of a step.

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc, Vec, fem
-from anisocontact.bulk import LinearBulk, Material
+from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
 from anisocontact.contact import Contact
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
@@ -18,8 +18,10 @@ from anisocontact.solver.steps import Step
 
 Floats = npt.NDArray[np.float64]
 
-#: Share of `|diag(K) u|` that is round-off of the internal forces.
-ROUND_OFF = 64.0 * float(np.finfo(np.float64).eps)
+#: Share of `|diag(K) u|` and of `Contact.lever` that is round-off of the forces.
+ROUND_OFF = 16.0 * float(np.finfo(np.float64).eps)
+#: Share of the loads that may be left out of balance as round-off.
+LOAD_SHARE = 1e-6
 
 
 class Problem:
@@ -38,7 +40,8 @@ class Problem:
         u: Displacement, a DOLFINx function; holds the accepted state between increments.
         force_scale: Norm of the forces at work in the last evaluation: of supports, contacts,
             loads or supports still to be moved, the largest.
-        round_off: Residual that floating point leaves in the last evaluation, force.
+        round_off: Residual that floating point leaves in the last evaluation, force; never more
+            than a small share of the loads, which a body that flies off would not balance.
 
     Raises:
         InputError: A body without material, a material without body, or two contacts of one name.
@@ -59,7 +62,10 @@ class Problem:
         self.model = model
         self.materials = dict(materials)
         self.contacts = list(contacts)
-        self.bulk = LinearBulk(model, materials)
+        linear = all(material.linear for material in materials.values())
+        self.bulk: LinearBulk | NonlinearBulk = (
+            LinearBulk(model, materials) if linear else NonlinearBulk(model, materials)
+        )
         self.supports = Supports(model)
         self.tractions = Tractions(model)
         self.u: Any = fem.Function(model.space, name="displacement")
@@ -68,11 +74,13 @@ class Problem:
         self._comm = model.mesh.comm
         self._ghosted = self.u.x.petsc_vec.duplicate()
         self._load: Floats = np.zeros(self._owned)
+        self._load_norm = 0.0
         self._level = 0.0
         self._dt = 0.0
         self._outside: Floats = np.zeros(self._owned)
         self._accepted = self.new_vector()
         self._accepted_outside: Floats = np.zeros(self._owned)
+        self._accepted_reaction: Floats = np.zeros(self._owned)
         self._external_work = 0.0
         diagonal = self.bulk.diagonal
         self._support_scale = diagonal.sum() / diagonal.getSize()
@@ -106,7 +114,7 @@ class Problem:
         self.supports.begin(step, self.u.x.array.copy())
         gone = np.setdiff1d(held, self.supports.unknowns)
         released = np.zeros(len(self.u.x.array))
-        released[gone] = self._accepted_outside[gone]
+        released[gone] = self._accepted_reaction[gone]
         self.tractions.begin(step, released)
 
     def set_level(self, fraction: float, dt: float) -> None:
@@ -114,6 +122,7 @@ class Problem:
         self._level = fraction
         self._dt = dt
         self._load = self._assembled(self.tractions.at(fraction))
+        self._load_norm = self._norm(self._load)
 
     def evaluate(self, x: Vec) -> Floats:
         """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer.
@@ -136,9 +145,14 @@ class Problem:
         residual = self._outside - self._load
         rows = self.supports.unknowns
         residual[rows] = self._support_scale * (x.array_r[rows] - self.supports.at(self._level))
-        at_work = (self._outside[rows], contact_force, self._load, residual[rows])
-        self.force_scale = max(map(self._norm, at_work))
-        self.round_off = ROUND_OFF * self._norm(self.bulk.diagonal.array_r * x.array_r)
+        at_work = (self._outside[rows], contact_force, residual[rows])
+        self.force_scale = max(self._load_norm, *map(self._norm, at_work))
+        levers = np.array([contact.lever() for contact in self.contacts])
+        moved = np.abs(x.array_r) + self.bulk.rest_length
+        stiff = self._norm(self.bulk.diagonal.array_r * moved) + self._norm(levers)
+        self.round_off = ROUND_OFF * stiff
+        if self._load_norm > 0.0:
+            self.round_off = min(self.round_off, LOAD_SHARE * self._load_norm)
         if self._comm.allreduce(failed):
             residual[:] = np.nan
         return residual
@@ -162,6 +176,7 @@ class Problem:
         work = float(mean @ (x.array_r - self._accepted.array_r))
         self._external_work += self._comm.allreduce(work)
         self._accepted_outside = self._outside
+        self._accepted_reaction = self._outside - self._load
         x.copy(self._accepted)
         for contact in self.contacts:
             contact.commit()
@@ -187,7 +202,7 @@ class Problem:
 
         Unknowns on an edge that several groups prescribe count for the first of them.
         """
-        return self.supports.reactions(self._accepted_outside)
+        return self.supports.reactions(self._accepted_reaction)
 
     def energies(self) -> dict[str, float]:
         """Energies of the accepted state, force times length.

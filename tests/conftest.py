@@ -1,0 +1,105 @@
+"""Problems that several tests of the finite-element level start from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+Pair = tuple[float, float]
+
+
+def make_interface(
+    *,
+    stiffness: Pair = (4e3, 1e3),
+    coefficients: Pair = (0.3, 0.1),
+    penalty: float = 1e4,
+    angle: float = 0.0,
+    adhesion_angle: float | None = None,
+    rule: str = "maximum-dissipation",
+    point: Sequence[float] = (0.0, 0.0, 0.0),
+    normal: Sequence[float] = (0.0, 0.0, 1.0),
+    vector: Sequence[float] = (1.0, 0.0, 0.0),
+    **of_rule: Any,
+) -> Any:
+    """A plane with the axes of friction at `angle`, those of adhesion there too or at their own."""
+    from anisocontact.anisotropy import make_directions
+    from anisocontact.interface import Interface
+    from anisocontact.laws import Adhesion, Friction, NormalLaw
+    from anisocontact.surfaces import make_surface
+
+    of_adhesion = angle if adhesion_angle is None else adhesion_angle
+    friction_axes = make_directions("constant", vector=vector, angle=angle)
+    adhesion_axes = make_directions("constant", vector=vector, angle=of_adhesion)
+    return Interface(
+        make_surface("plane", point=point, normal=normal),
+        NormalLaw(penalty=penalty),
+        Adhesion(stiffness=stiffness, directions=adhesion_axes),
+        Friction(coefficients=coefficients, directions=friction_axes, sliding_rule=rule, **of_rule),
+    )
+
+
+@dataclass
+class Block:
+    """An elastic block on a plane."""
+
+    model: Any
+    material: Any
+    contact: Any
+    problem: Any
+
+    def run(self, *steps: Any, **options: Any) -> list[Any]:
+        """All accepted increments."""
+        from anisocontact.solver import Solver
+
+        return list(Solver(self.problem, steps, options=options).run())
+
+
+def make_block(
+    interface: Any,
+    *,
+    cells: Sequence[int] = (3, 3, 2),
+    size: Sequence[float] = (1.0, 1.0, 0.5),
+    cell: str = "hexahedron",
+    order: int = 1,
+    young: float = 1000.0,
+    nu: float = 0.3,
+    move: Callable[[Any], Any] | None = None,
+) -> Block:
+    """Block with its lowest corner in the origin; `move` takes its nodes elsewhere."""
+    from anisocontact.bulk import make_material
+    from anisocontact.contact import Contact
+    from anisocontact.mesh import BoxSpec, build_box
+    from anisocontact.solver import Problem
+
+    model = build_box({"block": BoxSpec((0.0, 0.0, 0.0), size, cells, cell, order)})
+    if move is not None:
+        model.mesh.geometry.x[:] = move(model.mesh.geometry.x)
+    material = make_material("linear-elastic", E=young, nu=nu)
+    contact = Contact(model, "block.bottom", interface)
+    return Block(model, material, contact, Problem(model, {"block": material}, [contact]))
+
+
+def plane_tensor(values: Pair, angle: float) -> Any:
+    """Symmetric tensor of the plane with eigenvalues along axes turned by `angle`, (2, 2)."""
+    c, s = np.cos(angle), np.sin(angle)
+    axes = np.array([[c, s], [-s, c]])
+    return axes.T @ np.diag(values) @ axes
+
+
+class FiniteElements:
+    """What the tests of the finite-element level share."""
+
+    interface = staticmethod(make_interface)
+    block = staticmethod(make_block)
+    tensor = staticmethod(plane_tensor)
+
+
+@pytest.fixture(scope="session")
+def fe() -> FiniteElements:
+    """Builders of small contact problems; skips where DOLFINx is not installed."""
+    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    return FiniteElements()

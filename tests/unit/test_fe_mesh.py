@@ -1,0 +1,293 @@
+"""Boxes, gmsh files, names."""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from anisocontact.errors import InputError
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "milled_block" / "block.msh"
+FORMATS = [("4.1", False), ("4.1", True), ("2.2", False), ("2.2", True)]
+
+
+@pytest.fixture(autouse=True)
+def _needs_dolfinx(fe):
+    """All tests here need DOLFINx."""
+
+
+@pytest.fixture(scope="module")
+def gmsh():
+    """The gmsh package, where the machine has the libraries it needs."""
+    return pytest.importorskip("gmsh", exc_type=(ImportError, OSError))
+
+
+def written(gmsh, path, *, version="4.1", binary=False, order=1, hexahedra=False, rename=None):
+    """A unit cube, volume "block", faces "bottom" and "block.top", and what `rename` says."""
+    names = {"block": "block", "bottom": "bottom", "top": "block.top"} | (rename or {})
+    gmsh.initialize()
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        cube = gmsh.model.occ.addBox(0, 0, 0, 1, 1, 1)
+        gmsh.model.occ.synchronize()
+        if names["block"]:
+            gmsh.model.addPhysicalGroup(3, [cube], name=names["block"])
+        else:
+            gmsh.model.addPhysicalGroup(3, [cube])
+        for z, name in ((0.0, names["bottom"]), (1.0, names["top"])):
+            box = (-0.1, -0.1, z - 0.1, 1.1, 1.1, z + 0.1)
+            tags = [tag for _, tag in gmsh.model.getEntitiesInBoundingBox(*box, 2)]
+            gmsh.model.addPhysicalGroup(2, tags, name=name)
+        if hexahedra:
+            for _, edge in gmsh.model.getEntities(1):
+                gmsh.model.mesh.setTransfiniteCurve(edge, 3)
+            for dim, tag in gmsh.model.getEntities(2):
+                gmsh.model.mesh.setTransfiniteSurface(tag)
+                gmsh.model.mesh.setRecombine(dim, tag)
+            gmsh.model.mesh.setTransfiniteVolume(cube)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", 0.5)
+        gmsh.option.setNumber("Mesh.ElementOrder", order)
+        gmsh.option.setNumber("Mesh.MshFileVersion", float(version))
+        gmsh.option.setNumber("Mesh.Binary", binary)
+        gmsh.model.mesh.generate(3)
+        gmsh.write(str(path))
+    finally:
+        gmsh.finalize()
+    return path
+
+
+def volume_and_areas(model):
+    """Volume of the mesh and area of each facet group, by UFL."""
+    from anisocontact._fenicsx import fem, ufl
+
+    one = fem.Constant(model.mesh, 1.0)
+    volume = fem.assemble_scalar(fem.form(one * ufl.dx))
+    areas = {}
+    for name in model.facet_names():
+        sides = fem.compute_integration_domains(
+            fem.IntegralType.exterior_facet, model.mesh.topology, model.facets(name)
+        )
+        ds = ufl.Measure("ds", domain=model.mesh, subdomain_data=[(1, sides)])
+        areas[name] = fem.assemble_scalar(fem.form(one * ds(1)))
+    return volume, areas
+
+
+@pytest.mark.parametrize("cell", ["hexahedron", "tetrahedron"])
+def test_box_has_its_faces(cell):
+    """Requirement: structured box with exact facet groups x-, x+, y-, y+, z-, z+."""
+    from anisocontact.mesh import BoxSpec, build_box
+
+    model = build_box({"b": BoxSpec((1.0, 2.0, 3.0), (1.0, 2.0, 0.5), (2, 3, 4), cell)})
+    volume, areas = volume_and_areas(model)
+    per_cell, per_face = {"hexahedron": (1, 1), "tetrahedron": (6, 2)}[cell]
+    assert len(model.cells("b")) == 24 * per_cell
+    assert model.count_facets("b.left") == 12 * per_face
+    assert volume == pytest.approx(1.0)
+    sides = {"left": 1.0, "right": 1.0, "front": 0.5, "back": 0.5, "bottom": 2.0, "top": 2.0}
+    assert areas == pytest.approx({f"b.{k}": v for k, v in sides.items()})
+    assert model.body_of("b.top") == "b"
+
+
+@pytest.mark.parametrize(
+    ("given", "line"),
+    [
+        ({"size": (1, 0, 1)}, "size: got [1, 0, 1], every edge must be > 0"),
+        ({"cells": (2, 0, 1)}, "cells: got [2, 0, 1], needs whole numbers >= 1"),
+        ({"cells": (2, 1.5, 1)}, "cells: got [2, 1.5, 1], needs whole numbers >= 1"),
+        ({"origin": (0, float("nan"), 0)}, "origin: got [0, nan, 0], needs three finite numbers"),
+        ({"size": (1, 1)}, "size: got [1, 1], needs three finite numbers"),
+        ({"cell": "prism"}, "cell: got 'prism', allowed: hexahedron, tetrahedron"),
+        ({"order": 3}, "order: got 3, allowed: 1, 2"),
+    ],
+)
+def test_bad_box_is_one_line(given, line):
+    """Requirement: one line naming field, what was given, what is allowed."""
+    from anisocontact.mesh import BoxSpec
+
+    with pytest.raises(InputError) as caught:
+        BoxSpec(**({"origin": (0, 0, 0), "size": (1, 1, 1), "cells": (1, 1, 1)} | given))
+    assert str(caught.value) == line
+
+
+def test_boxes_of_different_cells_are_refused():
+    """Requirement: one kind of cell in a mesh, said in one line with the bodies."""
+    from anisocontact.mesh import BoxSpec, build_box
+
+    a = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
+    b = BoxSpec((0, 0, 2), (1, 1, 1), (1, 1, 1), "tetrahedron")
+    with pytest.raises(InputError, match="bodies a and b: all bodies of a mesh need the same cell"):
+        build_box({"a": a, "b": b})
+
+
+@pytest.mark.parametrize(("version", "binary"), FORMATS)
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("hexahedra", [False, True], ids=["tetrahedra", "hexahedra"])
+def test_gmsh_file_in_every_format(gmsh, tmp_path, version, binary, order, hexahedra):
+    """Requirement: gmsh files with physical names, tetrahedra and hexahedra, order 1 and 2."""
+    from anisocontact.mesh import read_gmsh
+
+    path = written(
+        gmsh, tmp_path / "a.msh", version=version, binary=binary, order=order, hexahedra=hexahedra
+    )
+    model = read_gmsh(path)
+    volume, areas = volume_and_areas(model)
+    assert model.order == order
+    assert model.body_names() == ["block"]
+    assert volume == pytest.approx(1.0)
+    assert areas == pytest.approx({"block.bottom": 1.0, "block.top": 1.0})
+
+
+def test_example_mesh_is_what_its_script_says():
+    """The committed mesh: at least 5,000 nodes, names, area of the sole without rounded edges."""
+    from anisocontact.mesh import read_gmsh
+
+    model = read_gmsh(EXAMPLE)
+    assert model.mesh.geometry.index_map().size_global >= 5000
+    volume, areas = volume_and_areas(model)
+    # Sole: 60 x 40 with corners of radius 8, less 2 of the rounded edge all around.
+    sole = 56.0 * 36.0 - (4.0 - np.pi) * 6.0**2
+    assert areas["block.bottom"] == pytest.approx(sole, rel=1e-3)
+    assert areas["block.top"] == pytest.approx(np.pi * (13.0**2 - 6.0**2), rel=1e-3)
+    assert 2.7e4 < volume < 3.1e4
+
+
+@pytest.mark.parametrize(
+    ("rename", "words"),
+    [
+        ({"block": ""}, "no named volume group"),
+        ({"block": "a.b"}, "volume group 'a.b': the name of a body has no dot"),
+    ],
+)
+def test_groups_that_make_no_body(gmsh, tmp_path, rename, words):
+    """Requirement: a mesh without a usable volume group is refused in one line."""
+    from anisocontact.mesh import read_gmsh
+
+    with pytest.raises(InputError, match=words):
+        read_gmsh(written(gmsh, tmp_path / "a.msh", rename=rename))
+
+
+def test_body_that_is_not_in_the_file(gmsh, tmp_path):
+    """Requirement: an absent group suggests the near one."""
+    from anisocontact.mesh import read_gmsh
+
+    with pytest.raises(InputError, match="no volume group 'blok'; did you mean 'block'"):
+        read_gmsh(written(gmsh, tmp_path / "a.msh"), bodies=["blok"])
+
+
+def test_missing_file():
+    """Requirement: a missing mesh file is one line with its name."""
+    from anisocontact.mesh import read_gmsh
+
+    with pytest.raises(InputError, match=r"^mesh.file: mesh file 'none.msh' does not exist$"):
+        read_gmsh("none.msh")
+
+
+def test_facets_off_the_boundary(gmsh, tmp_path):
+    """Requirement: facets that do not bound a body are refused, with their number."""
+    from anisocontact.mesh import read_gmsh
+
+    path = written(gmsh, tmp_path / "a.msh", version="2.2")
+    lines = path.read_text().splitlines()
+    start = lines.index("$Elements") + 2
+    facet = next(i for i in range(start, len(lines)) if lines[i].split()[1:2] == ["2"])
+    words = lines[facet].split()
+    # The last corner of one triangle moves to a node of the opposite face.
+    lines[facet] = " ".join([*words[:-1], "8" if words[-1] != "8" else "7"])
+    path.write_text("\n".join(lines))
+    with pytest.raises(InputError, match="facets belong to no cell of a body"):
+        read_gmsh(path)
+
+
+@pytest.mark.parametrize(("version", "binary"), FORMATS)
+def test_damaged_files_are_one_line(gmsh, tmp_path, version, binary):
+    """Cut, overwritten and doubled bytes: an InputError in one line, or a mesh, nothing else.
+
+    Requirement: a corrupt mesh file is one line. Source: random damage, fixed seed.
+    """
+    from anisocontact.mesh.gmsh import gmsh_arrays
+
+    data = written(gmsh, tmp_path / "a.msh", version=version, binary=binary).read_bytes()
+    rng = np.random.default_rng(5)
+    refused = 0
+    for trial in range(200):
+        damaged = bytearray(data)
+        if trial % 2:
+            del damaged[rng.integers(len(data)) :]
+        else:
+            for place in rng.integers(len(data), size=rng.integers(1, 20)):
+                damaged[place] = rng.integers(256)
+        path = tmp_path / "b.msh"
+        path.write_bytes(damaged)
+        try:
+            gmsh_arrays(path)
+        except InputError as error:
+            refused += 1
+            assert "\n" not in str(error)
+            assert error.field == "mesh.file"
+    assert refused > 100
+
+
+@pytest.mark.parametrize("text", ["", "not a mesh", "$MeshFormat\n3.0 0 8\n$EndMeshFormat\n"])
+def test_something_else_than_a_mesh(tmp_path, text):
+    """Requirement: a file of another kind is one line that says what is wrong."""
+    from anisocontact.mesh import read_gmsh
+
+    path = tmp_path / "a.msh"
+    path.write_text(text)
+    with pytest.raises(InputError, match="is not a readable gmsh file"):
+        read_gmsh(path)
+
+
+def two_tetrahedra(order):
+    """Two tetrahedra with a common facet, as plain arrays."""
+    from anisocontact._fenicsx import middle_nodes
+    from anisocontact.mesh.arrays import MeshArrays
+
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], dtype=float)
+    corners = np.array([[0, 1, 2, 3], [1, 4, 2, 3]])
+    cells = corners
+    if order == 2:
+        edges = middle_nodes("tetrahedron")[0][0]
+        pairs = np.sort(corners[:, edges].reshape(-1, 2), axis=1)
+        ends, number = np.unique(pairs, axis=0, return_inverse=True)
+        cells = np.hstack([corners, 5 + number.reshape(2, 6)])
+        points = np.concatenate([points, points[ends].mean(axis=1)])
+    bodies = {"a": np.arange(2)}
+    return MeshArrays("tetrahedron", order, points, cells, bodies, {}, order)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_sound_cells_pass(order):
+    """Two neighbours of either order are a mesh."""
+    from anisocontact.mesh.quality import check_cells
+
+    check_cells(two_tetrahedra(order))
+
+
+def test_unsound_cells_are_refused():
+    """Flat, inverted, three at one facet, two middles of one edge: each one line.
+
+    Requirement: a damaged mesh is refused before DOLFINx, which would crash, sees it.
+    """
+    from anisocontact.mesh.quality import check_cells
+
+    mesh = two_tetrahedra(1)
+    mesh.points[0] = [1 / 3, 1 / 3, 1 / 3]
+    with pytest.raises(InputError, match="1 of 2 cells are flat or inverted"):
+        check_cells(mesh)
+    mesh = two_tetrahedra(1)
+    mesh.cells[0] = mesh.cells[0, [1, 0, 2, 3]]
+    with pytest.raises(InputError, match="1 of 2 cells are flat or inverted"):
+        check_cells(mesh)
+    mesh = two_tetrahedra(1)
+    third = dataclasses.replace(mesh, cells=np.vstack([mesh.cells, mesh.cells[:1]]))
+    with pytest.raises(InputError, match="1 facets belong to more than two cells"):
+        check_cells(third)
+    mesh = two_tetrahedra(2)
+    shared = mesh.cells[1, np.isin(mesh.cells[1], mesh.cells[0, 4:])][-1]
+    points = np.vstack([mesh.points, mesh.points[shared]])
+    cells = mesh.cells.copy()
+    cells[1, cells[1] == shared] = len(points) - 1
+    with pytest.raises(InputError, match="do not have the same nodes on their common edges"):
+        check_cells(dataclasses.replace(mesh, points=points, cells=cells))
