@@ -81,7 +81,7 @@ class Response:
     @property
     def failed(self) -> npt.NDArray[np.bool_]:
         """Whether a point could not be updated, (n,)."""
-        return self.failure != 0
+        return np.asarray(self.failure != 0)
 
     @property
     def traction_t(self) -> Floats:
@@ -91,7 +91,7 @@ class Response:
     @property
     def traction_principal(self) -> Floats:
         """Components of T along the friction axes, (n, 2) [stress]."""
-        return np.einsum("nij,nj->ni", self.directions_friction, self.traction_t)
+        return np.asarray(np.einsum("nij,nj->ni", self.directions_friction, self.traction_t))
 
 
 class Interface:

@@ -248,7 +248,7 @@ class PythonInterface:
         )
         tangent[active] += np.einsum("nai,naj->nij", frame[active, :2], dt_dx)
         tangent[active] += np.einsum("na,naij->nij", r.traction, frame_dx[active, :2])
-        return tangent
+        return np.asarray(tangent)
 
     def _commit(
         self,

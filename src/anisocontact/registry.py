@@ -11,6 +11,7 @@ import math
 import reprlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -232,7 +233,7 @@ def _numbers(p: Parameter, given: object, field: str) -> list[float]:
     if p.kind in ("axis", "array"):
         return _nested_numbers(p, given, field)
     is_list = isinstance(given, Iterable) and not isinstance(given, str | bytes)
-    items = list(given) if is_list else [given]  # type: ignore[call-overload]
+    items: list[Any] = list(given) if is_list else [given]  # type: ignore[call-overload]
     if any(isinstance(v, bool) or not hasattr(v, "__float__") for v in items):
         raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
     numbers = [float(v) for v in items]

@@ -6,6 +6,7 @@ from anisocontact.bulk.hyperelastic import (
     StVenantKirchhoff,
     UserEnergy,
     UserStress,
+    cauchy_stress,
     deformation_gradient,
 )
 from anisocontact.bulk.library import make_material, materials
@@ -23,6 +24,7 @@ __all__ = [
     "StVenantKirchhoff",
     "UserEnergy",
     "UserStress",
+    "cauchy_stress",
     "deformation_gradient",
     "make_material",
     "materials",

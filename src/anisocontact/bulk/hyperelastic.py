@@ -20,6 +20,22 @@ def deformation_gradient(u: Any) -> Any:
     return ufl.Identity(3) + ufl.grad(u)
 
 
+def cauchy_stress(material: Any, u: Any) -> Any:
+    """True stress of any material, UFL: `P F^T / J` at finite strain.
+
+    Args:
+        material: The material.
+        u: UFL displacement.
+
+    Returns:
+        Stress tensor, (3, 3), stress.
+    """
+    if material.linear:
+        return material.stress(u)
+    gradient = deformation_gradient(u)
+    return material.piola(u) * gradient.T / ufl.det(gradient)
+
+
 class _Isotropic:
     """Two moduli at rest, from Young's modulus and Poisson's ratio."""
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import dolfinx, fem, ufl
-from anisocontact.bulk import deformation_gradient
+from anisocontact.bulk import cauchy_stress
 from anisocontact.contact import Contact
 from anisocontact.results.files import replacing, write_text
 from anisocontact.results.snapshot import elastic_slip
@@ -189,17 +189,9 @@ def _point_data(number: int, contact: Contact) -> dict[str, npt.NDArray[Any]]:
 
 
 def _stress_at(problem: Problem, body: str, space: Any) -> Any:
-    stress = _cauchy(problem.materials[body], problem.u)
+    stress = cauchy_stress(problem.materials[body], problem.u)
     components = ufl.as_vector([stress[i, j] for i, j in _SYMMETRIC])
     return fem.Expression(components, space.element.interpolation_points)
-
-
-def _cauchy(material: Any, u: Any) -> Any:
-    """Force per present area as UFL; at small strain the present area is the reference area."""
-    if material.linear:
-        return material.stress(u)
-    gradient = deformation_gradient(u)
-    return material.piola(u) * gradient.T / ufl.det(gradient)
 
 
 def _joined(parts: list[tuple[Any, ...]]) -> tuple[Any, Any, Any]:
