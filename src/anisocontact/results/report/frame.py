@@ -105,8 +105,9 @@ class ContactView:
         size = self.box[1] - self.box[0]
         counts = np.maximum((PIXELS * size / size.max()).astype(int), 2)
         sides = [np.linspace(self.box[0, i], self.box[1, i], int(counts[i])) for i in (0, 1)]
-        distance, nearest = KDTree(self.flat).query(np.stack(np.meshgrid(*sides), axis=-1))
-        return nearest, distance > 1.2 * np.sqrt(self.data["area"])[nearest]
+        pixels = np.stack(np.meshgrid(*sides), axis=-1)
+        distance, nearest = KDTree(self.flat).query(pixels, p=np.inf)
+        return nearest, distance > 1.1 * np.sqrt(self.data["area"])[nearest]
 
     def draw(self, axes: Axes, values: npt.NDArray[Any], **style: Any) -> AxesImage:
         """Draw values at the points as a filled map: every pixel shows the nearest point.
