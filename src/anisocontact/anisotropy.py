@@ -176,7 +176,7 @@ def components(
     rho = surface.jet(xi).d1
     a = rho @ rho.transpose(0, 2, 1)
     dual = np.linalg.solve(a, rho)  # rho^i
-    spatial = np.einsum("nik,nij,njl->nkl", dual, co, dual)
+    spatial: Floats = np.einsum("nik,nij,njl->nkl", dual, co, dual)
     if placement == "spatial":
         return spatial
     if basis is not None:
@@ -375,7 +375,7 @@ class _Grid:
         if wrong.size:
             where = self.surface.position(self.xi[wrong[0]])[0].tolist()
             raise InputError(f"no direction along the surface at x = {where}", field="directions")
-        second = {"second_vectors": tangential[:, 1]} if v.shape[1] == 2 else {}
+        second = {"second_vectors": tangential[:, 1]} if len(v[0]) == 2 else {}
         return make_directions(
             "tabulated-grid",
             lower=self.lower,

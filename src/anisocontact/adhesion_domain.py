@@ -1,0 +1,346 @@
+"""The adhesion domain: where a point sticks, in the plane of forces and on the tangent plane."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.errors import InputError
+from anisocontact.surfaces import Floats, points
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+Pair = Sequence[float]
+Point = tuple[float, float]
+
+#: det/trace^2 of a tensor below which it has rank one.
+RANK_LIMIT = 1e-12
+
+
+@dataclass(frozen=True)
+class Ellipse:
+    """Points x with (x - centre) . M (x - centre) <= 1 for a positive definite M.
+
+    Args:
+        semi_axes: The longer and the shorter semi-axis.
+        angle: Angle of the longer axis to the first coordinate [rad].
+        centre: Centre.
+
+    Example:
+        >>> Ellipse((2.0, 1.0), angle=0.0).contains([[1.9, 0.0], [0.0, 1.1]]).tolist()
+        [True, False]
+    """
+
+    semi_axes: Point
+    angle: float
+    centre: Point = (0.0, 0.0)
+
+    @property
+    def matrix(self) -> Floats:
+        """M, (2, 2)."""
+        q = _rotation(self.angle)
+        return q @ np.diag([self.semi_axes[0] ** -2, self.semi_axes[1] ** -2]) @ q.T
+
+    def at(self, centre: Pair) -> Ellipse:
+        """The same ellipse about another centre."""
+        return replace(self, centre=(float(centre[0]), float(centre[1])))
+
+    def points(self, n: int = 181) -> Floats:
+        """Points of the boundary at equal steps of the parameter, closed, (n, 2)."""
+        t = np.linspace(0.0, 2.0 * np.pi, n)
+        unit = np.stack([np.cos(t), np.sin(t)], axis=1)
+        return np.asarray(self.centre + (unit * self.semi_axes) @ _rotation(self.angle).T)
+
+    def contains(self, x: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        """Whether points (n, 2) are inside or on the boundary, (n,)."""
+        d = points(x, 2) - self.centre
+        return np.asarray(np.einsum("ni,ij,nj->n", d, self.matrix, d) <= 1.0)
+
+
+@dataclass(frozen=True)
+class Strip:
+    """Points between two parallel lines: what the ellipse becomes where one stiffness is zero.
+
+    Args:
+        half_width: Distance of each line from the centre line.
+        angle: Angle of the lines to the first coordinate [rad].
+        centre: A point of the centre line.
+    """
+
+    half_width: float
+    angle: float
+    centre: Point = (0.0, 0.0)
+
+    @property
+    def matrix(self) -> Floats:
+        """M of (x - centre) . M (x - centre) <= 1, of rank one, (2, 2)."""
+        n = _rotation(self.angle)[:, 1]
+        return np.outer(n, n) / self.half_width**2
+
+    def at(self, centre: Pair) -> Strip:
+        """The same strip about another point."""
+        return replace(self, centre=(float(centre[0]), float(centre[1])))
+
+    def edges(self, length: float) -> Floats:
+        """A piece of the two lines: line, end, coordinate, (2, 2, 2)."""
+        along, across = _rotation(self.angle).T
+        ends = np.array([[-0.5], [0.5]]) * length * along
+        offsets = np.array([-1.0, 1.0])[:, None, None] * self.half_width * across
+        return np.asarray(self.centre + ends[None] + offsets)
+
+    def contains(self, x: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+        """Whether points (n, 2) are inside or on the boundary, (n,)."""
+        d = (points(x, 2) - self.centre) @ _rotation(self.angle)[:, 1]
+        return np.asarray(np.abs(d) <= self.half_width)
+
+
+def force_domain(coefficients: Pair, beta: float, pressure: float) -> Ellipse:
+    """Forces of a sticking point, T.FT <= N^2 [Konyukhov Schweizerhof 2006, eq. (115), (119)].
+
+    Args:
+        coefficients: mu_1, mu_2 > 0.
+        beta: Angle of the first friction axis [rad].
+        pressure: N > 0 [stress].
+
+    Returns:
+        Ellipse with the semi-axes mu_i N [stress], mu_1 N at the angle beta.
+
+    Raises:
+        InputError: A value is not positive.
+
+    Example:
+        >>> force_domain((0.5, 0.25), 0.0, 8.0).semi_axes
+        (4.0, 2.0)
+    """
+    m1, m2 = _positive("coefficients", coefficients)
+    (n,) = _positive("pressure", (pressure,))
+    if m1 >= m2:
+        return Ellipse((m1 * n, m2 * n), _line_angle(beta))
+    return Ellipse((m2 * n, m1 * n), _line_angle(beta + 0.5 * math.pi))
+
+
+def adhesion_domain(
+    stiffness: Pair, alpha: float, coefficients: Pair, beta: float, pressure: float
+) -> Ellipse | Strip:
+    """Elastic slips of a sticking point on the tangent plane, dxi.BFB dxi <= N^2, in closed form.
+
+    [Konyukhov Schweizerhof 2006, eq. (116)-(121)]. Axes and inclination printed there, mu_i N/eps_i
+    and 2 alpha - beta, hold for alpha = beta alone. In the axes of B, with g = beta - alpha,
+
+        a_11 = eps_1^2 (cos^2 g/mu_1^2 + sin^2 g/mu_2^2),
+        a_22 = eps_2^2 (sin^2 g/mu_1^2 + cos^2 g/mu_2^2),
+        a_12 = eps_1 eps_2 (1/mu_1^2 - 1/mu_2^2) sin g cos g
+
+    has the eigenvalues w, the semi-axes are N/sqrt(w), and the shorter one is at the angle
+    alpha + atan2(2 a_12, a_11 - a_22)/2.
+
+    Args:
+        stiffness: eps_1, eps_2 >= 0, one at least > 0 [stress/length].
+        alpha: Angle of the first axis of the adhesion [rad].
+        coefficients: mu_1, mu_2 > 0.
+        beta: Angle of the first axis of the friction [rad].
+        pressure: N > 0 [stress].
+
+    Returns:
+        An ellipse [length]; a strip along the axis of the zero stiffness where there is one.
+
+    Raises:
+        InputError: A value out of range.
+
+    Example:
+        >>> domain = adhesion_domain((2e3, 1e3), 0.0, (0.3, 0.1), 0.0, 10.0)
+        >>> [round(a, 9) for a in domain.semi_axes]
+        [0.0015, 0.001]
+    """
+    e1, e2 = _stiffness(stiffness)
+    m1, m2 = _positive("coefficients", coefficients)
+    (n,) = _positive("pressure", (pressure,))
+    c, s = math.cos(beta - alpha), math.sin(beta - alpha)
+    f11, f22 = (c / m1) ** 2 + (s / m2) ** 2, (s / m1) ** 2 + (c / m2) ** 2
+    if e1 == 0.0:
+        return Strip(n / (e2 * math.sqrt(f22)), _line_angle(alpha))
+    if e2 == 0.0:
+        return Strip(n / (e1 * math.sqrt(f11)), _line_angle(alpha + 0.5 * math.pi))
+    a11, a22 = e1 * e1 * f11, e2 * e2 * f22
+    a12 = e1 * e2 * (m1**-2 - m2**-2) * s * c
+    largest = 0.5 * (a11 + a22) + math.hypot(0.5 * (a11 - a22), a12)
+    root = e1 * e2 / (m1 * m2)  # of the product of the two, which keeps the small one exact
+    short = alpha + 0.5 * math.atan2(2.0 * a12, a11 - a22)
+    return Ellipse(
+        (n * math.sqrt(largest) / root, n / math.sqrt(largest)),
+        _line_angle(short + 0.5 * math.pi),
+    )
+
+
+def domain_from_tensors(
+    stiffness: npt.ArrayLike, friction: npt.ArrayLike, pressure: float
+) -> Ellipse | Strip:
+    """The adhesion domain of any S = -B and F: eigenpairs of S^T F S/N^2.
+
+    Args:
+        stiffness: S, (2, 2), components in an orthonormal frame; need not be symmetric
+            [stress/length].
+        friction: F, (2, 2), symmetric and positive definite.
+        pressure: N > 0 [stress].
+
+    Returns:
+        Ellipse, or strip where S has rank one [length].
+
+    Raises:
+        InputError: F is not symmetric positive definite, or S is zero.
+
+    Example:
+        >>> domain = domain_from_tensors(np.eye(2) * 2e3, np.eye(2) / 0.01, 10.0)
+        >>> [round(a, 9) for a in domain.semi_axes]
+        [0.0005, 0.0005]
+    """
+    s, f = (np.asarray(v, dtype=np.float64) for v in (stiffness, friction))
+    (n,) = _positive("pressure", (pressure,))
+    for name, m in (("stiffness", s), ("friction", f)):
+        if m.shape != (2, 2) or not np.isfinite(m).all():
+            raise InputError(f"an array of shape {m.shape} given, (2, 2) needed", field=name)
+    symmetric = abs(f[0, 1] - f[1, 0]) <= 1e-12 * np.abs(f).max()
+    if not (symmetric and f[0, 0] > 0.0 and np.linalg.det(f) > 0.0):
+        raise InputError(f"{f.tolist()} given, symmetric positive definite needed", "friction")
+    if not s.any():
+        raise InputError("zero given, one direction at least needs a stiffness", "stiffness")
+    (m11, m12), (_, m22) = (s.T @ f @ s / n**2).tolist()
+    largest = 0.5 * (m11 + m22) + math.hypot(0.5 * (m11 - m22), m12)
+    long = 0.5 * math.atan2(2.0 * m12, m11 - m22) + 0.5 * math.pi
+    width = 1.0 / math.sqrt(largest)
+    det = abs(float(np.linalg.det(s)))
+    if det <= RANK_LIMIT * float(np.sum(s * s)):
+        return Strip(width, _line_angle(long))
+    root = det * math.sqrt(float(np.linalg.det(f))) / n**2
+    return Ellipse((math.sqrt(largest) / root, width), _line_angle(long))
+
+
+def _rotation(angle: float) -> Floats:
+    c, s = math.cos(angle), math.sin(angle)
+    return np.array([[c, -s], [s, c]])
+
+
+def _line_angle(angle: float) -> float:
+    """The angle of a line, which is that of no direction: in [-pi/2, pi/2)."""
+    return (angle + 0.5 * math.pi) % math.pi - 0.5 * math.pi
+
+
+def _positive(name: str, values: Pair) -> tuple[float, ...]:
+    if not all(math.isfinite(v) and v > 0.0 for v in values):
+        raise InputError(f"{values!r} given, must be > 0", field=name)
+    return tuple(float(v) for v in values)
+
+
+def _stiffness(values: Pair) -> tuple[float, float]:
+    if not all(math.isfinite(v) and v >= 0.0 for v in values) or not any(values):
+        raise InputError(f"{values!r} given, must be >= 0 and not both 0", field="stiffness")
+    return float(values[0]), float(values[1])
+
+
+def draw_force_plane(
+    domain: Ellipse,
+    *,
+    trial: npt.ArrayLike | None = None,
+    force: npt.ArrayLike | None = None,
+    unit: str = "",
+    axes: Axes | None = None,
+) -> Axes:
+    """Draws the domain in the plane of forces [Konyukhov Schweizerhof 2006, fig. 5, eq. (115)].
+
+    Args:
+        domain: From `force_domain`.
+        trial: Trial forces, (n, 2), drawn as points.
+        force: Forces, (n, 2), drawn as a line.
+        unit: Unit of stress for the labels.
+        axes: Where to draw; a new figure if left out.
+
+    Returns:
+        The matplotlib axes.
+    """
+    ax = _axes(axes)
+    _draw_domain(ax, domain, "sticks: T·FT ≤ N²", "C0")
+    if trial is not None:
+        ax.plot(*points(trial, 2).T, ".", color="C7", ms=4, label="trial force")
+    if force is not None:
+        ax.plot(*points(force, 2).T, ".-", color="C3", lw=1.2, ms=4, label="force")
+    return _finish(ax, "T", unit)
+
+
+def draw_tangent_plane(
+    domain: Ellipse | Strip,
+    *,
+    path: npt.ArrayLike | None = None,
+    centres: npt.ArrayLike | None = None,
+    unit: str = "",
+    axes: Axes | None = None,
+) -> Axes:
+    """Draws the domain on the tangent plane [Konyukhov Schweizerhof 2006, fig. 5, 6, eq. (116)].
+
+    Args:
+        domain: From `adhesion_domain`, about its centre.
+        path: Positions of the contact point S, (n, 2).
+        centres: Centres of the domain, (n, 2); it is drawn about the first and the last of them.
+        unit: Unit of length for the labels.
+        axes: Where to draw; a new figure if left out.
+
+    Returns:
+        The matplotlib axes.
+    """
+    ax = _axes(axes)
+    if centres is None:
+        _draw_domain(ax, domain, "adhesion domain", "C0")
+    else:
+        c = points(centres, 2)
+        _draw_domain(ax, domain.at(c[0]), "adhesion domain, first", "C0")
+        _draw_domain(ax, domain.at(c[-1]), "adhesion domain, last", "C2")
+        ax.plot(*c.T, "x-", color="C2", lw=1.2, ms=5, label="path of the centre")
+    if path is not None:
+        ax.plot(*points(path, 2).T, ".-", color="C3", lw=1.2, ms=4, label="path of the point S")
+    return _finish(ax, "ξ", unit)
+
+
+def _axes(axes: Axes | None) -> Axes:
+    if axes is not None:
+        return axes
+    from matplotlib.figure import Figure
+
+    return Figure(figsize=(5.0, 5.0), layout="constrained").add_subplot()
+
+
+def _draw_domain(ax: Axes, domain: Ellipse | Strip, label: str, color: str) -> None:
+    """Fills a domain and marks its centre and axes."""
+    along, across = _rotation(domain.angle).T
+    centre = np.asarray(domain.centre)
+    if isinstance(domain, Ellipse):
+        outline = domain.points()
+        axes = [(along, domain.semi_axes[0]), (across, domain.semi_axes[1])]
+    else:
+        length = 8.0 * domain.half_width
+        low, high = domain.edges(length)
+        outline = np.concatenate([low, high[::-1]])
+        axes = [(along, 0.5 * length), (across, domain.half_width)]
+    ax.fill(*outline.T, color=color, alpha=0.15, lw=0)
+    edges = [outline] if isinstance(domain, Ellipse) else [outline[:2], outline[2:]]
+    for k, edge in enumerate(edges):
+        ax.plot(*edge.T, color=color, lw=1.5, label=label if k == 0 else None)
+    for direction, size in axes:
+        ends = centre + np.outer((-size, size), direction)
+        ax.plot(*ends.T, "--", color=color, lw=0.8)
+    ax.plot(*centre, "o", color=color, ms=4)
+
+
+def _finish(ax: Axes, symbol: str, unit: str) -> Axes:
+    suffix = f" [{unit}]" if unit else ""
+    sub = "₁₂" if symbol == "T" else "¹²"
+    ax.set_xlabel(f"{symbol}{sub[0]}{suffix}")
+    ax.set_ylabel(f"{symbol}{sub[1]}{suffix}")
+    ax.set_aspect("equal", adjustable="datalim")
+    ax.grid(lw=0.4, alpha=0.5)
+    ax.legend(fontsize="small", loc="best", framealpha=0.9)
+    return ax
