@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from anisocontact._fenicsx import PETSc
 from anisocontact.case import objects
 from anisocontact.case.model import Case, ContactSection
 from anisocontact.case.quantity import FREE
@@ -68,6 +69,7 @@ def build(file: CaseFile) -> Built:
         auto = auto_penalty(model, section.slave, body)
         contacts.append(_contact(case, section, model, auto, place))
     steps = _steps(case, model)
+    _check_options(case.solver.options)
     problem = Problem(model, materials, contacts)
     with objects.within("solver"):
         solver = Solver(problem, steps, options=case.solver.options)
@@ -89,6 +91,27 @@ def _model(file: CaseFile) -> Model:
 def _check_bodies(case: Case, model: Model) -> None:
     for name in case.material:
         model.cells(name, f"material.{name}")
+
+
+def _check_options(options: dict[str, str | int | float | bool]) -> None:
+    """Let PETSc read the options once: a wrong one is found before anything is written."""
+    prefix = "anisocontact_check_"
+    database = PETSc.Options(prefix)
+    for name, value in options.items():
+        database.setValue(name, value)
+    snes = PETSc.SNES().create()
+    snes.setOptionsPrefix(prefix)
+    try:
+        snes.setFromOptions()
+        snes.getKSP().setFromOptions()
+        snes.getKSP().getPC().setFromOptions()
+    except PETSc.Error as error:
+        reason = str(error).splitlines()[-1]
+        raise InputError(f"PETSc refuses them: {reason}", field="solver.options") from None
+    finally:
+        snes.destroy()
+        for name in options:
+            database.delValue(name)
 
 
 def _contact(case: Case, section: ContactSection, model: Model, auto: float, place: str) -> Contact:

@@ -37,11 +37,13 @@ class Outcome:
         status: "done" or "stopped".
         message: Why it stopped; empty if it is done.
         folder: Where its results are.
+        warnings: What the user should look at.
     """
 
     status: str
     message: str
     folder: Path
+    warnings: tuple[str, ...] = ()
 
 
 class RunError(RuntimeError):
@@ -84,7 +86,7 @@ def run(built: Built, folder: str | Path, listener: Listener) -> Outcome:
         writer.close("stopped", f"internal error: {text}")
         raise RunError(f"{text}; details in {writer.folder / 'run.log'}") from error
     writer.close(status, message)
-    return Outcome(status, message, writer.folder)
+    return Outcome(status, message, writer.folder, tuple(writer.summary["warnings"]))
 
 
 def _solve(built: Built, writer: Writer, listener: Listener) -> tuple[str, str]:

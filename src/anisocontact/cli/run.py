@@ -32,6 +32,8 @@ def command(arguments: argparse.Namespace) -> int:
     except RunError as error:
         print(f"error: internal: {error}", file=sys.stderr)
         return INTERNAL
+    for warning in outcome.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
     if outcome.status == "done":
         print(f"done      {folder}")
         return DONE
