@@ -36,21 +36,19 @@ class Normality {
     return r;
   }
 
-  /// dT = [A^-1 - w (x) A^-T n/(n.w)] dT_tr + N w/(n.w) dN with A = I + lambda S K,
-  /// w = A^-1 S K T, n = F T; for K = F the tangent of the associated rule.
+  /// dT = [A^-1 - w (x) A^-T n/(n.w)] dT_tr + w/(n.w) dN with A = I + lambda S K,
+  /// w = A^-1 S K T/N, n = F T/N; for K = F the tangent of the associated rule.
   SlideTangent tangent(const SlideProblem<double>& p, const SlideResult<double>& r) const noexcept {
     const ContraContra<double> k = self().conjugate(p);
     const CoContra<double> sk = p.stiffness * k;
-    const Vector<double> n = p.friction * r.traction;
-    if (std::isinf(r.multiplier)) return tangent_of_limit(p, r.traction, adjugate(sk), n);
+    const Covector<double> t = (1.0 / p.pressure) * r.traction;
+    const Vector<double> n = p.friction * t;
+    if (std::isinf(r.multiplier)) return tangent_of_limit(p, t, adjugate(sk), n);
     const CoContra<double> a = unit<double, Place::co>() + r.multiplier * sk;
     const CoContra<double> a_inv = (1.0 / det(a)) * adjugate(a);
-    const Covector<double> w = a_inv * (sk * r.traction);
-    const double scale = 1.0 / dot(w, n);
-    SlideTangent t;
-    t.d_trial = a_inv - scale * outer(w, transpose(a_inv) * n);
-    t.d_pressure = (p.pressure * scale) * w;
-    return t;
+    const Covector<double> w = a_inv * (sk * t);
+    const Covector<double> d_pressure = (1.0 / dot(w, n)) * w;
+    return {a_inv - outer(d_pressure, transpose(a_inv) * n), d_pressure};
   }
 
  private:
@@ -59,17 +57,15 @@ class Normality {
   /// The force on the yield ellipse in the direction u.
   template <class S>
   static Covector<S> on_ellipse(const SlideProblem<S>& p, const Covector<S>& u) {
-    return (p.pressure / friction_norm(p.friction, u)) * u;
+    return p.pressure * ((S(1.0) / friction_norm(p.friction, u)) * u);
   }
 
-  /// Of T = N m/|m|_F with m = adj(S K) T_tr.
+  /// Of T = N t, t = m/|m|_F with m = adj(S K) T_tr.
   static SlideTangent tangent_of_limit(const SlideProblem<double>& p, const Covector<double>& t,
                                        const CoContra<double>& adjugate_sk,
                                        const Vector<double>& n) {
     const double scale = p.pressure / friction_norm(p.friction, adjugate_sk * p.trial);
-    const double n2 = p.pressure * p.pressure;
-    const CoContra<double> along = unit<double, Place::co>() - (1.0 / n2) * outer(t, n);
-    return {scale * (along * adjugate_sk), (1.0 / p.pressure) * t};
+    return {scale * ((unit<double, Place::co>() - outer(t, n)) * adjugate_sk), t};
   }
 
   /// The secular equation in plain numbers.
