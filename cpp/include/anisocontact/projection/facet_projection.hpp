@@ -1,0 +1,272 @@
+#pragma once
+// Closest point of one facet, inside it, on its sides or at its vertices.
+//
+// The squared distance f(xi) = |rho(xi) - x|^2 is a polynomial. Where its Bernstein coefficients
+// certify that it is convex, Newton's method finds the one minimum; elsewhere the facet is halved,
+// parts whose smallest coefficient exceeds the best value are dropped, and the rest is halved again
+// until it is convex. So the minimum is the global one, also far away and on strongly curved facets.
+
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "anisocontact/projection/quadratic.hpp"
+#include "anisocontact/projection/squared_distance.hpp"
+#include "anisocontact/surface/facet.hpp"
+
+namespace anisocontact::projection {
+
+using surface::FacetKind;
+using surface::Topology;
+
+/// Where on a facet the closest point is. `interior`: x - rho is normal to the facet, also where
+/// the point happens to be on a side; `edge`: normal to a side alone; `vertex`: to none.
+enum class Feature : std::int8_t { interior = 0, edge = 1, vertex = 2 };
+
+/// `nothing`: no point nearer than the limit; `failed`: no convergence (degenerate facet).
+enum class Search : std::int8_t { found = 0, nothing = 1, failed = 2 };
+
+struct FacetPoint {
+  std::array<double, 2> xi{};  ///< in the coordinates of the facet
+  Vec3<double> position{Vec3<double>::Zero()};
+  double distance2{std::numeric_limits<double>::infinity()};
+  Feature feature{Feature::interior};
+  std::int8_t entity{-1};    ///< side or vertex of the feature, in the numbers of the mesh
+  std::uint8_t boundary{0};  ///< bit k: the point is on side k, whatever the feature
+  Search search{Search::nothing};
+};
+
+namespace facet_detail {
+
+/// Relative tolerance of "x - rho is normal to a tangent": far above the rounding of a projection,
+/// far below any angle or length that matters.
+inline constexpr double normal_tolerance = 1e-10;
+
+/// x - rho (as r = rho - x) and the derivatives of f/2 = r.r/2 at coordinates of the reference facet.
+struct Local {
+  Vec3<double> r, r1, r2;
+  double f, g1, g2, h11, h12, h22;
+};
+
+inline Local local(Topology t, const FacetNodes& nodes, const Vec3<double>& x,
+                   const std::array<double, 2>& xi) noexcept {
+  const auto j = surface::facet_jet({t, false}, nodes, xi[0], xi[1]);
+  Local l;
+  l.r = j.position - x;
+  l.r1 = j.d1[0];
+  l.r2 = j.d1[1];
+  l.f = 0.5 * l.r.squaredNorm();
+  l.g1 = l.r.dot(l.r1);
+  l.g2 = l.r.dot(l.r2);
+  l.h11 = l.r1.squaredNorm() + l.r.dot(j.d2[0]);
+  l.h12 = l.r1.dot(l.r2) + l.r.dot(j.d2[1]);
+  l.h22 = l.r2.squaredNorm() + l.r.dot(j.d2[2]);
+  return l;
+}
+
+/// Second-order model of f over a part, around s.
+inline Quadratic model(const Local& l, const Part& part, const std::array<double, 2>& s) noexcept {
+  const auto& [a, b] = part.edge;
+  const auto form = [&](const auto& p, const auto& q) {
+    return p[0] * (l.h11 * q[0] + l.h12 * q[1]) + p[1] * (l.h12 * q[0] + l.h22 * q[1]);
+  };
+  return {s,
+          {l.g1 * a[0] + l.g2 * a[1], l.g1 * b[0] + l.g2 * b[1]},
+          form(a, a),
+          form(a, b),
+          form(b, b)};
+}
+
+/// Where the next step goes: the minimum of the model over the part. Where the model has none, its
+/// Hessian H is replaced by |H|; along a side on which the step stays, H itself is good enough.
+inline std::array<double, 2> step_target(const Quadratic& q, bool triangle, bool& exact) noexcept {
+  exact = q.positive();
+  if (exact) return minimum(q, triangle);
+  auto target = minimum(q.definite(), triangle);
+  for (std::size_t side = 0; side < (triangle ? 3U : 4U); ++side) {
+    if (outside(triangle, side, q.at) != 0.0 || outside(triangle, side, target) != 0.0) continue;
+    target = minimum_on_side(q, triangle, side);
+    exact = true;
+    break;
+  }
+  return target;
+}
+
+struct Minimum {
+  std::array<double, 2> s{};
+  double f{0.0};
+  bool converged{false};
+};
+
+/// Minimum of f over a part of a facet: each step goes to the minimum of the model over the part,
+/// or back from there until f falls.
+inline Minimum minimise(Topology t, const FacetNodes& nodes, const Vec3<double>& x,
+                        const Part& part, std::array<double, 2> s) noexcept {
+  constexpr int most_steps = 60, most_halvings = 30;
+  constexpr double quadratic_end = 1e-9, linear_end = 1e-13, loose_end = 1e-6, rounding = 1e-12;
+  const bool triangle = surface::triangular(t);
+  Local l = local(t, nodes, x, part.at(s));
+  double last = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < most_steps; ++step) {
+    bool exact = false;
+    const Quadratic q = model(l, part, s);
+    const auto target = step_target(q, triangle, exact);
+    const std::array<double, 2> d{target[0] - s[0], target[1] - s[1]};
+    const double size = std::max(std::abs(d[0]), std::abs(d[1]));
+    const double slope = q.g[0] * d[0] + q.g[1] * d[1];
+    // where f no longer tells points apart, steps that stop shrinking are at rounding
+    const bool blurred = -slope <= rounding * l.f;
+    if (blurred && size >= last) return {s, l.f, size < loose_end};
+    Local next = local(t, nodes, x, part.at(target));
+    if (size <= (exact ? quadratic_end : linear_end)) return {target, next.f, true};
+    double length = 1.0;
+    std::array<double, 2> to = target;
+    for (int k = 0; !blurred && next.f > l.f + 1e-4 * length * slope && k < most_halvings; ++k) {
+      length *= 0.5;
+      to = {s[0] + length * d[0], s[1] + length * d[1]};
+      next = local(t, nodes, x, part.at(to));
+    }
+    if (!blurred && next.f >= l.f) return {s, l.f, size < loose_end};
+    s = to;
+    l = next;
+    last = length < 1.0 ? std::numeric_limits<double>::infinity() : size;
+  }
+  return {s, l.f, last < loose_end};
+}
+
+/// Best of the minima found so far.
+struct Best {
+  std::array<double, 2> xi{};
+  double f;  ///< |r|^2 / 2, or the limit
+  Search search{Search::failed};
+
+  void take(const Minimum& m, const Part& part) noexcept {
+    if (!m.converged) return;
+    if (search == Search::failed) search = Search::nothing;
+    if (!(m.f < f)) return;
+    *this = {part.at(m.s), m.f, Search::found};
+  }
+};
+
+/// The parts of a facet on which the least f can be, each to its minimum.
+template <class Polynomial>
+void branch_and_bound(Topology t, const FacetNodes& nodes, const Vec3<double>& x,
+                      const Polynomial& whole, double slack, Best& best) noexcept {
+  constexpr std::size_t most_waiting = 64, most_parts = 2000;
+  // parts that could only win by this much are dropped, else parts around a flat minimum pile up
+  constexpr double drop = 1e-9;
+  std::array<Polynomial, most_waiting> waiting;
+  std::size_t count = 0;
+  waiting[count++] = whole;
+  for (std::size_t parts = 0; count > 0 && parts < most_parts; ++parts) {
+    Polynomial p = waiting[--count];
+    if (p.lower() - slack >= 2.0 * best.f * (1.0 - drop)) continue;
+    if (p.convex() || count + 2 > most_waiting) {
+      best.take(minimise(t, nodes, x, p.part, p.lowest()), p.part);
+      continue;
+    }
+    Polynomial q = p.halve();
+    if (p.lower() < q.lower()) std::swap(p, q);
+    waiting[count++] = p;
+    waiting[count++] = q;
+  }
+  if (best.search != Search::found) return;
+  const Minimum polished = minimise(t, nodes, x, whole_facet, best.xi);
+  if (polished.converged && polished.f <= best.f * (1.0 + drop)) {
+    best.xi = polished.s;
+    best.f = polished.f;
+  }
+}
+
+/// Least f = |r|^2 / 2 over a facet of more than three nodes, where it is below the limit.
+template <class Polynomial>
+Best global_minimum(Topology t, const FacetNodes& nodes, const Vec3<double>& x,
+                    const Polynomial& whole, double limit,
+                    const std::array<double, 2>* start) noexcept {
+  constexpr double rounding = 1e-14;
+  const double slack = rounding * *std::max_element(whole.c.begin(), whole.c.end());
+  Best best{{}, limit};
+  if (whole.lower() - slack >= 2.0 * limit) return {{}, limit, Search::nothing};
+  best.take(minimise(t, nodes, x, whole.part, start ? *start : whole.lowest()), whole.part);
+  if (!whole.convex()) branch_and_bound(t, nodes, x, whole, slack, best);
+  return best;
+}
+
+/// Sides on which coordinates of the reference facet are.
+inline std::uint8_t sides_at(bool triangular, const std::array<double, 2>& s) noexcept {
+  constexpr double on = 1e-14;  // rounding of u + v = 1
+  unsigned bits = 0;
+  for (std::size_t side = 0; side < (triangular ? 3U : 4U); ++side)
+    if (outside(triangular, side, s) >= -on) bits |= 1U << side;
+  return static_cast<std::uint8_t>(bits);
+}
+
+/// |r . t| = 0 within the tolerance, for a tangent t.
+inline bool is_normal(const Vec3<double>& r, const Vec3<double>& t) noexcept {
+  const double length = t.norm();
+  return std::abs(r.dot(t)) <= normal_tolerance * length * (length + r.norm());
+}
+
+/// Feature and entity of a point from the sides it is on and from what x - rho is normal to.
+inline void classify(Topology t, const Local& l, FacetPoint& p) noexcept {
+  p.feature = Feature::interior;
+  p.entity = -1;
+  if (p.boundary == 0 || (is_normal(l.r, l.r1) && is_normal(l.r, l.r2))) return;
+  std::array<std::size_t, 4> on{};
+  std::size_t count = 0;
+  for (std::size_t side = 0; side < surface::side_count(t); ++side)
+    if (p.boundary >> side & 1U) on[count++] = side;
+  for (std::size_t k = 0; k < count; ++k) {
+    const auto d = surface::side_direction({t, false}, on[k]);
+    if (count == 1 || is_normal(l.r, d[0] * l.r1 + d[1] * l.r2)) {
+      p.feature = Feature::edge;
+      p.entity = static_cast<std::int8_t>(on[k]);
+      return;
+    }
+  }
+  const auto a = surface::side_vertices(t, on[0]), b = surface::side_vertices(t, on[1]);
+  p.feature = Feature::vertex;
+  p.entity = static_cast<std::int8_t>(a[0] == b[0] || a[0] == b[1] ? a[0] : a[1]);
+}
+
+inline Best search(Topology t, const FacetNodes& nodes, const Vec3<double>& x, double limit,
+                   const std::array<double, 2>* start) noexcept {
+  if (t == Topology::tri3) {  // f is quadratic
+    const std::array<double, 2> s{0.0, 0.0};
+    return {minimum(model(local(t, nodes, x, s), whole_facet, s), true), 0.0, Search::found};
+  }
+  FacetNodes p = surface::control_points(t, nodes);
+  for (std::size_t i = 0; i < surface::control_count(t); ++i) p[i] -= x;
+  if (t == Topology::quad4) return global_minimum(t, nodes, x, square_distance<1>(p), limit, start);
+  if (t == Topology::tri6) return global_minimum(t, nodes, x, triangle_distance(p), limit, start);
+  return global_minimum(t, nodes, x, square_distance<2>(p), limit, start);
+}
+
+}  // namespace facet_detail
+
+/// Closest point of a facet to x.
+///
+/// `limit2`: only a point with a smaller squared distance is of interest. `start`: coordinates of the
+/// facet to start from, those of an earlier projection; the result does not depend on them.
+inline FacetPoint closest_point(const FacetKind& kind, const FacetNodes& nodes,
+                                const Vec3<double>& x,
+                                double limit2 = std::numeric_limits<double>::infinity(),
+                                const std::array<double, 2>* start = nullptr) noexcept {
+  FacetPoint p;
+  std::array<double, 2> from{};
+  if (start) from = surface::exchanged(kind, *start);
+  const auto m =
+      facet_detail::search(kind.topology, nodes, x, 0.5 * limit2, start ? &from : nullptr);
+  p.search = m.search;
+  if (m.search != Search::found) return p;
+  const auto l = facet_detail::local(kind.topology, nodes, x, m.xi);
+  p.xi = surface::exchanged(kind, m.xi);
+  p.position = x + l.r;
+  p.distance2 = 2.0 * l.f;
+  p.search = p.distance2 < limit2 ? Search::found : Search::nothing;
+  p.boundary = facet_detail::sides_at(surface::triangular(kind.topology), m.xi);
+  facet_detail::classify(kind.topology, l, p);
+  return p;
+}
+
+}  // namespace anisocontact::projection
