@@ -9,7 +9,8 @@ class InputError(ValueError):
     """A mistake in the input: one line names the field, what was given and what is allowed.
 
     Args:
-        message: the line, without a final newline; line breaks in it become spaces.
+        message: the line, without a final newline; line breaks in it become spaces, other
+            characters that do not print are written as escapes.
         field: dotted path of the field or entity, `contact[0].friction.coefficients`; `""` if
             the mistake has no place of its own. Put in front of the message unless it is there.
 
@@ -25,5 +26,5 @@ class InputError(ValueError):
         line = " ".join(message.split())
         if field and not line.startswith(field):
             line = f"{field}: {line}"
-        super().__init__(line)
+        super().__init__("".join(c if c.isprintable() else repr(c)[1:-1] for c in line))
         self.field = field

@@ -6,11 +6,12 @@ that a new entry can be written in a case file without a change here.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache
 from typing import Annotated, Any, Self
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, create_model, field_validator, model_validator
 from pydantic_core import ErrorDetails
 
 from anisocontact import registry
@@ -35,7 +36,7 @@ __all__ = [
 ]
 
 # More cells than fit in the memory of any one machine: a slip of the keyboard, not a mesh.
-_MOST_CELLS = 10_000
+_MOST_CELLS = 10**8
 
 _DIRECTIONS = "direction field of the axes; needed where the two values of a pair differ"
 _DIRECTIONS_SECOND = "directions of the second surface, for a friction model of two surfaces"
@@ -63,12 +64,19 @@ class Box(Section):
     size: Annotated[Point, _number("vector", "length", "edge lengths", "positive")]
     cells: Annotated[
         tuple[int, int, int],
-        _number("integers", "1", "cells along x, y, z", "positive", most=_MOST_CELLS, count=3),
+        _number("integers", "1", "cells along x, y, z", "positive", count=3),
     ]
     cell: Annotated[str, _word("shape of the cells", "hexahedron", "tetrahedron")] = "hexahedron"
     order: Annotated[
         int, _number("integer", "1", "order of the displacement", "positive", most=2)
     ] = 1
+
+    @field_validator("cells", mode="after")
+    @classmethod
+    def _not_too_many(cls, cells: tuple[int, int, int]) -> tuple[int, int, int]:
+        if math.prod(cells) > _MOST_CELLS:
+            raise line(f"{math.prod(cells):.1e} cells given, at most {_MOST_CELLS:.0e} allowed")
+        return cells
 
 
 class Mesh(Section):

@@ -33,6 +33,17 @@ def near(name: str, known: list[str]) -> str:
     return f"{hint}allowed: {', '.join(known) or 'none'}"
 
 
+def _key(e: ErrorDetails) -> str:
+    """The key an error is about."""
+    return str(e["loc"][-1]) if e["loc"] else ""
+
+
+def _near_key(e: ErrorDetails, kind: type[BaseModel]) -> str | None:
+    """The key that was meant by an unknown one, if one is near."""
+    close = difflib.get_close_matches(_key(e), list(kind.model_fields), 1)
+    return close[0] if close and e["type"] == "extra_forbidden" else None
+
+
 class Section(BaseModel):
     """Base of all tables: fixed keys, nothing converted, every message finished where it arises."""
 
@@ -44,8 +55,12 @@ class Section(BaseModel):
         try:
             return handler(data)
         except ValidationError as error:
+            found = error.errors(include_url=False)
+            meant = {_near_key(e, cls) for e in found}
             raise ValidationError.from_exception_data(
-                cls.__name__, [cls._finished(e) for e in error.errors(include_url=False)]
+                cls.__name__,
+                # A key that is written wrong is not missing as well.
+                [cls._finished(e) for e in found if e["type"] != "missing" or _key(e) not in meant],
             ) from None
 
     @classmethod
@@ -54,13 +69,13 @@ class Section(BaseModel):
 
     @classmethod
     def _text(cls, e: ErrorDetails) -> str:
-        kind, key = e["type"], str(e["loc"][-1]) if e["loc"] else ""
+        kind, name = e["type"], _key(e)
         if kind == "line":
             return e["msg"]
         if kind == "missing":
-            return f"missing; {cls._doc(key)}"
+            return f"missing; {cls._doc(name)}"
         if kind == "extra_forbidden":
-            return f"unknown key; {near(key, list(cls.model_fields))}"
+            return f"unknown key; {near(name, list(cls.model_fields))}"
         if kind in _NEEDED:
             return f"{shown(e['input'])} given, {_NEEDED[kind]} needed"
         return f"{shown(e['input'])} given: {e['msg']}"

@@ -1,0 +1,13 @@
+"""A small case that the tests of case file, command and results start from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+
+@pytest.fixture(scope="session")
+def case_text() -> str:
+    """A block of 18 hexahedra, pressed and dragged askew to its marks; runs in a second."""
+    return Path(__file__).with_name("small_block.toml").read_text()

@@ -1,0 +1,169 @@
+"""A wrong case file: one line for each mistake that names the field, and nothing written."""
+
+from __future__ import annotations
+
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import main
+
+CONSTANT = 'directions = { kind = "constant", vector = [1, 0, 0] } }\n\n'
+
+# What is replaced, by what, the field that the line must begin with, what else it must say.
+WRONG = [
+    # unknown keys, with the near one
+    ("title =", "titel =", "titel", 'did you mean "title"?'),
+    ("order = 1", "oder = 1", "mesh.box.block.oder", 'did you mean "order"?'),
+    ("coefficients", "coeficients", "contact[0].friction.coeficients", '"coefficients"?'),
+    ("[output]", "[outptu]", "outptu", 'did you mean "output"?'),
+    # numbers: sign, bound, form
+    ("[0.3, 0.1]", "[-0.3, 0.1]", "contact[0].friction.coefficients", "[-0.3, 0.1] given"),
+    ("[0.3, 0.1]", "[0.3, 0]", "contact[0].friction.coefficients", "> 0"),
+    ("[0.3, 0.1]", '"rough"', "contact[0].friction.coefficients", "'rough' given"),
+    ("[0.3, 0.1]", "[nan, 0.1]", "contact[0].friction.coefficients", "finite"),
+    ("[0.3, 0.1]", "[true, 0.1]", "contact[0].friction.coefficients", "True"),
+    ("[0.3, 0.1]", "[0.3, 0.1, 0.2]", "contact[0].friction.coefficients", "two"),
+    ("[4e3, 1e3]", "[-4e3, 1e3]", "contact[0].adhesion.stiffness", ">= 0"),
+    ("penalty = 1e4", "penalty = 0", "contact[0].normal.penalty", "> 0"),
+    ("penalty = 1e4", "penalty = inf", "contact[0].normal.penalty", "finite"),
+    ("penalty = 1e4", 'penalty = "big"', "contact[0].normal.penalty", '"auto"'),
+    ("E = 1000", "E = -1000", "material.block.E", "-1000 given"),
+    ("E = 1000", "E = 0", "material.block.E", "> 0"),
+    ("E = 1000", 'E = "stiff"', "material.block.E", "a number needed"),
+    ("E = 1000", "E = 1979-05-27", "material.block.E", "number"),
+    ("E = 1000", f"E = 1{'0' * 400}", "material.block.E", "given"),
+    ("nu = 0.3", "nu = 0.5", "material.block.nu", "< 0.5"),
+    ("nu = 0.3", "nu = -1.0", "material.block.nu", "> -1"),
+    ("size = [1, 1, 0.5]", "size = [1, 0, 0.5]", "mesh.box.block.size", "> 0"),
+    ("cells = [3, 3, 2]", "cells = [3, 3, 2.5]", "mesh.box.block.cells", "whole"),
+    ("cells = [3, 3, 2]", "cells = [3, 3]", "mesh.box.block.cells", "3 numbers"),
+    ("cells = [3, 3, 2]", "cells = [3, 30000, 2000000]", "mesh.box.block.cells", "at most 1e+08"),
+    ("order = 1", "order = 3", "mesh.box.block.order", "at most 2"),
+    ('cell = "hexahedron"', 'cell = "hexaeder"', "mesh.box.block.cell", "tetrahedron"),
+    ("increments = 4", "increments = 0", "step[1].increments", "> 0"),
+    ("increments = 4\n", "", "step[1].increments", "missing"),
+    ("increments = 4", "increments = 4.5", "step[1].increments", "whole"),
+    ("x = 0.02", 'x = "far"', 'step[1].displacement."block.top".x', "'far' given"),
+    ("x = 0.02", "u = 0.02", 'step[1].displacement."block.top".u', "allowed: x, y, z"),
+    ("every = 3", "every = -3", "output.every", "> 0"),
+    # words and tables
+    ('"linear-elastic"', '"linear-elastik"', "material.block.model", '"linear-elastic"?'),
+    ('model = "linear-elastic"\n', "", "material.block.model", "missing"),
+    ('shape = "plane"', 'shape = "plain"', "surface.plate.shape", '"plane"?'),
+    ("title = ", "title = 3 #", "title", "a text in quotes"),
+    ('displacement = { "block.top" = { x = 0.02, y = 0.01 } }', "displacement = 3",
+     "step[1].displacement", "a table"),
+    ('{ "block.top" = { x = 0.02, y = 0.01 } }', "{ block.top = { x = 0.02 } }",
+     "step[1].displacement.block.top", "in quotes"),
+    ('{ x = 0.02, y = 0.01 }', "{ }", 'step[1].displacement."block.top"', "at least one"),
+    (CONSTANT, 'directions = { kind = "constant", vector = [1, 0, 0], angle = 3 } }\n\n',
+     "contact[0].friction.directions.angle", 'did you mean "angle_deg"?'),
+    # directions
+    (", " + CONSTANT, "}\n\n", "contact[0].friction.directions", "0.3"),
+    (CONSTANT, 'directions = { kind = "constant", vector = [0, 0, 0] } }\n\n',
+     "contact[0].friction.directions.vector", "zero"),
+    (CONSTANT, 'directions = { kind = "constant", vector = [0, 0, 2] } }\n\n',
+     "contact[0].friction.directions", "parallel to its normal"),
+    ("normal = [0, 0, 1]", "normal = [0, 0, 0]", "surface.plate.normal", "zero"),
+    # names
+    ('slave = "block.bottom"', 'slave = "block.botom"', "contact[0].slave", "block.bottom"),
+    ('slave = "block.bottom"', 'slave = "blok.bottom"', "contact[0].slave", '"block"?'),
+    ('slave = "block.bottom"', 'slave = "bottom"', "contact[0].slave", "body.group"),
+    ('master = "plate"', 'master = "plat"', "contact[0].master", '"plate"?'),
+    ('{ x = 0.02, y = 0.01 } }', '{ x = 0.02, y = 0.01 }, "block.tap" = { x = 1 } }',
+     "step[1].displacement", "block.top"),
+    ('name = "drag"', 'name = "press"', "step[1].name", "step[0]"),
+    ("[material.block]", "[material.blok]", "material.block", "material"),
+    # the mesh
+    ("[mesh.box.block]\norigin = [0, 0, 0]\nsize = [1, 1, 0.5]\ncells = [3, 3, 2]\n"
+     'cell = "hexahedron"\norder = 1', '[mesh]\nfile = "none.msh"', "mesh.file", "none.msh"),
+    ("[mesh.box.block]\norigin = [0, 0, 0]\nsize = [1, 1, 0.5]\ncells = [3, 3, 2]\n"
+     'cell = "hexahedron"\norder = 1', "[mesh]", "mesh", "nothing given"),
+    ("[mesh.box.block]", '[mesh]\nfile = "b.msh"\n[mesh.box.block]', "mesh", "both given"),
+]  # fmt: skip
+
+
+def run_wrong(tmp_path, capsys, text: str) -> list[str]:
+    """The lines on stderr of a run of this case file, which must fail and write nothing."""
+    case, out = tmp_path / "case.toml", tmp_path / "out"
+    case.write_text(text)
+    code = main(["run", str(case), "-o", str(out)])
+    captured = capsys.readouterr()
+    assert code == 2
+    assert not out.exists()
+    assert captured.out == ""
+    return captured.err.splitlines()
+
+
+@pytest.mark.parametrize(("old", "new", "field", "says"), WRONG)
+def test_wrong_value(tmp_path, capsys, case_text, old, new, field, says):
+    """One mistake makes one line: the path of the field, what was given, what is allowed."""
+    assert old in case_text
+    head, _, tail = case_text.rpartition(old)
+    lines = run_wrong(tmp_path, capsys, head + new + tail)
+    mine = [line for line in lines if line.startswith(f"error: {field}: ")]
+    assert mine, lines
+    assert says in mine[0]
+    assert all(line.startswith("error: ") for line in lines)
+    # A name that is wrong in one place may be missed in another, such as a body without material.
+    assert len(lines) == 1 or "material" in old
+
+
+def test_all_mistakes_of_a_file_are_listed(tmp_path, capsys, case_text):
+    text = case_text.replace("E = 1000", "E = -1").replace("increments = 4", "increments = 0")
+    lines = run_wrong(tmp_path, capsys, text.replace('shape = "plane"', 'shape = "disc"'))
+    assert [line.split(": ")[1] for line in lines] == [
+        "material.block.E",
+        "surface.plate.shape",
+        "step[1].increments",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("title = \n", "line 1, column 9"),
+        ("a = [1, 2\nb = 3\n", "line 2"),
+        ("a = 1\na = 2\n", "line 2"),
+        (f"a = {'9' * 5000}\n", "not TOML"),
+        ("a = " + "[" * 5000, "case.toml"),
+    ],
+)
+def test_not_toml(tmp_path, capsys, text, says):
+    lines = run_wrong(tmp_path, capsys, text)
+    assert len(lines) == 1
+    assert says in lines[0]
+    assert "case.toml" in lines[0]
+
+
+def test_not_text(tmp_path, capsys):
+    (tmp_path / "case.toml").write_bytes(b"title = '\xff'")
+    assert main(["check", str(tmp_path / "case.toml")]) == 2
+    assert "UTF-8" in capsys.readouterr().err
+
+
+def test_missing_file_and_folder_in_its_place(tmp_path, capsys):
+    assert main(["run", str(tmp_path / "none.toml")]) == 2
+    assert "does not exist" in capsys.readouterr().err
+    assert main(["run", str(tmp_path)]) == 2
+    assert "cannot be read" in capsys.readouterr().err
+
+
+def test_corrupt_mesh(tmp_path, capsys, case_text):
+    (tmp_path / "block.msh").write_bytes(b"$MeshFormat\n4.1 0 8\nnonsense")
+    start, end = case_text.index("[mesh"), case_text.index("[material")
+    lines = run_wrong(
+        tmp_path, capsys, case_text[:start] + '[mesh]\nfile = "block.msh"\n' + case_text[end:]
+    )
+    assert len(lines) == 1
+    assert lines[0].startswith("error: mesh.file: ")
+    assert "block.msh" in lines[0]
+
+
+def test_wrong_petsc_option(tmp_path, capsys, case_text):
+    text = case_text + '[solver]\noptions = { snes_type = "newtonx" }\n'
+    lines = run_wrong(tmp_path, capsys, text)
+    assert len(lines) == 1
+    assert lines[0].startswith("error: solver.options: ")
+    assert "newtonx" in lines[0]
