@@ -4,113 +4,190 @@ from typing import Any
 import numpy
 from numpy.typing import NDArray
 
-
 class Parameter:
     @property
     def name(self) -> str: ...
-
     @property
     def kind(self) -> str: ...
-
     @property
     def unit(self) -> str: ...
-
     @property
     def doc(self) -> str: ...
-
     @property
     def bound(self) -> str: ...
-
     @property
     def required(self) -> bool: ...
-
     @property
     def fallback(self) -> list[float]: ...
-
     @property
     def choices(self) -> list[str]: ...
 
 class Descriptor:
     @property
     def name(self) -> str: ...
-
     @property
     def doc(self) -> str: ...
-
     @property
     def parameters(self) -> list[Parameter]: ...
-
     @property
     def directions(self) -> int: ...
 
 def surfaces() -> list[Descriptor]: ...
-
 def direction_fields() -> list[Descriptor]: ...
-
 def normal_laws() -> list[Descriptor]: ...
-
 def adhesion_models() -> list[Descriptor]: ...
-
 def friction_models() -> list[Descriptor]: ...
-
 def sliding_rules() -> list[Descriptor]: ...
-
 def evolution_forms() -> list[Descriptor]: ...
 
 class Surface:
     def __init__(self, name: str, values: Mapping[str, Sequence[float]]) -> None: ...
-
     def jet(self, xi: NDArray[numpy.float64]) -> dict[str, NDArray[Any]]: ...
-
     def geometry(self, xi: NDArray[numpy.float64]) -> dict[str, NDArray[Any]]: ...
-
     def geometry_derivatives(self, xi: NDArray[numpy.float64]) -> dict[str, NDArray[Any]]: ...
-
-    def spatial_basis(self, xi: NDArray[numpy.float64], gap: NDArray[numpy.float64]) -> NDArray[numpy.float64]: ...
-
-    def covariant_derivative_contra(self, xi: NDArray[numpy.float64], components: NDArray[numpy.float64], derivatives: NDArray[numpy.float64]) -> NDArray[numpy.float64]: ...
-
-    def covariant_derivative_co(self, xi: NDArray[numpy.float64], components: NDArray[numpy.float64], derivatives: NDArray[numpy.float64]) -> NDArray[numpy.float64]: ...
-
-    def convective_velocity(self, xi: NDArray[numpy.float64], gap: NDArray[numpy.float64] | None, relative: NDArray[numpy.float64], derivatives: NDArray[numpy.float64]) -> Any: ...
-
-    def project(self, x: NDArray[numpy.float64], guess: NDArray[numpy.float64] | None, derivatives: bool, threads: int) -> dict[str, NDArray[Any]]: ...
-
+    def spatial_basis(
+        self, xi: NDArray[numpy.float64], gap: NDArray[numpy.float64]
+    ) -> NDArray[numpy.float64]: ...
+    def covariant_derivative_contra(
+        self,
+        xi: NDArray[numpy.float64],
+        components: NDArray[numpy.float64],
+        derivatives: NDArray[numpy.float64],
+    ) -> NDArray[numpy.float64]: ...
+    def covariant_derivative_co(
+        self,
+        xi: NDArray[numpy.float64],
+        components: NDArray[numpy.float64],
+        derivatives: NDArray[numpy.float64],
+    ) -> NDArray[numpy.float64]: ...
+    def convective_velocity(
+        self,
+        xi: NDArray[numpy.float64],
+        gap: NDArray[numpy.float64] | None,
+        relative: NDArray[numpy.float64],
+        derivatives: NDArray[numpy.float64],
+    ) -> Any: ...
+    def project(
+        self,
+        x: NDArray[numpy.float64],
+        guess: NDArray[numpy.float64] | None,
+        derivatives: bool,
+        threads: int,
+    ) -> dict[str, NDArray[Any]]: ...
     def domain(self) -> Any: ...
 
 class Field:
     def __init__(self, name: str, values: Mapping[str, Sequence[float]]) -> None: ...
-
     def axes(self, surface: Surface, xi: NDArray[numpy.float64]) -> dict[str, NDArray[Any]]: ...
-
-    def tensor(self, surface: Surface, xi: NDArray[numpy.float64], values: Sequence[float]) -> dict[str, NDArray[Any]]: ...
+    def tensor(
+        self, surface: Surface, xi: NDArray[numpy.float64], values: Sequence[float]
+    ) -> dict[str, NDArray[Any]]: ...
 
 class FrictionModel:
     def __init__(self, name: str, values: Mapping[str, Sequence[float]]) -> None: ...
-
-    def tensor(self, surface: Surface, xi: NDArray[numpy.float64], directions: Field | None, directions_second: Field | None) -> dict[str, NDArray[Any]]: ...
+    def tensor(
+        self,
+        surface: Surface,
+        xi: NDArray[numpy.float64],
+        directions: Field | None,
+        directions_second: Field | None,
+    ) -> dict[str, NDArray[Any]]: ...
 
 class SlidingRule:
     def __init__(self, name: str, values: Mapping[str, Sequence[float]]) -> None: ...
-
-    def slide(self, stiffness: NDArray[numpy.float64], friction: NDArray[numpy.float64], trial: NDArray[numpy.float64], pressure: NDArray[numpy.float64], metric: NDArray[numpy.float64] | None, axes: NDArray[numpy.float64] | None, increment: NDArray[numpy.float64] | None, tangent: bool, threads: int) -> dict[str, NDArray[Any]]: ...
+    def slide(
+        self,
+        stiffness: NDArray[numpy.float64],
+        friction: NDArray[numpy.float64],
+        trial: NDArray[numpy.float64],
+        pressure: NDArray[numpy.float64],
+        metric: NDArray[numpy.float64] | None,
+        axes: NDArray[numpy.float64] | None,
+        increment: NDArray[numpy.float64] | None,
+        tangent: bool,
+        threads: int,
+    ) -> dict[str, NDArray[Any]]: ...
 
 def state_layout() -> list[Any]: ...
 
 state_size: int = 168
 
 class Interface:
-    def __init__(self, surface: Surface, normal: tuple[str, Mapping[str, Sequence[float]]], adhesion: tuple[str, Mapping[str, Sequence[float]]], adhesion_directions: Field | None, friction: tuple[str, Mapping[str, Sequence[float]]], friction_directions: Field | None, friction_directions_second: Field | None, rule: tuple[str, Mapping[str, Sequence[float]]], evolution: str) -> None: ...
-
+    def __init__(
+        self,
+        surface: Surface,
+        normal: tuple[str, Mapping[str, Sequence[float]]],
+        adhesion: tuple[str, Mapping[str, Sequence[float]]],
+        adhesion_directions: Field | None,
+        friction: tuple[str, Mapping[str, Sequence[float]]],
+        friction_directions: Field | None,
+        friction_directions_second: Field | None,
+        rule: tuple[str, Mapping[str, Sequence[float]]],
+        evolution: str,
+    ) -> None: ...
     def initial_state(self, x: NDArray[numpy.float64]) -> dict[str, NDArray[Any]]: ...
-
-    def update(self, state: NDArray[numpy.uint8], x: NDArray[numpy.float64], dt: float, tangent: bool, threads: int) -> dict[str, NDArray[Any]]: ...
+    def update(
+        self,
+        state: NDArray[numpy.uint8],
+        x: NDArray[numpy.float64],
+        dt: float,
+        tangent: bool,
+        threads: int,
+    ) -> dict[str, NDArray[Any]]: ...
 
 class FramedInterface:
-    def __init__(self, surface: Surface, normal: tuple[str, Mapping[str, Sequence[float]]], directions: Field | None) -> None: ...
-
-    def kinematics(self, state: NDArray[numpy.uint8], x: NDArray[numpy.float64], dt: float, threads: int) -> dict[str, NDArray[Any]]: ...
-
-    def commit(self, state: NDArray[numpy.uint8], x: NDArray[numpy.float64], dt: float, traction: NDArray[numpy.float64], stored: NDArray[numpy.float64], slip: NDArray[numpy.float64], dissipation: NDArray[numpy.float64], energy: NDArray[numpy.float64], status: NDArray[numpy.int8]) -> Any: ...
-
+    def __init__(
+        self,
+        surface: Surface,
+        normal: tuple[str, Mapping[str, Sequence[float]]],
+        directions: Field | None,
+    ) -> None: ...
+    def kinematics(
+        self, state: NDArray[numpy.uint8], x: NDArray[numpy.float64], dt: float, threads: int
+    ) -> dict[str, NDArray[Any]]: ...
+    def commit(
+        self,
+        state: NDArray[numpy.uint8],
+        x: NDArray[numpy.float64],
+        dt: float,
+        traction: NDArray[numpy.float64],
+        stored: NDArray[numpy.float64],
+        slip: NDArray[numpy.float64],
+        dissipation: NDArray[numpy.float64],
+        energy: NDArray[numpy.float64],
+        status: NDArray[numpy.int8],
+    ) -> Any: ...
     def initial_state(self, x: NDArray[numpy.float64]) -> dict[str, NDArray[Any]]: ...
+
+class FacetPairs:
+    def __init__(
+        self,
+        normal: tuple[str, Mapping[str, Sequence[float]]],
+        adhesion: tuple[str, Mapping[str, Sequence[float]]],
+        adhesion_directions: Field | None,
+        friction: tuple[str, Mapping[str, Sequence[float]]],
+        friction_directions: Field | None,
+        friction_directions_second: Field | None,
+        rule: tuple[str, Mapping[str, Sequence[float]]],
+    ) -> None: ...
+    def update(
+        self,
+        state: NDArray[numpy.uint8],
+        dt: float,
+        slave_nodes: NDArray[numpy.int32],
+        slave_shape: NDArray[numpy.float64],
+        slave_gradient: NDArray[numpy.float64],
+        weight: NDArray[numpy.float64],
+        current_area: bool,
+        now: NDArray[numpy.float64],
+        reference: NDArray[numpy.float64],
+        connectivity: NDArray[numpy.int32],
+        topology: NDArray[numpy.int8],
+        flip: NDArray[numpy.bool_],
+        facet: NDArray[numpy.int32],
+        xi: NDArray[numpy.float64],
+        feature: NDArray[numpy.int8],
+        edge: NDArray[numpy.float64],
+        tangent: bool,
+        threads: int,
+    ) -> dict[str, NDArray[Any]]: ...

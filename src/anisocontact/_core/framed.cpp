@@ -20,7 +20,6 @@ namespace anisocontact::bindings {
 namespace {
 
 using kernel::Framed;
-using Named = std::pair<std::string, ValueMap>;
 
 /// Surface, normal law and frame of an interface whose tangential law is elsewhere.
 struct FramedHandle {

@@ -20,7 +20,6 @@ namespace anisocontact::bindings {
 namespace {
 
 using kernel::PointState;
-using Named = std::pair<std::string, ValueMap>;
 
 struct InterfaceHandle {
   kernel::Interface itf;
@@ -100,19 +99,12 @@ void bind_kernel(nb::module_& m) {
           "__init__",
           [](InterfaceHandle* self, const SurfaceHandle& surface, const Named& normal,
              const Named& adhesion, const FieldHandle* adhesion_directions, const Named& friction,
-             const FieldHandle* friction_directions,
-             const FieldHandle* friction_directions_second, const Named& rule,
-             const std::string& evolution) {
+             const FieldHandle* friction_directions, const FieldHandle* friction_directions_second,
+             const Named& rule, const std::string& evolution) {
             new (self) InterfaceHandle{
                 {surface.any,
-                 {law::NormalLaws::make(normal.first, Values(normal.second)),
-                  law::AdhesionModels::make(adhesion.first, Values(adhesion.second)),
-                  unwrap(adhesion_directions),
-                  law::FrictionModels::make(friction.first, Values(friction.second)),
-                  unwrap(friction_directions),
-                  unwrap(friction_directions_second),
-                  law::SlidingRules::make(rule.first, Values(rule.second)),
-                  kernel::EvolutionForms::make(evolution, Values())}}};
+                 make_law(normal, adhesion, adhesion_directions, friction, friction_directions,
+                          friction_directions_second, rule, evolution)}};
           },
           nb::arg("surface"), nb::arg("normal"), nb::arg("adhesion"),
           nb::arg("adhesion_directions").none(), nb::arg("friction"),

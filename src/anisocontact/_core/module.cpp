@@ -11,4 +11,5 @@ NB_MODULE(_core, m) {
   anisocontact::bindings::bind_law(m);
   anisocontact::bindings::bind_kernel(m);
   anisocontact::bindings::bind_framed(m);
+  anisocontact::bindings::bind_facet_pair(m);
 }
