@@ -7,7 +7,7 @@ that a new entry can be written in a case file without a change here.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from typing import Annotated, Any, Self
 
@@ -33,6 +33,7 @@ __all__ = [
     "Solver",
     "StepSection",
     "case_type",
+    "laws",
 ]
 
 # More cells than fit in the memory of any one machine: a slip of the keyboard, not a mesh.
@@ -204,6 +205,11 @@ class Registries:
     @classmethod
     def current(cls) -> Registries:
         """What is registered now."""
+        return replace(cls.of_points(), materials=_materials())
+
+    @classmethod
+    def of_points(cls) -> Registries:
+        """What is registered now, without the materials of bodies."""
         return cls(
             registry.surfaces(),
             registry.direction_fields(),
@@ -212,7 +218,7 @@ class Registries:
             registry.friction_models(),
             registry.sliding_rules(),
             registry.evolution_forms(),
-            _materials(),
+            (),
         )
 
 
@@ -235,7 +241,7 @@ def case_type(known: Registries) -> type[Case]:
     Returns:
         A subclass of `Case`.
     """
-    contact = create_model("Contact", __base__=ContactSection, **_laws(known))
+    contact = create_model("Contact", __base__=ContactSection, **laws(known))
     surface = OneOf("Surface", Key("shape", known.surfaces))
     material = OneOf("Material", Key("model", known.materials))
     return create_model(
@@ -256,7 +262,8 @@ def case_type(known: Registries) -> type[Case]:
     )
 
 
-def _laws(known: Registries) -> dict[str, Any]:
+def laws(known: Registries) -> dict[str, Any]:
+    """Fields of a contact that come from the registries."""
     field = Annotated[Any, OneOf("Directions", Key("kind", known.direction_fields))]
     directed = create_model(
         "Directed", __base__=Directed, directions=(field, Field(None, description=_DIRECTIONS))

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from anisocontact.anisotropy import DirectionField, make_directions
-from anisocontact.case.model import ContactSection
 from anisocontact.case.quantity import AUTO
 from anisocontact.case.registered import Registered
 from anisocontact.errors import InputError
@@ -19,6 +18,15 @@ if TYPE_CHECKING:
     from anisocontact.bulk import Material
 
 __all__ = ["interface", "material", "surface", "within"]
+
+
+class Laws(Protocol):
+    """What an interface is made of: the tables of a contact."""
+
+    normal: Any
+    adhesion: Any
+    friction: Any
+    evolution: str
 
 
 @contextmanager
@@ -46,7 +54,7 @@ def material(section: Registered, place: str) -> Material:
         return make_material(section.chosen["model"], **section.parameters())
 
 
-def interface(section: ContactSection, master: Surface, place: str, auto: float = 1.0) -> Interface:
+def interface(section: Laws, master: Surface, place: str, auto: float = 1.0) -> Interface:
     """The interface of a `[[contact]]` table.
 
     Args:

@@ -15,7 +15,16 @@ from anisocontact.case.checks import check
 from anisocontact.case.model import Case, Registries, case_type
 from anisocontact.errors import InputError
 
-__all__ = ["CaseError", "CaseFile", "json_schema", "load", "validate"]
+__all__ = [
+    "CaseError",
+    "CaseFile",
+    "as_input",
+    "json_schema",
+    "load",
+    "read_table",
+    "validate",
+    "without_null",
+]
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -70,7 +79,7 @@ def load(path: str | Path) -> CaseFile:
         CaseError: Something in it is wrong; `errors` has a line for each mistake.
     """
     path = Path(path)
-    return CaseFile(validate(_table(path)), path)
+    return CaseFile(validate(read_table(path)), path)
 
 
 def validate(data: Mapping[str, Any]) -> Case:
@@ -95,7 +104,7 @@ def validate(data: Mapping[str, Any]) -> Case:
     try:
         case = case_type(registries).model_validate(data)
     except ValidationError as error:
-        raise CaseError([_as_input(e) for e in error.errors(include_url=False)]) from None
+        raise CaseError([as_input(e) for e in error.errors(include_url=False)]) from None
     errors = list(check(case))
     if errors:
         raise CaseError(errors)
@@ -107,7 +116,7 @@ def json_schema() -> dict[str, Any]:
     schema = case_type(Registries.current()).model_json_schema()
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **_without_null(schema),
+        **without_null(schema),
         "title": "anisocontact case file",
     }
 
@@ -123,11 +132,13 @@ def dotted(loc: tuple[str | int, ...]) -> str:
     return text.removeprefix(".")
 
 
-def _as_input(error: Any) -> InputError:
+def as_input(error: Any) -> InputError:
+    """An error of pydantic as one line."""
     return InputError(error["msg"], field=dotted(error["loc"]))
 
 
-def _table(path: Path) -> dict[str, Any]:
+def read_table(path: Path) -> dict[str, Any]:
+    """The tables of a TOML file."""
     try:
         return tomllib.loads(path.read_bytes().decode("utf-8"))
     except FileNotFoundError:
@@ -142,13 +153,13 @@ def _table(path: Path) -> dict[str, Any]:
         raise InputError(f"case file '{path}' is nested too deeply") from None
 
 
-def _without_null(schema: Any) -> Any:
+def without_null(schema: Any) -> Any:
     """TOML has no null: what may be left out is said by `required` alone."""
     if isinstance(schema, list):
-        return [_without_null(item) for item in schema]
+        return [without_null(item) for item in schema]
     if not isinstance(schema, dict):
         return schema
-    kept = {key: _without_null(value) for key, value in schema.items() if value is not None}
+    kept = {key: without_null(value) for key, value in schema.items() if value is not None}
     options = [option for option in kept.get("anyOf", []) if option != {"type": "null"}]
     if len(options) == 1:
         del kept["anyOf"]

@@ -47,7 +47,20 @@ def build_parser() -> argparse.ArgumentParser:
     check = _command(commands, "check", "read a case and its mesh and say what it contains")
     _case_argument(check)
 
-    _command(commands, "schema", "print the JSON Schema of the case file")
+    trace = _command(commands, "trace", "move a point over a surface and write what it meets")
+    _case_argument(trace)
+    trace.add_argument(
+        "-o",
+        "--output",
+        metavar="DIR",
+        help="results folder; results/<name of the case> if left out",
+    )
+    trace.add_argument(
+        "--overwrite", action="store_true", help="replace the results of an earlier run"
+    )
+
+    schema = _command(commands, "schema", "print the JSON Schema of the case file")
+    schema.add_argument("--trace", action="store_true", help="of the case file of `trace`")
 
     info = _command(
         commands, "info", "print versions and the surfaces, laws, rules and materials there are"

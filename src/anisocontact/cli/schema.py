@@ -12,5 +12,10 @@ __all__ = ["command"]
 
 def command(arguments: argparse.Namespace) -> int:
     """Print the JSON Schema of the case file."""
-    print(json.dumps(json_schema(), indent=2))
+    if arguments.trace:
+        from anisocontact.case.trace import trace_schema
+
+        print(json.dumps(trace_schema(), indent=2))
+    else:
+        print(json.dumps(json_schema(), indent=2))
     return 0

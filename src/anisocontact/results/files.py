@@ -16,6 +16,8 @@ __all__ = ["check_folder", "clear", "replacing", "write_text"]
 OWN = (
     "summary.json",
     "history.csv",
+    "trace.csv",
+    "compare.csv",
     "fields.pvd",
     "fields",
     "contact.pvd",

@@ -9,23 +9,30 @@ from pathlib import Path
 
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
+from anisocontact.point.pictures.compare import compare
 from anisocontact.point.pictures.forces import force_plane
 from anisocontact.point.pictures.path import path_on_surface
 from anisocontact.point.pictures.time import over_time
+from anisocontact.results.report.style import save as write
 
-__all__ = ["force_plane", "over_time", "path_on_surface", "save"]
+__all__ = ["compare", "force_plane", "over_time", "path_on_surface", "save"]
 
 
 def save(
-    history: History, interface: PointInterface, folder: str | Path, title: str = ""
+    history: History,
+    interface: PointInterface,
+    folder: str | Path,
+    title: str = "",
+    compared: dict[str, History] | None = None,
 ) -> list[Path]:
-    """Write `path.png`, `forces.png` and `time.png`.
+    """Write `path.png`, `forces.png` and `time.png`, and `compare.png` for several runs.
 
     Args:
         history: What was driven.
         interface: Through what.
         folder: Where; made if it is not there.
         title: Heading.
+        compared: Further runs by label.
 
     Returns:
         The files.
@@ -37,7 +44,10 @@ def save(
         "forces": force_plane(history, interface, title=title),
         "time": over_time(history, title=title),
     }
+    if compared:
+        runs = {"as in the case": history, **compared}
+        figures["compare"] = compare(runs, interface, title=title)
     files = [target / f"{name}.png" for name in figures]
     for file, figure in zip(files, figures.values(), strict=True):
-        figure.savefig(file, dpi=120)
+        write(figure, file)
     return files

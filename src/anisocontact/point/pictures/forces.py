@@ -10,6 +10,7 @@ from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
 from anisocontact.point.pictures.ellipse import yield_ellipse
 from anisocontact.point.pictures.style import COLOURS, INK, UNITS, number, runs
+from anisocontact.results.report.style import new_figure
 
 
 def force_plane(history: History, interface: PointInterface, *, title: str = "") -> Figure:
@@ -23,7 +24,7 @@ def force_plane(history: History, interface: PointInterface, *, title: str = "")
     Returns:
         The figure.
     """
-    figure = Figure(figsize=(6.8, 6.0), layout="constrained")
+    figure = new_figure(6.8, 6.0)
     ax = figure.add_subplot()
     seen: dict[str, Line2D] = {}
     for p in range(history.points.shape[1]):

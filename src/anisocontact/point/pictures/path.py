@@ -13,6 +13,7 @@ from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
 from anisocontact.point.pictures.ellipse import adhesion_ellipse
 from anisocontact.point.pictures.style import AXES, COLOURS, INK, UNITS, chosen, number, runs, size
+from anisocontact.results.report.style import new_figure
 from anisocontact.surfaces import Floats, Surface
 
 # An ellipse smaller than this share of the picture is drawn enlarged.
@@ -34,7 +35,7 @@ def path_on_surface(
     Returns:
         The figure.
     """
-    figure = Figure(figsize=(8.5, 6.8), layout="constrained")
+    figure = new_figure(8.5, 6.8)
     ax: Any = figure.add_subplot(projection="3d", computed_zorder=False)
     feet = history.feet
     extent = max(size(feet), 1e-12 * float(np.abs(feet).max()), 1e-300)

@@ -11,8 +11,10 @@ from anisocontact.interface import STATUS
 from anisocontact.point.history import History
 from anisocontact.surfaces import Floats
 
-# Told apart also without red and green, and in grey.
-COLOURS = {"open": "#9a9a9a", "stick": "#1f5fa8", "slip": "#d9622b"}
+# The same as in the report of a run; told apart also without red and green, and in grey.
+COLOURS = {"open": "#9ca3af", "stick": "#1d4ed8", "slip": "#f59e0b"}
+#: One for each of several runs.
+RUNS = ("#111827", "#0f766e", "#7c3aed", "#c2410c", "#0369a1", "#be185d", "#a16207", "#6b7280")
 AXES = ("#2f7d4f", "#8f6bb3")
 INK = "#222222"
 UNITS = "in the units of the case"

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from anisocontact.interface import STATUS
 from anisocontact.point.history import History
 from anisocontact.point.pictures.style import AXES, COLOURS, INK, UNITS, runs
+from anisocontact.results.report.style import new_figure
 
 _ENERGIES = {
     "external": ("work of the load", INK, "-"),
@@ -35,7 +36,7 @@ def over_time(history: History, *, title: str = "") -> Figure:
     Returns:
         The figure.
     """
-    figure = Figure(figsize=(8.5, 8.0), layout="constrained")
+    figure = new_figure(8.5, 8.0)
     panels: Any = figure.subplots(3, 1, sharex=True, height_ratios=(3, 2, 3))
     t = history.steps["time"]
     weights = history.areas / history.areas.sum()

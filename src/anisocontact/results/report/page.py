@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-__all__ = ["Picture", "page"]
+__all__ = ["Picture", "document", "figure", "page", "table"]
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #111827; max-width: 72rem; margin: 2rem auto;
@@ -56,11 +56,24 @@ def page(
     title = html.escape(summary["title"] or "anisocontact")
     body = [f"<h1>{title}</h1>", *_state(summary), *_overview(summary)]
     if steps:
-        body += ["<h2>Steps</h2>", _table(steps)]
-    body += ["<h2>Contacts at the end</h2>", _table(_contacts(summary))]
-    body += ["<h2>Supports at the end</h2>", _table(_reactions(summary))]
-    body += ["<h2>Energies at the end</h2>", _table([summary["energy"]])]
-    body += [_figure(picture) for picture in pictures]
+        body += ["<h2>Steps</h2>", table(steps)]
+    body += ["<h2>Contacts at the end</h2>", table(_contacts(summary))]
+    body += ["<h2>Supports at the end</h2>", table(_reactions(summary))]
+    body += ["<h2>Energies at the end</h2>", table([summary["energy"]])]
+    body += [figure(picture) for picture in pictures]
+    return document(title, body)
+
+
+def document(title: str, body: Sequence[str]) -> str:
+    """A page with our style.
+
+    Args:
+        title: Title, as HTML.
+        body: Its parts, as HTML.
+
+    Returns:
+        The page.
+    """
     return (
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
         f"<title>{title}</title><style>{_STYLE}</style></head>\n<body>\n"
@@ -96,7 +109,7 @@ def _overview(summary: dict[str, Any]) -> list[str]:
         "All numbers are in the units of the case: [length], [force], [stress] and so on stand for "
         f"whatever the case file was written in. Made by anisocontact {summary['version']}."
     )
-    return [_table([row]), f"<p>{html.escape(note)}</p>"]
+    return [table([row]), f"<p>{html.escape(note)}</p>"]
 
 
 def _contacts(summary: dict[str, Any]) -> list[dict[str, Any]]:
@@ -126,7 +139,8 @@ def _vector(name: str, values: Iterable[float]) -> dict[str, float]:
     return {f"{name} {axis}": value for axis, value in zip("xyz", values, strict=True)}
 
 
-def _table(rows: Sequence[dict[str, Any]]) -> str:
+def table(rows: Sequence[dict[str, Any]]) -> str:
+    """Rows of numbers as a table."""
     if not rows:
         return "<p>None.</p>"
     head = "".join(f"<th>{html.escape(str(key))}</th>" for key in rows[0])
@@ -141,7 +155,8 @@ def _cell(value: Any) -> str:
     return f"{value:.5g}" if isinstance(value, float) else html.escape(str(value))
 
 
-def _figure(picture: Picture) -> str:
+def figure(picture: Picture) -> str:
+    """A picture with heading and caption, inside the page."""
     data = base64.b64encode(picture.path.read_bytes()).decode("ascii")
     title, caption = html.escape(picture.title), html.escape(picture.caption)
     return (

@@ -1,0 +1,57 @@
+"""`anisocontact trace`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from anisocontact.case.trace import load_trace
+from anisocontact.cli.main import DONE, STOPPED
+from anisocontact.interface import Interface
+from anisocontact.point import Group, History, Load, StoppedError, drive
+from anisocontact.results.files import check_folder
+from anisocontact.results.trace import write_trace
+
+__all__ = ["command"]
+
+
+def command(arguments: argparse.Namespace) -> int:
+    """Drive a point; 0 if it is done, 3 if it stopped before its end."""
+    trace = load_trace(arguments.case)
+    folder = Path(arguments.output or Path("results") / trace.name)
+    check_folder(folder, arguments.overwrite)
+    began = time.perf_counter()
+    history, message = _driven(trace.interface, trace.load, trace.group)
+    compared = {}
+    for label, interface in trace.compared:
+        compared[label], stopped = _driven(interface, trace.load, trace.group)
+        message = message or (f"{label}: {stopped}" if stopped else "")
+    summary = write_trace(
+        folder,
+        history,
+        trace.interface,
+        title=trace.case.title,
+        message=message,
+        wall_time=time.perf_counter() - began,
+        compared=compared,
+        pictures=trace.case.output.pictures,
+        case=trace.text,
+    )
+    if message:
+        print(f"error: {message}; what converged is in {folder}", file=sys.stderr)
+        return STOPPED
+    x, f = (", ".join(f"{v:.6g}" for v in summary[key]) for key in ("reference", "force"))
+    print(f"steps     {summary['steps']}, {summary['newton_iterations']} iterations")
+    print(f"end       position ({x}), force ({f})")
+    print(f"done      {folder}")
+    return DONE
+
+
+def _driven(interface: Interface, load: Load, group: Group) -> tuple[History, str]:
+    """What converged, and why it stopped."""
+    try:
+        return drive(interface, load, group), ""
+    except StoppedError as stopped:
+        return stopped.history, str(stopped)
