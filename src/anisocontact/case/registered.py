@@ -135,8 +135,9 @@ class OneOf:
         tables: list[CoreSchema | tuple[CoreSchema, str]] = [
             handler.generate_schema(model) for model in self.models.values()
         ]
+        inner = core_schema.union_schema(tables) if tables else core_schema.any_schema()
         return core_schema.no_info_wrap_validator_function(
-            lambda data, _: self.validate(data), core_schema.union_schema(tables)
+            lambda data, _: self.validate(data), inner
         )
 
 

@@ -1,0 +1,245 @@
+"""The command: what it prints, its exit codes, and that it is quick to answer."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import build_parser, main
+
+
+@pytest.fixture
+def case(tmp_path, case_text):
+    """The small case in a folder of its own."""
+    path = tmp_path / "case.toml"
+    path.write_text(case_text)
+    return path
+
+
+@pytest.fixture
+def no_report(monkeypatch):
+    """The pictures take longer than the run; most tests do not look at them."""
+    monkeypatch.setattr("anisocontact.results.writer.write_report", lambda folder: [])
+
+
+def test_help_names_every_command_and_the_exit_codes(capsys):
+    assert main(["--help"]) == 0
+    text = capsys.readouterr().out
+    for word in ("run", "check", "schema", "info", "exit codes"):
+        assert word in text
+
+
+def test_help_is_quick():
+    """0.3 s are what a shell user does not notice; the best of three, the machine may be busy."""
+    times = []
+    for _ in range(3):
+        start = time.perf_counter()
+        subprocess.run(
+            [sys.executable, "-m", "anisocontact", "--help"], check=True, capture_output=True
+        )
+        times.append(time.perf_counter() - start)
+    assert min(times) < 0.3
+
+
+def test_help_loads_nothing_heavy():
+    code = (
+        "import sys; from anisocontact.cli import main; main(['--help']); "
+        "print(sorted({'numpy', 'pydantic', 'dolfinx', 'pyvista', 'matplotlib', 'rich'} "
+        "& set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize("arguments", [[], ["walk"], ["run"], ["run", "a", "b"], ["info", "--jso"]])
+def test_wrong_arguments(capsys, arguments):
+    assert main(arguments) == 2
+    captured = capsys.readouterr()
+    assert captured.out == ""
+    assert "error" in captured.err
+
+
+def test_schema_is_json(capsys):
+    assert main(["schema"]) == 0
+    assert json.loads(capsys.readouterr().out)["properties"]["contact"]
+
+
+def test_info_lists_versions_and_registries(capsys):
+    assert main(["info"]) == 0
+    text = capsys.readouterr().out
+    for word in ("dolfinx", "petsc", "plane", "maximum-dissipation", "linear-elastic", "angle_deg"):
+        assert word in text
+    assert main(["info", "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert facts["versions"]["python"] == ".".join(map(str, sys.version_info[:3]))
+    entries = {entry["name"]: entry for entry in facts["registries"]["sliding rules"]}
+    assert entries["explicit"]["parameters"][0]["default"] == "centre"
+
+
+def test_check_says_what_is_in_a_case(capsys, case):
+    assert main(["check", str(case)]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        "case      Small block on a turned plate",
+        "body      block: linear-elastic",
+        # (3+1)(3+1)(2+1) nodes, 3*3*2 cells
+        "mesh      48 nodes, 18 cells of order 1, 144 unknowns",
+        "contact   block.bottom on plate: 9 slave facets, penalty 1e+04, maximum-dissipation",
+        "step      press: 2 increments, block.top",
+        "step      drag: 4 increments, block.top",
+    ]
+    assert [entry.name for entry in case.parent.iterdir()] == ["case.toml"]
+
+
+def test_run_in_a_pipe_prints_a_line_for_each_increment(no_report, capsys, case):
+    out = case.parent / "out"
+    assert main(["run", str(case), "-o", str(out)]) == 0
+    captured = capsys.readouterr()
+    assert captured.err == ""
+    lines = captured.out.splitlines()
+    assert [line.split("  ")[0] for line in lines if "residual" in line] == [
+        *(f"press {i}" for i in (1, 2)),
+        *(f"drag {i}" for i in (1, 2, 3, 4)),
+    ]
+    assert lines[-1] == f"done      {out}"
+
+
+def test_results_are_not_overwritten_unasked(no_report, capsys, case):
+    out = case.parent / "out"
+    arguments = ["run", str(case), "-o", str(out)]
+    assert main(arguments) == 0
+    before = (out / "summary.json").read_bytes()
+    (out / "notes.txt").write_text("mine")
+    capsys.readouterr()
+    assert main(arguments) == 2
+    assert "--overwrite" in capsys.readouterr().err
+    assert (out / "summary.json").read_bytes() == before
+    assert main([*arguments, "--overwrite"]) == 0
+    assert (out / "notes.txt").read_text() == "mine"
+
+
+def test_a_folder_that_is_not_ours_is_never_touched(capsys, case):
+    arguments = ["run", str(case), "-o", str(case.parent), "--overwrite"]
+    assert main(arguments) == 2
+    assert "case.toml" in capsys.readouterr().err
+    assert [entry.name for entry in case.parent.iterdir()] == ["case.toml"]
+
+
+def test_default_folder(no_report, monkeypatch, capsys, case):
+    monkeypatch.chdir(case.parent)
+    assert main(["run", "case.toml"]) == 0
+    assert (case.parent / "results" / case.parent.name / "summary.json").is_file()
+
+
+def test_a_run_that_cannot_go_on_keeps_what_converged(no_report, capsys, case, case_text):
+    """Pressing takes four iterations; the whole drag in one increment takes more."""
+    text = case_text.replace("increments = 4", "increments = 1")
+    case.write_text(text + "[solver]\noptions = { snes_max_it = 4 }\n")
+    out = case.parent / "out"
+    assert main(["run", str(case), "-o", str(out)]) == 3
+    error = capsys.readouterr().err
+    assert error.startswith("error: stopped: step 'drag', increment ")
+    assert "Traceback" not in error
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["status"] == "stopped"
+    assert "drag" in summary["message"]
+    rows = (out / "history.csv").read_text().splitlines()
+    assert len(rows) == 1 + summary["steps"] >= 3
+
+
+def test_ctrl_c_ends_after_the_increment_and_keeps_it(case, case_text):
+    case.write_text(case_text.replace("increments = 4", "increments = 4000"))
+    out = case.parent / "out"
+    command = [sys.executable, "-m", "anisocontact", "run", str(case), "-o", str(out)]
+    with subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    ) as run:
+        assert run.stdout is not None
+        for line in run.stdout:
+            if line.startswith("drag 2"):
+                break
+        run.send_signal(signal.SIGINT)
+        _, error = run.communicate(timeout=60)
+    assert run.returncode == 3
+    assert "interrupted after step 'drag'" in error
+    summary = json.loads((out / "summary.json").read_text())
+    assert summary["status"] == "stopped"
+    assert len((out / "history.csv").read_text().splitlines()) == 1 + summary["steps"]
+
+
+def test_an_internal_error_is_one_line_and_its_details_in_the_log(no_report, monkeypatch, capsys, case):
+    from anisocontact.results.writer import Writer
+
+    def broken(*_: object) -> None:
+        raise RuntimeError("a bug\nof two lines")
+
+    monkeypatch.setattr(Writer, "accept", broken)
+    out = case.parent / "out"
+    assert main(["run", str(case), "-o", str(out)]) == 1
+    error = capsys.readouterr().err
+    assert error.splitlines() == [
+        f"error: internal: RuntimeError: a bug of two lines; details in {out / 'run.log'}"
+    ]
+    assert "Traceback" in (out / "run.log").read_text()
+    assert json.loads((out / "summary.json").read_text())["status"] == "stopped"
+
+
+def test_a_terminal_shows_a_bar_and_loses_nothing(case):
+    """On a terminal the iterations are drawn; the log has the same lines as in a pipe."""
+    pty = pytest.importorskip("pty")
+    out = case.parent / "out"
+    main_end, child_end = pty.openpty()
+    command = [sys.executable, "-m", "anisocontact", "run", str(case), "-o", str(out)]
+    with subprocess.Popen(command, stdout=child_end, stderr=child_end) as run:
+        os.close(child_end)
+        shown = b""
+        while True:
+            try:
+                part = os.read(main_end, 4096)
+            except OSError:  # the other end is closed
+                break
+            if not part:
+                break
+            shown += part
+    os.close(main_end)
+    assert run.returncode == 0
+    text = shown.decode()
+    assert "drag 4/4" in text
+    assert "iteration" in text
+    log = (out / "run.log").read_text()
+    assert [f"drag {i}  " in log for i in (1, 2, 3, 4)] == [True] * 4
+
+
+def test_no_finite_elements_installed(tmp_path, case_text):
+    """Without DOLFINx schema and info still work, and a run says what to install."""
+    case = tmp_path / "case.toml"
+    case.write_text(case_text)
+    code = (
+        "import sys; sys.modules['dolfinx'] = None; from anisocontact.cli import main; "
+        "assert main(['schema']) == 0 and main(['info']) == 0; "
+        f"sys.exit(main(['run', {str(case)!r}]))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: the finite-element level is not installed: ")
+    assert len(done.stderr.splitlines()) == 1
+    assert "dolfinx" in done.stdout
+    assert "not installed" in done.stdout
+
+
+def test_every_argument_has_help():
+    parsers = [build_parser()]
+    for action in parsers[0]._actions:
+        if hasattr(action, "choices") and isinstance(action.choices, dict):
+            parsers += action.choices.values()
+    assert len(parsers) >= 5
+    for parser in parsers:
+        for action in parser._actions:
+            assert action.help or action.dest == "command"
