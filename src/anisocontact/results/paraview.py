@@ -84,6 +84,7 @@ class Bodies:
         ones: Floats = np.ones(self._stress.x.array.shape)
         self._share = 1.0 / self._summed(ones).clip(1.0)
         cells, kinds, points = dolfinx.plot.vtk_mesh(model.space)
+        cells = _turned_outwards(cells.reshape(len(kinds), -1), points).reshape(-1)
         self._topology = self._comm.gather((cells, kinds, points, self._body_numbers(len(kinds))))
 
     def grid(self) -> pyvista.UnstructuredGrid | None:
@@ -192,6 +193,25 @@ def _stress_at(problem: Problem, body: str, space: Any) -> Any:
     stress = cauchy_stress(problem.materials[body], problem.u)
     components = ufl.as_vector([stress[i, j] for i, j in _SYMMETRIC])
     return fem.Expression(components, space.element.interpolation_points)
+
+
+#: Nodes of a tetrahedron of VTK with four or ten of them, seen in a mirror.
+_MIRRORED = {4: (0, 2, 1, 3), 10: (0, 2, 1, 3, 6, 5, 4, 7, 9, 8)}
+
+
+def _turned_outwards(rows: npt.NDArray[Any], points: Floats) -> npt.NDArray[Any]:
+    """Cells of VTK, (cells, 1 + nodes), with tetrahedra of positive volume.
+
+    DOLFINx orders the nodes of a tetrahedron by their numbers, whatever volume that gives.
+    """
+    mirrored = _MIRRORED.get(rows.shape[1] - 1)
+    if mirrored is None:
+        return rows
+    corners = points[rows[:, 1:5]]
+    inside_out = np.linalg.det(corners[:, 1:] - corners[:, :1]) < 0.0
+    turned = rows.copy()
+    turned[inside_out, 1:] = rows[inside_out][:, 1:][:, mirrored]
+    return turned
 
 
 def _joined(parts: list[tuple[Any, ...]]) -> tuple[Any, Any, Any]:

@@ -1,0 +1,100 @@
+"""Files of a results folder: whole or not there, ours or untouched."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from anisocontact.errors import InputError
+from anisocontact.results import Results
+from anisocontact.results.files import OWN, check_folder, clear, replacing, write_text
+from anisocontact.results.history import History, flat, read_history
+
+
+def test_a_file_is_replaced_at_once_or_stays(tmp_path):
+    path = tmp_path / "summary.json"
+    write_text(path, "old")
+    with pytest.raises(RuntimeError), replacing(path) as draft:
+        draft.write_text("half of the n")
+        raise RuntimeError
+    assert path.read_text() == "old"
+    assert [entry.name for entry in tmp_path.iterdir()] == ["summary.json"]
+    write_text(path, "new")
+    assert path.read_text() == "new"
+
+
+def test_check_folder(tmp_path):
+    check_folder(tmp_path / "none")
+    check_folder(tmp_path)
+    (tmp_path / "thesis.tex").touch()
+    for overwrite in (False, True):
+        with pytest.raises(InputError, match=r"holds no run \(it has thesis.tex\)"):
+            check_folder(tmp_path, overwrite)
+    (tmp_path / "run.log").touch()
+    with pytest.raises(InputError, match="--overwrite"):
+        check_folder(tmp_path)
+    check_folder(tmp_path, overwrite=True)
+    with pytest.raises(InputError, match="Not a directory"):
+        check_folder(tmp_path / "run.log")
+
+
+def test_clear_removes_what_a_run_wrote_and_nothing_else(tmp_path):
+    for name in OWN:
+        (tmp_path / name).mkdir() if "." not in name else (tmp_path / name).touch()
+    (tmp_path / "fields" / "0000.vtu").touch()
+    (tmp_path / "thesis.tex").touch()
+    outside = tmp_path.parent / "outside"
+    outside.mkdir()
+    (outside / "kept").touch()
+    (tmp_path / "pictures").rmdir()
+    (tmp_path / "pictures").symlink_to(outside)
+    clear(tmp_path)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["thesis.tex"]
+    assert (outside / "kept").exists()
+
+
+def test_flat_names():
+    nested = {"a": {"b": 1}, "c": [{"f": [1.0, 2.0, 3.0]}, {"f": [0.0, 0.0, 4.0]}], "d": [1.0, 2.0]}
+    assert dict(flat(nested)) == {
+        "a.b": 1,
+        "c.0.f.x": 1.0,
+        "c.0.f.y": 2.0,
+        "c.0.f.z": 3.0,
+        "c.1.f.x": 0.0,
+        "c.1.f.y": 0.0,
+        "c.1.f.z": 4.0,
+        "d.0": 1.0,
+        "d.1": 2.0,
+    }
+
+
+def test_history_reads_back_bit_for_bit(tmp_path):
+    """Every number is written with as many digits as it needs to be the same number again."""
+    values = np.random.default_rng(7).normal(size=(5, 3)) * 10.0 ** np.arange(-8, 7)[:15].reshape(
+        5, 3
+    )
+    history = History(tmp_path / "history.csv")
+    for i, row in enumerate(values):
+        history.append({"step": "drag, along x", "increment": i, "force": row.tolist()})
+    table = read_history(tmp_path / "history.csv")
+    assert table["step"].tolist() == ["drag, along x"] * 5
+    assert table["increment"].tolist() == [0, 1, 2, 3, 4]
+    assert np.array_equal(np.column_stack([table[f"force.{a}"] for a in "xyz"]), values)
+
+
+def test_history_can_be_read_while_a_row_is_written(tmp_path):
+    path = tmp_path / "history.csv"
+    history = History(path)
+    history.append({"step": "a", "time": 1.0})
+    with path.open("a") as file:
+        file.write("a,2.")
+    assert read_history(path)["time"].tolist() == [1.0]
+    path.write_text("step,ti")
+    assert read_history(path) == {}
+    path.write_text("step,time\n")
+    assert read_history(path)["time"].tolist() == []
+
+
+def test_results_of_a_folder_without_any(tmp_path):
+    with pytest.raises(InputError, match="holds no results"):
+        Results(tmp_path)

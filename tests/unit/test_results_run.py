@@ -1,0 +1,299 @@
+"""The folder of a run against the problem it came from."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact import __version__
+from anisocontact.case import load
+from anisocontact.case.build import build
+from anisocontact.results import Results
+from anisocontact.results.paraview import Bodies, von_mises
+from anisocontact.results.report import shape, write_report
+from anisocontact.results.report.run_data import RunData
+from anisocontact.results.writer import Writer
+
+# Sums of a few dozen numbers of the size of the result: round-off, no more.
+ROUND_OFF = 1e-12
+
+
+def run_case(path, folder):
+    """Run a case into a folder, without pictures; the problem in its last state."""
+    file = load(path)
+    built = build(file)
+    writer = Writer(
+        folder,
+        built.problem,
+        built.steps,
+        masters=[contact.master for contact in file.case.contact],
+        title=file.case.title,
+        every=file.case.output.every,
+        case=path.read_text(),
+    )
+    accepted = []
+    for increment in built.solver.run():
+        writer.accept(increment)
+        accepted.append(increment)
+    return SimpleNamespace(
+        built=built, problem=built.problem, writer=writer, accepted=accepted, folder=folder
+    )
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory, case_text):
+    """The small case, run to its end, with its report."""
+    folder = tmp_path_factory.mktemp("run")
+    (folder / "case.toml").write_text(case_text)
+    done = run_case(folder / "case.toml", folder / "out")
+    done.writer.close("done")
+    done.results = Results(folder / "out")
+    return done
+
+
+def test_summary_has_the_promised_keys(run):
+    summary = run.results.summary
+    promised = {
+        "status", "message", "version", "wall_time_s", "unknowns", "steps", "newton_iterations",
+        "contacts", "reactions", "energy",
+    }  # fmt: skip
+    assert promised <= set(summary)
+    assert (summary["status"], summary["message"]) == ("done", "")
+    assert summary["version"] == __version__
+    assert summary["unknowns"] == 144
+    assert summary["steps"] == 6
+    assert summary["newton_iterations"] == sum(a.iterations for a in run.accepted)
+    contact = summary["contacts"][0]
+    assert (contact["slave"], contact["master"]) == ("block.bottom", "plate")
+    assert {"force", "moment", "max_pressure", "max_penetration"} <= set(contact)
+    assert set(contact["points"]) == {"open", "stick", "slip"}
+    energies = {"external", "elastic", "adhesion", "friction", "stabilisation", "residual"}
+    assert energies <= set(summary["energy"])
+
+
+def test_summary_is_the_last_increment(run):
+    """Numbers of the file against those of the solver, the same doubles."""
+    summary, last = run.results.summary, run.accepted[-1]
+    force, moment = run.problem.contacts[0].resultant()
+    assert summary["contacts"][0]["force"] == force.tolist()
+    assert summary["contacts"][0]["moment"] == moment.tolist()
+    assert summary["reactions"] == {"block.top": last.reactions["block.top"].tolist()}
+    assert summary["energy"] == last.energies
+
+
+def test_supports_balance_the_contact(run):
+    """Equilibrium: what the plate gives the block, the support takes; to the Newton tolerance."""
+    summary = run.results.summary
+    force = np.array(summary["contacts"][0]["force"])
+    assert np.allclose(summary["reactions"]["block.top"], -force, atol=1e-6 * np.abs(force).max())
+
+
+def test_history_has_a_row_for_each_increment(run):
+    history = run.results.history
+    assert history["step"].tolist() == ["press"] * 2 + ["drag"] * 4
+    assert history["increment"].tolist() == [1, 2, 1, 2, 3, 4]
+    assert history["newton_iterations"].tolist() == [a.iterations for a in run.accepted]
+    assert history["contacts.0.force.z"].tolist() == [
+        a.resultants["block.bottom on plate"][0][2] for a in run.accepted
+    ]
+    # The prescribed displacement, ramped: the mean over the facets up to round-off.
+    assert np.allclose(history["displacements.block.top.x"], [0, 0, 0.005, 0.01, 0.015, 0.02])
+    assert not any("wall" in name for name in history)
+
+
+def test_equal_runs_give_equal_tables(run, tmp_path, case_text):
+    (tmp_path / "case.toml").write_text(case_text)
+    again = run_case(tmp_path / "case.toml", tmp_path / "out")
+    table = (again.folder / "history.csv").read_bytes()
+    assert table == (run.folder / "history.csv").read_bytes()
+
+
+def test_fields_are_written_when_due(run):
+    """Every third increment, at the end of each step, and the start: 0, 2, 3, 6."""
+    assert run.results.times == pytest.approx([0.0, 1.0, 1.25, 2.0])
+    assert np.all(run.results.fields(0).point_data["displacement"] == 0.0)
+
+
+def test_displacement_of_the_grid(run):
+    grid = run.results.fields()
+    u = run.problem.u.x.array.reshape(-1, 3)
+    x = run.problem.model.space.tabulate_dof_coordinates()
+    assert np.array_equal(grid.points, x)
+    assert np.array_equal(grid.point_data["displacement"], u)
+
+
+def test_slave_points_carry_the_resultant(run):
+    """Areas times tractions are the resultant; traction is N n + T, T from its components."""
+    points, contact = run.results.contact(), run.problem.contacts[0]
+    data = {name: np.asarray(points.point_data[name]) for name in points.point_data}
+    force = data["area"] @ data["traction"]
+    assert np.allclose(force, contact.resultant()[0], rtol=ROUND_OFF)
+    whole = data["pressure"][:, None] * data["normal"] + data["traction_t"]
+    assert np.allclose(whole, data["traction"], atol=ROUND_OFF * data["pressure"].max())
+    axes = np.stack([data["direction_friction_1"], data["direction_friction_2"]], axis=1)
+    rebuilt = np.einsum("ni,nij->nj", data["traction_principal"], axes)
+    assert np.allclose(rebuilt, data["traction_t"], atol=ROUND_OFF * data["pressure"].max())
+    # T = -S e with S along the axes of adhesion, stiffness 4e3 and 1e3 along x and y.
+    assert np.allclose(
+        data["elastic_slip"] * [-4e3, -1e3, 0.0],
+        data["traction_t"],
+        atol=ROUND_OFF * data["pressure"].max(),
+    )
+    assert np.array_equal(data["status"], contact.last.status)
+    assert np.array_equal(points.points, contact.points)
+    assert data["slip_accumulated"].max() > 0.0
+    assert data["dissipation"].min() >= 0.0
+
+
+def test_case_file_is_kept(run, case_text):
+    assert (run.folder / "case.toml").read_text() == case_text
+
+
+def test_log_ends_like_the_run(run):
+    assert (run.folder / "run.log").read_text().startswith(f"anisocontact {__version__}")
+
+
+def uniform(tmp_path, case_text, cell, order):
+    """A block stretched along z by 0.1 %, sides free: a state known in closed form."""
+    data = case_text.replace('cell = "hexahedron"', f'cell = "{cell}"')
+    data = data.replace("order = 1", f"order = {order}")
+    (tmp_path / "case.toml").write_text(data)
+    return build(load(tmp_path / "case.toml")).problem
+
+
+@pytest.mark.parametrize("cell", ["hexahedron", "tetrahedron"])
+@pytest.mark.parametrize("order", [1, 2])
+def test_grid_of_every_cell_and_order(tmp_path, case_text, cell, order):
+    """VTK sees the same body: its volume 0.5, and a linear field where its nodes are.
+
+    A wrong order of the nodes of a quadratic cell would change the volume. The stress of the
+    field `u = (0, 0, 0.001 z)` is that of Hooke, `(lambda, lambda, lambda + 2 G) 0.001`, at every
+    node, whatever the cell.
+    """
+    problem = uniform(tmp_path, case_text, cell, order)
+    x = problem.model.space.tabulate_dof_coordinates()
+    u = problem.u.x.array.reshape(-1, 3)
+    u[:, 2] = 1e-3 * x[: len(u), 2]
+    grid = Bodies(problem).grid()
+    sized = grid.compute_cell_sizes(length=False, area=False)
+    assert sized.cell_data["Volume"].sum() == pytest.approx(0.5, rel=ROUND_OFF)
+    assert sized.cell_data["Volume"].min() > 0.0
+    assert np.array_equal(grid.point_data["displacement"][:, 2], 1e-3 * grid.points[:, 2])
+    lame, shear = 1000 * 0.3 / (1.3 * 0.4), 1000 / 2.6
+    expected = 1e-3 * np.array([lame, lame, lame + 2 * shear, 0, 0, 0])
+    assert np.allclose(grid.point_data["stress"], expected, atol=1e-12 * 1000)
+    assert np.allclose(grid.point_data["von_mises"], 2e-3 * shear, rtol=1e-9)
+
+
+def test_von_mises_of_known_states():
+    """Uniaxial tension s gives s, pure shear t gives sqrt(3) t, pressure gives 0."""
+    states = np.array([[7.0, 0, 0, 0, 0, 0], [0, 0, 0, 2.0, 0, 0], [5.0, 5, 5, 0, 0, 0]])
+    assert von_mises(states) == pytest.approx([7.0, 2.0 * np.sqrt(3.0), 0.0])
+
+
+def test_report_is_one_file_with_all_pictures(run):
+    text = (run.folder / "report.html").read_text()
+    names = ("deformed", "pressure", "status", "traction", "domain", "force")
+    assert text.count("data:image/png;base64,") == len(names)
+    for name in names:
+        assert (run.folder / "pictures" / f"{name}.png").stat().st_size > 5000
+    # Nothing is loaded from elsewhere.
+    assert not re.search(r"""(src|href)\s*=\s*["'](?!data:)""", text)
+    assert "@import" not in text
+    assert "Small block on a turned plate" in text
+
+
+@pytest.fixture
+def quick(monkeypatch):
+    """Pictures in space by matplotlib, which is quicker for a body of a few cells."""
+    monkeypatch.setattr(shape, "_by_vtk", lambda *_: False)
+
+
+def test_report_can_be_made_again_from_the_folder(quick, run):
+    picture = run.folder / "pictures" / "force.png"
+    before = picture.read_bytes()
+    picture.unlink()
+    assert write_report(run.folder) == []
+    assert picture.read_bytes() == before
+
+
+def test_a_picture_that_fails_does_not_cost_the_report(run, monkeypatch):
+    def broken(*_: object) -> None:
+        raise RuntimeError("no ink")
+
+    monkeypatch.setattr(shape, "draw", broken)
+    assert write_report(run.folder) == ["picture deformed: RuntimeError: no ink"]
+    assert (run.folder / "report.html").read_text().count("data:image/png") == 5
+
+
+def test_without_graphics_matplotlib_draws(run, monkeypatch, tmp_path):
+    """A renderer that dies, as VTK does without any OpenGL, leaves the run alone."""
+    monkeypatch.setattr(shape, "_RENDERER", "anisocontact.no_such_module")
+    picture = tmp_path / "deformed.png"
+    scale = shape.draw(run.results.fields(), run.results.fields_file(), picture)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["deformed.png"]
+    # The largest movement is 0.025 of a body whose diagonal is 1.5: a round magnification of 5.
+    assert scale == 5.0
+
+
+def test_steps_and_moments_of_the_report(run):
+    data = RunData(run.folder)
+    assert [name for name, _ in data.steps] == ["press", "drag"]
+    assert [m.title for m in data.moments] == [
+        "press, increment 2",
+        "drag, increment 1",
+        "drag, increment 4",
+    ]
+    label, distance = data.path_length()
+    assert "block.top" in label
+    # 0.01 down, then sqrt(0.02^2 + 0.01^2) along the plate
+    assert distance[-1] == pytest.approx(0.01 + np.hypot(0.02, 0.01))
+
+
+def test_a_folder_is_readable_while_the_run_goes_on(tmp_path, case_text):
+    (tmp_path / "case.toml").write_text(case_text)
+    built = build(load(tmp_path / "case.toml"))
+    writer = Writer(tmp_path / "out", built.problem, built.steps)
+    results = Results(tmp_path / "out")
+    assert results.summary["status"] == "stopped"
+    assert results.summary["steps"] == 0
+    assert results.history == {}
+    for count, accepted in enumerate(built.solver.run(), start=1):
+        writer.accept(accepted)
+        assert results.summary["steps"] == count == len(results.history["time"])
+        assert results.fields(-1).n_points == 48
+    assert not list((tmp_path / "out").rglob(".*"))
+
+
+def test_two_contacts_of_one_body(quick, tmp_path, case_text):
+    """Each contact has its own numbers and pictures: a block between two plates."""
+    data = tomllib.loads(case_text)
+    assert len(data["contact"]) == 1
+    second = """
+[surface.wall]
+shape = "plane"
+point = [1.0, 0, 0]
+normal = [-1, 0, 0]
+
+[[contact]]
+slave = "block.right"
+master = "wall"
+friction = { coefficients = 0.2 }
+"""
+    (tmp_path / "case.toml").write_text(case_text + second)
+    done = run_case(tmp_path / "case.toml", tmp_path / "out")
+    done.writer.close("done")
+    contacts = json.loads((tmp_path / "out" / "summary.json").read_text())["contacts"]
+    assert [contact["master"] for contact in contacts] == ["plate", "wall"]
+    assert contacts[1]["force"][0] < 0.0 < contacts[0]["force"][2]
+    assert np.unique(Results(tmp_path / "out").contact().point_data["contact"]).tolist() == [0, 1]
+    names = {path.stem for path in (tmp_path / "out" / "pictures").iterdir()}
+    assert {"deformed", "status-0", "status-1", "domain-1"} <= names
