@@ -65,3 +65,33 @@ def _random_slides(
 @pytest.fixture(scope="session")
 def random_slides() -> Callable[..., Slides]:
     return _random_slides
+
+
+@dataclass(frozen=True)
+class Rule:
+    """A sliding rule with values of its parameters."""
+
+    name: str
+    parameters: dict[str, object]
+
+    @property
+    def label(self) -> str:
+        return "-".join([self.name, *(v for v in self.parameters.values() if isinstance(v, str))])
+
+
+RULES = (
+    Rule("maximum-dissipation", {}),
+    Rule("linear", {}),
+    Rule("coaxial", {}),
+    Rule("slip-ellipse", {"slip_axes": (3.0, 1.0), "slip_angle": 0.7}),
+    Rule("radial", {}),
+    Rule("explicit", {"history": "centre"}),
+    Rule("explicit", {"history": "incremental"}),
+    Rule("explicit", {"history": "kuhn-tucker"}),
+)
+
+
+@pytest.fixture(params=RULES, ids=lambda r: r.label)
+def rule(request) -> Rule:
+    """Every rule, `explicit` with each of its histories."""
+    return request.param

@@ -1,14 +1,14 @@
 """The implicit rules against solvers that share nothing with them.
 
-Requirement: the law alone agrees with an independent solution to 1e-10 over 10,000 random tensors S,
-F, forces and pressures. Source: the incremental principle of maximum dissipation is the convex
-problem min 1/2 (T - T_tr).S^-1 (T - T_tr) over T.FT <= N^2 [Konyukhov Schweizerhof 2006, section 4.1
-a)-d), backward Euler; Simo and Hughes 1992]; the other rules replace its normal F T by K T.
+Requirement: the law alone agrees with an independent solution to 1e-10 over 10,000 random tensors
+S, F, forces and pressures. Source: the incremental principle of maximum dissipation is the convex
+problem min 1/2 (T - T_tr).S^-1 (T - T_tr) over T.FT <= N^2 [Konyukhov Schweizerhof 2006, section
+4.1 a)-d), backward Euler; Simo and Hughes 1992]; the other rules replace its normal F T by K T.
 
-The core finds the multiplier lambda of a rational equation. The solvers here never form it: they look
-for the angle of the force on the yield ellipse. They work in long double, so that what is measured is
-the error of the core; 1e-10 in units of N is some 1e6 roundings, the tensors having conditions of up
-to 1e3 each.
+The core finds the multiplier lambda of a rational equation. The solvers here never form it: they
+look for the angle of the force on the yield ellipse. They work in long double, so that what is
+measured is the error of the core; 1e-10 in units of N is some 1e6 roundings, the tensors having
+conditions of up to 1e3 each.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ def power(m, exponent):
 
 
 def nearest_on_ellipse(stiffness, friction, trial, pressure):
-    """Minimiser of the convex problem: with y = S^(-1/2) T the point of an ellipse that is nearest to
-    y_tr. In its principal axes and first quadrant the distance has one stationary point, found by
-    halving the angle."""
+    """Minimiser of the convex problem: with y = S^(-1/2) T the point of an ellipse that is nearest
+    to y_tr. In its principal axes and first quadrant the distance has one stationary point, found
+    by halving the angle."""
     s, f, t, n = (np.asarray(v, Long) for v in (stiffness, friction, trial, pressure))
     root, root_inv = power(s, Long(0.5)), power(s, Long(-0.5))
     values, q = spectrum(np.einsum("nij,njk,nkl->nil", root, f, root))
@@ -59,9 +59,14 @@ def nearest_on_ellipse(stiffness, friction, trial, pressure):
 
 
 def first_with_normal(stiffness, friction, conjugate, trial, pressure, grid=1500):
-    """Force on the ellipse with S^-1 (T_tr - T) = lambda K T, of the smallest lambda > 0: every change
-    of sign of their cross product on a grid of angles, refined by halving."""
-    arrays = (np.linalg.inv(stiffness), conjugate, trial, ellipse_map(stiffness, friction, pressure))
+    """Force on the ellipse with S^-1 (T_tr - T) = lambda K T, of the smallest lambda > 0: every
+    change of sign of their cross product on a grid of angles, refined by halving."""
+    arrays = (
+        np.linalg.inv(stiffness),
+        conjugate,
+        trial,
+        ellipse_map(stiffness, friction, pressure),
+    )
 
     def cross(angle, s_inv, k, t, shape):
         force = np.stack(

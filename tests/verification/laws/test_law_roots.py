@@ -1,8 +1,8 @@
 """The smallest multiplier of the implicit rules: several roots, extreme ratios and the strip.
 
 Requirement: the force is where the path T(lambda) = (I + lambda S K)^-1 T_tr first meets the yield
-ellipse, for every ratio N/|T_tr|, every condition of S and F up to 1e8, and in the strip eps_1 -> 0.
-Source: backward Euler of the rules of section 4.1 of the paper; for K != F the path can meet the
+ellipse, for every ratio N/|T_tr|, every condition of S and F up to 1e8, and in the strip eps_1 ->
+0. Source: backward Euler of the rules of section 4.1 of the paper; for K != F the path can meet the
 ellipse three times (docs/theory/sliding-rules.md), and only its first meeting is reached from T_tr.
 """
 
@@ -93,8 +93,8 @@ def test_far_meeting_where_the_near_pair_is_gone():
 @pytest.mark.parametrize(("condition", "decades"), [(1e2, 12.0), (1e8, 12.0), (1e8, 2.0)])
 def test_first_meeting_over_twelve_decades(random_slides, rule, parameters, condition, decades):
     """Tensors along the axes, so that their conditions do no harm to the reference. Before the root
-    the path is outside the ellipse (1e-9: a meeting that close is the root itself), at the root on it
-    (1e-11, the rounding of two nearly opposite terms of 1e-12 relative size at worst)."""
+    the path is outside the ellipse (1e-9: a meeting that close is the root itself), at the root on
+    it (1e-11, the rounding of two nearly opposite terms of 1e-12 relative size at worst)."""
     p = random_slides(
         2000, 5, condition=condition, ratio=(10.0**-decades, 1.0 - 1e-9), aligned=True
     )
@@ -112,8 +112,8 @@ def test_first_meeting_over_twelve_decades(random_slides, rule, parameters, cond
 
 @pytest.mark.parametrize(("rule", "parameters"), EVERY, ids=ids)
 def test_turned_tensors_of_condition_1e8(random_slides, rule, parameters):
-    """Turned axes: the components of F themselves carry its condition times the rounding, so the force
-    is on the ellipse to 1e-7, and every number is finite."""
+    """Turned axes: the components of F themselves carry its condition times the rounding, so the
+    force is on the ellipse to 1e-7, and every number is finite."""
     p = random_slides(10_000, 6, condition=1e8, ratio=(1e-12, 0.999))
     r = slide(*p, rule, **parameters)
     assert r.converged.all()
@@ -125,7 +125,8 @@ def test_turned_tensors_of_condition_1e8(random_slides, rule, parameters):
 @pytest.mark.parametrize(("rule", "parameters"), EVERY, ids=ids)
 @pytest.mark.parametrize("ratio", [1e-300, 1e-100, 1e-30, 1.0 - 2e-16])
 def test_vanishing_pressure_and_the_limit_itself(rule, parameters, ratio):
-    """The force is N times a unit vector of the ellipse, whatever the size of N: 1e-14, roundings."""
+    """The force is N times a unit vector of the ellipse, whatever the size of N: 1e-14,
+    roundings."""
     s, f = np.array([[3.0, 1.0], [1.0, 2.0]]), np.array([[10.0, 2.0], [2.0, 90.0]])
     t = np.array([1.0, -0.4])
     n = ratio * np.sqrt(t @ f @ t)
@@ -138,11 +139,11 @@ def test_vanishing_pressure_and_the_limit_itself(rule, parameters, ratio):
 @pytest.mark.parametrize(("rule", "parameters"), EVERY, ids=ids)
 @pytest.mark.parametrize("angle", [0.0, 0.4])
 def test_strip_is_the_limit_of_a_thin_ellipse(rule, parameters, angle):
-    """eps_1 -> 0 [Konyukhov Schweizerhof 2006, section 4.6]: a force in the range of S, as the strip
-    makes it, gives the force and slip of eps_1 = 0. The difference is of first order in eps_1: it
-    falls by 100 (90 to 110) when eps_1 does, and at eps_1/eps_2 = 1e-10 is below 1e-7 (what the
-    rounding of S against eps_1 leaves). The slip of `incremental` has no such limit: its force lies
-    a little off the range of S, which S^-1 turns into a slip along the strip."""
+    """eps_1 -> 0 [Konyukhov Schweizerhof 2006, section 4.6]: a force in the range of S, as the
+    strip makes it, gives the force and slip of eps_1 = 0. The difference is of first order in
+    eps_1: it falls by 100 (90 to 110) when eps_1 does, and at eps_1/eps_2 = 1e-10 is below 1e-7
+    (what the rounding of S against eps_1 leaves). The slip of `incremental` has no such limit: its
+    force lies a little off the range of S, which S^-1 turns into a slip along the strip."""
     along = np.array([np.cos(angle), np.sin(angle)])
     across = np.array([-along[1], along[0]])
     f, t, e2 = np.diag([1 / 0.09, 100.0]), 5.0 * across, 5e4
@@ -166,9 +167,10 @@ def test_strip_is_the_limit_of_a_thin_ellipse(rule, parameters, angle):
 @pytest.mark.parametrize(("rule", "parameters"), IMPLICIT)
 @pytest.mark.parametrize("angle", [0.0, 0.4])
 def test_strip_with_a_force_it_cannot_relieve(rule, parameters, angle):
-    """A force along the strip (a direction field that turns can leave one) does not yield by slip. The
-    force is then the limit eps_1 -> 0, of infinite lambda: N m/|m|_F with m = adj(S K) T_tr; its tangent
-    is that of this map, checked against the thin ellipse to first order (1e-8 at eps_1/eps_2 = 1e-9)."""
+    """A force along the strip (a direction field that turns can leave one) does not yield by slip.
+    The force is then the limit eps_1 -> 0, of infinite lambda: N m/|m|_F with m = adj(S K) T_tr;
+    its tangent is that of this map, checked against the thin ellipse to first order (1e-8 at
+    eps_1/eps_2 = 1e-9)."""
     along = np.array([np.cos(angle), np.sin(angle)])
     across = np.array([-along[1], along[0]])
     f, t, e2 = np.diag([1 / 0.09, 100.0]), 5.0 * across + 3.0 * along, 5e4
