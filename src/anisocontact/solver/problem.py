@@ -210,11 +210,11 @@ class Problem:
         Returns:
             "external" work of supports and loads since the start (trapezoidal rule), stored
             "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
-            "friction", energy of "stabilisation", and "residual", what the balance
+            "friction" and "viscous" laws, energy of "stabilisation", and "residual", what the balance
             `external - all others` leaves: first order in the size of the increments.
         """
         stored = {"elastic": self.bulk.energy(self._accepted)}
-        stored |= dict.fromkeys(("adhesion", "normal", "friction", "stabilisation"), 0.0)
+        stored |= dict.fromkeys(("adhesion", "normal", "friction", "viscous", "stabilisation"), 0.0)
         for contact in self.contacts:
             for name, value in contact.energies().items():
                 stored[name] += value

@@ -112,7 +112,7 @@ inline surface::Geometry<PairDual> ridge_geometry(const PairPoint& p,
                                                   const surface::Jet<PairDual>& j,
                                                   const Vec3<PairDual>& x) {
   const Vec3<PairDual> apart = x - j.position;
-  const auto outward = surface::geometry(p.now).normal;
+  const auto outward = surface::tangent_plane(p.now).normal;
   const PairDual length = sqrt(apart.dot(apart));
   const double sign = value(apart).dot(outward) < 0.0 ? -1.0 : 1.0;
   const Vec3<PairDual> n = (PairDual(sign) / length) * apart;
@@ -124,7 +124,7 @@ inline surface::Geometry<PairDual> ridge_geometry(const PairPoint& p,
   surface::Jet<PairDual> ridge = j;
   ridge.d1 = {t, n.cross(t)};
   for (auto& second : ridge.d2) second = constant<PairDual>(Vec3<double>::Zero());
-  return surface::geometry(ridge);
+  return surface::tangent_plane(ridge);
 }
 
 /// Axes of a field given in the reference configuration and carried by the material: components in
@@ -135,7 +135,7 @@ inline anisotropy::Axes<PairDual> carried(const std::optional<anisotropy::AnyFie
                                           const surface::Geometry<PairDual>& g) {
   if (!field) return anisotropy::axes_from(g, g.jet.d1[0], anisotropy::Turn{});
   const surface::Jet<double>& ref = p.reference;
-  const auto reference = surface::geometry(
+  const auto reference = surface::tangent_plane(
       moving(ref, constant<PairDual>(ref.position),
              {constant<PairDual>(ref.d1[0]), constant<PairDual>(ref.d1[1])}, dxi));
   const Vector<PairDual> xi{{PairDual(p.xi[0]) + dxi[0], PairDual(p.xi[1]) + dxi[1]}};
@@ -172,7 +172,7 @@ inline PairResult update_pair(const InterfaceLaw& law, const PointState& state, 
   if (p.feature == Feature::edge) dxi = detail::edge_shift(p, x, r, ri);
   const auto jet = detail::moving(p.now, r, ri, dxi);
   Kinematics<S> k;
-  const auto facet = surface::geometry(jet);
+  const auto facet = surface::tangent_plane(jet);
   k.now = p.feature == Feature::interior ? facet : detail::ridge_geometry(p, jet, x);
   k.xi = {{S(p.xi[0]) + dxi[0], S(p.xi[1]) + dxi[1]}};
   k.gap = (x - k.now.jet.position).dot(k.now.normal);
@@ -185,7 +185,7 @@ inline PairResult update_pair(const InterfaceLaw& law, const PointState& state, 
     before.d1 = {detail::seed(p.before.d1[0], Input::before_tangent_1),
                  detail::seed(p.before.d1[1], Input::before_tangent_2)};
     for (std::size_t i = 0; i < 3; ++i) before.d2[i] = constant<S>(p.before.d2[i]);
-    k.before = surface::geometry(before);
+    k.before = surface::tangent_plane(before);
   }
   const auto reaction = react(
       law, state, k, [&](const auto& field) { return detail::carried(field, p, dxi, jet, k.now); });

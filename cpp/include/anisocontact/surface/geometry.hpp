@@ -76,11 +76,11 @@ struct Geometry {
   S mean_curvature() const { return S(0.5) * trace(h_mixed); }
 };
 
-/// Geometry from a jet [Konyukhov Schweizerhof 2006, eq. (3), (8)].
+/// Metric, area and normal from a jet; curvature and connection stay zero.
 template <class S>
-Geometry<S> geometry(const Jet<S>& jet) {
+Geometry<S> tangent_plane(const Jet<S>& jet) {
   using std::sqrt;
-  Geometry<S> g;
+  Geometry<S> g{};
   g.jet = jet;
   const auto& r = jet.d1;
   for (std::size_t i = 0; i < 2; ++i)
@@ -89,6 +89,13 @@ Geometry<S> geometry(const Jet<S>& jet) {
   const Vec3<S> cross = r[0].cross(r[1]);
   g.area = sqrt(cross.dot(cross));
   g.normal = (S(1.0) / g.area) * cross;
+  return g;
+}
+
+/// Geometry from a jet [Konyukhov Schweizerhof 2006, eq. (3), (8)].
+template <class S>
+Geometry<S> geometry(const Jet<S>& jet) {
+  Geometry<S> g = tangent_plane(jet);
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) g.h_co(i, j) = jet.second(i, j).dot(g.normal);
   g.h_mixed = g.a_contra * g.h_co;

@@ -1,0 +1,134 @@
+"""What every contact keeps: the accepted increment, the trial of the next, their numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import MPI
+from anisocontact.interface import STATUS, Response, State
+
+Floats = npt.NDArray[np.float64]
+
+#: Fields of a point's state that are energies per area, by their name in the balance.
+_ENERGIES = {
+    "adhesion": "energy_adhesion",
+    "normal": "energy_normal",
+    "friction": "dissipation",
+    "viscous": "dissipation_viscous",
+}
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Slave points at one state.
+
+    Attributes:
+        points: Where they are, (n, 3), length.
+        areas: Area of each, (n,), length^2.
+        response: What the interface answers.
+    """
+
+    points: Floats
+    areas: Floats
+    response: Response
+
+
+class ContactRecord:
+    """History of the slave points of one contact: it advances with `commit` only.
+
+    Args:
+        comm: Communicator over which the points are spread.
+        slave: Facet group "body.group".
+        name: Name in output.
+        state: State of the points before the first increment.
+        start: The points then.
+
+    Attributes:
+        state: Committed history, one record for each point.
+    """
+
+    def __init__(
+        self, comm: MPI.Comm, slave: str, name: str, state: State, start: Snapshot
+    ) -> None:
+        self.slave = slave
+        self.name = name
+        self.state = state
+        self._comm = comm
+        self._accepted = start
+        self._trial: Snapshot | None = None
+
+    @property
+    def points(self) -> Floats:
+        """Slave points where they are after the accepted increment, (n, 3), length."""
+        return self._accepted.points
+
+    @property
+    def areas(self) -> Floats:
+        """Area of each slave point after the accepted increment, (n,), length^2."""
+        return self._accepted.areas
+
+    @property
+    def last(self) -> Response:
+        """Response of the accepted increment."""
+        return self._accepted.response
+
+    @property
+    def current(self) -> Snapshot:
+        """The trial, or the accepted increment if there was none since."""
+        return self._trial or self._accepted
+
+    @property
+    def trial(self) -> Response:
+        """Response of the last `update`, or of the accepted increment if there was none since."""
+        return self.current.response
+
+    def failed_points(self) -> Floats:
+        """Positions of the trial at which the law has no answer, (failed, 3), length."""
+        if self._trial is None:
+            return np.zeros((0, 3))
+        return self._trial.points[self._trial.response.failed]
+
+    def commit(self) -> None:
+        """Make the trial the history."""
+        if self._trial is not None:
+            self._accepted = self._trial
+            self.state = self.last.state
+            self._trial = None
+
+    def roll_back(self) -> None:
+        """Forget the trial."""
+        self._trial = None
+
+    def counts(self) -> dict[str, int]:
+        """Number of open, sticking and slipping points of the trial, over all ranks."""
+        local = np.bincount(self.trial.status, minlength=len(STATUS))
+        total = self._comm.allreduce(local)
+        return {name: int(n) for name, n in zip(STATUS, total, strict=True)}
+
+    def resultant(self) -> tuple[Floats, Floats]:
+        """Force and moment about the origin on the slave after the accepted increment.
+
+        Returns:
+            Force (3,) and moment (3,), force and force times length.
+        """
+        forces = self.areas[:, None] * self.last.traction
+        local = np.concatenate([forces.sum(axis=0), np.cross(self.points, forces).sum(axis=0)])
+        total = self._comm.allreduce(local)
+        return total[:3], total[3:]
+
+    def energies(self) -> dict[str, float]:
+        """Stored and dissipated energy after the accepted increment.
+
+        Returns:
+            "adhesion" (elastic, tangential), "normal" (of the normal law), "friction" and
+            "viscous" (dissipated since the start), force times length.
+        """
+        local = np.array([self.areas @ self.state[name] for name in _ENERGIES.values()])
+        return dict(zip(_ENERGIES, self._comm.allreduce(local).tolist(), strict=True))
+
+    def extreme(self, values: Floats) -> float:
+        """Largest of one number at each point, over all ranks; 0 without points."""
+        return float(max(self._comm.allgather(float(np.max(values, initial=0.0)))))
