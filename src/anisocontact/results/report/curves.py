@@ -26,7 +26,6 @@ _DOMAIN = "adhesion domain at the end of each step"
 def force(run: RunData, contact: int) -> Figure:
     """Force on the slave over the distance moved: tangential components and normal force."""
     frame = run.view(-1, contact).frame
-    normal = np.cross(*frame.axes)
     forces = np.vstack([np.zeros(3), run.vectors(f"contacts.{contact}.force")])
     tangential = frame.of(forces)
     label, distance = run.path_length()
@@ -40,9 +39,9 @@ def force(run: RunData, contact: int) -> Figure:
     upper.plot(at, size, "-", color="black", lw=1.0, label="size")
     upper.set_ylabel("tangential force on the slave [force]")
     upper.legend(loc="best")
-    lower.plot(at, forces @ normal, color="black")
+    lower.plot(at, forces @ frame.normal, color="black")
     lower.set_ylabel("normal force [force]")
-    lower.set_ylim(bottom=min(0.0, float((forces @ normal).min())))
+    lower.set_ylim(bottom=min(0.0, float((forces @ frame.normal).min())))
     lower.set_xlabel(label)
     for axes in (upper, lower):
         _shade(run, axes, at)
@@ -60,9 +59,8 @@ def domain(run: RunData, contact: int) -> Figure:
     """
     view = run.view(run.moments[-1].index, contact)
     frame = view.frame
-    normal = np.cross(*frame.axes)
     forces = run.vectors(f"contacts.{contact}.force")
-    pressing = forces @ normal
+    pressing = forces @ frame.normal
     pressed = pressing > 1e-9 * np.abs(pressing).max(initial=0.0)
     ratio = frame.of(forces) / np.where(pressed, pressing, np.inf)[:, None]
     slip = frame.of(run.vectors(f"contacts.{contact}.elastic_slip"))

@@ -32,9 +32,11 @@ class Frame:
 
     Args:
         axes: Unit vectors, (2, 3).
+        normal: Unit vector across them, (3,).
     """
 
     axes: Floats
+    normal: Floats
 
     @classmethod
     def across(cls, normal: Floats) -> Frame:
@@ -43,7 +45,10 @@ class Frame:
         along = np.eye(3)[0 if abs(n[0]) < 0.9 else 1]
         first = along - (along @ n) * n
         first /= np.linalg.norm(first)
-        return cls(np.stack([first, np.cross(n, first)]))
+        second = np.cross(n, first)
+        # Upwards in the picture is a positive direction, whichever side that shows.
+        second *= np.sign(second[np.argmax(np.abs(second))])
+        return cls(np.stack([first, second]), n)
 
     def names(self) -> tuple[str, str]:
         """What the axes are called: x, y, z where they are those, else their components."""
