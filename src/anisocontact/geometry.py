@@ -14,14 +14,12 @@ from anisocontact.errors import InputError
 
 
 @dataclass(frozen=True)
-class Geometry:
-    """Metric, normal, curvature and connection of a surface at n points.
+class PointGeometry:
+    """Metric, normal, curvature and connection at n points.
 
     Symbols are those of the notation table; index order is that of the name.
 
     Args:
-        core: The surface of the core.
-        xi: Coordinates of the points, (n, 2).
         a_co: Metric a_ij, (n, 2, 2).
         a_contra: Its inverse a^ij, (n, 2, 2).
         area: sqrt(det a_ij), (n,).
@@ -31,8 +29,6 @@ class Geometry:
         christoffel: Gamma^k_ij, k first, (n, 2, 2, 2).
     """
 
-    core: _core.Surface = field(repr=False)
-    xi: Floats
     a_co: Floats
     a_contra: Floats
     area: Floats
@@ -50,6 +46,19 @@ class Geometry:
     def mean_curvature(self) -> Floats:
         """Half the trace of h^i_j, (n,) [1/length]; its sign follows the normal."""
         return 0.5 * np.trace(self.h_mixed, axis1=1, axis2=2)
+
+
+@dataclass(frozen=True)
+class Geometry(PointGeometry):
+    """Geometry of an analytic surface, with derivatives along its coordinates.
+
+    Args:
+        core: The surface of the core.
+        xi: Coordinates of the points, (n, 2).
+    """
+
+    core: _core.Surface = field(repr=False)
+    xi: Floats
 
     def spatial_basis(self, gap: npt.ArrayLike) -> Floats:
         """Basis r_i = (a_i^k - h_i^k xi^3) rho_k, r_3 = n of the space around the surface.

@@ -118,7 +118,7 @@ class Surface:
             [[1.0, 0.0], [0.0, 1.0]]
         """
         xi = points(xi, 2, "xi")
-        return Geometry(self.core, xi, **self.core.geometry(xi))
+        return Geometry(core=self.core, xi=xi, **self.core.geometry(xi))
 
     def geometry_derivatives(self, xi: npt.ArrayLike) -> GeometryDerivatives:
         """Exact derivatives of metric, normal and curvature along the coordinates.

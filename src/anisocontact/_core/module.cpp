@@ -11,5 +11,6 @@ NB_MODULE(_core, m) {
   anisocontact::bindings::bind_law(m);
   anisocontact::bindings::bind_kernel(m);
   anisocontact::bindings::bind_framed(m);
+  anisocontact::bindings::bind_search(m);
   anisocontact::bindings::bind_facet_pair(m);
 }

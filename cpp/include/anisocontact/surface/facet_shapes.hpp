@@ -41,6 +41,9 @@ constexpr std::array<std::size_t, 2> side_vertices(Topology t, std::size_t side)
   return triangular(t) ? tri[side] : quad[side];
 }
 
+/// Whether a side runs clockwise from its first to its second vertex.
+constexpr bool side_runs_back(std::size_t side) { return side % 2 == 1; }
+
 /// Coordinates of a vertex on the reference facet.
 constexpr std::array<double, 2> vertex_coordinates(std::size_t vertex) {
   return {static_cast<double>(vertex % 2), static_cast<double>(vertex / 2)};

@@ -1,0 +1,172 @@
+#pragma once
+// Tree of axis-aligned boxes in flat arrays: built once, refitted as the boxes move.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <numeric>
+#include <span>
+#include <vector>
+
+#include "anisocontact/tensor/dual.hpp"
+
+namespace anisocontact::search {
+
+struct Box {
+  std::array<double, 3> lower, upper;
+
+  static Box empty() {
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    return {{inf, inf, inf}, {-inf, -inf, -inf}};
+  }
+  void add(const Vec3<double>& x) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      lower[i] = std::min(lower[i], x[static_cast<Eigen::Index>(i)]);
+      upper[i] = std::max(upper[i], x[static_cast<Eigen::Index>(i)]);
+    }
+  }
+  void add(const Box& b) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      lower[i] = std::min(lower[i], b.lower[i]);
+      upper[i] = std::max(upper[i], b.upper[i]);
+    }
+  }
+  double centre(std::size_t i) const { return 0.5 * (lower[i] + upper[i]); }
+
+  /// Squared distance of x to the box, zero inside it.
+  double distance2(const Vec3<double>& x) const {
+    double d2 = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double c = x[static_cast<Eigen::Index>(i)];
+      const double d = std::max(0.0, std::max(lower[i] - c, c - upper[i]));
+      d2 += d * d;
+    }
+    return d2;
+  }
+};
+
+/// A leaf holds one item; children lie after their parent, so that a pass from the back refits.
+class Tree {
+ public:
+  explicit Tree(std::span<const Box> items) {
+    if (items.empty()) return;
+    std::vector<std::int32_t> order(items.size());
+    std::iota(order.begin(), order.end(), 0);
+    nodes_.reserve(2 * items.size() - 1);
+    nodes_.push_back({});
+    struct Range {
+      std::size_t node, first, last;
+    };
+    std::vector<Range> waiting{{0, 0, items.size()}};
+    while (!waiting.empty()) {
+      const auto [node, first, last] = waiting.back();
+      waiting.pop_back();
+      if (last - first == 1) {
+        nodes_[node].item = order[first];
+        continue;
+      }
+      const std::size_t middle =
+          split(items, std::span(order).subspan(first, last - first)) + first;
+      const std::size_t child = nodes_.size();
+      nodes_[node].child = static_cast<std::int32_t>(child);
+      nodes_.resize(child + 2);
+      waiting.push_back({child, first, middle});
+      waiting.push_back({child + 1, middle, last});
+    }
+    refit(items);
+  }
+
+  void refit(std::span<const Box> items) {
+    for (std::size_t k = nodes_.size(); k-- > 0;) {
+      Node& n = nodes_[k];
+      if (n.item >= 0) {
+        n.box = items[static_cast<std::size_t>(n.item)];
+      } else {
+        const auto c = static_cast<std::size_t>(n.child);
+        n.box = nodes_[c].box;
+        n.box.add(nodes_[c + 1].box);
+      }
+    }
+  }
+
+  /// Calls visit(item, squared distance to its box) for the items whose boxes are nearer than
+  /// `bound2`, the near half of the tree first; `visit` may lower `bound2` on the way.
+  template <class Visit>
+  void descend(const Vec3<double>& x, const double& bound2, const Visit& visit) const {
+    struct Entry {
+      std::size_t node;
+      double d2;
+    };
+    std::array<Entry, depth_limit> waiting;
+    std::size_t count = 0;
+    if (nodes_.empty()) return;
+    waiting[count++] = {0, nodes_[0].box.distance2(x)};
+    while (count > 0) {
+      auto [k, d2] = waiting[--count];
+      while (d2 < bound2) {
+        const Node& n = nodes_[k];
+        if (n.item >= 0) {
+          visit(n.item, d2);
+          break;
+        }
+        const auto c = static_cast<std::size_t>(n.child);
+        Entry near{c, nodes_[c].box.distance2(x)}, far{c + 1, nodes_[c + 1].box.distance2(x)};
+        if (far.d2 < near.d2) std::swap(near, far);
+        waiting[count++] = far;
+        k = near.node;
+        d2 = near.d2;
+      }
+    }
+  }
+
+  /// Sum of the areas of all boxes over that of the root: what a descent has to expect.
+  double cost() const {
+    if (nodes_.empty()) return 0.0;
+    double sum = 0.0;
+    for (const Node& n : nodes_) sum += area(n.box);
+    const double root = area(nodes_[0].box);
+    return root > 0.0 ? sum / root : 0.0;
+  }
+
+ private:
+  /// Halving by count: a tree of 2^32 items is 32 deep.
+  static constexpr std::size_t depth_limit = 64;
+
+  struct Node {
+    Box box{Box::empty()};
+    std::int32_t child{-1};
+    std::int32_t item{-1};
+  };
+
+  static double area(const Box& b) {
+    const double x = b.upper[0] - b.lower[0], y = b.upper[1] - b.lower[1],
+                 z = b.upper[2] - b.lower[2];
+    return x * y + y * z + z * x;
+  }
+
+  /// Orders the items about the median along the axis on which their centres spread most.
+  static std::size_t split(std::span<const Box> items, std::span<std::int32_t> order) {
+    Box centres = Box::empty();
+    for (const std::int32_t i : order) {
+      const Box& b = items[static_cast<std::size_t>(i)];
+      centres.add(Vec3<double>(b.centre(0), b.centre(1), b.centre(2)));
+    }
+    std::size_t axis = 0;
+    for (std::size_t i = 1; i < 3; ++i)
+      if (centres.upper[i] - centres.lower[i] > centres.upper[axis] - centres.lower[axis]) axis = i;
+    const std::size_t middle = order.size() / 2;
+    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(middle),
+                     order.end(), [&](std::int32_t a, std::int32_t b) {
+                       const double p = items[static_cast<std::size_t>(a)].centre(axis),
+                                    q = items[static_cast<std::size_t>(b)].centre(axis);
+                       return p < q || (p == q && a < b);
+                     });
+    return middle;
+  }
+
+  std::vector<Node> nodes_;
+};
+
+}  // namespace anisocontact::search

@@ -1,0 +1,221 @@
+// Surfaces of facets: closest points, neighbours, geometry.
+
+#include "anisocontact/search/facet_surface.hpp"
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <tuple>
+
+#include "anisocontact/kernel/parallel.hpp"
+#include "geometries.hpp"
+#include "rooms.hpp"
+
+namespace anisocontact::bindings {
+
+namespace {
+
+using search::FacetProjection;
+using search::FacetSurface;
+using surface::FacetKind;
+
+using Indices = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Offsets = nb::ndarray<const std::int64_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Flags = nb::ndarray<const bool, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Lists = std::vector<std::vector<std::int32_t>>;
+
+std::vector<Vec3<double>> rows(const Points& x) {
+  std::vector<Vec3<double>> r(x.shape(0));
+  for (std::size_t i = 0; i < r.size(); ++i) r[i] = row3(x.data(), i);
+  return r;
+}
+
+std::vector<FacetKind> kinds(const std::vector<std::string>& topologies, const Indices& counts,
+                             const Flags& flip) {
+  std::vector<FacetKind> k;
+  k.reserve(flip.shape(0));
+  for (std::size_t block = 0; block < topologies.size(); ++block) {
+    const auto t = surface::topology_of(topologies[block]);
+    if (!t) throw std::invalid_argument("no topology " + topologies[block]);
+    for (std::int32_t i = 0; i < counts.data()[block]; ++i)
+      k.push_back({*t, flip.data()[k.size()]});
+  }
+  return k;
+}
+
+void check_facets(const FacetSurface& s, const Indices& facet) {
+  for (std::size_t i = 0; i < facet.shape(0); ++i)
+    if (facet.data()[i] < 0 || static_cast<std::size_t>(facet.data()[i]) >= s.facets())
+      throw std::invalid_argument("facet " + std::to_string(facet.data()[i]) + " given, 0 to " +
+                                  std::to_string(s.facets()) + " (excluded) allowed");
+}
+
+/// Inputs of a batch of projections; empty arrays stand for what is not given.
+struct QueryInput {
+  Points x;
+  Indices hint;
+  Coordinates start;
+  Scalars limit;
+  Offsets offsets;
+  Indices excluded;
+
+  search::Query query(std::size_t i) const {
+    search::Query q;
+    if (hint.shape(0) > 0) q.hint = hint.data()[i];
+    if (start.shape(0) > 0 && std::isfinite(start.data()[2 * i]))
+      q.start = {start.data()[2 * i], start.data()[2 * i + 1]};
+    q.limit = limit.data()[limit.shape(0) == 1 ? 0 : i];
+    if (offsets.shape(0) > 0)
+      q.excluded = {excluded.data() + offsets.data()[i], excluded.data() + offsets.data()[i + 1]};
+    return q;
+  }
+};
+
+nb::dict project(const FacetSurface& s, const Points& x, const Indices& hint,
+                 const Coordinates& start, const Scalars& limit, const Offsets& offsets,
+                 const Indices& excluded, std::size_t threads) {
+  const std::size_t n = x.shape(0);
+  const QueryInput in{x, hint, start, limit, offsets, excluded};
+  Array<std::int32_t> facet({n});
+  Array<std::int8_t> status({n}), feature({n}), entity({n});
+  Array<double> xi({n, 2}), edge({n, 2}), position({n, 3}), normal({n, 3}), gap({n});
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_for(n, threads, [&](std::size_t i) {
+      const FacetProjection p = s.closest(row3(x.data(), i), in.query(i));
+      facet.data[i] = p.facet;
+      status.data[i] = static_cast<std::int8_t>(p.status);
+      feature.data[i] = static_cast<std::int8_t>(p.feature);
+      entity.data[i] = p.entity;
+      for (std::size_t k = 0; k < 2; ++k) {
+        xi.data[2 * i + k] = p.xi[k];
+        edge.data[2 * i + k] = p.edge[k];
+      }
+      put3(position.data, i, p.position);
+      put3(normal.data, i, p.normal);
+      gap.data[i] = p.gap;
+    });
+  }
+  nb::dict r;
+  r["facet"] = facet.array;
+  r["xi"] = xi.array;
+  r["position"] = position.array;
+  r["gap"] = gap.array;
+  r["normal"] = normal.array;
+  r["status"] = status.array;
+  r["feature"] = feature.array;
+  r["entity"] = entity.array;
+  r["edge"] = edge.array;
+  return r;
+}
+
+nb::dict shapes(const FacetSurface& s, const Indices& facet, const Coordinates& xi) {
+  check_facets(s, facet);
+  const std::size_t n = facet.shape(0), m = surface::max_facet_nodes;
+  Array<double> value({n, m}), first({n, m, 2}), second({n, m, 3});
+  for (std::size_t i = 0; i < n; ++i) {
+    surface::Shape<double> f;
+    surface::shape(s.kind(facet.data()[i]), xi.data()[2 * i], xi.data()[2 * i + 1], f);
+    for (std::size_t a = 0; a < m; ++a) {
+      value.data[m * i + a] = f.N[a];
+      for (std::size_t k = 0; k < 2; ++k) first.data[2 * (m * i + a) + k] = f.dN[a][k];
+      for (std::size_t k = 0; k < 3; ++k) second.data[3 * (m * i + a) + k] = f.d2N[a][k];
+    }
+  }
+  nb::dict r;
+  r["value"] = value.array;
+  r["d1"] = first.array;
+  r["d2"] = second.array;
+  return r;
+}
+
+/// Lists as offsets and one array.
+nb::tuple flat(const Lists& lists) {
+  Array<std::int64_t> offsets({lists.size() + 1});
+  offsets.data[0] = 0;
+  for (std::size_t i = 0; i < lists.size(); ++i)
+    offsets.data[i + 1] = offsets.data[i] + static_cast<std::int64_t>(lists[i].size());
+  Array<std::int32_t> items({static_cast<std::size_t>(offsets.data[lists.size()])});
+  for (std::size_t i = 0; i < lists.size(); ++i)
+    std::copy(lists[i].begin(), lists[i].end(), items.data + offsets.data[i]);
+  return nb::make_tuple(offsets.array, items.array);
+}
+
+nb::tuple within(const FacetSurface& s, const Points& x, double distance, std::size_t threads) {
+  Lists lists(x.shape(0));
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_for(lists.size(), threads,
+                         [&](std::size_t i) { lists[i] = s.within(row3(x.data(), i), distance); });
+  }
+  return flat(lists);
+}
+
+nb::tuple rings(const FacetSurface& s, const Indices& facet, std::size_t count) {
+  check_facets(s, facet);
+  Lists lists(facet.shape(0));
+  for (std::size_t i = 0; i < lists.size(); ++i) lists[i] = s.mesh().rings(facet.data()[i], count);
+  return flat(lists);
+}
+
+/// Facet, first and second point of every side, counter-clockwise about the normal.
+nb::ndarray<nb::numpy, std::int32_t> sides(const FacetSurface& s) {
+  std::vector<std::int32_t> r;
+  for (std::size_t f = 0; f < s.facets(); ++f) {
+    const auto& kind = s.mesh().kind(f);
+    for (std::size_t k = 0; k < kind.sides(); ++k) {
+      auto ends = s.mesh().side(f, k);
+      if (kind.flip != surface::side_runs_back(k)) std::swap(ends[0], ends[1]);
+      r.insert(r.end(), {static_cast<std::int32_t>(f), ends[0], ends[1]});
+    }
+  }
+  Array<std::int32_t> out({r.size() / 3, 3});
+  std::copy(r.begin(), r.end(), out.data);
+  return out.array;
+}
+
+auto jet_at(const FacetSurface& s, const Indices& facet, const Coordinates& xi) {
+  return [&](std::size_t i) {
+    return s.jet(facet.data()[i], {xi.data()[2 * i], xi.data()[2 * i + 1]});
+  };
+}
+
+}  // namespace
+
+void bind_search(nb::module_& m) {
+  nb::class_<FacetSurface>(m, "FacetSurface")
+      .def(
+          "__init__",
+          [](FacetSurface* self, const Points& x, const std::vector<std::string>& topologies,
+             const Indices& counts, const Indices& nodes, const Flags& flip) {
+            new (self) FacetSurface(rows(x), kinds(topologies, counts, flip),
+                                    {nodes.data(), nodes.data() + nodes.shape(0)});
+          },
+          nb::arg("points"), nb::arg("topologies"), nb::arg("counts"), nb::arg("nodes"),
+          nb::arg("flip"))
+      .def(
+          "update", [](FacetSurface& s, const Points& x) { s.update(rows(x)); }, nb::arg("points"))
+      .def("project", &project, nb::arg("x"), nb::arg("hint"), nb::arg("start"), nb::arg("limit"),
+           nb::arg("offsets"), nb::arg("excluded"), nb::arg("threads"))
+      .def("shapes", &shapes, nb::arg("facet"), nb::arg("xi"))
+      .def(
+          "jet",
+          [](const FacetSurface& s, const Indices& facet, const Coordinates& xi) {
+            check_facets(s, facet);
+            return jets(facet.shape(0), jet_at(s, facet, xi));
+          },
+          nb::arg("facet"), nb::arg("xi"))
+      .def(
+          "geometry",
+          [](const FacetSurface& s, const Indices& facet, const Coordinates& xi) {
+            check_facets(s, facet);
+            return geometries(facet.shape(0), jet_at(s, facet, xi));
+          },
+          nb::arg("facet"), nb::arg("xi"))
+      .def("within", &within, nb::arg("x"), nb::arg("distance"), nb::arg("threads"))
+      .def("rings", &rings, nb::arg("facet"), nb::arg("count"))
+      .def("sides", &sides);
+}
+
+}  // namespace anisocontact::bindings

@@ -1,0 +1,346 @@
+"""Surfaces made of facets: geometry, closest point, neighbours, orientation."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import cast
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact import _core
+from anisocontact.arrays import Floats, points
+from anisocontact.errors import InputError
+from anisocontact.geometry import PointGeometry
+from anisocontact.orientation import Orientation, orientation, triangular
+from anisocontact.surfaces import Jet, default_threads
+
+Integers = npt.NDArray[np.int32]
+Codes = npt.NDArray[np.int8]
+
+#: Number of nodes of each topology. Nodes are in the order of DOLFINx: vertices (0,0), (1,0), (0,1)
+#: of a triangle and (0,0), (1,0), (0,1), (1,1) of a quadrilateral, then edges, then the interior.
+TOPOLOGIES = {"tri3": 3, "tri6": 6, "quad4": 4, "quad8": 8, "quad9": 9}
+
+#: Names of the codes in `FacetProjections.status`.
+FACET_STATUS = ("on", "off", "beyond", "failed")
+
+#: Names of the codes in `FacetProjections.feature`.
+FEATURES = ("interior", "edge", "vertex")
+
+
+@dataclass(frozen=True)
+class FacetProjections:
+    """Closest points of a surface of facets.
+
+    Args:
+        facet: Facet with the closest point, (n,); -1 where there is none.
+        xi: Coordinates on it, (n, 2).
+        position: The closest points, (n, 3) [length].
+        gap: (x - position) . normal, (n,) [length].
+        normal: Unit normals, (n, 3): of the facet; on an edge or vertex along x - position,
+            outward.
+        status: A code of `FACET_STATUS`, (n,): 0 on; 1 off, x lies beyond the border of the
+            surface; 2 beyond the largest distance; 3 failed. For 2 and 3 the numbers are NaN.
+        feature: A code of `FEATURES`, (n,): 0 interior, x - position is normal to the facet (also
+            if the point is on an edge); 1 normal to an edge alone; 2 to none, a vertex.
+        entity: Edge or vertex of the facet, (n,); -1 in the interior.
+        edge: Direction of the edge in coordinates, (n, 2); zero unless on an edge.
+    """
+
+    facet: Integers
+    xi: Floats
+    position: Floats
+    gap: Floats
+    normal: Floats
+    status: Codes
+    feature: Codes
+    entity: Codes
+    edge: Floats
+
+
+@dataclass(frozen=True)
+class FacetSets:
+    """A set of facets for each of n points.
+
+    Args:
+        offsets: Where the set of each point begins in `facets`, (n + 1,).
+        facets: The sets one after the other, each in ascending order.
+    """
+
+    offsets: npt.NDArray[np.int64]
+    facets: Integers
+
+    def __getitem__(self, i: int) -> Integers:
+        return self.facets[self.offsets[i] : self.offsets[i + 1]]
+
+    def __len__(self) -> int:
+        return len(self.offsets) - 1
+
+    def united(self, other: FacetSets) -> FacetSets:
+        """Sets with the facets of both.
+
+        Args:
+            other: Sets for the same points.
+
+        Returns:
+            The union for each point.
+        """
+        both = [np.union1d(self[i], other[i]) for i in range(len(self))]
+        offsets = np.concatenate(([0], np.cumsum([b.size for b in both]))).astype(np.int64)
+        return FacetSets(offsets, np.concatenate([*both, []]).astype(np.int32))
+
+
+class FacetSurface:
+    """A surface of facets of any of the `TOPOLOGIES`, mixed if need be.
+
+    The mesh has to conform: facets are neighbours where they name the same points.
+
+    Args:
+        coordinates: Points, (m, 3) [length].
+        connectivity: Points of each facet, (k, nodes) of integers; a list of such blocks for a
+            mixed mesh. Facets are numbered through the blocks.
+        topology: Name of the topology; one for each block.
+        flip: Facets whose normal is to be turned round, (number of facets,); their two
+            coordinates are exchanged. None: no facet.
+
+    Raises:
+        InputError: Unknown topology, another number of nodes, a point that does not exist.
+
+    Example:
+        >>> square = FacetSurface([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [[0, 1, 2, 3]],
+        ...                       "quad4")
+        >>> square.project([[0.25, 0.5, -0.1]]).gap
+        array([-0.1])
+    """
+
+    def __init__(
+        self,
+        coordinates: npt.ArrayLike,
+        connectivity: npt.ArrayLike | Sequence[npt.ArrayLike],
+        topology: str | Sequence[str],
+        flip: npt.ArrayLike | None = None,
+    ) -> None:
+        names = [topology] if isinstance(topology, str) else list(topology)
+        given = (
+            [cast(npt.ArrayLike, connectivity)]
+            if isinstance(topology, str)
+            else list(cast(Sequence[npt.ArrayLike], connectivity))
+        )
+        if len(names) != len(given):
+            raise InputError(f"{len(names)} given for {len(given)} blocks", field="topology")
+        blocks = [_block(b, t) for b, t in zip(given, names, strict=True)]
+        counts = np.array([b.shape[0] for b in blocks], dtype=np.int32)
+        count = int(counts.sum())
+        turned = np.zeros(count, dtype=np.bool_) if flip is None else np.asarray(flip, np.bool_)
+        if turned.shape != (count,):
+            raise InputError(f"shape {turned.shape} given, ({count},) needed", field="flip")
+        nodes = np.concatenate([b.ravel() for b in blocks]) if blocks else np.zeros(0, np.int32)
+        x = _finite(points(coordinates, 3, "coordinates"))
+        try:
+            self.core = _core.FacetSurface(x, names, counts, nodes, np.ascontiguousarray(turned))
+        except ValueError as error:
+            raise InputError(str(error), field="connectivity") from None
+        self._count = count
+        self._points = x.shape[0]
+
+    def __len__(self) -> int:
+        """Number of facets."""
+        return self._count
+
+    def update(self, coordinates: npt.ArrayLike) -> None:
+        """Moves the points. Not to be called while another thread projects.
+
+        Args:
+            coordinates: New positions of the same points, (m, 3) [length]. With values that are
+                not finite every projection fails until the next update.
+        """
+        self.core.update(points(coordinates, 3, "coordinates", rows=self._points))
+
+    def project(
+        self,
+        x: npt.ArrayLike,
+        hint: FacetProjections | npt.ArrayLike | None = None,
+        max_distance: npt.ArrayLike = np.inf,
+        exclude: FacetSets | None = None,
+        threads: int | None = None,
+    ) -> FacetProjections:
+        """Closest point of the whole surface, by true distance, for each x.
+
+        Args:
+            x: Points, (n, 3) [length].
+            hint: Projections of the same points some time ago, or the facets, (n,): it takes less
+                time. The closest point does not depend on it; where facets share that point, the
+                one of the hint is named.
+            max_distance: Largest distance of interest, one or (n,) [length]: points farther away
+                are `beyond`.
+            exclude: Facets that do not count, for each point; a point nearest to a side or
+                vertex that an excluded facet shares is `off`.
+            threads: Number of threads; all processors if left out.
+
+        Returns:
+            The projections.
+
+        Raises:
+            InputError: Shapes that do not agree, a distance that is negative or not a number.
+        """
+        x = points(x, 3)
+        n = x.shape[0]
+        facet, start = _hint(hint, n)
+        limit = np.atleast_1d(np.asarray(max_distance, dtype=np.float64))
+        if limit.shape not in {(1,), (n,)}:
+            raise InputError(
+                f"shape {limit.shape} given, one number or ({n},) needed", field="max_distance"
+            )
+        if not np.all(limit >= 0.0):
+            raise InputError(f"given {limit.min()}, must not be negative", field="max_distance")
+        if exclude is not None and len(exclude) != n:
+            raise InputError(f"sets for {len(exclude)} points given, {n} needed", field="exclude")
+        sets = exclude or FacetSets(np.zeros(0, np.int64), np.zeros(0, np.int32))
+        return FacetProjections(
+            **self.core.project(
+                x, facet, start, limit, sets.offsets, sets.facets, threads or default_threads()
+            )
+        )
+
+    def jet(self, facet: npt.ArrayLike, xi: npt.ArrayLike) -> Jet:
+        """Position and derivatives at coordinates of facets.
+
+        Args:
+            facet: Facets, (n,).
+            xi: Coordinates, (n, 2).
+
+        Returns:
+            rho, rho_i and rho_ij.
+        """
+        return Jet(**self.core.jet(*self._at(facet, xi)))
+
+    def geometry(self, facet: npt.ArrayLike, xi: npt.ArrayLike) -> PointGeometry:
+        """Metric, normal, curvature and connection at coordinates of facets.
+
+        Args:
+            facet: Facets, (n,).
+            xi: Coordinates, (n, 2).
+
+        Returns:
+            The geometry.
+        """
+        return PointGeometry(**self.core.geometry(*self._at(facet, xi)))
+
+    def shapes(self, facet: npt.ArrayLike, xi: npt.ArrayLike) -> tuple[Floats, Floats, Floats]:
+        """Shape functions of the nodes of facets.
+
+        Args:
+            facet: Facets, (n,).
+            xi: Coordinates, (n, 2).
+
+        Returns:
+            Values (n, 9), first derivatives (n, 9, 2), second derivatives 11, 12, 22 (n, 9, 3);
+            zero for nodes that a facet does not have.
+        """
+        r = self.core.shapes(*self._at(facet, xi))
+        return r["value"], r["d1"], r["d2"]
+
+    def within(self, x: npt.ArrayLike, distance: float, threads: int | None = None) -> FacetSets:
+        """Facets within a distance of each x; in the reference state, what self-contact excludes.
+
+        Args:
+            x: Points, (n, 3) [length].
+            distance: The distance [length].
+            threads: Number of threads; all processors if left out.
+
+        Returns:
+            A set of facets for each point.
+        """
+        if not distance >= 0.0:
+            raise InputError(f"given {distance}, must not be negative", field="distance")
+        return FacetSets(*self.core.within(points(x, 3), distance, threads or default_threads()))
+
+    def rings(self, facet: npt.ArrayLike, count: int = 1) -> FacetSets:
+        """Facets and their neighbours, those that share a vertex, `count` rings of them.
+
+        Args:
+            facet: Facets, (n,).
+            count: Number of rings; none gives the facet alone.
+
+        Returns:
+            A set of facets for each facet given.
+        """
+        f = self._at(facet, np.zeros((np.size(facet), 2)))[0]
+        return FacetSets(*self.core.rings(f, count))
+
+    def orientation(self) -> Orientation:
+        """Which way the normals point, from the sides and the enclosed volume.
+
+        Returns:
+            Whether the surface is closed, which facets disagree, the volume.
+        """
+        return orientation(self.core)
+
+    def _at(self, facet: npt.ArrayLike, xi: npt.ArrayLike) -> tuple[Integers, Floats]:
+        f = np.ascontiguousarray(np.atleast_1d(facet), dtype=np.int32)
+        if f.size and not 0 <= f.min() <= f.max() < self._count:
+            given = f.min() if f.min() < 0 else f.max()
+            raise InputError(f"given {given}, 0 to {self._count - 1} allowed", field="facet")
+        return f, points(xi, 2, "xi", rows=f.size)
+
+
+def outward_flips(
+    coordinates: npt.ArrayLike,
+    connectivity: npt.ArrayLike | Sequence[npt.ArrayLike],
+    topology: str | Sequence[str],
+    inside: npt.ArrayLike,
+) -> npt.NDArray[np.bool_]:
+    """Which facets have to be flipped so that their normals leave the body.
+
+    Args:
+        coordinates: Points, (m, 3) [length].
+        connectivity: As of `FacetSurface`.
+        topology: As of `FacetSurface`.
+        inside: A point of the body behind each facet, for instance the midpoint of its cell,
+            (number of facets, 3) [length].
+
+    Returns:
+        `flip` of `FacetSurface`.
+    """
+    surface = FacetSurface(coordinates, connectivity, topology)
+    behind = points(inside, 3, "inside", rows=len(surface))
+    middle = np.where(triangular(surface.core), 1.0 / 3.0, 0.5)
+    j = surface.jet(np.arange(len(surface)), np.column_stack((middle, middle)))
+    outward = np.cross(j.d1[:, 0], j.d1[:, 1])
+    flips: npt.NDArray[np.bool_] = np.sum((j.position - behind) * outward, axis=1) < 0.0
+    return flips
+
+
+def _block(connectivity: npt.ArrayLike, topology: str) -> Integers:
+    if topology not in TOPOLOGIES:
+        raise InputError(f"given {topology!r}, allowed: {', '.join(TOPOLOGIES)}", field="topology")
+    b = np.asarray(connectivity)
+    n = TOPOLOGIES[topology]
+    if b.ndim != 2 or b.shape[1] != n or not np.issubdtype(b.dtype, np.integer):
+        raise InputError(
+            f"array of {b.dtype} of shape {b.shape} given, integers of shape (k, {n}) needed for "
+            f"{topology}",
+            field="connectivity",
+        )
+    return np.ascontiguousarray(b, dtype=np.int32)
+
+
+def _finite(x: Floats) -> Floats:
+    bad = np.flatnonzero(~np.isfinite(x).all(axis=1))
+    if bad.size:
+        raise InputError(f"point {bad[0]} is not finite", field="coordinates")
+    return x
+
+
+def _hint(hint: FacetProjections | npt.ArrayLike | None, n: int) -> tuple[Integers, Floats]:
+    if hint is None:
+        return np.zeros(0, np.int32), np.zeros((0, 2))
+    if isinstance(hint, FacetProjections):
+        facet, start = hint.facet, hint.xi
+    else:
+        facet, start = np.ascontiguousarray(np.atleast_1d(hint), dtype=np.int32), np.zeros((0, 2))
+    if facet.shape != (n,):
+        raise InputError(f"shape {facet.shape} given, ({n},) needed", field="hint")
+    return facet, start
