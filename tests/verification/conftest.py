@@ -161,10 +161,81 @@ def _sphere(r: float = 1.7) -> SurfaceSample:
     )
 
 
+def _cone(angle: float = 0.6) -> SurfaceSample:
+    sin, cos, tan = np.sin(angle), np.cos(angle), np.tan(angle)
+    return SurfaceSample(
+        name="cone",
+        shape="cone",
+        parameters={"apex": ORIGIN, "angle": angle} | PLACED,
+        size=1.0,
+        centre=ORIGIN,
+        window=((-PI, PI), (0.3, 3.0)),
+        whole=((-PI, PI), (0.0, INFINITE)),
+        local=lambda u, v: (v * sin * np.cos(u), v * sin * np.sin(u), v * cos),
+        curvature=lambda u, v: (0 * u, -1 / (2 * v * tan)),
+        closed=(True, False),
+    )
+
+
+def _torus(ring: float = 1.4, tube: float = 0.5) -> SurfaceSample:
+    def local(u: Floats, v: Floats) -> tuple[Floats, ...]:
+        out = ring + tube * np.cos(v)
+        return out * np.cos(u), out * np.sin(u), tube * np.sin(v)
+
+    def curvature(u: Floats, v: Floats) -> tuple[Floats, Floats]:
+        out = ring + tube * np.cos(v)
+        return np.cos(v) / (tube * out), -(ring + 2 * tube * np.cos(v)) / (2 * tube * out)
+
+    return SurfaceSample(
+        name="torus",
+        shape="torus",
+        parameters={"centre": ORIGIN, "radius": ring, "tube": tube} | PLACED,
+        size=tube,
+        centre=ORIGIN,
+        window=((-PI, PI), (-PI, PI)),
+        whole=((-PI, PI), (-PI, PI)),
+        local=local,
+        curvature=curvature,
+        closed=(True, True),
+    )
+
+
+def _ellipsoid(name: str, a: float, b: float, c: float) -> SurfaceSample:
+    def local(u: Floats, v: Floats) -> tuple[Floats, ...]:
+        return a * np.cos(u) * np.cos(v), b * np.sin(u) * np.cos(v), c * np.sin(v)
+
+    def curvature(u: Floats, v: Floats) -> tuple[Floats, Floats]:
+        x, y, z = local(u, v)
+        p = x**2 / a**4 + y**2 / b**4 + z**2 / c**4
+        volume2 = (a * b * c) ** 2
+        mean = x**2 + y**2 + z**2 - a**2 - b**2 - c**2
+        return 1 / (volume2 * p**2), mean / (2 * volume2 * p**1.5)
+
+    return SurfaceSample(
+        name=name,
+        shape="ellipsoid",
+        parameters={"centre": ORIGIN, "semi_axes": (a, b, c)} | PLACED,
+        size=min(a, b, c),
+        centre=ORIGIN,
+        window=((-PI, PI), (-1.4, 1.4)),
+        whole=ROUND,
+        local=local,
+        curvature=curvature,
+        closed=(True, True),
+    )
+
+
 def surface_samples() -> list[SurfaceSample]:
     """All samples; every registered surface has one."""
-    revolved = [_cylinder(), _sphere()]
-    return [_plane(), *revolved, *(s.bore() for s in revolved)]
+    revolved = [
+        _cylinder(),
+        _sphere(),
+        _cone(),
+        _torus(),
+        _ellipsoid("ellipsoid", 1.3, 0.7, 2.0),
+    ]
+    spheroids = [_ellipsoid("oblate", 1.5, 1.5, 0.6), _ellipsoid("prolate", 0.8, 0.8, 2.4)]
+    return [_plane(), *revolved, *(s.bore() for s in revolved), *spheroids]
 
 
 class Surfaces:

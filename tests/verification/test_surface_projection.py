@@ -38,7 +38,8 @@ def grid(sample: Any, n: int = 250) -> tuple[Floats, Floats]:
     for lower, upper in sample.whole:
         line = np.linspace(lower, upper, n)
         if upper - lower > 1e3 * sample.size:
-            line = sample.size * np.sinh(np.linspace(-1, 1, n) * np.arcsinh(upper / sample.size))
+            ends = np.arcsinh([lower / sample.size, upper / sample.size])
+            line = sample.size * np.sinh(np.linspace(*ends, n))
         lines.append(line)
         steps.append(np.gradient(line))
     mesh = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)

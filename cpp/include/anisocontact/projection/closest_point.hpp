@@ -4,6 +4,7 @@
 #include <cmath>
 #include <concepts>
 
+#include "anisocontact/projection/ellipsoid.hpp"
 #include "anisocontact/surface/foot.hpp"
 #include "anisocontact/surface/registry.hpp"
 

@@ -2,13 +2,16 @@
 // The surfaces there are. A new one: its header in analytic/, and its name here.
 
 #include "anisocontact/registry/descriptor.hpp"
+#include "anisocontact/surface/analytic/cone.hpp"
 #include "anisocontact/surface/analytic/cylinder.hpp"
+#include "anisocontact/surface/analytic/ellipsoid.hpp"
 #include "anisocontact/surface/analytic/plane.hpp"
 #include "anisocontact/surface/analytic/sphere.hpp"
+#include "anisocontact/surface/analytic/torus.hpp"
 
 namespace anisocontact::surface {
 
-using Surfaces = Registry<Plane, Cylinder, Sphere>;
+using Surfaces = Registry<Plane, Cylinder, Sphere, Cone, Torus, Ellipsoid>;
 using AnySurface = Surfaces::Any;
 
 inline Domain domain(const AnySurface& s) {

@@ -44,8 +44,9 @@ class Cylinder {
 
   /// Closest point in closed form; on the axis the one where the angle is zero.
   Foot closest(const Vec3<double>& x) const {
-    const Polar p(frame_, x, radius_);
-    return {{p.angle, p.height}, p.on_axis ? Status::ambiguous : Status::interior};
+    const Polar p(frame_, x);
+    const bool on_axis = p.vanishes(p.radius, radius_);
+    return {{p.angle, p.height}, on_axis ? Status::ambiguous : Status::interior};
   }
 
  private:

@@ -50,15 +50,17 @@ inline Frame placed(const Values& v, const std::string& origin) {
 /// Cylindrical coordinates of a point in the frame of a surface of revolution.
 struct Polar {
   double radius, angle, height;
-  bool on_axis;  ///< as good as on the axis of a surface of this size
+  double unresolved;  ///< lengths below are rounding; there the angle is zero
 
-  Polar(const Frame& frame, const Vec3<double>& x, double size) {
+  Polar(const Frame& frame, const Vec3<double>& x) : unresolved(frame.rounding(x)) {
     const Vec3<double> y = frame.to_local(x);
     radius = std::sqrt(y[0] * y[0] + y[1] * y[1]);
-    const double unresolved = frame.rounding(x);
-    on_axis = radius <= unresolved + focal_limit * size;
     angle = radius <= unresolved ? 0.0 : std::atan2(y[1], y[0]);
     height = y[2];
+  }
+  /// Whether a distance to an axis or a centre is as good as none for a surface of this radius.
+  bool vanishes(double distance, double of_radius) const {
+    return distance <= unresolved + focal_limit * of_radius;
   }
 };
 

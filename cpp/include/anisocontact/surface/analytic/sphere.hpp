@@ -45,12 +45,11 @@ class Sphere {
 
   /// Closest point in closed form; at the centre the one where both angles are zero.
   Foot closest(const Vec3<double>& x) const {
-    const Polar p(frame_, x, 0.0);
+    const Polar p(frame_, x);
     const double distance = std::sqrt(p.radius * p.radius + p.height * p.height);
-    const double unresolved = frame_.rounding(x);
-    if (distance <= unresolved) return {{0.0, 0.0}, Status::ambiguous};
+    if (distance <= p.unresolved) return {{0.0, 0.0}, Status::ambiguous};
     Foot foot = polar_foot(p.angle, std::atan2(p.height, p.radius));
-    if (distance <= unresolved + focal_limit * radius_) foot.status = Status::ambiguous;
+    if (p.vanishes(distance, radius_)) foot.status = Status::ambiguous;
     return foot;
   }
 
