@@ -36,6 +36,7 @@ def command(arguments: argparse.Namespace) -> int:
         message=message,
         wall_time=time.perf_counter() - began,
         compared=compared,
+        label=f"as given: {trace.case.contact.friction.sliding_rule}",
         pictures=trace.case.output.pictures,
         case=trace.text,
     )

@@ -12,8 +12,6 @@ from anisocontact.surfaces import Floats
 TOLERANCE = 1e-11
 #: Iterations before the step is cut.
 MOST_ITERATIONS = 40
-# A correction this small against the position is rounding.
-_ROUNDING = 8.0 * np.finfo(np.float64).eps
 
 
 def solve(balance: Balance, guess: Floats) -> tuple[Trial, int]:
@@ -30,12 +28,13 @@ def solve(balance: Balance, guess: Floats) -> tuple[Trial, int]:
         StepError: Not converged; the message has the residual.
     """
     trial = pressed(balance, guess)
+    # A correction this small against the position is rounding.
+    rounding = 8.0 * np.finfo(np.float64).eps * float(np.abs(balance.pose.position).max())
     for iteration in range(MOST_ITERATIONS):
         size = float(np.linalg.norm(trial.residual))
         if size <= TOLERANCE * trial.scale:
             return trial, iteration
         step = _direction(trial)
-        rounding = _ROUNDING * np.abs(trial.q[:3]).max()
         if np.abs(step[:3]).max() <= rounding and iteration > 0:
             return trial, iteration
         trial = _searched(balance, trial, step)
@@ -64,7 +63,8 @@ def _searched(balance: Balance, trial: Trial, step: Floats) -> Trial:
     reason: StepError | None = None
     for k in range(12):
         try:
-            new = balance.at(trial.q + 0.5**k * step)
+            # Under a given pressure every trial is pressed anew, so that it cannot lift off.
+            new = pressed(balance, trial.q + 0.5**k * step)
         except StepError as failure:
             reason = failure
             continue

@@ -52,19 +52,23 @@ def _root(
 ) -> Trial:
     """Gap at which `miss` vanishes: positive for more penetration, negative for less."""
     low, high = -np.inf, np.inf  # the gap is in between
-    # The first guess of a penetration has no scale of its own: it is only made to grow.
-    size = max(abs(gap), 1e-12 * float(np.abs(balance.pose.position).max()), 1e-30)
+    far = float(np.abs(balance.pose.position).max())
+    rounding = 4.0 * np.finfo(np.float64).eps * far
+    # The penetration before the step; without one there is no scale, and the guess only grows.
+    size = max(-balance.pose.foot.gap, 1e-12 * far, 1e-30)
     for _ in range(200):
         value, slope, trial = miss(gap)
-        if abs(value) <= 1e-13 * target or high - low <= 4e-16 * abs(gap):
+        if abs(value) <= 1e-13 * target or abs(value) <= -slope * rounding:
             return trial
+        if gap < 0.0 < trial.pose.foot.gap:
+            break  # beyond the centre of curvature
         if value < 0.0:
             high = gap
         else:
             low = gap
         following = gap - value / slope if slope < 0.0 else np.nan
         if not low < following < high:
-            following = 0.5 * (low + high) if np.isfinite(low + high) else gap - size
+            following = 0.5 * (low + high) if np.isfinite(low + high) else min(gap, 0.0) - size
             size *= 10.0
         gap = float(following)
     raise StepError(f"no penetration gives the pressure {balance.control.pressure:g}")

@@ -29,8 +29,8 @@ _CAPTIONS = {
     "time": ("Over time", "Tractions, slip and energies; the bands show the status."),
     "compare": (
         "Comparison",
-        "Left: the tangential traction of every run in the force plane. Right: its two "
-        "components over the length of the path.",
+        "Left: the tangential traction of every run in the force plane. Right: its components "
+        "over the length of the path.",
     ),
 }
 
@@ -44,6 +44,7 @@ def write_trace(
     message: str = "",
     wall_time: float = 0.0,
     compared: dict[str, History] | None = None,
+    label: str = "as given",
     pictures: bool = True,
     case: str = "",
 ) -> dict[str, Any]:
@@ -57,6 +58,7 @@ def write_trace(
         message: Why the drive stopped before its end; empty if it did not.
         wall_time: How long it took, seconds.
         compared: Histories of further runs by label.
+        label: Label of this one among them.
         pictures: Whether pictures and `report.html` are wanted.
         case: Text of the case file, kept beside the results.
 
@@ -74,7 +76,7 @@ def write_trace(
         "version": __version__,
         "wall_time_s": round(wall_time, 3),
         **history.summary(),
-        "compare": [{"label": label, **run.summary()} for label, run in compared.items()],
+        "compare": [{"label": name, **run.summary()} for name, run in compared.items()],
     }
     write_text(folder / "summary.json", json.dumps(summary, indent=2, allow_nan=False) + "\n")
     if case:
@@ -82,9 +84,9 @@ def write_trace(
     with replacing(folder / "trace.csv") as draft:
         history.to_csv(draft)
     if compared:
-        write_text(folder / "compare.csv", _joined({"as in the case": history, **compared}))
+        write_text(folder / "compare.csv", _joined({label: history, **compared}))
     if pictures and len(history):
-        _report(folder, history, interface, compared, summary)
+        _report(folder, history, interface, compared, label, summary)
     return summary
 
 
@@ -106,13 +108,14 @@ def _report(
     history: History,
     interface: PointInterface,
     compared: dict[str, History],
+    label: str,
     summary: dict[str, Any],
 ) -> None:
     from anisocontact.point.pictures import save
     from anisocontact.results.report.page import Picture, document, figure, table
 
     title = summary["title"]
-    files = save(history, interface, folder / "pictures", title, compared)
+    files = save(history, interface, folder / "pictures", title, compared, label)
     heading = html.escape(title or "anisocontact")
     body = [f"<h1>{heading}</h1>"]
     if summary["message"]:
@@ -125,7 +128,7 @@ def _report(
         table([summary["energy"]]),
     ]
     if compared:
-        body += ["<h2>Runs</h2>", table(_compared(summary))]
+        body += ["<h2>Runs</h2>", table(_compared(label, summary))]
     body += [figure(Picture(file, *_CAPTIONS[file.stem])) for file in files]
     write_text(folder / "report.html", document(heading, body))
 
@@ -144,8 +147,8 @@ def _numbers(summary: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _compared(summary: dict[str, Any]) -> list[dict[str, Any]]:
-    first = {"label": "as in the case", **summary}
+def _compared(label: str, summary: dict[str, Any]) -> list[dict[str, Any]]:
+    first = {"label": label, **summary}
     return [
         {"run": run["label"], **_numbers(run), "friction": run["energy"]["friction"]}
         for run in (first, *summary["compare"])

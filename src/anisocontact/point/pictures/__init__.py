@@ -24,6 +24,7 @@ def save(
     folder: str | Path,
     title: str = "",
     compared: dict[str, History] | None = None,
+    label: str = "as given",
 ) -> list[Path]:
     """Write `path.png`, `forces.png` and `time.png`, and `compare.png` for several runs.
 
@@ -33,6 +34,7 @@ def save(
         folder: Where; made if it is not there.
         title: Heading.
         compared: Further runs by label.
+        label: Label of this one.
 
     Returns:
         The files.
@@ -45,7 +47,7 @@ def save(
         "time": over_time(history, title=title),
     }
     if compared:
-        runs = {"as in the case": history, **compared}
+        runs = {label: history, **compared}
         figures["compare"] = compare(runs, interface, title=title)
     files = [target / f"{name}.png" for name in figures]
     for file, figure in zip(files, figures.values(), strict=True):

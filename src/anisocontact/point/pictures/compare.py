@@ -6,10 +6,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
 from anisocontact.point.pictures.ellipse import yield_ellipse
+from anisocontact.point.pictures.forces import limits
 from anisocontact.point.pictures.style import INK, RUNS, UNITS, number
 from anisocontact.results.report.style import new_figure
 from anisocontact.surfaces import Floats
@@ -26,26 +28,31 @@ def compare(runs: dict[str, History], interface: PointInterface, *, title: str =
     Returns:
         The figure.
     """
-    figure = new_figure(12.0, 5.4)
-    panels: Any = figure.subplots(1, 2)
-    plane, over = panels
-    largest = max(float(run.points["pressure"].max(initial=0.0)) for run in runs.values())
-    ellipse = yield_ellipse(interface, largest)
-    if ellipse is not None:
-        label = f"limit for N = {number(largest)}"
-        plane.plot(*ellipse.T, color=INK, linewidth=1.0, label=label)
+    figure = new_figure(12.0, 5.8)
+    panels: Any = figure.subplot_mosaic([["plane", "first"], ["plane", "second"]])
+    plane = panels["plane"]
+    for row, pressure, style in limits(next(iter(runs.values()))):
+        ellipse = yield_ellipse(interface, row, pressure)
+        if ellipse is not None:
+            label = f"limit for N = {number(pressure)}"
+            plane.plot(*ellipse.T, style, color=INK, linewidth=0.8, label=label)
     for i, (label, run) in enumerate(runs.items()):
         t = run.points["traction_principal"][:, 0]
-        colour = RUNS[i % len(RUNS)]
-        dots = {"marker": "o", "markersize": 3.0, "markevery": max(1, len(t) // 60)}
-        plane.plot(*t.T, color=colour, linewidth=1.2, label=label, **dots)
-        length = _length(run)
-        over.plot(length, t[:, 0], color=colour, label=label)
-        over.plot(length, t[:, 1], "--", color=colour)
+        # Later curves are thinner, so that those beneath are seen where they coincide.
+        look = {
+            "color": RUNS[i % len(RUNS)],
+            "linewidth": float(np.linspace(3.6, 1.0, len(runs))[i]),
+        }
+        plane.plot(*t.T, label=label, **look)
+        for k, name in enumerate(("first", "second")):
+            panels[name].plot(_length(run), t[:, k], **look)
     plane.set(xlabel="T along the first friction axis", ylabel="T along the second friction axis")
     plane.set_aspect("equal", adjustable="datalim")
-    over.set(xlabel="length of the path", ylabel="T along the axes: first solid, second dashed")
-    for panel in panels:
+    for name in ("first", "second"):
+        panels[name].set_ylabel(f"T along the {name} axis")
+        panels[name].xaxis.set_major_locator(MaxNLocator(6))
+    panels["second"].set_xlabel("length of the path")
+    for panel in panels.values():
         panel.grid(linewidth=0.3)
     figure.legend(
         *plane.get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8

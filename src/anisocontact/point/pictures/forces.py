@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from anisocontact.point.balance import PointInterface
-from anisocontact.point.history import History
+from anisocontact.point.history import History, Table
 from anisocontact.point.pictures.ellipse import yield_ellipse
 from anisocontact.point.pictures.style import COLOURS, INK, UNITS, number, runs
 from anisocontact.results.report.style import new_figure
@@ -38,8 +38,8 @@ def force_plane(history: History, interface: PointInterface, *, title: str = "")
         ax.plot(*t[-1], "s", color=INK, markersize=5, zorder=4)
     handles = [seen[s] for s in COLOURS if s in seen]
     handles.append(Line2D([], [], color=INK, marker="s", linestyle="", markersize=5, label="end"))
-    for pressure, style in _pressures(history):
-        ellipse = yield_ellipse(interface, pressure)
+    for row, pressure, style in limits(history):
+        ellipse = yield_ellipse(interface, row, pressure)
         if ellipse is not None:
             label = f"limit for N = {number(pressure)}"
             handles += ax.plot(*ellipse.T, style, color=INK, linewidth=1.0, zorder=2, label=label)
@@ -53,13 +53,14 @@ def force_plane(history: History, interface: PointInterface, *, title: str = "")
     return figure
 
 
-def _pressures(history: History) -> list[tuple[float, str]]:
-    """Largest N, and the last one where it differs."""
+def limits(history: History) -> list[tuple[Table, float, str]]:
+    """Row and pressure of the limits to be drawn: largest N, and the last one where it differs."""
     n = history.points["pressure"]
     largest, last = float(n.max()), float(n[-1].max())
     if largest == 0.0:
         return []
-    found = [(largest, "-")]
-    if 0.0 < last < 0.995 * largest or np.ptp(n[-1]) > 0.005 * largest:
-        found.append((last, "--"))
+    row = history.points[np.unravel_index(np.argmax(n), n.shape)]
+    found = [(row, largest, "-")]
+    if 0.0 < last < 0.995 * largest:
+        found.append((row, last, "--"))
     return found

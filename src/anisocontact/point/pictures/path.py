@@ -11,7 +11,7 @@ from matplotlib.ticker import FormatStrFormatter, MaxNLocator
 
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
-from anisocontact.point.pictures.ellipse import adhesion_ellipse
+from anisocontact.point.pictures.ellipse import adhesion_domain
 from anisocontact.point.pictures.style import AXES, COLOURS, INK, UNITS, chosen, number, runs, size
 from anisocontact.results.report.style import new_figure
 from anisocontact.surfaces import Floats, Surface
@@ -183,11 +183,11 @@ def _ellipses(
         (i, p): ellipse
         for i in rows
         for p in range(history.points.shape[1])
-        if (ellipse := adhesion_ellipse(interface, history.points[i, p])) is not None
+        if (ellipse := adhesion_domain(interface, history.points[i, p])) is not None
     }
     if not found:
         return []
-    largest = max(float(np.linalg.norm(e, axis=1).max()) for e in found.values())
+    largest = max(float(np.nanmax(np.linalg.norm(e, axis=1))) for e in found.values())
     if largest == 0.0:
         return []
     factor = 1.0 if largest > _SMALL * extent else 0.08 * extent / largest
@@ -201,7 +201,7 @@ def _ellipses(
         ax.plot(*(centre + factor * ellipse).T, color=colour, linewidth=1.0, zorder=3, alpha=alpha)
         ax.plot(*centre[:, None], "+", color=colour, markersize=5, zorder=3, alpha=alpha)
     times = "" if factor == 1.0 else f", enlarged {factor:g} times"
-    label = f"adhesion ellipse and its centre{times}"
+    label = f"adhesion domain and its centre{times}"
     return [Line2D([], [], color=COLOURS["stick"], linewidth=1.0, marker="+", label=label)]
 
 
@@ -215,7 +215,8 @@ def _limits(ax: Any, points: Floats) -> None:
         ylim=middle[1] + 0.5 * span[1] * np.array([-1, 1]),
         zlim=middle[2] + 0.5 * span[2] * np.array([-1, 1]),
     )
-    ax.set_box_aspect(span, zoom=1.05)
+    # A tall box is as high as the figure; a flat one may fill its width.
+    ax.set_box_aspect(span, zoom=0.86 if span[2] > 1.2 * span[:2].max() else 1.05)
     for axis, part in zip((ax.xaxis, ax.yaxis, ax.zaxis), span / span.max(), strict=True):
         axis.set_major_locator(MaxNLocator(6 if part > 0.5 else 1 if part < 0.2 else 3))
         axis.set_major_formatter(FormatStrFormatter("%g"))

@@ -54,10 +54,10 @@ def over_time(history: History, *, title: str = "") -> Figure:
     slip.plot(t, elastic, color=COLOURS["stick"], label="elastic slip")
     slip.set_ylabel("length")
     for name, (label, colour, style) in _ENERGIES.items():
-        values = history.steps["energy"][name]
+        values = history.steps["energy"][name] - history.steps["energy"][name][0]
         if name in ("external", "residual") or np.abs(values).max() > 0.0:
             energy.plot(t, values, style, color=colour, label=label)
-    energy.set(ylabel="energy", xlabel="time")
+    energy.set(ylabel="energy since the first row", xlabel="time")
     for panel in panels:
         _bands(panel, history, legend=panel is slip)
         panel.legend(loc="center left", bbox_to_anchor=(1.01, 0.5), fontsize=8)
