@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from pathlib import Path
 
@@ -25,6 +26,8 @@ def command(arguments: argparse.Namespace) -> int:
     from anisocontact.cli.progress import progress_on
 
     built = build(file)
+    if built.problem.model.mesh.comm.rank > 0:
+        sys.stdout = sys.stderr = open(os.devnull, "w")  # noqa: SIM115 (for good)
     print("\n".join(contents(built)), flush=True)
     try:
         with progress_on(sys.stdout, built.steps) as listener:
