@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from anisocontact._fenicsx import Vec
 from anisocontact.solver.loads import check_steps
@@ -74,15 +75,17 @@ class Solver:
             time += step.duration
 
     def _increment(self, newton: Newton, last: Vec, before: Vec | None) -> NewtonResult:
-        """Solve one increment from the extrapolated state, or else from the last accepted one."""
-        starts = [last] if before is None else [2.0 * last - before, last]
-        for start in starts:
+        """Solve one increment from the extrapolated state, or else with full steps from the last."""
+        spent = 0
+        first = last if before is None else 2.0 * last - before
+        for start, full_steps in ((first, False), (last, True)):
             x = start.copy()
             try:
-                result = newton.solve(x)
+                result = newton.solve(x, full_steps)
+                spent += result.iterations
                 if not result.reason:
                     self.problem.commit(x)
-                    return result
+                    return replace(result, iterations=spent)
                 failed = StoppedError(*self._where, result.reason, self.problem.failed_points())
             finally:
                 self.problem.roll_back()

@@ -92,8 +92,9 @@ class Accepted:
         step_index: Number of the step, from 0.
         increment: Number of the increment in the step, from 1.
         time: Time at its end.
-        iterations: Newton iterations.
-        residuals: Residual over the forces at work, of the start and after each iteration.
+        iterations: Newton iterations, with those of a first attempt that failed.
+        residuals: Residual over the forces at work, of the start and after each iteration of the
+            attempt that converged.
         contacts: Number of "open", "stick" and "slip" points of each contact, by name.
         resultants: Force and moment about the origin on each slave, by name of the contact.
         reactions: Force of each support on the body, by facet group.
