@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 
 from anisocontact.results.files import write_text
 from anisocontact.results.report import curves, maps, shape
@@ -112,11 +111,19 @@ def _step_rows(run: RunData) -> list[dict[str, Any]]:
             "step": name,
             "increments": len(at),
             "iterations": int(iterations.sum()),
-            "most": int(iterations.max()),
+            "most in an increment": int(iterations.max()),
             "largest residual": float(run.history["residual"][at].max()),
         }
         for number, contact in enumerate(run.summary["contacts"]):
             end = {key: run.history[f"contacts.{number}.force.{key}"][at[-1]] for key in "xyz"}
-            row |= {f"{contact['slave']} {axis}": float(np.asarray(v)) for axis, v in end.items()}
-        rows.append(row | {"energy residual": float(run.history["energy.residual"][at[-1]])})
+            where = f"on {contact['slave']} at the end [force]"
+            row |= {f"force {axis} {where}": float(v) for axis, v in end.items()}
+        rows.append(
+            row
+            | {
+                "residual of the energies [force length]": float(
+                    run.history["energy.residual"][at[-1]]
+                )
+            }
+        )
     return rows

@@ -58,8 +58,9 @@ def page(
     if steps:
         body += ["<h2>Steps</h2>", table(steps)]
     body += ["<h2>Contacts at the end</h2>", table(_contacts(summary))]
+    body += ["<h2>Laws</h2>", table(_laws(summary))]
     body += ["<h2>Supports at the end</h2>", table(_reactions(summary))]
-    body += ["<h2>Energies at the end</h2>", table([summary["energy"]])]
+    body += ["<h2>Energies at the end [force length]</h2>", table([summary["energy"]])]
     body += [figure(picture) for picture in pictures]
     return document(title, body)
 
@@ -116,11 +117,12 @@ def _contacts(summary: dict[str, Any]) -> list[dict[str, Any]]:
     rows = []
     for contact in summary["contacts"]:
         row = {"slave": contact["slave"], "master": contact["master"]}
-        row |= _vector("force", contact["force"]) | _vector("moment", contact["moment"])
+        row |= _vector("force", contact["force"], "force")
+        row |= _vector("moment", contact["moment"], "force length")
         row |= {
-            "largest pressure": contact["max_pressure"],
-            "largest penetration": contact["max_penetration"],
-            "... over facet size": contact["max_penetration"] / contact["facet_size"],
+            "largest pressure [stress]": contact["max_pressure"],
+            "largest penetration [length]": contact["max_penetration"],
+            "penetration over facet size": contact["max_penetration"] / contact["facet_size"],
             **contact["points"],
         }
         rows.append(row)
@@ -130,13 +132,34 @@ def _contacts(summary: dict[str, Any]) -> list[dict[str, Any]]:
 def _reactions(summary: dict[str, Any]) -> list[dict[str, Any]]:
     moved = summary["displacements"]
     return [
-        {"facets": group, **_vector("force", force), **_vector("displacement", moved[group])}
+        {
+            "facets": group,
+            **_vector("force", force, "force"),
+            **_vector("displacement", moved[group], "length"),
+        }
         for group, force in summary["reactions"].items()
     ]
 
 
-def _vector(name: str, values: Iterable[float]) -> dict[str, float]:
-    return {f"{name} {axis}": value for axis, value in zip("xyz", values, strict=True)}
+def _vector(name: str, values: Iterable[float], unit: str) -> dict[str, float]:
+    return {f"{name} {axis} [{unit}]": value for axis, value in zip("xyz", values, strict=True)}
+
+
+def _laws(summary: dict[str, Any]) -> list[dict[str, Any]]:
+    return [
+        {
+            "slave": contact["slave"],
+            "law": what.replace("_", " "),
+            "model": law["name"],
+            "numbers": "; ".join(
+                f"{name} {', '.join(f'{v:.5g}' for v in values)}"
+                for name, values in law.items()
+                if name != "name"
+            ),
+        }
+        for contact in summary["contacts"]
+        for what, law in contact["laws"].items()
+    ]
 
 
 def table(rows: Sequence[dict[str, Any]]) -> str:
