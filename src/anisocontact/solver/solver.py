@@ -75,7 +75,7 @@ class Solver:
             time += step.duration
 
     def _increment(self, newton: Newton, last: Vec, before: Vec | None) -> NewtonResult:
-        """Solve one increment from the extrapolated state, or else with full steps from the last."""
+        """Solve an increment from the extrapolated state, else from the last with full steps."""
         spent = 0
         first = last if before is None else 2.0 * last - before
         for start, full_steps in ((first, False), (last, True)):
