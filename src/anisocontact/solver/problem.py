@@ -210,8 +210,8 @@ class Problem:
         Returns:
             "external" work of supports and loads since the start (trapezoidal rule), stored
             "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
-            "friction" and "viscous" laws, energy of "stabilisation", and "residual", what is left of
-            "external" less all others: first order in the size of the increments.
+            "friction" and "viscous" laws, energy of "stabilisation", and "residual", what is left
+            of "external" less all others: first order in the size of the increments.
         """
         stored = {"elastic": self.bulk.energy(self._accepted)}
         stored |= dict.fromkeys(("adhesion", "normal", "friction", "viscous", "stabilisation"), 0.0)
