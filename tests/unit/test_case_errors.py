@@ -167,3 +167,10 @@ def test_wrong_petsc_option(tmp_path, capsys, case_text):
     assert len(lines) == 1
     assert lines[0].startswith("error: solver.options: ")
     assert "newtonx" in lines[0]
+
+
+def test_unknown_petsc_option(tmp_path, capsys, case_text):
+    text = case_text + "[solver]\noptions = { snes_max_it = 30, snes_maxit = 30 }\n"
+    assert run_wrong(tmp_path, capsys, text) == [
+        "error: solver.options.snes_maxit: PETSc's SNES and KSP know no such option"
+    ]

@@ -96,22 +96,28 @@ def _check_bodies(case: Case, model: Model) -> None:
 def _check_options(options: dict[str, str | int | float | bool]) -> None:
     """Let PETSc read the options once: a wrong one is found before anything is written."""
     prefix = "anisocontact_check_"
-    database = PETSc.Options(prefix)
+    database = PETSc.Options()
     for name, value in options.items():
-        database.setValue(name, value)
+        database.setValue(prefix + name, value)
     snes = PETSc.SNES().create()
     snes.setOptionsPrefix(prefix)
     try:
         snes.setFromOptions()
         snes.getKSP().setFromOptions()
         snes.getKSP().getPC().setFromOptions()
+        for name in options:
+            # What the matrices and preconditioners read, they read when they are set up.
+            if name.startswith(("snes_", "ksp_")) and not database.used(prefix + name):
+                raise InputError(
+                    "PETSc's SNES and KSP know no such option", field=f"solver.options.{name}"
+                )
     except PETSc.Error as error:
         reason = str(error).splitlines()[-1]
         raise InputError(f"PETSc refuses them: {reason}", field="solver.options") from None
     finally:
         snes.destroy()
         for name in options:
-            database.delValue(name)
+            database.delValue(prefix + name)
 
 
 def _contact(case: Case, section: ContactSection, model: Model, auto: float, place: str) -> Contact:

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-
 from anisocontact.results.files import write_text
 from anisocontact.results.report import curves, maps, shape
 from anisocontact.results.report.page import Picture, page
