@@ -82,9 +82,9 @@ def interface(surface, rule):
 
 
 SURFACES = {
-    "plane": make_surface("plane", point=(0, 0, 0), normal=(0.1, -0.2, 1.0)),
-    "cylinder": make_surface("cylinder", point=(0, 0, -2), axis=(0, 1, 0), radius=2.0),
-    "sphere": make_surface("sphere", centre=(0, 0, -1.5), radius=1.5),
+    "plane": {"point": (0, 0, 0), "normal": (0.1, -0.2, 1.0)},
+    "cylinder": {"point": (0, 0, -2), "axis": (0, 1, 0), "radius": 2.0},
+    "sphere": {"centre": (0, 0, -1.5), "radius": 1.5},
 }
 
 
@@ -117,7 +117,7 @@ def test_interface(rule, name, branch):
     """The whole response dt/dx on plane and curved surfaces, from a state with history, along three
     directions that are none of the axes. In stick on a plane t is linear in x: the difference is
     then exact but for rounding, 1e-9 of the stiffness."""
-    itf = interface(SURFACES[name], rule)
+    itf = interface(make_surface(name, **SURFACES[name]), rule)
     state, x = committed(itf)
     if branch == "stick":
         state = state.copy()
