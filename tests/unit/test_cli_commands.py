@@ -174,7 +174,9 @@ def test_ctrl_c_ends_after_the_increment_and_keeps_it(case, case_text):
     assert len((out / "history.csv").read_text().splitlines()) == 1 + summary["steps"]
 
 
-def test_an_internal_error_is_one_line_and_its_details_in_the_log(no_report, monkeypatch, capsys, case):
+def test_an_internal_error_is_one_line_and_its_details_in_the_log(
+    no_report, monkeypatch, capsys, case
+):
     from anisocontact.results.writer import Writer
 
     def broken(*_: object) -> None:

@@ -38,6 +38,8 @@ def within(place: str) -> Iterator[None]:
         said = str(error).removeprefix(error.field).removeprefix(": ")
         field = ".".join(part for part in (place, error.field) if part)
         raise InputError(said, field=field) from None
+    except ValueError as error:  # the core knows no fields, its message names the parameter
+        raise InputError(str(error), field=place) from None
 
 
 def surface(section: Registered, place: str) -> Surface:

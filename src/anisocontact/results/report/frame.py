@@ -112,7 +112,7 @@ class ContactView:
         sides = [np.linspace(self.box[0, i], self.box[1, i], int(counts[i])) for i in (0, 1)]
         pixels = np.stack(np.meshgrid(*sides), axis=-1)
         distance, nearest = KDTree(self.flat).query(pixels, p=np.inf)
-        return nearest, distance > 1.1 * np.sqrt(self.data["area"])[nearest]
+        return nearest, distance > 1.2 * np.sqrt(self.data["area"])[nearest]
 
     def draw(self, axes: Axes, values: npt.NDArray[Any], **style: Any) -> AxesImage:
         """Draw values at the points as a filled map: every pixel shows the nearest point.
