@@ -38,8 +38,6 @@ def within(place: str) -> Iterator[None]:
         said = str(error).removeprefix(error.field).removeprefix(": ")
         field = ".".join(part for part in (place, error.field) if part)
         raise InputError(said, field=field) from None
-    except ValueError as error:  # the core knows no fields, its message names the parameter
-        raise InputError(str(error), field=place) from None
 
 
 def surface(section: Registered, place: str) -> Surface:
@@ -86,7 +84,12 @@ def interface(section: Laws, master: Surface, place: str, auto: float = 1.0) -> 
                 section.friction.directions_second, "friction.directions_second"
             ),
         )
-        return Interface(master, normal, adhesion, friction, evolution=section.evolution)
+        try:
+            return Interface(master, normal, adhesion, friction, evolution=section.evolution)
+        except InputError:
+            raise
+        except ValueError as error:  # the core knows no fields, its message names the parameter
+            raise InputError(str(error)) from None
 
 
 def _directions(section: Registered | None, place: str) -> DirectionField | None:
