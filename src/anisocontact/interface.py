@@ -94,6 +94,32 @@ class Response:
         return np.asarray(np.einsum("nij,nj->ni", self.directions_friction, self.traction_t))
 
 
+class PairLaw:
+    """Laws of the contact of two meshed bodies: what an `Interface` is without its surface.
+
+    Args:
+        normal: Law of the pressure.
+        adhesion: Tangential law inside the yield ellipse.
+        friction: Yield ellipse and sliding rule.
+    """
+
+    def __init__(self, normal: NormalLaw, adhesion: Adhesion, friction: Friction) -> None:
+        self.normal, self.adhesion, self.friction = normal, adhesion, friction
+
+    def pairs(self) -> _core.FacetPairs:
+        """The law as the core takes it for slave points and facets."""
+        second = self.friction.directions_second
+        return _core.FacetPairs(
+            self.normal.named,
+            self.adhesion.named,
+            self.adhesion.directions.core if self.adhesion.directions else None,
+            self.friction.named,
+            self.friction.directions.core if self.friction.directions else None,
+            second.core if second else None,
+            self.friction.rule,
+        )
+
+
 class Interface:
     """A surface with the laws of its contact.
 

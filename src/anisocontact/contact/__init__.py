@@ -1,12 +1,14 @@
 """Which facets meet what: forces and tangent of contact, history of the slave points."""
 
 from anisocontact.contact.contact import Contact
+from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.penalty import PENALTY_FACTOR, auto_penalty, facet_size
 from anisocontact.contact.quadrature import FacetQuadrature, facet_quadrature
 
 __all__ = [
     "PENALTY_FACTOR",
     "Contact",
+    "FacetContact",
     "FacetQuadrature",
     "auto_penalty",
     "facet_quadrature",

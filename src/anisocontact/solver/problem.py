@@ -10,9 +10,10 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc, Vec, fem
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
-from anisocontact.contact import Contact
+from anisocontact.contact import Contact, FacetContact
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
+from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.loads import Supports, Tractions
 from anisocontact.solver.steps import Step
 
@@ -56,7 +57,10 @@ class Problem:
     """
 
     def __init__(
-        self, model: Model, materials: Mapping[str, Material], contacts: Sequence[Contact] = ()
+        self,
+        model: Model,
+        materials: Mapping[str, Material],
+        contacts: Sequence[Contact | FacetContact] = (),
     ) -> None:
         _check(model, materials, contacts)
         self.model = model
@@ -66,6 +70,9 @@ class Problem:
         self.bulk: LinearBulk | NonlinearBulk = (
             LinearBulk(model, materials) if linear else NonlinearBulk(model, materials)
         )
+        self._rigid = [c for c in self.contacts if isinstance(c, Contact)]
+        self._meshed = [c for c in self.contacts if isinstance(c, FacetContact)]
+        self._coupled = CoupledTangent(self.bulk.stiffness, model.space) if self._meshed else None
         self.supports = Supports(model)
         self.tractions = Tractions(model)
         self.u: Any = fem.Function(model.space, name="displacement")
@@ -100,6 +107,8 @@ class Problem:
 
     def new_tangent(self) -> Mat:
         """Matrix for `tangent`."""
+        if self._coupled is not None:
+            return self._coupled.new_matrix()
         matrix = self.bulk.stiffness.duplicate()
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         return matrix
@@ -162,10 +171,13 @@ class Problem:
         owned = self.u.x.array[: self._owned]
         if not np.array_equal(owned, x.array_r):
             self.evaluate(x)
-        self.bulk.tangent(out)
-        for contact in self.contacts:
-            contact.add_tangent(out)
-        out.assemble()
+        bulk = out if self._coupled is None else self._coupled.bulk
+        self.bulk.tangent(bulk)
+        for contact in self._rigid:
+            contact.add_tangent(bulk)
+        bulk.assemble()
+        if self._coupled is not None:
+            self._coupled.assemble(out, [c.couplings() for c in self._meshed])
         out.zeroRowsLocal(self.supports.unknowns.astype(PETSc.IntType), self._support_scale)
 
     def commit(self, x: Vec) -> None:
@@ -236,7 +248,11 @@ class Problem:
         return float(np.sqrt(self._comm.allreduce(float(owned @ owned))))
 
 
-def _check(model: Model, materials: Mapping[str, Material], contacts: Sequence[Contact]) -> None:
+def _check(
+    model: Model,
+    materials: Mapping[str, Material],
+    contacts: Sequence[Contact | FacetContact],
+) -> None:
     for body in materials:
         model.cells(body, f"material.{body}")
     for body in model.body_names():

@@ -1,0 +1,195 @@
+"""Slave facets against the facets of another body: large sliding, both sides deforming."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.facet_mesh import (
+    SlavePoints,
+    facet_mesh,
+    facet_rule,
+    node_positions,
+)
+from anisocontact.contact.quadrature import default_degree
+from anisocontact.contact.record import ContactRecord, Snapshot
+from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSurface
+from anisocontact.interface import STATE, PairLaw, Response, State, as_state, raw_state
+from anisocontact.mesh import Model
+from anisocontact.surfaces import default_threads
+
+#: Code of the kernel for a point without a facet below it.
+OFF = 3
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+
+class FacetContact(ContactRecord):
+    """Contact of a facet group with the facets of another group of the same mesh.
+
+    At every quadrature point of the slave, `t = N n + T` from the closest point of the master where
+    both are now; forces go to both bodies. The tangent holds the change of projection, normal,
+    metric, directions and slave area, and of the facet on which the history was committed.
+
+    Args:
+        model: Mesh with both groups.
+        slave: Facet group "body.group" that carries the quadrature points.
+        master: Facet group "body.group" that is the surface.
+        law: Laws of the interface; directions are given in the reference configuration and
+            carried by the master.
+        degree: Degree of the quadrature; twice the order of the displacement if not given.
+        reach: Distance within which the master is searched, length; twice the size of the slave's
+            facets if not given.
+        current_area: Whether tractions act on the area of now (finite strain) or of the reference.
+        weight: Share of the work of this pass: 0.5 for each of two half passes.
+        name: Name in output; the slave if not given.
+
+    Raises:
+        InputError: No such facet group, one without facets, or the same for both.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        slave: str,
+        master: str,
+        *,
+        law: PairLaw,
+        degree: int | None = None,
+        reach: float | None = None,
+        current_area: bool = True,
+        weight: float = 1.0,
+        name: str = "",
+    ) -> None:
+        _check(model, slave, master)
+        self.master = master
+        self.interface = law
+        self._law = law.pairs()
+        self._reference = node_positions(model.space)
+        self._master = facet_mesh(model.space, model.facets(master))
+        own = facet_mesh(model.space, model.facets(slave))
+        rule = facet_rule(own.topology, default_degree(model.order) if degree is None else degree)
+        self._points = SlavePoints(own, rule, self._reference, current_area, weight)
+        self._surface = FacetSurface(
+            self._reference, self._master.nodes, self._master.topology, self._master.flip
+        )
+        kind = list(TOPOLOGIES).index(self._master.topology)
+        self._kinds = np.full(len(self._master.nodes), kind, dtype=np.int8)
+        self._threads = default_threads()
+        self.reach = reach if reach is not None else 2.0 * self._points.size
+        self._hint: FacetProjections | None = None
+        self._answer: dict[str, npt.NDArray[Any]] = {}
+        state = self._initial()
+        super().__init__(
+            model.mesh.comm,
+            slave,
+            name or slave,
+            state,
+            self._respond(state, self._reference, 1.0, tangent=False),
+        )
+
+    def update(self, u: Floats, dt: float) -> Response:
+        """Response to nodal displacements from the committed history, kept as the trial.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+            dt: Time increment.
+
+        Returns:
+            The response; the committed history is unchanged.
+        """
+        self._trial = self._respond(self.state, self._reference + u, dt, tangent=True)
+        return self._trial.response
+
+    def add_force(self, out: Floats) -> None:
+        """Add the forces of the trial on both bodies to the local nodes, (nodes, 3), force."""
+        forces = -self._answer["residual"]
+        rows = self._answer["nodes"][:, : forces.shape[1] // 3]
+        held = rows >= 0
+        np.add.at(out, rows[held], forces.reshape(*rows.shape, 3)[held])
+
+    def couplings(self) -> tuple[Ints, Ints, Floats]:
+        """Where `-d force / d u` of the trial has entries, and the entries.
+
+        Returns:
+            Local nodes of the rows (p, r) and of the columns (p, c) of the p points in contact, -1
+            for none, and the block of each point, (p, 3 r, 3 c).
+        """
+        active = np.flatnonzero(self.trial.status != 0)
+        nodes = self._answer["nodes"][active]
+        tangent = self._answer["tangent"][active]
+        return nodes[:, : tangent.shape[1] // 3], nodes, tangent
+
+    def lever(self) -> float:
+        """Forces that would move every point of the trial to the origin, norm over this rank."""
+        now = self.current
+        stiff = np.linalg.norm(self._answer["tangent"], axis=(1, 2))
+        return float(np.linalg.norm(stiff * np.linalg.norm(now.points, axis=1)))
+
+    def _respond(self, state: State, now: Floats, dt: float, *, tangent: bool) -> Snapshot:
+        x = self._points.positions(now)
+        hit = self._project(now, x)
+        slave = self._points
+        self._answer = answer = self._law.update(
+            raw_state(state),
+            dt,
+            slave.nodes,
+            slave.shape,
+            slave.gradient,
+            slave.weight,
+            slave.current_area,
+            now,
+            self._reference,
+            self._master.nodes,
+            self._kinds,
+            self._master.flip,
+            np.maximum(hit.facet, 0),
+            np.nan_to_num(hit.xi),
+            np.where(hit.status == FACET_STATUS.index("on"), hit.feature, np.int8(OFF)),
+            hit.edge,
+            tangent,
+            self._threads,
+        )
+        lost = hit.status == FACET_STATUS.index("failed")
+        response = Response(
+            traction=answer["traction"],
+            tangent=np.empty((0, 3, 3)),
+            state=as_state(answer["state"]),
+            normal=answer["normal"],
+            directions_adhesion=answer["adhesion_axes"],
+            directions_friction=answer["friction_axes"],
+            failure=np.where(lost, np.int8(1), answer["failure"]),
+        )
+        return Snapshot(x, answer["area"], response)
+
+    def _project(self, now: Floats, x: Floats) -> FacetProjections:
+        self._surface.update(now)
+        self._hint = self._surface.project(x, hint=self._hint, max_distance=self.reach)
+        return self._hint
+
+    def _initial(self) -> State:
+        """Free of force; a point near the master knows its facet, coordinates and gap."""
+        x = self._points.positions(self._reference)
+        hit = self._project(self._reference, x)
+        near = hit.status == FACET_STATUS.index("on")
+        state = np.zeros(len(x), dtype=STATE)
+        state["facet"] = np.where(near, hit.facet, -1)
+        state["xi"][near] = hit.xi[near]
+        state["origin"] = state["xi"]
+        state["gap"][near] = hit.gap[near]
+        return state
+
+
+def _check(model: Model, slave: str, master: str) -> None:
+    for name, field in ((slave, "slave"), (master, "master")):
+        model.facets(name, field)
+        if model.count_facets(name) == 0:
+            raise InputError(f"facet group {name!r} has no facets", field)
+    shared = np.intersect1d(model.facets(slave), model.facets(master))
+    if shared.size:
+        raise InputError(
+            f"{slave!r} and {master!r} share {shared.size} facets, they must not overlap", "master"
+        )

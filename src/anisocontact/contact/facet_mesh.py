@@ -1,0 +1,144 @@
+"""Boundary facets of a mesh as surfaces: their nodes, orientation and shape functions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import basix, facet_sides, scalar_element
+from anisocontact.facets import outward_flips
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+#: Facet of a cell by the type of the cell and the order of the displacement.
+TOPOLOGY = {
+    ("tetrahedron", 1): "tri3",
+    ("tetrahedron", 2): "tri6",
+    ("hexahedron", 1): "quad4",
+    ("hexahedron", 2): "quad9",
+}
+
+
+@dataclass(frozen=True)
+class FacetMesh:
+    """Facets with the nodes of the displacement.
+
+    Attributes:
+        topology: "tri3", "tri6", "quad4" or "quad9".
+        nodes: Local nodes of each facet in the order of its reference facet, (m, k).
+        flip: Whether the normal of the node order points into the body, (m,).
+    """
+
+    topology: str
+    nodes: Ints
+    flip: npt.NDArray[np.bool_]
+
+
+def facet_mesh(space: Any, facets: Ints) -> FacetMesh:
+    """Boundary facets that this rank owns, with outward orientation.
+
+    Args:
+        space: Vector Lagrange space of order 1 or 2.
+        facets: Local facets on the boundary.
+
+    Returns:
+        Nodes and orientation.
+    """
+    cells, local = facet_sides(space.mesh, np.sort(facets))
+    element = scalar_element(space)
+    closure = np.array(element.entity_closure_dofs[2])
+    nodes = space.dofmap.list[cells[:, None], closure[local]].astype(np.int32)
+    x = node_positions(space)
+    middle = x[space.dofmap.list[cells]].mean(axis=1)
+    topology = TOPOLOGY[element.cell_type.name, element.degree]
+    return FacetMesh(topology, nodes, outward_flips(x, nodes, topology, middle))
+
+
+def node_positions(space: Any) -> Floats:
+    """Positions of the local nodes in the reference configuration, (nodes, 3), length."""
+    return np.asarray(space.tabulate_dof_coordinates())
+
+
+@dataclass(frozen=True)
+class FacetRule:
+    """Quadrature on the reference facet with the shape functions there.
+
+    Attributes:
+        weights: Weights on the reference facet, (q,).
+        shape: Shape functions, (q, k).
+        gradient: Their derivatives along the two coordinates, (q, k, 2).
+    """
+
+    weights: Floats
+    shape: Floats
+    gradient: Floats
+
+
+def facet_rule(topology: str, degree: int) -> FacetRule:
+    """Quadrature of the given degree on a facet.
+
+    Args:
+        topology: "tri3", "tri6", "quad4" or "quad9".
+        degree: Polynomials up to this degree are integrated exactly on flat facets.
+
+    Returns:
+        Weights and shape functions.
+    """
+    triangle = topology.startswith("tri")
+    cell = basix.CellType.triangle if triangle else basix.CellType.quadrilateral
+    order = 2 if topology in {"tri6", "quad9"} else 1
+    points, weights = basix.make_quadrature(cell, degree)
+    element = basix.create_element(
+        basix.ElementFamily.P, cell, order, basix.LagrangeVariant.equispaced
+    )
+    table = element.tabulate(1, points)[..., 0]
+    return FacetRule(
+        np.asarray(weights), np.asarray(table[0]), np.stack([table[1], table[2]], axis=-1)
+    )
+
+
+class SlavePoints:
+    """Quadrature points on slave facets that move with their nodes.
+
+    Args:
+        facets: The slave facets.
+        rule: Quadrature on the reference facet.
+        reference: Positions of the local nodes in the reference configuration, (nodes, 3), length.
+        current_area: Whether the area of a point is that of now or of the reference.
+        share: Share of the area that counts.
+
+    Attributes:
+        nodes: Nodes of the facet of each point, (n, k).
+        shape: Their shape functions at the point, (n, k).
+        gradient: Derivatives of these, (n, k, 2).
+        weight: Weight of each point: its area, or where the area is that of now what the area of
+            the tangents is multiplied by, (n,).
+        size: Length of a facet: square root of the mean area.
+    """
+
+    def __init__(
+        self,
+        facets: FacetMesh,
+        rule: FacetRule,
+        reference: Floats,
+        current_area: bool,
+        share: float,
+    ) -> None:
+        count, q = len(facets.nodes), len(rule.weights)
+        self.current_area = current_area
+        self.nodes = np.repeat(facets.nodes, q, axis=0)
+        self.shape = np.tile(rule.shape, (count, 1))
+        self.gradient = np.tile(rule.gradient, (count, 1, 1))
+        tangents = np.einsum("pkd,pki->pdi", self.gradient, reference[self.nodes])
+        stretch = np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
+        weights = np.tile(rule.weights, count)
+        self.weight = share * (weights if current_area else weights * stretch)
+        self.size = float(np.sqrt((weights * stretch).sum() / max(count, 1)))
+
+    def positions(self, now: Floats) -> Floats:
+        """Positions of the points, (n, 3), from those of the nodes, (nodes, 3), length."""
+        return np.ascontiguousarray(np.einsum("pk,pki->pi", self.shape, now[self.nodes]))

@@ -1,0 +1,100 @@
+"""Matrix of bodies that touch each other: the pattern of the bulk and the couplings of contact."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import Mat, PETSc
+
+Ints = npt.NDArray[np.int32]
+Keys = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+
+#: Nodes of the rows and of the columns of each point and its block, as of
+#: `FacetContact.couplings`.
+type Couplings = tuple[Ints, Ints, Floats]
+
+
+class CoupledTangent:
+    """Sum of a bulk matrix and blocks that couple nodes of different bodies.
+
+    Couplings that were once there keep their place, so the pattern grows only when a slave point
+    meets a facet it has not met before; the symbolic factorisation is reused in between.
+
+    Args:
+        stiffness: Matrix of the bulk; its pattern stays.
+        space: Vector space of the displacement.
+    """
+
+    def __init__(self, stiffness: Mat, space: Any) -> None:
+        self._bulk = stiffness.duplicate()
+        self._lg = stiffness.getLGMap()
+        self._sizes = stiffness.getSizes()
+        index_map = space.dofmap.index_map
+        local = index_map.size_local + index_map.num_ghosts
+        self._global = index_map.local_to_global(np.arange(local, dtype=np.int32))
+        first = 3 * index_map.local_range[0]
+        starts, columns, _ = stiffness.getValuesCSR()
+        self._rows = np.repeat(np.arange(len(starts) - 1) + first, np.diff(starts))
+        self._columns = columns
+        self._keys: Keys = np.empty(0, dtype=np.int64)
+
+    @property
+    def bulk(self) -> Mat:
+        """Matrix to write the tangent of the bulk into."""
+        return self._bulk
+
+    def new_matrix(self) -> Mat:
+        """Matrix for `assemble`, with the pattern of the bulk for now."""
+        matrix = PETSc.Mat().create(self._bulk.getComm())
+        matrix.setSizes(self._sizes, bsize=3)
+        matrix.setType(PETSc.Mat.Type.AIJ)
+        matrix.setLGMap(*self._lg)
+        self._preallocate(matrix)
+        return matrix
+
+    def assemble(self, out: Mat, couplings: Sequence[Couplings]) -> None:
+        """Write bulk plus couplings into a matrix of `new_matrix`."""
+        keys, blocks = _pairs(couplings, len(self._global))
+        unknown = np.setdiff1d(keys, self._keys)
+        if out.getComm().tompi4py().allreduce(unknown.size) > 0:
+            self._keys = np.union1d(self._keys, unknown)
+            self._preallocate(out)
+        sums = np.zeros((len(self._keys), 9))
+        np.add.at(sums, np.searchsorted(self._keys, keys), blocks.reshape(-1, 9))
+        values = np.concatenate([self._bulk.getValuesCSR()[2], sums.reshape(-1)])
+        out.setValuesCOO(values, PETSc.InsertMode.INSERT_VALUES)
+
+    def _preallocate(self, matrix: Mat) -> None:
+        row, column = np.divmod(self._keys, len(self._global))
+        component = np.arange(3)
+        rows = 3 * self._global[row][:, None, None] + component[:, None]
+        columns = 3 * self._global[column][:, None, None] + component
+        shape = (len(self._keys), 3, 3)
+        matrix.setPreallocationCOO(
+            _joined(self._rows, np.broadcast_to(rows, shape)),
+            _joined(self._columns, np.broadcast_to(columns, shape)),
+        )
+        matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+
+
+def _joined(bulk: Any, contact: Any) -> Any:
+    return np.concatenate([bulk, contact.reshape(-1)]).astype(PETSc.IntType)
+
+
+def _pairs(couplings: Sequence[Couplings], nodes: int) -> tuple[Keys, Floats]:
+    """Pairs of nodes as one number each, and their 3 x 3 blocks."""
+    keys, blocks = [np.empty(0, dtype=np.int64)], [np.empty((0, 3, 3))]
+    for rows, columns, values in couplings:
+        points, r = rows.shape
+        c = columns.shape[1]
+        there = (rows[:, :, None] >= 0) & (columns[:, None, :] >= 0)
+        pair = rows[:, :, None].astype(np.int64) * nodes + columns[:, None, :]
+        block = values.reshape(points, r, 3, c, 3).swapaxes(2, 3)
+        keys.append(pair[there])
+        blocks.append(block[there])
+    return np.concatenate(keys), np.concatenate(blocks)
