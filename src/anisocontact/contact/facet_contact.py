@@ -15,6 +15,7 @@ from anisocontact.contact.facet_mesh import (
 )
 from anisocontact.contact.quadrature import default_degree
 from anisocontact.contact.record import ContactRecord, Snapshot
+from anisocontact.errors import InputError
 from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSurface
 from anisocontact.interface import STATE, PairLaw, Response, State, as_state, raw_state
 from anisocontact.mesh import Model
