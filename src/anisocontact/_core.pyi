@@ -159,6 +159,39 @@ class FramedInterface:
     ) -> Any: ...
     def initial_state(self, x: NDArray[numpy.float64]) -> dict[str, NDArray[Any]]: ...
 
+class FacetSurface:
+    def __init__(
+        self,
+        points: NDArray[numpy.float64],
+        topologies: Sequence[str],
+        counts: NDArray[numpy.int32],
+        nodes: NDArray[numpy.int32],
+        flip: NDArray[numpy.bool_],
+    ) -> None: ...
+    def update(self, points: NDArray[numpy.float64]) -> None: ...
+    def project(
+        self,
+        x: NDArray[numpy.float64],
+        hint: NDArray[numpy.int32],
+        start: NDArray[numpy.float64],
+        limit: NDArray[numpy.float64],
+        offsets: NDArray[numpy.int64],
+        excluded: NDArray[numpy.int32],
+        threads: int,
+    ) -> dict[str, NDArray[Any]]: ...
+    def shapes(
+        self, facet: NDArray[numpy.int32], xi: NDArray[numpy.float64]
+    ) -> dict[str, NDArray[Any]]: ...
+    def jet(
+        self, facet: NDArray[numpy.int32], xi: NDArray[numpy.float64]
+    ) -> dict[str, NDArray[Any]]: ...
+    def geometry(
+        self, facet: NDArray[numpy.int32], xi: NDArray[numpy.float64]
+    ) -> dict[str, NDArray[Any]]: ...
+    def within(self, x: NDArray[numpy.float64], distance: float, threads: int) -> Any: ...
+    def rings(self, facet: NDArray[numpy.int32], count: int) -> Any: ...
+    def sides(self) -> NDArray[numpy.int32]: ...
+
 class FacetPairs:
     def __init__(
         self,

@@ -40,12 +40,12 @@ class PointGeometry:
     @property
     def gaussian_curvature(self) -> Floats:
         """Determinant of h^i_j, (n,) [1/length^2]."""
-        return np.linalg.det(self.h_mixed)
+        return np.asarray(np.linalg.det(self.h_mixed))
 
     @property
     def mean_curvature(self) -> Floats:
         """Half the trace of h^i_j, (n,) [1/length]; its sign follows the normal."""
-        return 0.5 * np.trace(self.h_mixed, axis1=1, axis2=2)
+        return np.asarray(0.5 * np.trace(self.h_mixed, axis1=1, axis2=2))
 
 
 @dataclass(frozen=True)

@@ -168,7 +168,8 @@ class Surface:
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float], tuple[bool, bool]]:
         """Lower and upper ends of the coordinates and whether each is periodic."""
-        return self.core.domain()
+        lower, upper, periodic = self.core.domain()
+        return lower, upper, periodic
 
 
 def make_surface(name: str, **parameters: object) -> Surface:

@@ -5,8 +5,12 @@ from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.penalty import PENALTY_FACTOR, auto_penalty, facet_size
 from anisocontact.contact.quadrature import FacetQuadrature, facet_quadrature
 
+#: Either kind of contact.
+type AnyContact = Contact | FacetContact
+
 __all__ = [
     "PENALTY_FACTOR",
+    "AnyContact",
     "Contact",
     "FacetContact",
     "FacetQuadrature",

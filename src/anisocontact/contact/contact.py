@@ -81,6 +81,11 @@ class Contact(ContactRecord):
         self._trial = Snapshot(x, self.quadrature.areas, response)
         return response
 
+    def elastic_slip(self) -> Floats:
+        """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
+        jet = self.interface.surface.jet(self.state["xi"])
+        return np.asarray(np.einsum("ni,nij->nj", self.state["elastic"], jet.d1))
+
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial on the slave to the local nodes, (nodes, 3), force."""
         self.quadrature.to_nodes(self.trial.traction, out)

@@ -105,6 +105,15 @@ class FacetContact(ContactRecord):
         self._trial = self._respond(self.state, self._reference + u, dt, tangent=True)
         return self._trial.response
 
+    def elastic_slip(self) -> Floats:
+        """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
+        slip = np.zeros((len(self.state), 3))
+        touching = np.flatnonzero(self.state["facet"] >= 0)
+        at = self.state[touching]
+        jet = self._surface.jet(at["facet"], at["xi"])
+        slip[touching] = np.einsum("ni,nij->nj", at["elastic"], jet.d1)
+        return slip
+
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial on both bodies to the local nodes, (nodes, 3), force."""
         forces = -self._answer["residual"]

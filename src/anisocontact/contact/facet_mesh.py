@@ -91,14 +91,13 @@ def facet_rule(topology: str, degree: int) -> FacetRule:
     triangle = topology.startswith("tri")
     cell = basix.CellType.triangle if triangle else basix.CellType.quadrilateral
     order = 2 if topology in {"tri6", "quad9"} else 1
-    points, weights = basix.make_quadrature(cell, degree)
+    rule: Any = basix.make_quadrature(cell, degree)
+    points, weights = np.asarray(rule[0]), np.asarray(rule[1])
     element = basix.create_element(
         basix.ElementFamily.P, cell, order, basix.LagrangeVariant.equispaced
     )
-    table = element.tabulate(1, points)[..., 0]
-    return FacetRule(
-        np.asarray(weights), np.asarray(table[0]), np.stack([table[1], table[2]], axis=-1)
-    )
+    table = np.asarray(element.tabulate(1, points))[..., 0]
+    return FacetRule(weights, table[0], np.stack([table[1], table[2]], axis=-1))
 
 
 class SlavePoints:

@@ -12,9 +12,8 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import dolfinx, fem, ufl
 from anisocontact.bulk import cauchy_stress
-from anisocontact.contact import Contact
+from anisocontact.contact import AnyContact
 from anisocontact.results.files import replacing, write_text
-from anisocontact.results.snapshot import elastic_slip
 from anisocontact.solver import Problem
 
 if TYPE_CHECKING:
@@ -138,7 +137,7 @@ def von_mises(stress: Floats) -> Floats:
     return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
 
 
-def slave_points(contacts: Iterable[Contact], comm: Any) -> pyvista.PolyData | None:
+def slave_points(contacts: Iterable[AnyContact], comm: Any) -> pyvista.PolyData | None:
     """The slave points of all contacts where they are now; None but on the first rank.
 
     Args:
@@ -166,7 +165,7 @@ def slave_points(contacts: Iterable[Contact], comm: Any) -> pyvista.PolyData | N
     return cloud
 
 
-def _point_data(number: int, contact: Contact) -> dict[str, npt.NDArray[Any]]:
+def _point_data(number: int, contact: AnyContact) -> dict[str, npt.NDArray[Any]]:
     last, state = contact.last, contact.state
     return {
         "points": contact.points,
@@ -177,7 +176,7 @@ def _point_data(number: int, contact: Contact) -> dict[str, npt.NDArray[Any]]:
         "traction": last.traction,
         "traction_t": last.traction_t,
         "traction_principal": last.traction_principal,
-        "elastic_slip": elastic_slip(contact),
+        "elastic_slip": contact.elastic_slip(),
         "slip_accumulated": state["slip_accumulated"],
         "status": last.status.astype(np.int32),
         "dissipation": state["dissipation"],

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import Contact, FacetQuadrature, facet_quadrature
+from anisocontact.contact import AnyContact, FacetQuadrature, facet_quadrature
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted, Problem, Step
 
-__all__ = ["Observer", "elastic_slip", "laws", "named_groups"]
+__all__ = ["Observer", "laws", "named_groups"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -63,12 +63,12 @@ class Observer:
         total = self._comm.allreduce(local)
         return np.asarray(total[:3] / total[3])
 
-    def _contact(self, contact: Contact) -> dict[str, Any]:
+    def _contact(self, contact: AnyContact) -> dict[str, Any]:
         """Resultant, extremes and counts; the means are over the area that touches."""
         force, moment = contact.resultant()
         last = contact.last
         touching = contact.areas * (last.status != STATUS.index("open"))
-        slips = np.column_stack([elastic_slip(contact), contact.state["slip_accumulated"]])
+        slips = np.column_stack([contact.elastic_slip(), contact.state["slip_accumulated"]])
         total = self._comm.allreduce(np.append(touching @ slips, touching.sum()))
         area = float(total[4])
         mean = total[:4] / area if area > 0.0 else np.zeros(4)
@@ -89,14 +89,7 @@ def named_groups(loads: Iterable[Iterable[str]]) -> list[str]:
     return list(dict.fromkeys(group for groups in loads for group in groups))
 
 
-def elastic_slip(contact: Contact) -> Floats:
-    """Elastic part of the relative displacement `e^i rho_i` at each slave point, (n, 3), length."""
-    state = contact.state
-    jet = contact.interface.surface.jet(state["xi"])
-    return np.asarray(np.einsum("ni,nij->nj", state["elastic"], jet.d1))
-
-
-def laws(contact: Contact) -> dict[str, Any]:
+def laws(contact: AnyContact) -> dict[str, Any]:
     """Laws of a contact with the numbers they were given, by name."""
     interface = contact.interface
     named = {

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc, Vec, fem
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
-from anisocontact.contact import Contact, FacetContact
+from anisocontact.contact import AnyContact, Contact, FacetContact
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.coupled import CoupledTangent
@@ -60,7 +60,7 @@ class Problem:
         self,
         model: Model,
         materials: Mapping[str, Material],
-        contacts: Sequence[Contact | FacetContact] = (),
+        contacts: Sequence[AnyContact] = (),
     ) -> None:
         _check(model, materials, contacts)
         self.model = model
@@ -251,7 +251,7 @@ class Problem:
 def _check(
     model: Model,
     materials: Mapping[str, Material],
-    contacts: Sequence[Contact | FacetContact],
+    contacts: Sequence[AnyContact],
 ) -> None:
     for body in materials:
         model.cells(body, f"material.{body}")
