@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -109,7 +110,8 @@ class PairLaw:
     def pairs(self) -> _core.FacetPairs:
         """The law as the core takes it for slave points and facets."""
         second = self.friction.directions_second
-        return _core.FacetPairs(
+        return _made(
+            _core.FacetPairs,
             self.normal.named,
             self.adhesion.named,
             self.adhesion.directions.core if self.adhesion.directions else None,
@@ -170,7 +172,8 @@ class Interface:
             friction,
         )
         self.threads = threads or default_threads()
-        self.core = _core.Interface(
+        self.core = _made(
+            _core.Interface,
             surface.core,
             normal.named,
             adhesion.named,
@@ -226,6 +229,18 @@ class Interface:
             directions_friction=r["friction_axes"],
             failure=r["failure"],
         )
+
+
+def _made[T](kind: Callable[..., T], *arguments: object) -> T:
+    """An object of the core; what it says of its arguments as a mistake of the user.
+
+    Raises:
+        InputError: The values of a law do not go together.
+    """
+    try:
+        return kind(*arguments)
+    except ValueError as error:
+        raise InputError(str(error)) from None
 
 
 def as_state(raw: npt.NDArray[np.uint8]) -> State:

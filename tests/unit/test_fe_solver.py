@@ -252,3 +252,22 @@ def test_work_is_stored_and_given_back_in_stick(fe):
     assert work == pytest.approx(stored, rel=1e-7)
     assert away["friction"] == 0.0
     assert back["external"] - start["external"] == pytest.approx(0.0, abs=1e-7 * work)
+
+
+def test_options_read_late_are_seen(fe):
+    """An option of MUMPS, read at the first factorisation, reaches it and is taken back.
+
+    Source: PETSc reads `mat_mumps_icntl_<n>` when the factor is made.
+    """
+    from anisocontact._fenicsx import PETSc
+    from anisocontact.solver import Step
+    from anisocontact.solver.newton import Newton
+
+    problem = fe.block(fe.interface(), cells=(2, 2, 1)).problem
+    newton = Newton(problem, "late_", {"mat_mumps_icntl_14": 77}, lambda *_: None)
+    problem.begin(Step("push", 1, PRESS))
+    problem.set_level(1.0, 1.0)
+    assert not newton.solve(problem.accepted()).reason
+    assert newton.snes.getKSP().getPC().getFactorMatrix().getMumpsIcntl(14) == 77
+    newton.close()
+    assert not PETSc.Options("late_").hasName("mat_mumps_icntl_14")

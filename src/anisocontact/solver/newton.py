@@ -74,16 +74,18 @@ class Newton:
         self.snes.setFunction(self._function, problem.new_vector())
         self.snes.setJacobian(self._jacobian, problem.new_tangent())
         self.snes.setTolerances(rtol=TOLERANCE, atol=0.0, stol=0.0, max_it=MAX_ITERATIONS)
-        with _database(prefix, DEFAULTS | dict(options)):
-            self.snes.setFromOptions()
-            self.snes.getKSP().setFromOptions()
-            self.snes.getKSP().getPC().setFromOptions()
+        # Some options, such as those of MUMPS, are read when they are first needed.
+        self._database = _Database(prefix, DEFAULTS | dict(options))
+        self.snes.setFromOptions()
+        self.snes.getKSP().setFromOptions()
+        self.snes.getKSP().getPC().setFromOptions()
         self.snes.setConvergenceTest(self._converged)
         self._line_search = self.snes.getLineSearch().getType()
 
     def close(self) -> None:
         """Give back PETSc's objects, which hold this one and would keep it for ever."""
         self.snes.destroy()
+        self._database.clear()
 
     def solve(self, x: Vec, full_steps: bool = False) -> NewtonResult:
         """Correct `x` until it is in equilibrium or no more can be done.
@@ -151,17 +153,16 @@ class Newton:
 _TINY = float(np.finfo(np.float64).tiny)
 
 
-class _database:  # noqa: N801 (used as a function)
-    """PETSc options set for a while, unless the user has set them."""
+class _Database:
+    """PETSc options, those of the user left as they are, until `clear`."""
 
     def __init__(self, prefix: str, options: Mapping[str, OptionValue]) -> None:
         self._options = PETSc.Options(prefix)
         self._set = {k: v for k, v in options.items() if not self._options.hasName(k)}
-
-    def __enter__(self) -> None:
         for name, value in self._set.items():
             self._options.setValue(name, value)
 
-    def __exit__(self, *_: object) -> None:
+    def clear(self) -> None:
+        """Take back what was set."""
         for name in self._set:
             self._options.delValue(name)
