@@ -19,6 +19,8 @@ STIFFNESS, MU = 2e3, 0.3
 
 SURFACES = {
     "plane": make_surface("plane", point=(0, 0, 0), normal=(0.1, 0.2, 1)),
+    "cylinder": make_surface("cylinder", point=(0, 0, 0), axis=(0, 0.3, 1), radius=1.5),
+    "torus": make_surface("torus", centre=(0, 0, 0), axis=(0.2, 0, 1), radius=2.0, tube=0.7),
 }
 
 
