@@ -126,3 +126,23 @@ def test_wrong_shape_is_said() -> None:
     x = [[0.0, 0.0, -0.01]]
     with pytest.raises(InputError, match=r"traction: the law returned an array of shape \(1, 1\)"):
         itf.update(itf.initial_state([[0.0, 0.0, 0.1]]), x)
+
+
+def test_in_a_finite_element_contact(fe) -> None:
+    """A block pressed and dragged with the law in Python: the forces of the law in the core.
+
+    Tolerance 1e-9 relative: both are solved to a residual of 1e-12.
+    """
+    from anisocontact.solver import Step
+
+    forces = []
+    for interface in _pair(make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))):
+        block = fe.block(interface, cells=(2, 2, 1))
+        steps = [
+            Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}),
+            Step("drag", 3, {"block.top": {"x": 0.02}}),
+        ]
+        accepted = block.run(*steps, snes_rtol=1e-12)
+        forces.append(np.array([a.resultants["block.bottom"][0] for a in accepted]))
+    assert np.abs(forces[0] - forces[1]).max() < 1e-9 * np.abs(forces[1]).max()
+    assert accepted[-1].contacts["block.bottom"]["slip"] > 0

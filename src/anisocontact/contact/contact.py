@@ -11,6 +11,7 @@ from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.errors import InputError
 from anisocontact.interface import Interface, Response
 from anisocontact.mesh import Model
+from anisocontact.python_law import PythonInterface
 
 Floats = npt.NDArray[np.float64]
 
@@ -25,7 +26,7 @@ class Contact(ContactRecord):
     Args:
         model: Mesh with the facet group.
         slave: Facet group "body.group".
-        interface: Surface and laws.
+        interface: Surface and laws, also laws written in Python.
         degree: Degree of the quadrature on the facets, >= 1; twice the order of the displacement
             if not given.
         name: Name in output; the slave if not given.
@@ -42,7 +43,7 @@ class Contact(ContactRecord):
         self,
         model: Model,
         slave: str,
-        interface: Interface,
+        interface: Interface | PythonInterface,
         *,
         degree: int | None = None,
         name: str = "",

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.contact import AnyContact, FacetQuadrature, facet_quadrature
 from anisocontact.interface import STATUS
+from anisocontact.python_law import PythonInterface
 from anisocontact.solver import Accepted, Problem, Step
 
 __all__ = ["Observer", "laws", "named_groups"]
@@ -92,6 +93,10 @@ def named_groups(loads: Iterable[Iterable[str]]) -> list[str]:
 def laws(contact: AnyContact) -> dict[str, Any]:
     """Laws of a contact with the numbers they were given, by name."""
     interface = contact.interface
+    if isinstance(interface, PythonInterface):
+        name, values = interface.normal.named
+        own = {"name": type(interface.law).__name__}
+        return {"normal": {"name": name, **values}, "adhesion": own, "friction": own}
     named = {
         "normal": interface.normal.named,
         "adhesion": interface.adhesion.named,
