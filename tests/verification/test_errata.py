@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from anisocontact.anisotropy import DirectionField, make_directions, oblique_principal, tensor
+from anisocontact.anisotropy import DirectionField, make_directions, tensor
 from anisocontact.interface import Interface
 from anisocontact.kinematics import relative_variation
 from anisocontact.laws import Adhesion, Friction, NormalLaw, slide
@@ -186,47 +186,6 @@ def test_components_over_mu_are_no_tensor() -> None:
     assert abs(f_turned[0, 1]) > 1.0
 
 
-@pytest.mark.parametrize("values", [(-3.0, -1.0), (1 / 0.09, 1 / 0.01)], ids=["B-42", "F-43"])
-def test_matrix_of_mixed_components_needs_an_orthonormal_frame(values: tuple[float, float]) -> None:
-    """(42), (43) are the mixed components in an orthonormal frame alone.
-
-    On a cylinder of radius 0.8, axes turned by 0.4 from the coordinate lines: with an orthonormal
-    basis the entries are those printed, in the basis rho_i they are not, nor is the matrix
-    symmetric; its trace and determinant are the same in both.
-    """
-    xi, angle = np.array([[0.7, 0.2]]), 0.4
-    field = make_directions("coordinate-lines", angle=angle)
-    frame = CYLINDER.jet(xi).d1 / np.array([RADIUS, 1.0])[:, None]
-    printed = rotated(values, angle)
-    local = tensor(CYLINDER, xi, field, values, "mixed", basis=frame)[0]
-    convective = tensor(CYLINDER, xi, field, values, "mixed")[0]
-    np.testing.assert_allclose(local, printed, atol=TIGHT * np.abs(printed).max())
-    assert np.abs(convective - printed).max() > 0.1
-    assert abs(convective[0, 1] - convective[1, 0]) > 0.1
-    assert np.trace(convective) == pytest.approx(np.trace(printed), rel=TIGHT)
-    assert np.linalg.det(convective) == pytest.approx(np.linalg.det(printed), rel=TIGHT)
-
-
-def test_two_oblique_directions_make_an_orthotropic_tensor() -> None:
-    """(48), (58)-(60): eigenvalues (e1 + e2)/2 +- 1/2 sqrt(e1^2 + e2^2 + 2 e1 e2 cos 2(a - b)).
-
-    100 random pairs against NumPy's eigenvalues of the tensor of the code, and the principal axis;
-    the stiffness along r_1 is e1 + e2 cos^2(a - b), not e1.
-    """
-    rng = np.random.default_rng(3)
-    for e1, e2, a, gap in rng.uniform((0.1, 0.1, -3, 0.2), (5, 5, 3, 1.4), (100, 4)):
-        b = a + gap
-        field = make_directions("oblique", vector=(1, 0, 0), angle_first=a, angle_second=b)
-        s = tensor(PLANE, [[0, 0]], field, (e1, e2))[0]
-        root = np.sqrt(e1**2 + e2**2 + 2 * e1 * e2 * np.cos(2 * (a - b)))
-        expected = 0.5 * (e1 + e2) + 0.5 * root * np.array([-1.0, 1.0])
-        np.testing.assert_allclose(np.linalg.eigvalsh(s), expected, atol=1e-12 * (e1 + e2))
-        values, angle = oblique_principal((e1, e2), (a, b))
-        np.testing.assert_allclose(rotated(tuple(values), float(angle)), s, atol=1e-12 * (e1 + e2))
-        r1 = np.array([np.cos(a), np.sin(a)])
-        assert r1 @ s @ r1 == pytest.approx(e1 + e2 * np.cos(a - b) ** 2, rel=TIGHT)
-
-
 def test_friction_components_are_contravariant() -> None:
     """(57) contracts with rho^k (x) rho^l and so gives f^kl, not f_kl; T_k T_l f^kl is T.FT.
 
@@ -277,47 +236,6 @@ def test_displacement_has_covariant_base_vectors() -> None:
     assert r.status[0] == 1
     np.testing.assert_allclose(r.traction_t[0], -eps * step[0] @ rho, atol=1e-11 * size)
     assert np.linalg.norm(r.traction_t[0] + eps * step[0] @ dual) > 0.1 * size
-
-
-def test_orthogonal_spiral_runs_the_other_way() -> None:
-    """(70), (71): the line along r_2 is z = -2 pi R^2 alpha/H + const, with A = -2 pi R/H.
-
-    Its tangent is normal to the thread (68) and along the second axis of the code; with the printed
-    sign the cosine with the thread is far from 0. A r_2 dalpha must be a tangent of the cylinder of
-    radius R with d(alpha) as printed in its first two components.
-    """
-    alpha = np.linspace(-3, 3, 13)
-    h, r = PITCH / (2 * np.pi), RADIUS
-    sin, cos, one = np.sin(alpha), np.cos(alpha), np.ones_like(alpha)
-    thread = np.stack([-r * sin, r * cos, h * one], axis=1)
-    r_2 = np.stack([h * sin, -h * cos, r * one], axis=1)
-    line = {s: np.stack([-r * sin, r * cos, s * r * r / h * one], axis=1) for s in (-1, 1)}
-    assert np.abs(np.einsum("nc,nc->n", thread, line[-1])).max() < TIGHT
-    assert np.einsum("nc,nc->n", thread, line[1]).min() > 1.9 * r * r
-    np.testing.assert_allclose(-r / h * r_2, line[-1], atol=1e-12 * r * r / h)
-    e, _ = SPIRAL.axes(CYLINDER, np.stack([alpha, 0.3 * alpha], axis=1))
-    assert np.abs(np.cross(e[:, 0], thread)).max() < TIGHT
-    assert np.abs(np.cross(e[:, 1], line[-1] / np.linalg.norm(line[-1][0]))).max() < TIGHT
-
-
-def test_spiral_tensors() -> None:
-    """(76) and (77) hold as printed; the friction tensor of the screw, missing in the paper, is
-    f^11 = (R^2/m1^2 + h^2/m2^2)/(R^2 d), f^12 = h (1/m1^2 - 1/m2^2)/d,
-    f^22 = (h^2/m1^2 + R^2/m2^2)/d with h = H/2 pi, d = R^2 + h^2.
-    """
-    xi = np.random.default_rng(6).uniform(-1, 1, (10, 2))
-    h, r, (e1, e2), (f1, f2) = PITCH / (2 * np.pi), RADIUS, (3.0, 1.0), (1 / 0.09, 1 / 0.01)
-    d = r * r + h * h
-    b12 = (e1 - e2) * r * r * h
-    b = -np.array([[(e1 * r * r + e2 * h * h) * r * r, b12], [b12, e1 * h * h + e2 * r * r]]) / d
-    f11, f12, f22 = (f1 * r * r + f2 * h * h) / (r * r), h * (f1 - f2), f1 * h * h + f2 * r * r
-    f = np.array([[f11, f12], [f12, f22]]) / d
-    co = tensor(CYLINDER, xi, SPIRAL, (-e1, -e2), "co")
-    contra = Friction(coefficients=(0.3, 0.1), directions=SPIRAL).tensor(CYLINDER, xi)
-    np.testing.assert_allclose(co, np.broadcast_to(b, co.shape), atol=TIGHT)
-    np.testing.assert_allclose(contra, np.broadcast_to(f, co.shape), atol=TIGHT * 100)
-    isotropic = tensor(CYLINDER, xi, SPIRAL, (-e1, -e1), "co")
-    np.testing.assert_allclose(isotropic, [-e1 * np.diag([r * r, 1.0])] * 10, atol=TIGHT)
 
 
 # --- sliding force and slip --------------------------------------------------------------------
@@ -372,70 +290,3 @@ def test_centre_is_subtracted_once() -> None:
     np.testing.assert_allclose(state["elastic"][0], at - centre, atol=1e-13)
     assert 5 < sum(statuses) < 35
     assert np.linalg.norm(b @ start) > 1e4
-
-
-# --- adhesion domain ---------------------------------------------------------------------------
-
-
-def semi_axes(
-    e: np.ndarray, m: np.ndarray, alpha: float, beta: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Semi-axes over N of the adhesion ellipse, the shorter first, and their unit vectors."""
-    c, s = np.cos(beta - alpha), np.sin(beta - alpha)
-    a11 = e[0] ** 2 * (c**2 / m[0] ** 2 + s**2 / m[1] ** 2)
-    a22 = e[1] ** 2 * (s**2 / m[0] ** 2 + c**2 / m[1] ** 2)
-    a12 = e[0] * e[1] * (1 / m[0] ** 2 - 1 / m[1] ** 2) * s * c
-    w = 0.5 * (a11 + a22) + np.sqrt(0.25 * (a11 - a22) ** 2 + a12**2) * np.array([1.0, -1.0])
-    angle = alpha + 0.5 * np.arctan2(2 * a12, a11 - a22)
-    directions = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    return w**-0.5, directions
-
-
-def test_adhesion_ellipse() -> None:
-    """(120), (121): eigenpairs of BFB/N^2; what is printed holds for alpha = beta.
-
-    20 random interfaces, 60 points each at 1e-9 inside and outside the ellipse, relative: they
-    stick and slide. Of points inside the printed ellipse many slide, and where the axes are coaxial
-    both ellipses are the same.
-    """
-    rng = np.random.default_rng(9)
-    angle = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
-    circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    wrong = 0
-    for case in range(20):
-        e, m = rng.uniform(2e4, 2e5, 2), rng.uniform(0.05, 0.5, 2)
-        alpha, beta = rng.uniform(-1.5, 1.5, 2)
-        if case < 5:
-            beta = alpha
-        itf = interface(tuple(e), tuple(m), (alpha, beta))
-        length, axes = semi_axes(e, m, alpha, beta)
-        ellipse = N * (circle * length) @ axes
-        assert (moved(itf, (1.0 - 1e-9) * ellipse) == 1).all()
-        assert (moved(itf, (1.0 + 1e-9) * ellipse) == 2).all()
-        c, s = np.cos(2 * alpha - beta), np.sin(2 * alpha - beta)
-        printed = (circle * m / e) @ np.array([[c, s], [-s, c]]) * N
-        sliding = (moved(itf, (1.0 - 1e-9) * printed) == 2).sum()
-        if case < 5:
-            assert sliding == 0
-        wrong += sliding
-    assert wrong > 100
-
-
-def test_strip() -> None:
-    """eps_1 = 0: a strip along alpha of half-width N/(e2 sqrt(s^2/m1^2 + c^2/m2^2)).
-
-    At 1e-9 inside and outside of it points stick and slide, however far along it they are. The
-    printed half-width mu_2 N/eps_2 is that of beta = alpha alone; here it is wrong by a factor.
-    """
-    e2, m, alpha = 5e4, np.array([0.3, 0.1]), 0.4
-    for beta in (0.4, 1.0, 1.7):
-        c, s = np.cos(beta - alpha), np.sin(beta - alpha)
-        width = N / (e2 * np.hypot(s / m[0], c / m[1]))
-        along = np.array([np.cos(alpha), np.sin(alpha)])
-        across = np.array([-along[1], along[0]])
-        itf = interface((0.0, e2), tuple(m), (alpha, beta))
-        far = np.outer(np.linspace(-1e-2, 1e-2, 9), along)
-        assert (moved(itf, far + (1.0 - 1e-9) * width * across) == 1).all()
-        assert (moved(itf, far + (1.0 + 1e-9) * width * across) == 2).all()
-        printed = m[1] * N / e2
-        assert (abs(printed / width - 1.0) < TIGHT) == (beta == alpha)
