@@ -96,6 +96,24 @@ def test_steps_add_up_to_the_whole_displacement() -> None:
     assert r.traction_t[0] @ r.traction_t[0] == pytest.approx(EPS[0] ** 2 * d @ a @ d, rel=1e-12)
 
 
+def test_curvature_term() -> None:
+    """(8), (10): dT_i = -h_i^k T_k dxi^3 while a point moves along the normal alone.
+
+    On the cylinder h_1^1 = -1/R and h_2^2 = 0; backward Euler makes T_1 (1 - dxi^3/R) = T_1^(n).
+    The rest of the motion must not matter, so the point goes straight to or from the axis.
+    """
+    itf = sticking(CYLINDER, SPIRAL, "covariant")
+    xi = np.array([[0.3, 0.1]])
+    start = itf.initial_state(below(CYLINDER, xi))
+    pushed = itf.update(start, below(CYLINDER, xi + 1e-3), tangent=False).state
+    force = pushed["traction"][0]
+    for lift in (-0.05, -0.1):
+        x = below(CYLINDER, xi + 1e-3, DEPTH - lift)
+        after = itf.update(pushed, x, tangent=False).state["traction"][0]
+        expected = force / np.array([1.0 - lift / RADIUS, 1.0])
+        np.testing.assert_allclose(after, expected, rtol=1e-10)
+
+
 @pytest.mark.parametrize("depth", [1e-5, 1e-4, 1e-3])
 def test_friction_cone(depth: float) -> None:
     """(17): sticking ends at a displacement of mu eps_N |xi^3|/eps_T, a cone over the depth.

@@ -1,0 +1,251 @@
+"""The theory pages: every equation has its row, and every name in them exists.
+
+Requirement: docs/theory/equations.md lists equations 1 to 124, each with the code that implements
+it and the test that pins it; docs/theory/notation.md and errata.md name what there is. Tests are
+looked up in their source, not run.
+"""
+
+from __future__ import annotations
+
+import ast
+import importlib
+import re
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from anisocontact import registry
+
+ROOT = Path(__file__).parents[2]
+THEORY = ROOT / "docs" / "theory"
+HEADERS = ROOT / "cpp" / "include" / "anisocontact"
+SOURCES = ROOT / "src" / "anisocontact"
+TOKEN = re.compile(r"`([^`]+)`")
+TEST = re.compile(r"^(test_\w+\.py)::(test_\w+)$")
+
+
+def cells(line: str) -> list[str]:
+    return [cell.strip() for cell in line.strip().strip("|").split("|")]
+
+
+def equations() -> list[list[str]]:
+    """Rows of the table: number, meaning, code, test."""
+    lines = (THEORY / "equations.md").read_text().splitlines()
+    return [cells(line) for line in lines if re.match(r"^\| \(\d+\) \|", line)]
+
+
+ROWS = equations()
+
+
+@cache
+def header(name: str) -> str:
+    """Code of a header, without its comments."""
+    return re.sub(r"//[^\n]*", "", (HEADERS / name).read_text())
+
+
+@cache
+def identifiers(file: Path) -> frozenset[str]:
+    """Names in a Python file: of definitions, arguments, variables and attributes."""
+    found = set()
+    for node in ast.walk(ast.parse(file.read_text())):
+        for field in ("name", "id", "attr", "arg"):
+            if isinstance(value := getattr(node, field, None), str):
+                found.add(value)
+    return frozenset(found)
+
+
+@cache
+def functions_of(file: str) -> frozenset[str]:
+    """Names of the test functions of a file anywhere below tests/."""
+    (path,) = (ROOT / "tests").rglob(file)
+    functions = (n for n in ast.walk(ast.parse(path.read_text())) if isinstance(n, ast.FunctionDef))
+    return frozenset(f.name for f in functions)
+
+
+@cache
+def registered() -> frozenset[str]:
+    """Names of all registered entries and the words their choices may be."""
+    entries = (
+        *registry.surfaces(),
+        *registry.direction_fields(),
+        *registry.normal_laws(),
+        *registry.adhesion_models(),
+        *registry.friction_models(),
+        *registry.sliding_rules(),
+        *registry.evolution_forms(),
+    )
+    words = {choice for e in entries for p in e.parameters for choice in p.choices}
+    return frozenset(words | {e.name for e in entries})
+
+
+def declared(symbol: str, file: str) -> bool:
+    """Whether a header declares `room::name`."""
+    room, _, name = symbol.rpartition("::")
+    text = header(file)
+    inside = room == "anisocontact" or f"namespace anisocontact::{room} {{" in text
+    form = rf"\b(?:struct|class|concept)\s+{name}\b|\busing\s+{name}\s*=|\b{name}\("
+    return inside and re.search(form, text) is not None
+
+
+def python_object(name: str) -> tuple[Any, Path]:
+    """A module attribute `module.name` or `module.Class.name`, and the file of the module."""
+    module, *path = name.split(".")
+    try:
+        found = importlib.import_module(f"anisocontact.{module}")
+    except ImportError as error:
+        if error.name and error.name.startswith("anisocontact"):
+            raise
+        pytest.skip(f"{error.name} is not installed")
+    file = Path(found.__file__ or "")
+    for attribute in path:
+        found = getattr(found, attribute)
+    return found, file
+
+
+def is_python(token: str) -> bool:
+    return re.fullmatch(r"[a-z_]+(\.\w+)+", token) is not None and not token.endswith(".hpp")
+
+
+def unknown(cell: str) -> Iterator[str]:
+    """Yield every name of a code cell that does not exist."""
+    tokens = TOKEN.findall(cell)
+    files = [t for t in tokens if t.endswith(".hpp")]
+    words: set[str] = set()
+    for file in files:
+        if not (HEADERS / file).is_file():
+            yield file
+            return
+        words |= set(re.findall(r"\w+", header(file)))
+    for token in filter(is_python, tokens):
+        try:
+            words |= identifiers(python_object(token)[1])
+        except (ImportError, AttributeError):
+            yield token
+    for token in tokens:
+        value = re.fullmatch(r'(?:\w+=)?"([\w-]+)"', token)
+        if token in files or is_python(token):
+            continue
+        if value:
+            ok = value[1] in registered()
+        elif "::" in token:
+            ok = any(declared(token, file) for file in files)
+        else:
+            ok = token in words or token == "spatial"
+        if not ok:
+            yield token
+
+
+def missing_tests(text: str) -> Iterator[str]:
+    """Yield every test that a text names and that does not exist."""
+    for token in TOKEN.findall(text):
+        if match := TEST.match(token):
+            file, name = match.groups()
+            if not list((ROOT / "tests").rglob(file)) or name not in functions_of(file):
+                yield token
+
+
+def test_every_equation_has_one_row() -> None:
+    assert [row[0] for row in ROWS] == [f"({k})" for k in range(1, 125)]
+    assert all(len(row) == 4 for row in ROWS)
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row[0])
+def test_names_of_an_equation_exist(row: list[str]) -> None:
+    """A meaning, a name in the code or the word none, and at least one test."""
+    _, meaning, code, test = row
+    assert meaning
+    assert TOKEN.search(code) or code.startswith("none: ")
+    assert list(unknown(code)) == []
+    assert any(TEST.match(token) for token in TOKEN.findall(test))
+    assert list(missing_tests(test)) == []
+
+
+@pytest.mark.parametrize(
+    "cell",
+    [
+        "`law::no_such_thing` in `law/slide.hpp`",
+        "`kernel::friction_norm` in `law/slide.hpp`",
+        "`law::friction_norm` in `law/nothing.hpp`",
+        "`law::friction_norm`",
+        "`laws.NoLaw`",
+        "`nothing.at_all`",
+        '`"no-rule"`',
+        "`no_member` of `law::Explicit` in `law/rules/explicit.hpp`",
+    ],
+)
+def test_a_wrong_name_would_be_seen(cell: str) -> None:
+    assert list(unknown(cell))
+
+
+def test_a_wrong_test_would_be_seen() -> None:
+    here = Path(__file__).name
+    assert list(missing_tests(f"`{here}::test_nothing` `test_nothing.py::test_it`"))
+    assert not list(missing_tests(f"`{here}::test_a_wrong_test_would_be_seen`"))
+
+
+# --- errata ------------------------------------------------------------------------------------
+
+
+def test_every_erratum_names_its_test() -> None:
+    """Each section of the page has a test, and all of them exist."""
+    page = (THEORY / "errata.md").read_text()
+    assert list(missing_tests(page)) == []
+    for section in re.split(r"^### ", page, flags=re.MULTILINE)[1:]:
+        own = re.split(r"^## ", section, flags=re.MULTILINE)[0]
+        assert any(TEST.match(token) for token in TOKEN.findall(own)), section.splitlines()[0]
+
+
+def test_links_to_the_errata_have_targets() -> None:
+    """Every errata.md#target of the theory pages is a label or a heading there."""
+    page = (THEORY / "errata.md").read_text()
+    labels = set(re.findall(r"^\(([\w-]+)\)=$", page, re.MULTILINE))
+    for heading in re.findall(r"^#+ (.*)$", page, re.MULTILINE):
+        labels.add(re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-"))
+    for other in THEORY.glob("*.md"):
+        wanted = re.findall(r"errata\.md#([\w-]+)\)", other.read_text())
+        assert set(wanted) <= labels, other.name
+
+
+# --- notation ----------------------------------------------------------------------------------
+
+
+def notation() -> list[list[str]]:
+    """Rows of the tables of symbols: symbol, name, file, meaning, dimension."""
+    lines = (THEORY / "notation.md").read_text().splitlines()
+    rows = [cells(line) for line in lines if line.startswith("|")]
+    return [row for row in rows if len(row) == 5 and row[0] != "symbol" and "---" not in row[0]]
+
+
+SYMBOLS = notation()
+
+
+@pytest.mark.parametrize("row", SYMBOLS, ids=lambda row: row[1].strip("`"))
+def test_name_of_a_symbol_exists(row: list[str]) -> None:
+    """Requirement: symbols are identifiers; the file named has it, a member in its type."""
+    name, file = row[1].strip("`"), row[2].strip("`")
+    if file.endswith(".py"):
+        assert name in identifiers(SOURCES / file)
+        return
+    owner, _, member = name.rpartition("::")
+    assert re.search(rf"\b{member}\b", header(file))
+    assert not owner or re.search(rf"\b(?:struct|class)\s+{owner}\b", header(file))
+
+
+def test_symbols_and_names_are_one_to_one() -> None:
+    assert len(SYMBOLS) > 60
+    for column in (0, 1):
+        values = [row[column] for row in SYMBOLS]
+        assert len(values) == len(set(values))
+
+
+def test_every_variable_of_a_state_has_a_symbol() -> None:
+    """The fields of a committed point are in the table; `facet` is a number, no symbol."""
+    fields = re.findall(
+        r"^\s+(?:std::\w+(?:<[^>]*>)?|double) (\w+)\{", header("kernel/state.hpp"), re.M
+    )
+    names = {row[1].strip("`").rpartition("::")[2] for row in SYMBOLS}
+    assert {"xi", "slip", "status"} <= set(fields)
+    assert set(fields) - names == {"facet"}
