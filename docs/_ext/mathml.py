@@ -1,8 +1,10 @@
 """Formulas as MathML, which browsers draw themselves: the built site needs no network.
 
 docutils translates the LaTeX; what it does not know is a warning, hence an error of `make docs`.
+Two things it reads otherwise than LaTeX without a warning are put in braces first.
 """
 
+import re
 from typing import Any
 
 from docutils import nodes
@@ -14,10 +16,23 @@ from sphinx.writers.html5 import HTML5Translator
 
 logger = logging.getLogger(__name__)
 
+# The command with its argument: a group, with groups inside it, or a command or a character.
+BOLD = re.compile(r"\\boldsymbol\s*(?:\{((?:[^{}]|\{[^{}]*\})*)\}|(\\[A-Za-z]+|[^\s\\{]))")
+TWO_DIGITS = re.compile(r"(\\[td]?frac)\s*(\d)\s*(\d)")
+
+
+def braced(latex: str) -> str:
+    r"""Return a formula in which \boldsymbol ends with its argument and \frac12 is a half.
+
+    docutils makes bold everything up to the end of the group, and reads 12 as one number.
+    """
+    latex = BOLD.sub(lambda m: rf"{{\boldsymbol{{{m[1] or m[2]}}}}}", latex)
+    return TWO_DIGITS.sub(r"\1{\2}{\3}", latex)
+
 
 def mathml(node: nodes.Element, *, as_block: bool) -> str:
     """Return the MathML of a formula."""
-    latex = node.astext()
+    latex = braced(node.astext())
     if as_block and r"\begin{" not in latex and r"\\" in latex:
         latex = rf"\begin{{align*}}{latex}\end{{align*}}"
     try:
