@@ -7,6 +7,7 @@ slip for the closed forms. The displacement is driven by hand on a plane.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -22,17 +23,6 @@ PAGE = Path(__file__).parents[2] / "docs" / "theory" / "errata.md"
 PLANE = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1), tangent=(1, 0, 0))
 MU, N, PENALTY, SLIDE = (0.3, 0.1), 10.0, 1e5, 0.05
 F = np.diag([MU[0] ** -2, MU[1] ** -2])
-RULES: dict[str, dict[str, object]] = {
-    "maximum-dissipation": {},
-    "linear": {},
-    "coaxial": {},
-    "slip-ellipse": {"slip_axes": (1.0, 0.5)},
-    "radial": {},
-    "explicit, centre": {"history": "centre"},
-    "explicit, incremental": {"history": "incremental"},
-    "explicit, kuhn-tucker": {"history": "kuhn-tucker"},
-}
-CONVERGENT = [n for n in RULES if n not in ("explicit, incremental", "explicit, kuhn-tucker")]
 
 
 def unit(angle: float) -> np.ndarray:
@@ -54,20 +44,21 @@ def drag(
     corners: Iterable[np.ndarray],
     steps: int,
     stiffness: tuple[float, float] = (1e3, 1e3),
-    alpha: float = 0.0,
-    mu: tuple[float, float] = MU,
-    more: dict[str, object] | None = None,
 ) -> np.ndarray:
-    """-T/N at the end of a path from the origin over the corners, in `steps` increments each."""
+    """-T/N at the end of a path from the origin over the corners, in `steps` increments each.
+
+    The rule is its name, "explicit" with its history after a comma.
+    """
+    name, _, history = rule.partition(", ")
     itf = Interface(
         PLANE,
         NormalLaw(penalty=PENALTY),
-        Adhesion(stiffness=stiffness, directions=marks(alpha)),
+        Adhesion(stiffness=stiffness, directions=marks(0.0)),
         Friction(
-            coefficients=mu,
+            coefficients=MU,
             directions=marks(0.0),
-            sliding_rule=rule.partition(",")[0],
-            **(RULES[rule] if more is None else more),
+            sliding_rule=name,
+            **({"history": history} if history else {}),
         ),
     )
     at = np.zeros(2)
@@ -115,39 +106,6 @@ def test_incremental_history_does_not_converge() -> None:
         assert np.ptp(same) < 1e-3
 
 
-@pytest.mark.parametrize("alpha", [0.0, 0.7], ids=["coaxial", "turned"])
-@pytest.mark.parametrize("angle", [20.0, 65.0, 140.0])
-def test_centre_history_in_steady_slip(angle: float, alpha: float) -> None:
-    """2. (114), (123) with (96): T = -N S F S e/sqrt(SFSe . F . SFSe) in steady slip along e.
-
-    The elastic slip that is kept turns towards e by the ratio of lengths kept and passed in each
-    step: after 30 steps of 500 elastic lengths nothing is left but rounding, 1e-12.
-    """
-    e1, e2 = 2e5, 5e4
-    e = unit(np.radians(angle))
-    s = np.outer(unit(alpha), unit(alpha)) * (e1 - e2) + e2 * np.eye(2)
-    h = s @ F @ s @ e
-    t = drag("explicit, centre", [0.05 * e], 30, (e1, e2), alpha)
-    np.testing.assert_allclose(t, h / np.sqrt(h @ F @ h), atol=1e-12)
-
-
-@pytest.mark.parametrize("angle", [20.0, 65.0, 140.0])
-def test_centre_history_is_a_rule_of_michalowski_and_mroz(angle: float) -> None:
-    """2. For coaxial B and F it is the slip ellipse with k1/k2 = (e1/m1)/(e2/m2).
-
-    It is that of maximum dissipation where e_i ~ mu_i^2. Steady slip, both to rounding.
-    """
-    path = [0.05 * unit(np.radians(angle))]
-    e1, e2 = 2e5, 5e4
-    axes = {"slip_axes": (e1 / MU[0], e2 / MU[1])}
-    t = drag("explicit, centre", path, 200, (e1, e2))
-    np.testing.assert_allclose(t, drag("slip-ellipse", path, 200, (e1, e2), more=axes), atol=1e-12)
-    best = drag("maximum-dissipation", path, 200, (e1, e2))
-    assert np.linalg.norm(t - best) > 0.01
-    associated = drag("explicit, centre", path, 200, (9e4, 1e4))
-    np.testing.assert_allclose(associated, best, atol=1e-12)
-
-
 def jump(rule: str, stiffness: tuple[float, float]) -> float:
     """Angle by which the force turns between 1e-9 before and after the limit, in degrees."""
     direction = unit(np.pi / 4)
@@ -160,18 +118,16 @@ def jump(rule: str, stiffness: tuple[float, float]) -> float:
 
 
 def test_force_jumps_from_stick_to_slip() -> None:
-    """3. (96) is not continuous at the limit unless BF ~ I; the other rules are.
+    """3. (96) is not continuous at the limit unless BF ~ I, whatever the history.
 
-    Isotropic S, trial force at 45 degrees: the page's number to its last digit. Continuous rules
-    change by some 1e-9, the distance between the two points.
+    Isotropic S, trial force at 45 degrees: the page's number to its last digit. Where there is no
+    jump the two forces are 1e-9 apart, as the two points are.
     """
-    for name in ("explicit, centre", "explicit, incremental", "explicit, kuhn-tucker"):
-        assert jump(name, (1e3, 1e3)) == pytest.approx(38.66, abs=0.0051)
-        assert abs(jump(name, (9e4, 1e4))) < 1e-6
-    assert "38.66" in PAGE.read_text()
-    for name in CONVERGENT:
-        if name != "explicit, centre":
-            assert abs(jump(name, (1e3, 1e3))) < 1e-6
+    (page,) = re.findall(r"by ([\d.]+)° in the example", PAGE.read_text())
+    for history in ("centre", "incremental", "kuhn-tucker"):
+        assert jump(f"explicit, {history}", (1e3, 1e3)) == pytest.approx(float(page), abs=0.0051)
+        assert abs(jump(f"explicit, {history}", (9e4, 1e4))) < 1e-6
+    assert abs(jump("maximum-dissipation", (1e3, 1e3))) < 1e-6
 
 
 def test_kuhn_tucker_history_freezes_the_force() -> None:
@@ -191,19 +147,6 @@ def test_kuhn_tucker_history_freezes_the_force() -> None:
     end = [degrees(drag("explicit, kuhn-tucker", corners, n)) for n in (1280, 2560)]
     corner = degrees(drag("explicit, kuhn-tucker", corners[:1], 2560))
     assert 1.8 < (end[0] - corner) / (end[1] - corner) < 2.2
-
-
-@pytest.mark.parametrize("name", CONVERGENT)
-def test_convergence_on_a_path_with_a_corner(name: str) -> None:
-    """The rules that the page calls convergent: four times the steps divide the change by four.
-
-    First-order time integration; 3.5 leaves room for the second-order term. Where the change is
-    below 1e-6 there is nothing left to divide.
-    """
-    corners = [np.array([0.02, 0.005]), np.array([0.022, 0.012])]
-    t = [drag(name, corners, n) for n in (40, 160, 640)]
-    change = [np.linalg.norm(t[1] - t[0]), np.linalg.norm(t[2] - t[1])]
-    assert change[1] < max(change[0] / 3.5, 1e-6)
 
 
 def test_which_force_dissipates_most() -> None:
@@ -227,26 +170,6 @@ def test_which_force_dissipates_most() -> None:
     assert (ratio["explicit"] > 1.01).mean() > 0.5
 
 
-@pytest.mark.parametrize("name", RULES)
-def test_all_rules_are_one_for_isotropic_tensors(name: str) -> None:
-    """(100): T = mu N T_tr/|T_tr| where B and F are isotropic, whatever the rule.
-
-    The slip ellipse with equal axes. One slide of each of 100 random trial forces: rounding.
-    """
-    trial = np.random.default_rng(12).normal(size=(100, 2))
-    one = np.broadcast_to(np.eye(2), (100, 2, 2))
-    more = dict(RULES[name])
-    if name == "slip-ellipse":
-        more["slip_axes"] = (1.0, 1.0)
-    rule = name.partition(",")[0]
-    r = slide(
-        2.0 * one, one / 0.09, trial, np.full(100, 0.01), rule, increment=-trial / 2.0, **more
-    )
-    size = np.linalg.norm(trial, axis=1, keepdims=True)
-    np.testing.assert_allclose(r.traction, 0.003 * trial / size, rtol=1e-12)
-    assert r.slides.all()
-
-
 def test_table_of_steady_slip() -> None:
     """The page's table of maximum dissipation against the closed form and a long slide.
 
@@ -266,23 +189,6 @@ def test_table_of_steady_slip() -> None:
         assert degrees(t) == pytest.approx(float(force), abs=5.1e-4)
         assert t @ e == pytest.approx(float(drag_), abs=5.1e-6)
         assert slope == pytest.approx(float(lateral), abs=5.1e-6)
-
-
-def test_largest_deviation_of_the_force() -> None:
-    """The force deviates most from the slip at tan q = m1/m2, by atan((m1^2 - m2^2)/(2 m1 m2)).
-
-    Compared with 2,000 steady forces of the rule: no larger, and met within the grid's 1e-6.
-    """
-    q = np.linspace(0.0, np.pi / 2, 2001)
-    e = np.stack([np.cos(q), np.sin(q)], axis=1)
-    n = np.full(len(q), 1e-9)  # so little that the first slide is steady: T_tr -> infinity
-    s = np.broadcast_to(F**0.0 * np.eye(2), (len(q), 2, 2))
-    r = slide(s, np.broadcast_to(F, s.shape), e, n)
-    slip = -r.slip
-    turn = np.arctan2(slip[:, 1], slip[:, 0]) - np.arctan2(r.traction[:, 1], r.traction[:, 0])
-    largest = np.arctan((MU[0] ** 2 - MU[1] ** 2) / (2 * MU[0] * MU[1]))
-    assert turn.max() == pytest.approx(largest, abs=1e-6)
-    assert np.tan(q[turn.argmax()]) == pytest.approx(MU[0] / MU[1], rel=1e-2)
 
 
 def test_tangents_in_closed_form() -> None:
@@ -390,17 +296,3 @@ def test_slip_is_the_smaller_root() -> None:
         assert dissipated[0] > 0.0 > dissipated[1]
     squared = np.einsum("ni,nij,nj->n", r.stored, f, r.stored)
     np.testing.assert_allclose(squared, n**2, rtol=1e-11)
-
-
-def test_no_root_after_a_drop_of_pressure() -> None:
-    """(111) has no real root where N has dropped far enough; the return is then radial.
-
-    The force of the last step, (4, 0), is outside the new ellipse, a circle of radius 0.5 that the
-    line of forces along the increment, (4, -u), misses.
-    """
-    s, f, n = np.eye(2), np.eye(2), 0.5
-    d, trial = np.array([0.0, 1.0]), np.array([4.0, -1.0])
-    a, b, c = d @ d, trial @ d, trial @ trial - n * n
-    assert b * b - a * c < 0.0
-    r = slide([s], [f], [trial], [n], "explicit", increment=[d], history="kuhn-tucker")
-    np.testing.assert_allclose(r.stored[0], n * trial / np.linalg.norm(trial), rtol=1e-12)
