@@ -9,6 +9,7 @@ package and need none.
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -52,6 +53,8 @@ __all__ = [
     "geometry",
     "locate_entities",
     "middle_nodes",
+    "prescribe",
+    "prescribed_rows",
     "scalar_element",
     "ufl",
     "vector_space",
@@ -174,3 +177,14 @@ def assemble_force(form: Any, out: Vec) -> None:
 def assemble_into(matrix: Mat, form: Any) -> None:
     """Add the matrix of a bilinear form to a matrix of its pattern; not assembled yet."""
     fem_petsc.assemble_matrix(matrix, form)
+
+
+def prescribe(residual: Vec, bcs: Sequence[Any], x: Vec) -> None:
+    """Write `x - g` into the rows of the residual that Dirichlet conditions prescribe."""
+    fem_petsc.set_bc(residual, bcs, x, -1.0)
+
+
+def prescribed_rows(bcs: Sequence[Any]) -> Ints:
+    """Owned unknowns that Dirichlet conditions prescribe, local numbers."""
+    rows = [dofs[:owned] for dofs, owned in (bc.dof_indices() for bc in bcs)]
+    return np.unique(np.concatenate([np.empty(0, dtype=np.int32), *rows])).astype(np.int32)

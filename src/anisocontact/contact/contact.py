@@ -60,7 +60,7 @@ class Contact(ContactRecord):
         state = interface.initial_state(points)
         start = interface.update(state, points, tangent=False)
         super().__init__(
-            model.mesh.comm,
+            model.space,
             slave,
             name or slave,
             state,

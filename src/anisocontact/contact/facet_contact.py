@@ -85,7 +85,7 @@ class FacetContact(ContactRecord):
         self._answer: dict[str, npt.NDArray[Any]] = {}
         state = self._initial()
         super().__init__(
-            model.mesh.comm,
+            model.space,
             slave,
             name or slave,
             state,

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import MPI
 from anisocontact.interface import STATUS, Response, State
 
 Floats = npt.NDArray[np.float64]
@@ -40,7 +40,7 @@ class ContactRecord:
     """History of the slave points of one contact: it advances with `commit` only.
 
     Args:
-        comm: Communicator over which the points are spread.
+        space: Vector space of the displacement.
         slave: Facet group "body.group".
         name: Name in output.
         state: State of the points before the first increment.
@@ -48,15 +48,15 @@ class ContactRecord:
 
     Attributes:
         state: Committed history, one record for each point.
+        space: Vector space of the displacement.
     """
 
-    def __init__(
-        self, comm: MPI.Comm, slave: str, name: str, state: State, start: Snapshot
-    ) -> None:
+    def __init__(self, space: Any, slave: str, name: str, state: State, start: Snapshot) -> None:
         self.slave = slave
         self.name = name
         self.state = state
-        self._comm = comm
+        self.space = space
+        self._comm = space.mesh.comm
         self._accepted = start
         self._trial: Snapshot | None = None
 

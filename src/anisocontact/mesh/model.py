@@ -62,6 +62,34 @@ class Model:
         }
         return cls(mesh, bodies, facets, arrays.order)
 
+    @classmethod
+    def of(cls, space: Any, facets: Mapping[str, Ints]) -> Model:
+        """Names on the facets of a user's own displacement space.
+
+        Args:
+            space: Vector Lagrange space of order 1 or 2, `fem.functionspace(mesh, ("P", 1, (3,)))`.
+            facets: "body.group" -> local boundary facets, as of `MeshTags.find`.
+
+        Returns:
+            The names on that space; every cell belongs to the body of the first group.
+
+        Raises:
+            InputError: Not a vector Lagrange space of order 1 or 2 on cells of three dimensions.
+        """
+        element = space.element.basix_element
+        if space.dofmap.index_map_bs != 3 or element.degree not in (1, 2):
+            raise InputError(
+                f"a space of degree {element.degree} with {space.dofmap.index_map_bs} components "
+                'given, ("Lagrange", 1 or 2, (3,)) needed',
+                "space",
+            )
+        body = next(iter(facets), "body").partition(".")[0]
+        cells = np.arange(space.mesh.topology.index_map(3).size_local, dtype=np.int32)
+        named = {name: np.asarray(found, dtype=np.int32) for name, found in facets.items()}
+        model = cls(space.mesh, {body: cells}, named, element.degree)
+        model.space = space
+        return model
+
     @cached_property
     def space(self) -> Any:
         """Vector Lagrange space of the displacement."""

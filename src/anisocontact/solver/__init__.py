@@ -3,5 +3,14 @@
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.solver import Solver
 from anisocontact.solver.steps import Accepted, Progress, Step, StoppedError
+from anisocontact.solver.user import ContactProblem
 
-__all__ = ["Accepted", "Problem", "Progress", "Solver", "Step", "StoppedError"]
+__all__ = [
+    "Accepted",
+    "ContactProblem",
+    "Problem",
+    "Progress",
+    "Solver",
+    "Step",
+    "StoppedError",
+]

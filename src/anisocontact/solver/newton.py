@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
+import numpy.typing as npt
 
 from anisocontact._fenicsx import SNES, Mat, PETSc, Vec
-from anisocontact.solver.problem import Problem
 
 OptionValue = str | int | float | bool | None
 
@@ -27,6 +28,39 @@ TOLERANCE = 1e-8
 MAX_ITERATIONS = 25
 #: Residual over its smallest value at which an iteration is given up.
 DIVERGED = 1e8
+
+
+class System(Protocol):
+    """What Newton asks of a system of equations; see `Problem`.
+
+    Attributes:
+        force_scale: Norm of the forces at work in the last evaluation.
+        round_off: Residual that floating point leaves in the last evaluation, force.
+    """
+
+    force_scale: float
+    round_off: float
+
+    @property
+    def comm(self) -> Any:
+        """Communicator of the unknowns."""
+        ...
+
+    def new_vector(self) -> Vec:
+        """Vector of the unknowns."""
+        ...
+
+    def new_tangent(self) -> Mat:
+        """Matrix for `tangent`."""
+        ...
+
+    def evaluate(self, x: Vec) -> npt.NDArray[np.float64]:
+        """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer."""
+        ...
+
+    def tangent(self, x: Vec, out: Mat) -> None:
+        """Write d residual / d x into a matrix of `new_tangent`."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -61,7 +95,7 @@ class Newton:
 
     def __init__(
         self,
-        problem: Problem,
+        problem: System,
         prefix: str,
         options: Mapping[str, OptionValue],
         on_iteration: Callable[[int, float], None],
@@ -69,13 +103,13 @@ class Newton:
         self._problem = problem
         self._on_iteration = on_iteration
         self._residuals: list[float] = []
-        self.snes = PETSc.SNES().create(problem.model.mesh.comm)
+        self.snes = PETSc.SNES().create(problem.comm)
         self.snes.setOptionsPrefix(prefix)
         self.snes.setFunction(self._function, problem.new_vector())
         self.snes.setJacobian(self._jacobian, problem.new_tangent())
         self.snes.setTolerances(rtol=TOLERANCE, atol=0.0, stol=0.0, max_it=MAX_ITERATIONS)
         # Some options, such as those of MUMPS, are read when they are first needed.
-        self._database = _Database(prefix, DEFAULTS | dict(options))
+        self._database = Database(prefix, DEFAULTS | dict(options))
         self.snes.setFromOptions()
         self.snes.getKSP().setFromOptions()
         self.snes.getKSP().getPC().setFromOptions()
@@ -153,7 +187,7 @@ class Newton:
 _TINY = float(np.finfo(np.float64).tiny)
 
 
-class _Database:
+class Database:
     """PETSc options, those of the user left as they are, until `clear`."""
 
     def __init__(self, prefix: str, options: Mapping[str, OptionValue]) -> None:

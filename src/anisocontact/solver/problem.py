@@ -98,6 +98,11 @@ class Problem:
         return int(self._accepted.getSize())
 
     @property
+    def comm(self) -> Any:
+        """Communicator of the mesh."""
+        return self._comm
+
+    @property
     def _owned(self) -> int:
         return int(3 * self.model.space.dofmap.index_map.size_local)
 

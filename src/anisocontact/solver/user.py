@@ -1,0 +1,190 @@
+"""Contact for a problem that the user has written in UFL."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import (
+    Mat,
+    PETSc,
+    Vec,
+    assemble_force,
+    assemble_into,
+    create_stiffness,
+    fem,
+    prescribe,
+    prescribed_rows,
+    ufl,
+)
+from anisocontact.contact import AnyContact, Contact, FacetContact
+from anisocontact.errors import InputError
+from anisocontact.solver.coupled import CoupledTangent
+from anisocontact.solver.newton import Newton, OptionValue
+from anisocontact.solver.problem import ROUND_OFF
+
+Floats = npt.NDArray[np.float64]
+
+
+class ContactProblem:
+    """Residual form of the user plus contact, solved by PETSc SNES.
+
+    What `dolfinx.fem.petsc.NonlinearProblem` is without contact: the residual is
+    `F(u; v) - integral of t . (v_slave - v_master)`. A prescribed unknown has the row
+    `s (u - g) = 0`, s the mean diagonal of the tangent.
+
+    Args:
+        F: Residual form, linear in its test function, of the function `u`.
+        u: The displacement, a DOLFINx function of a vector Lagrange space.
+        bcs: Dirichlet conditions; their values may change between solutions.
+        contacts: Contacts on a `Model.of` the space of `u`.
+        J: Derivative of F; made by UFL if left out.
+        petsc_options_prefix: Prefix of the options in the PETSc database.
+        petsc_options: PETSc options without prefix.
+
+    Attributes:
+        newton: The solver; its `snes` is to be asked or set as usual.
+        force_scale: Norm of the forces at work in the last evaluation: of contacts, supports, or
+            supports still to be moved.
+        round_off: Residual that floating point leaves in the last evaluation.
+
+    Raises:
+        InputError: A contact lives on another space than `u`.
+
+    See `examples/dolfinx_script/rubber_pad.py` for a whole script.
+    """
+
+    def __init__(
+        self,
+        F: Any,
+        u: Any,
+        *,
+        bcs: Sequence[Any] = (),
+        contacts: Sequence[AnyContact] = (),
+        J: Any = None,
+        petsc_options_prefix: str = "anisocontact_",
+        petsc_options: Mapping[str, OptionValue] | None = None,
+    ) -> None:
+        space = u.function_space
+        for contact in contacts:
+            if contact.space != space:
+                raise InputError(
+                    f"contact {contact.name!r} lives on another space than u", "contacts"
+                )
+        self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
+        self.force_scale = self.round_off = 0.0
+        trial = ufl.TrialFunction(space)
+        self._residual = fem.form(F)
+        self._tangent = fem.form(ufl.derivative(F, u, trial) if J is None else J)
+        self._matrix = create_stiffness(self._tangent)
+        self._diagonal = self._matrix.getDiagonal()
+        self._support_scale = self._diagonal.sum() / self._diagonal.getSize()
+        meshed = any(isinstance(c, FacetContact) for c in contacts)
+        self._coupled = CoupledTangent(self._matrix, space) if meshed else None
+        self._dt = 1.0
+        self._force = self._matrix.createVecLeft()
+        self._ghosted = u.x.petsc_vec.duplicate()
+        self.newton = Newton(self, petsc_options_prefix, petsc_options or {}, lambda *_: None)
+
+    def solve(self, dt: float = 1.0) -> int:
+        """Bring `u` into equilibrium and accept the history of the contacts.
+
+        Args:
+            dt: Time increment, for laws that have a time.
+
+        Returns:
+            Number of Newton iterations.
+
+        Raises:
+            RuntimeError: No convergence; `u` and the history are as before.
+        """
+        self._dt = dt
+        before = self.u.x.array.copy()
+        x = self.new_vector()
+        x.array[:] = before[: self._owned]
+        result = self.newton.solve(x)
+        if result.reason:
+            self.u.x.array[:] = before
+            for contact in self.contacts:
+                contact.roll_back()
+            raise RuntimeError(result.reason)
+        self.evaluate(x)
+        for contact in self.contacts:
+            contact.commit()
+        return result.iterations
+
+    def close(self) -> None:
+        """Give back the objects of PETSc and the options that were set."""
+        self.newton.close()
+
+    @property
+    def comm(self) -> Any:
+        """Communicator of the mesh."""
+        return self.u.function_space.mesh.comm
+
+    @property
+    def _owned(self) -> int:
+        return int(3 * self.u.function_space.dofmap.index_map.size_local)
+
+    def new_vector(self) -> Vec:
+        """Vector of the unknowns, zero."""
+        return self._matrix.createVecRight()
+
+    def new_tangent(self) -> Mat:
+        """Matrix for `tangent`."""
+        matrix = self._coupled.new_matrix() if self._coupled else self._matrix.duplicate()
+        matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+        return matrix
+
+    def evaluate(self, x: Vec) -> Floats:
+        """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer."""
+        self.u.x.array[: self._owned] = x.array_r
+        self.u.x.scatter_forward()
+        nodal = self.u.x.array.reshape(-1, 3)
+        failed = [bool(c.update(nodal, self._dt).failed.any()) for c in self.contacts]
+        contact_force = self._contact_force()
+        assemble_force(self._residual, self._force)
+        outside: Floats = self._force.array_r - contact_force
+        prescribe(self._force, self.bcs, x)
+        rows = prescribed_rows(self.bcs)
+        residual: Floats = outside.copy()
+        residual[rows] = self._support_scale * self._force.array_r[rows]
+        at_work = (outside[rows], contact_force, residual[rows])
+        self.force_scale = max(map(self._norm, at_work))
+        levers = np.array([contact.lever() for contact in self.contacts])
+        stiff = self._norm(self._diagonal.array_r * x.array_r) + self._norm(levers)
+        self.round_off = ROUND_OFF * stiff
+        if self.comm.allreduce(any(failed)):
+            residual[:] = np.nan
+        return residual
+
+    def tangent(self, x: Vec, out: Mat) -> None:
+        """Write d residual / d x into a matrix of `new_tangent`."""
+        if not np.array_equal(self.u.x.array[: self._owned], x.array_r):
+            self.evaluate(x)
+        bulk = self._coupled.bulk if self._coupled else out
+        bulk.zeroEntries()
+        assemble_into(bulk, self._tangent)
+        for contact in self.contacts:
+            if isinstance(contact, Contact):
+                contact.add_tangent(bulk)
+        bulk.assemble()
+        if self._coupled:
+            meshed = [c for c in self.contacts if isinstance(c, FacetContact)]
+            self._coupled.assemble(out, [c.couplings() for c in meshed])
+        out.zeroRowsLocal(prescribed_rows(self.bcs), self._support_scale)
+
+    def _contact_force(self) -> Floats:
+        with self._ghosted.localForm() as form:
+            nodal = np.zeros(len(form.array_r))
+            for contact in self.contacts:
+                contact.add_force(nodal.reshape(-1, 3))
+            form.array[:] = nodal
+        self._ghosted.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
+        return np.array(self._ghosted.array_r)
+
+    def _norm(self, owned: Floats) -> float:
+        return float(np.sqrt(self.comm.allreduce(float(owned @ owned))))
