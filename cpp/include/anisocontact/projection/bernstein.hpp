@@ -1,7 +1,10 @@
 #pragma once
 // Polynomials in Bernstein form over a square or a triangle: the smallest coefficient is a lower
-// bound, positive coefficients of the Hessian certify convexity, and halving sharpens both.
-// Here they carry the squared distance of a point to a facet.
+// bound, coefficients of derivatives of one sign certify that there is one minimum alone, and
+// halving sharpens both. Here they carry the squared distance of a point to a facet.
+//
+// `single()`: certainly one local minimum. Either the function is convex, or it grows everywhere
+// along a side and is convex on the side (of another direction) from which it grows.
 
 #include <algorithm>
 #include <array>
@@ -37,6 +40,41 @@ inline void halve_line(double* c, double* r, std::size_t degree, std::size_t str
   }
 }
 
+constexpr double binomial(std::size_t n, std::size_t k) {
+  double b = 1.0;
+  for (std::size_t i = 0; i < k; ++i) b *= static_cast<double>(n - i) / static_cast<double>(i + 1);
+  return b;
+}
+
+/// Adds `sign` times the product of polynomials with P x Q and R x S coefficients to rows of
+/// `size`, each coefficient times its binomials.
+template <std::size_t P, std::size_t Q, std::size_t R, std::size_t S>
+void add_product(const double* f, const double* g, double sign, double* out, std::size_t size) {
+  constexpr auto weights = []<std::size_t I, std::size_t J>() {
+    std::array<double, I * J> w{};
+    for (std::size_t j = 0; j < J; ++j)
+      for (std::size_t i = 0; i < I; ++i) w[I * j + i] = binomial(I - 1, i) * binomial(J - 1, j);
+    return w;
+  };
+  static constexpr auto u = weights.template operator()<P, Q>();
+  static constexpr auto v = weights.template operator()<R, S>();
+  std::array<double, R * S> scaled;
+  for (std::size_t k = 0; k < R * S; ++k) scaled[k] = v[k] * g[k];
+  for (std::size_t j = 0; j < Q; ++j)
+    for (std::size_t i = 0; i < P; ++i) {
+      const double a = sign * u[P * j + i] * f[P * j + i];
+      for (std::size_t l = 0; l < S; ++l)
+        for (std::size_t k = 0; k < R; ++k) out[size * (j + l) + i + k] += a * scaled[R * l + k];
+    }
+}
+
+template <std::size_t D>
+bool convex_line(const double* c, std::size_t stride) {
+  for (std::size_t k = 0; k + 2 <= D; ++k)
+    if (!(c[(k + 2) * stride] - 2.0 * c[(k + 1) * stride] + c[k * stride] > 0.0)) return false;
+  return true;
+}
+
 /// Squared distance over a square, degree D in both coordinates; c[(D + 1) j + i].
 template <std::size_t D>
 struct SquareBernstein {
@@ -53,22 +91,18 @@ struct SquareBernstein {
     return {static_cast<double>(k % row) / D, static_cast<double>(k / row) / D};
   }
 
-  /// Bounds of the second derivatives: min f_11, max |f_12|, min f_22, without the factors
-  /// D (D - 1) and D^2.
+  bool single() const { return convex() || grows(1, row) || grows(row, 1); }
+
+  /// f_11 > 0 and f_11 f_22 > f_12^2 everywhere: by the bounds of each, or by the coefficients of
+  /// the determinant, which see that f_11, f_22 and f_12 go together.
   bool convex() const {
-    double f11 = second(0, 0, 1), f22 = second(0, 0, row), f12 = 0.0;
-    for (std::size_t j = 0; j <= D; ++j)
-      for (std::size_t i = 0; i + 2 <= D; ++i) {
-        f11 = std::min(f11, second(i, j, 1));
-        f22 = std::min(f22, second(j, i, row));
-      }
-    for (std::size_t j = 0; j < D; ++j)
-      for (std::size_t i = 0; i < D; ++i) {
-        const double* p = &c[row * j + i];
-        f12 = std::max(f12, std::abs(p[row + 1] - p[row] - p[1] + p[0]));
-      }
-    constexpr double d = static_cast<double>(D);
-    return f11 > 0.0 && f22 > 0.0 && (d - 1.0) * (d - 1.0) * f11 * f22 > d * d * f12 * f12;
+    const Hessian h = hessian();
+    const double f11 = *std::min_element(h.f11.begin(), h.f11.end()),
+                 f22 = *std::min_element(h.f22.begin(), h.f22.end());
+    if (!(f11 > 0.0 && f22 > 0.0)) return false;
+    double f12 = 0.0;
+    for (const double f : h.f12) f12 = std::max(f12, std::abs(f));
+    return f11 * f22 > f12 * f12 || h.determinant_positive();
   }
 
   /// Cuts across the coordinate along which the function bends more; this becomes the first half.
@@ -92,9 +126,55 @@ struct SquareBernstein {
   }
 
  private:
+  /// Whether f grows, or falls, along the coordinate with this stride everywhere, and is convex on
+  /// the side where it is least.
+  bool grows(std::size_t along, std::size_t across) const {
+    bool up = true, down = true;
+    for (std::size_t line = 0; line <= D && (up || down); ++line)
+      for (std::size_t k = 0; k < D; ++k) {
+        const double* p = &c[across * line + along * k];
+        up = up && p[along] > p[0];
+        down = down && p[along] < p[0];
+      }
+    return (up || down) && convex_line<D>(&c[up ? 0 : along * D], across);
+  }
+
   double second(std::size_t i, std::size_t j, std::size_t stride) const {
     const double* p = &c[row * j + i];
     return p[2 * stride] - 2.0 * p[stride] + p[0];
+  }
+
+  /// Coefficients of the second derivatives over D (D - 1), rows of constant j; of degrees
+  /// (D - 2, D), (D - 1, D - 1) and (D, D - 2).
+  struct Hessian {
+    std::array<double, (D - 1) * row> f11, f22;
+    std::array<double, D * D> f12;
+
+    /// Coefficients of f_11 f_22 - f_12^2, of degree 2 D - 2 in both coordinates, up to positive
+    /// factors.
+    bool determinant_positive() const {
+      constexpr std::size_t size = 2 * D - 1;
+      std::array<double, size * size> det{};
+      add_product<D - 1, D + 1, D + 1, D - 1>(f11.data(), f22.data(), 1.0, det.data(), size);
+      add_product<D, D, D, D>(f12.data(), f12.data(), -1.0, det.data(), size);
+      return *std::min_element(det.begin(), det.end()) > 0.0;
+    }
+  };
+
+  Hessian hessian() const {
+    Hessian h;
+    constexpr double mixed = static_cast<double>(D) / static_cast<double>(D - 1);
+    for (std::size_t j = 0; j <= D; ++j)
+      for (std::size_t i = 0; i + 2 <= D; ++i) {
+        h.f11[(D - 1) * j + i] = second(i, j, 1);
+        h.f22[row * i + j] = second(j, i, row);
+      }
+    for (std::size_t j = 0; j < D; ++j)
+      for (std::size_t i = 0; i < D; ++i) {
+        const double* p = &c[row * j + i];
+        h.f12[D * j + i] = mixed * (p[row + 1] - p[row] - p[1] + p[0]);
+      }
+    return h;
   }
 };
 
@@ -119,16 +199,34 @@ struct TriangleBernstein {
     return {static_cast<double>(best[0]) / degree, static_cast<double>(best[1]) / degree};
   }
 
-  /// The Hessian is a convex combination of the six matrices of its coefficients.
+  bool single() const {
+    if (convex()) return true;
+    for (std::size_t from = 0; from < 3; ++from)
+      for (std::size_t to = 0; to < 3; ++to)
+        if (from != to && grows(from, to)) return true;
+    return false;
+  }
+
+  /// f_11 > 0 and f_11 f_22 > f_12^2 everywhere, by the coefficients of both.
   bool convex() const {
-    for (std::size_t j = 0; j <= 2; ++j)
-      for (std::size_t i = 0; i + j <= 2; ++i) {
-        const double o = c[index(i, j)], a = c[index(i + 1, j)], b = c[index(i, j + 1)];
-        const double f11 = c[index(i + 2, j)] - 2.0 * a + o, f22 = c[index(i, j + 2)] - 2.0 * b + o,
-                     f12 = c[index(i + 1, j + 1)] - a - b + o;
-        if (!(f11 > 0.0 && f11 * f22 > f12 * f12)) return false;
-      }
-    return true;
+    std::array<double, 15> det{};
+    std::array<std::array<double, 3>, 6> h;
+    constexpr std::array<double, 6> weight{1.0, 2.0, 1.0, 2.0, 2.0, 1.0};
+    constexpr std::array<std::array<std::size_t, 2>, 6> at{
+        {{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {0, 2}}};
+    for (std::size_t k = 0; k < 6; ++k) {
+      const auto [i, j] = at[k];
+      const double o = c[index(i, j)], a = c[index(i + 1, j)], b = c[index(i, j + 1)];
+      h[k] = {weight[k] * (c[index(i + 2, j)] - 2.0 * a + o),
+              weight[k] * (c[index(i, j + 2)] - 2.0 * b + o),
+              weight[k] * (c[index(i + 1, j + 1)] - a - b + o)};
+      if (!(h[k][0] > 0.0)) return false;
+    }
+    for (std::size_t k = 0; k < 6; ++k)
+      for (std::size_t l = 0; l < 6; ++l)
+        det[index(at[k][0] + at[l][0], at[k][1] + at[l][1])] +=
+            h[k][0] * h[l][1] - h[k][2] * h[l][2];
+    return *std::min_element(det.begin(), det.end()) > 0.0;
   }
 
   /// Cuts the side between the vertices 0 and 1. In both halves the side opposite the new vertex
@@ -146,6 +244,30 @@ struct TriangleBernstein {
   }
 
  private:
+  /// Whether f grows from one vertex towards another everywhere, and is convex on the side opposite
+  /// the latter.
+  bool grows(std::size_t from, std::size_t to) const {
+    const auto at = [&](std::array<std::size_t, 3> exponent) {
+      return c[index(exponent[1], exponent[2])];
+    };
+    for (std::size_t j = 0; j < degree; ++j)
+      for (std::size_t i = 0; i + j < degree; ++i) {
+        std::array<std::size_t, 3> low{degree - 1 - i - j, i, j}, high = low;
+        ++low[from];
+        ++high[to];
+        if (!(at(high) > at(low))) return false;
+      }
+    const std::size_t last = 3 - from - to;
+    std::array<double, degree + 1> side{};
+    for (std::size_t k = 0; k <= degree; ++k) {
+      std::array<std::size_t, 3> exponent{0, 0, 0};
+      exponent[from] = degree - k;
+      exponent[last] = k;
+      side[k] = at(exponent);
+    }
+    return convex_line<degree>(side.data(), 1);
+  }
+
   /// The same polynomial with the vertices 1, 2, 0 called 0, 1, 2.
   TriangleBernstein turned() const {
     TriangleBernstein t;

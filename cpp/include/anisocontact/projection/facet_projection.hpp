@@ -2,9 +2,9 @@
 // Closest point of one facet, inside it, on its sides or at its vertices.
 //
 // The squared distance f(xi) = |rho(xi) - x|^2 is a polynomial. Where its Bernstein coefficients
-// certify that it is convex, Newton's method finds the one minimum; elsewhere the facet is halved,
-// parts whose smallest coefficient exceeds the best value are dropped, and the rest is halved again
-// until it is convex. So the minimum is the global one, also far away and on strongly curved facets.
+// certify that it has a single minimum, Newton's method finds it; elsewhere the facet is halved,
+// parts whose smallest coefficient exceeds the best value are dropped, and the rest is halved again.
+// So the minimum is the global one, also far away and on strongly curved facets.
 
 #include <cmath>
 #include <cstdint>
@@ -138,13 +138,10 @@ inline Minimum minimise(Topology t, const FacetNodes& nodes, const Vec3<double>&
 struct Best {
   std::array<double, 2> xi{};
   double f;  ///< |r|^2 / 2, or the limit
-  Search search{Search::failed};
+  Search search{Search::nothing};
 
   void take(const Minimum& m, const Part& part) noexcept {
-    if (!m.converged) return;
-    if (search == Search::failed) search = Search::nothing;
-    if (!(m.f < f)) return;
-    *this = {part.at(m.s), m.f, Search::found};
+    if (m.converged && m.f < f) *this = {part.at(m.s), m.f, Search::found};
   }
 };
 
@@ -152,24 +149,31 @@ struct Best {
 template <class Polynomial>
 void branch_and_bound(Topology t, const FacetNodes& nodes, const Vec3<double>& x,
                       const Polynomial& whole, double slack, Best& best) noexcept {
-  constexpr std::size_t most_waiting = 64, most_parts = 2000;
-  // parts that could only win by this much are dropped, else parts around a flat minimum pile up
-  constexpr double drop = 1e-9;
+  constexpr std::size_t most_waiting = 64, most_parts = 10000, many_parts = 100;
+  // parts that could only win by this much are dropped where a minimum is known, or where parts
+  // around a flat one pile up
+  constexpr double drop = 1e-9, coarse_drop = 1e-6;
   std::array<Polynomial, most_waiting> waiting;
   std::size_t count = 0;
+  bool doubt = false;
   waiting[count++] = whole;
-  for (std::size_t parts = 0; count > 0 && parts < most_parts; ++parts) {
+  for (std::size_t parts = 0; count > 0; ++parts) {
     Polynomial p = waiting[--count];
-    if (p.lower() - slack >= 2.0 * best.f * (1.0 - drop)) continue;
-    if (p.convex() || count + 2 > most_waiting) {
-      best.take(minimise(t, nodes, x, p.part, p.lowest()), p.part);
-      continue;
+    const double share = best.search == Search::found || parts >= many_parts ? drop : 0.0;
+    if (p.lower() - slack >= 2.0 * best.f * (1.0 - share)) continue;
+    const bool last = parts >= most_parts || count + 2 > most_waiting;
+    if (last || p.single()) {
+      const Minimum m = minimise(t, nodes, x, p.part, p.lowest());
+      best.take(m, p.part);
+      doubt = doubt || (last && p.lower() - slack < 2.0 * best.f * (1.0 - coarse_drop));
+      if (last || m.converged) continue;
     }
     Polynomial q = p.halve();
     if (p.lower() < q.lower()) std::swap(p, q);
     waiting[count++] = p;
     waiting[count++] = q;
   }
+  if (doubt) best.search = Search::failed;
   if (best.search != Search::found) return;
   const Minimum polished = minimise(t, nodes, x, whole_facet, best.xi);
   if (polished.converged && polished.f <= best.f * (1.0 + drop)) {
@@ -186,9 +190,10 @@ Best global_minimum(Topology t, const FacetNodes& nodes, const Vec3<double>& x,
   constexpr double rounding = 1e-14;
   const double slack = rounding * *std::max_element(whole.c.begin(), whole.c.end());
   Best best{{}, limit};
-  if (whole.lower() - slack >= 2.0 * limit) return {{}, limit, Search::nothing};
-  best.take(minimise(t, nodes, x, whole.part, start ? *start : whole.lowest()), whole.part);
-  if (!whole.convex()) branch_and_bound(t, nodes, x, whole, slack, best);
+  if (whole.lower() - slack >= 2.0 * limit) return best;
+  const Minimum m = minimise(t, nodes, x, whole.part, start ? *start : whole.lowest());
+  best.take(m, whole.part);
+  if (!m.converged || !whole.single()) branch_and_bound(t, nodes, x, whole, slack, best);
   return best;
 }
 

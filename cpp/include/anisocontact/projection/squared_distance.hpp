@@ -8,12 +8,6 @@ namespace anisocontact::projection {
 
 using surface::FacetNodes;
 
-constexpr double binomial(std::size_t n, std::size_t k) {
-  double b = 1.0;
-  for (std::size_t i = 0; i < k; ++i) b *= static_cast<double>(n - i) / static_cast<double>(i + 1);
-  return b;
-}
-
 /// |rho - x|^2 over a quadrilateral of degree P from the control points relative to x.
 template <std::size_t P>
 SquareBernstein<2 * P> square_distance(const FacetNodes& p) noexcept {

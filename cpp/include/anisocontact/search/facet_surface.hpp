@@ -266,30 +266,40 @@ class FacetSurface {
     return ends;
   }
 
+  /// Outward normal where the surface is smooth, else a vector that tells outside from inside.
+  Vec3<double> outward(const Candidate& c) const noexcept {
+    const auto f = static_cast<std::size_t>(c.facet), k = static_cast<std::size_t>(c.point.entity);
+    switch (c.point.feature) {
+      case Feature::interior:
+        break;
+      case Feature::edge:
+        return side_normal(c.facet, k, c.point.xi);
+      case Feature::vertex:
+        return vertex_normal(mesh_.vertex(f, k));
+    }
+    return unit_normal(c.facet, c.point.xi);
+  }
+
   FacetProjection finish(const Vec3<double>& x, const Query& q,
                          const Candidate& best) const noexcept {
     FacetProjection out;
     if (best.facet < 0) return out;
     const auto& p = best.point;
+    const bool interior = p.feature == Feature::interior;
+    const Vec3<double> n = outward(best), apart = x - p.position;
+    if (!(n.squaredNorm() > 0.0)) {
+      out.status = Status::failed;
+      return out;
+    }
     out.facet = best.facet;
-    out.status = Status::on;
+    out.status = !interior && ends_at(best, q) ? Status::off : Status::on;
     out.feature = p.feature;
     out.entity = p.entity;
+    if (p.feature == Feature::edge)
+      out.edge = surface::side_direction(kind(best.facet), static_cast<std::size_t>(p.entity));
     out.xi = p.xi;
     out.position = p.position;
-    const Vec3<double> apart = x - p.position;
-    if (p.feature == Feature::interior) {
-      out.normal = unit_normal(best.facet, p.xi);
-    } else {
-      const auto k = static_cast<std::size_t>(p.entity);
-      if (p.feature == Feature::edge) out.edge = surface::side_direction(kind(best.facet), k);
-      if (ends_at(best, q)) out.status = Status::off;
-      const Vec3<double> pseudo =
-          p.feature == Feature::edge
-              ? side_normal(best.facet, k, p.xi)
-              : vertex_normal(mesh_.vertex(static_cast<std::size_t>(best.facet), k));
-      out.normal = (apart.dot(pseudo) < 0.0 ? -1.0 : 1.0) * apart.normalized();
-    }
+    out.normal = interior ? n : (apart.dot(n) < 0.0 ? -1.0 : 1.0) * apart.normalized();
     out.gap = apart.dot(out.normal);
     return out;
   }
