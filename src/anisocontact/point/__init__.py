@@ -19,7 +19,7 @@
 [-3.0, 0.0, 10.0]
 """
 
-from anisocontact.point.drive import drive
+from anisocontact.point.driver import drive
 from anisocontact.point.group import Group
 from anisocontact.point.history import History, StoppedError
 from anisocontact.point.loads import DeadLoad, DraggingSpring, Load, PrescribedPath, Push

@@ -162,7 +162,9 @@ class Balance:
         failed = np.flatnonzero(response.failed)
         if failed.size:
             i = int(failed[0])
-            raise StepError(f"{FAILURE[response.failure[i]]} at {shown(q[:3] + arms.vectors[i])}")
+            raise StepError(
+                f"point {shown(q[:3] + arms.vectors[i])}: {FAILURE[response.failure[i]]}"
+            )
         return self._assembled(q, here, arms, response, turn)
 
     def _assembled(

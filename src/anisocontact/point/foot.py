@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from anisocontact.surfaces import Floats, Surface
+from anisocontact.surfaces import PROJECTION_STATUS, Floats, Surface
 
 # Of the distance to the foot: a point that is not on the normal of its foot is beyond an edge.
 _OFF_NORMAL = 1e-6
@@ -47,11 +47,16 @@ def foot(surface: Surface, x: Floats) -> Foot:
     closest point.
     """
     p = surface.project(x[None])
-    at = foot_at(surface, p.xi[0], float(p.gap[0]))
+    nowhere = Foot(x, np.zeros((2, 3)), p.xi[0], 0.0, np.zeros(3), np.zeros((3, 3)), False)
+    if p.status[0] == PROJECTION_STATUS.index("failed"):
+        return nowhere
+    try:
+        at = foot_at(surface, p.xi[0], float(p.gap[0]))
+    except np.linalg.LinAlgError:  # at a centre of curvature every direction is nearest
+        return nowhere
     off = np.linalg.norm(x - at.position - at.gap * at.normal)
     scale = np.linalg.norm(x - at.position) + 1e-9 * np.linalg.norm(x)
-    ok = p.status[0] != 2 and off <= _OFF_NORMAL * scale
-    return Foot(**{**at.__dict__, "reached": bool(ok)})
+    return replace(at, reached=bool(off <= _OFF_NORMAL * scale))
 
 
 def foot_at(surface: Surface, xi: Floats, gap: float) -> Foot:

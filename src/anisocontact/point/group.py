@@ -98,22 +98,21 @@ def turned_arms(orientation: str, arms: Floats, before: Foot, now: Foot, turn: f
         turn: Turn about the normal in this step, radians.
 
     Returns:
-        Arms and derivatives; v - c (n_0 + n) with c = v.n/(1 + n_0.n) takes n_0 to n by the
-        least rotation.
+        Arms and derivatives. v - c (n_0 + n) + 2 (v.n_0) n with c = v.(n_0 + n)/(1 + n_0.n) takes
+        n_0 to n by the least rotation.
     """
     n = len(arms)
     if orientation == "held" or not arms.any():
         return Arms(arms, np.zeros((n, 3, 3)), np.zeros((n, 3, 0)))
     n0, n1, w = before.normal, now.normal, now.d_normal
-    s = 1.0 + n0 @ n1
-    c = (arms @ n1) / s
-    v = arms - c[:, None] * (n0 + n1)
-    dc = (arms @ w) / s - c[:, None] * (n0 @ w) / s
-    dv = -np.einsum("i,nj->nij", n0 + n1, dc) - c[:, None, None] * w
+    s, both, up = 1.0 + n0 @ n1, n0 + n1, arms @ n0
+    c = (arms @ both) / s
+    v = arms - np.outer(c, both) + 2.0 * np.outer(up, n1)
+    dc = (arms @ w) / s - np.outer(c, n0 @ w) / s
+    dv = -np.einsum("i,nj->nij", both, dc) + (2.0 * up - c)[:, None, None] * w
     if orientation == "surface":
         return Arms(v, dv, np.zeros((n, 3, 0)))
     cos, sin = np.cos(turn), np.sin(turn)
-    up = arms @ n0
     u = cos * v + sin * np.cross(n1, v) + (1.0 - cos) * up[:, None] * n1
     spin = np.stack([np.cross(n1, dv[:, :, j]) + np.cross(w[:, j], v) for j in range(3)], axis=2)
     du = cos * dv + sin * spin + (1.0 - cos) * up[:, None, None] * w

@@ -121,7 +121,10 @@ class PrescribedPath(Load):
             return Device(surface.position(p[None])[0])
         if self.pressure is None and self.gap is None:
             return Place(p)
-        return Device(foot(surface, p).position)
+        under = foot(surface, p)
+        if not under.reached:
+            raise InputError(f"no point of the surface is under it at time {t:g}", field="path")
+        return Device(under.position)
 
 
 class DraggingSpring(Load):

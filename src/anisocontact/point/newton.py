@@ -9,7 +9,7 @@ from anisocontact.point.press import pressed
 from anisocontact.surfaces import Floats
 
 #: Of the forces at the trial position.
-TOLERANCE = 1e-11
+TOLERANCE = 1e-12
 #: Iterations before the step is cut.
 MOST_ITERATIONS = 40
 
@@ -28,21 +28,26 @@ def solve(balance: Balance, guess: Floats) -> tuple[Trial, int]:
         StepError: Not converged; the message has the residual.
     """
     trial = pressed(balance, guess)
-    # A correction this small against the position is rounding.
-    rounding = 8.0 * np.finfo(np.float64).eps * float(np.abs(balance.pose.position).max())
     for iteration in range(MOST_ITERATIONS):
         size = float(np.linalg.norm(trial.residual))
         if size <= TOLERANCE * trial.scale:
             return trial, iteration
-        step = _direction(trial)
-        if np.abs(step[:3]).max() <= rounding and iteration > 0:
-            return trial, iteration
-        trial = _searched(balance, trial, step)
+        new = _searched(balance, trial, _direction(trial))
+        if size <= _rounding(trial) and np.linalg.norm(new.residual) > 0.5 * size:
+            return trial, iteration  # as near as rounding lets it come
+        trial = new
     size = float(np.linalg.norm(trial.residual))
     raise StepError(
         f"no equilibrium after {MOST_ITERATIONS} iterations, residual {size:.3g}, "
         f"forces {trial.scale:.3g}"
     )
+
+
+def _rounding(trial: Trial) -> float:
+    """Change of the residual when the position changes by a few roundings."""
+    far = float(np.abs(trial.pose.points).max())
+    stiffness = float(np.abs(trial.jacobian[:, :3]).max())
+    return 64.0 * float(np.finfo(np.float64).eps) * far * stiffness
 
 
 def _direction(trial: Trial) -> Floats:

@@ -125,13 +125,13 @@ def instants(times: Floats, increments: int | Sequence[int], field: str = "incre
         InputError: Numbers that are not positive, or not one for each segment.
     """
     n = len(times) - 1
-    counts = [increments] * n if isinstance(increments, int) else list(increments)
-    if len(counts) != n:
-        raise InputError(f"{len(counts)} given, one or {n} needed, one a segment", field=field)
-    if any(isinstance(c, bool) or int(c) != c or c < 1 for c in counts):
+    given = np.asarray(increments)
+    if given.dtype.kind not in "iu" or (given < 1).any():
         raise InputError(f"{increments!r} given, whole numbers > 0 needed", field=field)
+    if given.shape not in ((), (n,)):
+        raise InputError(f"{given.size} given, one or {n} needed, one a segment", field=field)
+    counts = np.broadcast_to(given, n).tolist()
     parts = [
-        np.linspace(a, b, int(c) + 1)[1:]
-        for a, b, c in zip(times[:-1], times[1:], counts, strict=True)
+        np.linspace(a, b, c + 1)[1:] for a, b, c in zip(times[:-1], times[1:], counts, strict=True)
     ]
     return np.concatenate([times[:1], *parts])

@@ -7,8 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from anisocontact.errors import InputError
 from anisocontact.interface import State
-from anisocontact.point.balance import Balance, Control, PointInterface, Pose, StepError, Trial
+from anisocontact.point.balance import (
+    Balance,
+    Control,
+    PointInterface,
+    Pose,
+    StepError,
+    Trial,
+    shown,
+)
 from anisocontact.point.device import Committed, Device
 from anisocontact.point.foot import foot
 from anisocontact.point.group import Group
@@ -81,8 +90,10 @@ def drive(
             rows.append(runner.advance(t))
             if on_step is not None:
                 on_step(i, t)
-    except StepError as failure:
+    except (StepError, InputError) as failure:
         i = len(rows)
+        if isinstance(failure, InputError) and i <= 1:
+            raise
         message = f"stopped in step {i}, at time {load.instants[i]:g}: {failure}"
     history = History(
         interface.surface,
@@ -120,6 +131,10 @@ class _Runner:
         surface = self.interface.surface
         start = self.load.start(surface)
         under = foot(surface, start)
+        if not under.reached:
+            raise InputError(
+                f"it begins at {shown(start)}, where there is no surface under it", "load"
+            )
         x = under.position + max(under.gap, 0.0) * under.normal
         pose = Pose(x, foot(surface, x), self.group.arms(under))
         state = self.interface.initial_state(pose.points)

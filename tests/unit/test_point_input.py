@@ -1,0 +1,138 @@
+"""What a user can get wrong with the driver, in Python: one line that names the field."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from anisocontact.errors import InputError
+from anisocontact.interface import Interface
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.point import (
+    DeadLoad,
+    DraggingSpring,
+    Group,
+    PrescribedPath,
+    Push,
+    StoppedError,
+    drive,
+)
+from anisocontact.point.schedule import Schedule, instants, knot_times
+from anisocontact.surfaces import make_surface
+
+PATH = [(0, 0, 0), (1, 0, 0)]
+
+
+def _interface(shape: str = "plane") -> Interface:
+    form = {
+        "plane": {"point": (0, 0, 0), "normal": (0, 0, 1)},
+        "sphere": {"centre": (0, 0, 0), "radius": 1.0},
+    }[shape]
+    return Interface(
+        make_surface(shape, **form),
+        NormalLaw(penalty=1e5),
+        Adhesion(stiffness=(1e5, 1e5)),
+        Friction(coefficients=(0.3, 0.3)),
+    )
+
+
+@pytest.mark.parametrize(
+    ("make", "line"),
+    [
+        (lambda: PrescribedPath(PATH, pressure=1.0, gap=-1.0), "pressure: given with a gap"),
+        (lambda: PrescribedPath([(0, 0), (1, 0)]), "pressure: missing"),
+        (lambda: Push((1, 0, 0), [0, 1], (0, 0)), "pressure: missing"),
+        (
+            lambda: PrescribedPath(PATH, pressure=[1.0, 2.0, 3.0]),
+            "pressure: an array of shape (3,)",
+        ),
+        (lambda: PrescribedPath(PATH, pressure=np.nan), "pressure: a number that is not finite"),
+        (lambda: PrescribedPath([("a", 0), (1, 0)], pressure=1.0), "path: numbers needed"),
+        (lambda: PrescribedPath([(0, 0, 0)], pressure=1.0), "times: missing"),
+        (lambda: PrescribedPath(lambda t: (t, 0, 0), pressure=1.0), "times: missing"),
+        (lambda: PrescribedPath(PATH, pressure=1.0, times=[0, 0]), "times: [0.0, 0.0] given"),
+        (lambda: PrescribedPath(PATH, pressure=1.0, times=[0]), "times: a list of at least two"),
+        (lambda: PrescribedPath(PATH, pressure=1.0, increments=0), "increments: 0 given"),
+        (lambda: PrescribedPath(PATH, pressure=1.0, increments=1.5), "increments: 1.5 given"),
+        (lambda: PrescribedPath(PATH, pressure=1.0, increments=[1, 2]), "increments: 2 given"),
+        (lambda: PrescribedPath(PATH, pressure=1.0, increments=True), "increments: True given"),
+        (lambda: DraggingSpring(PATH, -1.0), "stiffness: -1.0 given"),
+        (lambda: DraggingSpring(PATH, [1.0, 2.0]), "stiffness: one number, three"),
+        (lambda: DraggingSpring(PATH, 1.0, start=(0,)), "start: (0,) given"),
+        (lambda: DeadLoad(PATH, (0, 0), frame="here", pressure=1.0), "frame: 'here' given"),
+        (lambda: DeadLoad(PATH, (0, 0), frame="friction", pressure=1.0), "force: an array"),
+        (lambda: DeadLoad(PATH, (0, 0), viscosity=0.0, pressure=1.0), "viscosity: 0.0 given"),
+        (lambda: Push((1, 0), [0, 1], (0, 0), pressure=1.0), "direction: an array of shape (2,)"),
+        (lambda: Group([1.0, 2.0, 3.0, 4.0]), "offsets: an array of shape (4,)"),
+        (lambda: Group([(0, 0, 0)], areas=[1.0, 2.0]), "areas: [1.0, 2.0] given"),
+        (lambda: Group([(0, 0, 0)], areas=0.0), "areas: 0.0 given"),
+        (lambda: Group(orientation="loose"), "orientation: 'loose' given"),
+        (lambda: Group(orientation="free"), "orientation: a free orientation needs"),
+    ],
+)
+def test_one_line_names_the_field(make: Callable[[], object], line: str) -> None:
+    with pytest.raises(InputError) as caught:
+        make()
+    assert str(caught.value).startswith(line)
+    assert "\n" not in str(caught.value)
+
+
+def test_function_of_another_shape() -> None:
+    load = PrescribedPath(lambda t: (t, 0.0), times=[0, 1], pressure=1.0)
+    assert load.start(make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))).shape == (3,)
+    wrong = PrescribedPath(lambda t: t, times=[0, 1], pressure=1.0)
+    with pytest.raises(InputError, match="path: the function gives an array of shape"):
+        drive(_interface(), wrong)
+
+
+def test_load_that_does_not_fit_the_surface() -> None:
+    """A start without a closest point is bad input; a path into it stops the drive."""
+    with pytest.raises(InputError, match="load: it begins at"):
+        drive(_interface("sphere"), PrescribedPath([(0, 0, 0), (1, 0, 0)], pressure=1.0))
+    into = PrescribedPath([(1, 0, 0), (-1, 0, 0)], pressure=1.0, increments=4)
+    with pytest.raises(StoppedError, match=r"stopped in step 2, at time 0\.5: path: no point"):
+        drive(_interface("sphere"), into)
+
+
+def test_frame_of_a_law_needs_contact() -> None:
+    load = Push((1, 0), [0, 1], (0, 0), frame="friction", pressure=[0.0, 1.0])
+    with pytest.raises(InputError, match="frame: the friction axes are needed at time 0"):
+        drive(_interface(), load)
+    dead = DeadLoad([(0, 0, 0), (1, 0, 0)], (0, 0), pressure=[0.0, 1.0])
+    with pytest.raises(InputError, match="viscosity: missing"):
+        drive(_interface(), dead)
+
+
+def test_schedule_is_exact_at_its_knots() -> None:
+    """The end of a segment is the knot, to the last digit; constants and functions as given."""
+    times = np.array([0.0, 0.1, 0.7])
+    knots = [[0.1, 0.2, 0.3], [1.1, 1.7, -2.3], [0.3, 0.3, 7.7]]
+    schedule = Schedule(knots, times, (3,), "path")
+    for t, knot in zip(times, knots, strict=True):
+        assert schedule(t).tolist() == knot
+    assert Schedule(4.0, times, (0,), "gap")(0.3) == 4.0
+    assert Schedule([1.0, 2.0, 3.0], times, (3,), "d")(0.3).tolist() == [1.0, 2.0, 3.0]
+    assert Schedule(lambda t: 2 * t, times, (0,), "gap")(0.3) == 0.6
+
+
+def test_instants_hit_the_knots() -> None:
+    times = knot_times([0.0, 0.3, 1.0], None)
+    found = instants(times, [3, 2])
+    assert len(found) == 6
+    assert found[3] == 0.3 and found[-1] == 1.0
+
+
+def test_history_round_trip(tmp_path: object) -> None:
+    """The table is written as it is: every number reads back the same."""
+    history = drive(_interface(), PrescribedPath(PATH, pressure=10.0, increments=3))
+    path = f"{tmp_path}/trace.csv"
+    history.to_csv(path)
+    columns = history.to_dict()
+    read = np.genfromtxt(path, delimiter=",", names=True, dtype=None, deletechars="", encoding=None)
+    assert len(read) == 4
+    for name in ("traction.x", "energy.residual", "position.z", "slip_contra.1"):
+        assert read[name].tolist() == columns[name].tolist()
+    assert read["status"].tolist() == ["stick", "slip", "slip", "slip"]
+    assert history.summary()["points"] == {"open": 0, "stick": 0, "slip": 1}
