@@ -202,6 +202,7 @@ class FacetPairs:
         friction_directions: Field | None,
         friction_directions_second: Field | None,
         rule: tuple[str, Mapping[str, Sequence[float]]],
+        mirrored: bool = False,
     ) -> None: ...
     def update(
         self,

@@ -107,8 +107,12 @@ class PairLaw:
     def __init__(self, normal: NormalLaw, adhesion: Adhesion, friction: Friction) -> None:
         self.normal, self.adhesion, self.friction = normal, adhesion, friction
 
-    def pairs(self) -> _core.FacetPairs:
-        """The law as the core takes it for slave points and facets."""
+    def pairs(self, mirrored: bool = False) -> _core.FacetPairs:
+        """The law as the core takes it for slave points and facets.
+
+        Args:
+            mirrored: Whether angles of directions count about the normal of the slave.
+        """
         second = self.friction.directions_second
         return _made(
             _core.FacetPairs,
@@ -119,6 +123,7 @@ class PairLaw:
             self.friction.directions.core if self.friction.directions else None,
             second.core if second else None,
             self.friction.rule,
+            mirrored,
         )
 
 

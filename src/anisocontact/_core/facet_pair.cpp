@@ -80,6 +80,7 @@ NodalShape nodal(const surface::FacetKind& k, const surface::Shape<double>& s) {
 
 struct PairHandle {
   kernel::InterfaceLaw law;
+  bool mirrored;
 };
 
 /// What the kernel sees of one point.
@@ -151,6 +152,7 @@ nb::dict update(const PairHandle& h, const Bytes& state, double dt, const Nodes&
     kernel::parallel_for(n, threads, [&](std::size_t p) {
       const kernel::PointState old = load(state.data(), p);
       Seen s = see(mesh, slave, hits, old, p);
+      s.point.mirrored = h.mirrored;
       const auto r = kernel::update_pair(h.law, old, s.point, dt);
       store(next.data, p, r.state);
       put3(traction.data, p, r.traction);
@@ -202,14 +204,15 @@ void bind_facet_pair(nb::module_& m) {
           [](PairHandle* self, const Named& normal, const Named& adhesion,
              const FieldHandle* adhesion_directions, const Named& friction,
              const FieldHandle* friction_directions, const FieldHandle* friction_second,
-             const Named& rule) {
-            new (self)
-                PairHandle{make_law(normal, adhesion, adhesion_directions, friction,
-                                    friction_directions, friction_second, rule, "transport")};
+             const Named& rule, bool mirrored) {
+            new (self) PairHandle{make_law(normal, adhesion, adhesion_directions, friction,
+                                           friction_directions, friction_second, rule, "transport"),
+                                  mirrored};
           },
           nb::arg("normal"), nb::arg("adhesion"), nb::arg("adhesion_directions").none(),
           nb::arg("friction"), nb::arg("friction_directions").none(),
-          nb::arg("friction_directions_second").none(), nb::arg("rule"))
+          nb::arg("friction_directions_second").none(), nb::arg("rule"),
+          nb::arg("mirrored") = false)
       .def("update", &update, nb::arg("state"), nb::arg("dt"), nb::arg("slave_nodes"),
            nb::arg("slave_shape"), nb::arg("slave_gradient"), nb::arg("weight"),
            nb::arg("current_area"), nb::arg("now"), nb::arg("reference"), nb::arg("connectivity"),

@@ -7,11 +7,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact._fenicsx import PETSc
+from anisocontact.bulk import Material
 from anisocontact.case import objects
 from anisocontact.case.model import Case, ContactSection
 from anisocontact.case.quantity import FREE
 from anisocontact.case.read import CaseFile
-from anisocontact.contact import Contact, auto_penalty
+from anisocontact.contact import (
+    AnyContact,
+    Contact,
+    FacetContact,
+    MeshedContact,
+    TwoHalfPass,
+    auto_penalty,
+)
 from anisocontact.errors import InputError
 from anisocontact.mesh import BoxSpec, Model, build_box, read_gmsh
 from anisocontact.solver import Problem, Solver, Step
@@ -61,13 +69,10 @@ def build(file: CaseFile) -> Built:
         name: objects.material(section, f"material.{name}")
         for name, section in case.material.items()
     }
-    contacts = []
-    for i, section in enumerate(case.contact):
-        place = f"contact[{i}]"
-        model.facets(section.slave, f"{place}.slave")
-        body = materials[model.body_of(section.slave)]
-        auto = auto_penalty(model, section.slave, body)
-        contacts.append(_contact(case, section, model, auto, place))
+    contacts = [
+        _contact(case, section, model, materials, f"contact[{i}]")
+        for i, section in enumerate(case.contact)
+    ]
     steps = _steps(case, model)
     _check_options(case.solver.options)
     problem = Problem(model, materials, contacts)
@@ -120,7 +125,35 @@ def _check_options(options: dict[str, str | int | float | bool]) -> None:
             database.delValue(prefix + name)
 
 
-def _contact(case: Case, section: ContactSection, model: Model, auto: float, place: str) -> Contact:
+def _contact(
+    case: Case,
+    section: ContactSection,
+    model: Model,
+    materials: dict[str, Material],
+    place: str,
+) -> AnyContact:
+    sides = [("slave", section.slave)] + [("master", section.master)] * section.meshed
+    bodies = [materials[model.body_of(group, f"{place}.{side}")] for side, group in sides]
+    auto = min(
+        auto_penalty(model, group, body) for (_, group), body in zip(sides, bodies, strict=True)
+    )
+    if section.meshed:
+        finite = not all(body.linear for body in bodies)
+        return _meshed(section, model, auto, finite, place)
+    return _rigid(case, section, model, auto, place)
+
+
+def _meshed(
+    section: ContactSection, model: Model, auto: float, finite: bool, place: str
+) -> MeshedContact:
+    law = objects.pair_law(section, place, auto)
+    kind = TwoHalfPass if section.half_passes else FacetContact
+    name = f"{section.slave} on {section.master}"
+    with objects.within(place):
+        return kind(model, section.slave, section.master, law=law, current_area=finite, name=name)
+
+
+def _rigid(case: Case, section: ContactSection, model: Model, auto: float, place: str) -> Contact:
     master = objects.surface(case.surface[section.master], f"surface.{section.master}")
     interface = objects.interface(section, master, place, auto)
     name = f"{section.slave} on {section.master}"

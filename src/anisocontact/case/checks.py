@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from anisocontact.case import objects
-from anisocontact.case.model import Case, ContactSection
+from anisocontact.case.model import SINGLE, TWO_HALF, Case, ContactSection
 from anisocontact.case.section import near
 from anisocontact.errors import InputError
 from anisocontact.surfaces import Surface
@@ -25,11 +25,14 @@ def check(case: Case) -> Iterator[InputError]:
     for name, section in case.surface.items():
         surfaces[name], error = _tried(objects.surface, section, f"surface.{name}")
         yield from error
-    pairs = [(contact.slave, contact.master) for contact in case.contact]
+    pairs = [
+        {contact.slave, contact.master} if contact.meshed else (contact.slave, contact.master)
+        for contact in case.contact
+    ]
     for i, contact in enumerate(case.contact):
         yield from _contact(case, contact, f"contact[{i}]", surfaces)
         if (first := pairs.index(pairs[i])) != i:
-            yield InputError(f"same slave and master as contact[{first}]", field=f"contact[{i}]")
+            yield InputError(f"same pair as contact[{first}]", field=f"contact[{i}]")
     yield from _steps(case)
 
 
@@ -62,12 +65,27 @@ def _contact(
     case: Case, contact: ContactSection, place: str, surfaces: dict[str, Surface | None]
 ) -> Iterator[InputError]:
     yield from _group(case, contact.slave, f"{place}.slave")
+    if contact.meshed:
+        yield from _meshed(case, contact, place)
+        return
+    if contact.half_passes:
+        text = f'"{TWO_HALF}" given, "{SINGLE}" needed: a rigid master cannot be the slave'
+        yield InputError(text, field=f"{place}.pass")
     master = surfaces.get(contact.master)
     if contact.master not in surfaces:
         text = f'"{contact.master}" given, no such surface; {near(contact.master, list(surfaces))}'
         yield InputError(text, field=f"{place}.master")
     elif master is not None:
         yield from _tried(objects.interface, contact, master, place)[1]
+
+
+def _meshed(case: Case, contact: ContactSection, place: str) -> Iterator[InputError]:
+    if contact.master == contact.slave:
+        text = f'"{contact.master}" given, the same facets as the slave'
+        yield InputError(text, field=f"{place}.master")
+    else:
+        yield from _group(case, contact.master, f"{place}.master")
+    yield from _tried(objects.pair_law, contact, place)[1]
 
 
 def _group(case: Case, name: str, field: str) -> Iterator[InputError]:

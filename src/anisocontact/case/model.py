@@ -53,6 +53,9 @@ def _word(doc: str, *choices: str) -> Quantity:
 
 Point = tuple[float, float, float]
 
+SINGLE, TWO_HALF = "single", "two-half"
+_PASSES = "whether the slave alone is integrated over or, between bodies, both with half the weight"
+
 
 class Box(Section):
     """A box parallel to the axes.
@@ -166,14 +169,24 @@ class Directed(Registered):
 
 
 class ContactSection(Section):
-    """A pair in contact: slave facets against a master."""
+    """A pair in contact: slave facets against a rigid surface or the facets of another body."""
 
     slave: str = Field(description='slave facets, "body.group"')
-    master: str = Field(description="name of a surface")
+    master: str = Field(description='name of a surface, or facets of another body, "body.group"')
     normal: Any
     adhesion: Any
     friction: Any
     evolution: str
+
+    @property
+    def meshed(self) -> bool:
+        """Whether the master is a facet group; names of surfaces have no dot."""
+        return "." in self.master
+
+    @property
+    def half_passes(self) -> bool:
+        """Whether each of two bodies is slave and master for half of the work."""
+        return bool(getattr(self, "pass") == TWO_HALF)
 
 
 class Case(Section):
@@ -241,7 +254,9 @@ def case_type(known: Registries) -> type[Case]:
     Returns:
         A subclass of `Case`.
     """
-    contact = create_model("Contact", __base__=ContactSection, **laws(known))
+    # "pass" is no name for an attribute in a class body
+    passes: dict[str, Any] = {"pass": (Annotated[str, _word(_PASSES, SINGLE, TWO_HALF)], SINGLE)}
+    contact = create_model("Contact", __base__=ContactSection, **passes, **laws(known))
     surface = OneOf("Surface", Key("shape", known.surfaces))
     material = OneOf("Material", Key("model", known.materials))
     return create_model(

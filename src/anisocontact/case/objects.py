@@ -10,14 +10,18 @@ from anisocontact.anisotropy import DirectionField, make_directions
 from anisocontact.case.quantity import AUTO
 from anisocontact.case.registered import Registered
 from anisocontact.errors import InputError
-from anisocontact.interface import Interface
+from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import Surface, make_surface
 
 if TYPE_CHECKING:
     from anisocontact.bulk import Material
 
-__all__ = ["interface", "material", "surface", "within"]
+__all__ = ["interface", "material", "pair_law", "surface", "within"]
+
+
+#: How the history enters a step where the master is meshed.
+_ON_FACETS = "transport"
 
 
 class Laws(Protocol):
@@ -70,26 +74,49 @@ def interface(section: Laws, master: Surface, place: str, auto: float = 1.0) -> 
         InputError: A direction is missing, or a value only the laws can judge is wrong.
     """
     with within(place):
-        normal = NormalLaw(**section.normal.chosen, **_numbers(section.normal, auto))
-        adhesion = Adhesion(
-            **section.adhesion.chosen,
-            **_numbers(section.adhesion, auto),
-            directions=_directions(section.adhesion.directions, "adhesion.directions"),
-        )
-        friction = Friction(
-            **section.friction.chosen,
-            **_numbers(section.friction, auto),
-            directions=_directions(section.friction.directions, "friction.directions"),
-            directions_second=_directions(
-                section.friction.directions_second, "friction.directions_second"
-            ),
-        )
-        try:
-            return Interface(master, normal, adhesion, friction, evolution=section.evolution)
-        except InputError:
-            raise
-        except ValueError as error:  # the core knows no fields, its message names the parameter
-            raise InputError(str(error)) from None
+        return Interface(master, *_laws(section, auto), evolution=section.evolution)
+
+
+def pair_law(section: Laws, place: str, auto: float = 1.0) -> PairLaw:
+    """The laws of a `[[contact]]` table whose master is meshed.
+
+    Args:
+        section: The table.
+        place: Its path, for messages.
+        auto: Stiffness where the table says "auto" [stress/length].
+
+    Returns:
+        The laws.
+
+    Raises:
+        InputError: As of `interface`, or an evolution that meshed masters do not have.
+    """
+    with within(place):
+        if section.evolution != _ON_FACETS:
+            raise InputError(
+                f'"{section.evolution}" given, a meshed master has "{_ON_FACETS}" only', "evolution"
+            )
+        law = PairLaw(*_laws(section, auto))
+        law.pairs()  # the core judges how the values go together
+        return law
+
+
+def _laws(section: Laws, auto: float) -> tuple[NormalLaw, Adhesion, Friction]:
+    normal = NormalLaw(**section.normal.chosen, **_numbers(section.normal, auto))
+    adhesion = Adhesion(
+        **section.adhesion.chosen,
+        **_numbers(section.adhesion, auto),
+        directions=_directions(section.adhesion.directions, "adhesion.directions"),
+    )
+    friction = Friction(
+        **section.friction.chosen,
+        **_numbers(section.friction, auto),
+        directions=_directions(section.friction.directions, "friction.directions"),
+        directions_second=_directions(
+            section.friction.directions_second, "friction.directions_second"
+        ),
+    )
+    return normal, adhesion, friction
 
 
 def _directions(section: Registered | None, place: str) -> DirectionField | None:

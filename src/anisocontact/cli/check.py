@@ -33,9 +33,10 @@ def contents(built: Built) -> list[str]:
     for section, contact in zip(case.contact, problem.contacts, strict=True):
         _, values = contact.interface.normal.named
         penalty = f", penalty {values['penalty'][0]:.4g}" if "penalty" in values else ""
+        passes = ", two half passes" if section.half_passes else ""
         lines.append(
             f"contact   {section.slave} on {section.master}: {model.count_facets(section.slave)} "
-            f"slave facets{penalty}, {section.friction.sliding_rule}"
+            f"slave facets{penalty}, {section.friction.sliding_rule}{passes}"
         )
     for step in built.steps:
         driven = ", ".join(dict.fromkeys([*step.displacement, *step.traction])) or "nothing new"

@@ -4,9 +4,12 @@ from anisocontact.contact.contact import Contact
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.penalty import PENALTY_FACTOR, auto_penalty, facet_size
 from anisocontact.contact.quadrature import FacetQuadrature, facet_quadrature
+from anisocontact.contact.two_half_pass import TwoHalfPass
 
-#: Either kind of contact.
-type AnyContact = Contact | FacetContact
+#: Contact of two meshed bodies.
+type MeshedContact = FacetContact | TwoHalfPass
+#: Every kind of contact.
+type AnyContact = Contact | MeshedContact
 
 __all__ = [
     "PENALTY_FACTOR",
@@ -14,6 +17,8 @@ __all__ = [
     "Contact",
     "FacetContact",
     "FacetQuadrature",
+    "MeshedContact",
+    "TwoHalfPass",
     "auto_penalty",
     "facet_quadrature",
     "facet_size",

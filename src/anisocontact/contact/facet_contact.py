@@ -46,6 +46,8 @@ class FacetContact(ContactRecord):
             facets if not given.
         current_area: Whether tractions act on the area of now (finite strain) or of the reference.
         weight: Share of the work of this pass: 0.5 for each of two half passes.
+        mirrored: Whether angles of directions count about the normal of the slave, not of the
+            master: the other way round.
         name: Name in output; the slave if not given.
 
     Raises:
@@ -63,12 +65,14 @@ class FacetContact(ContactRecord):
         reach: float | None = None,
         current_area: bool = True,
         weight: float = 1.0,
+        mirrored: bool = False,
         name: str = "",
     ) -> None:
         _check(model, slave, master)
         self.master = master
         self.interface = law
-        self._law = law.pairs()
+        self.current_area = current_area
+        self._law = law.pairs(mirrored)
         self._reference = node_positions(model.space)
         self._master = facet_mesh(model.space, model.facets(master))
         own = facet_mesh(model.space, model.facets(slave))
@@ -91,6 +95,11 @@ class FacetContact(ContactRecord):
             state,
             self._respond(state, self._reference, 1.0, tangent=False),
         )
+
+    @property
+    def passes(self) -> tuple[FacetContact, ...]:
+        """The passes over slave points this contact is made of: itself."""
+        return (self,)
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.

@@ -22,6 +22,8 @@ __all__ = ["Writer"]
 
 #: Share of the facet size beyond which a penetration is worth a warning.
 DEEP = 0.1
+#: The same before the first step: more than the rounding of a mesh file.
+OVERLAP = 1e-6
 
 
 class Writer:
@@ -83,6 +85,9 @@ class Writer:
         self._points = Collection(self.folder / "contact.pvd", ".vtp")
         self.summary: dict[str, Any] = self._head(title)
         self._take(self._observer.numbers())
+        self._at_start = self._overlaps()
+        for warning in self._at_start:
+            self.log(f"warning: {warning}")
         self._write_fields(0.0)
         self._write_summary()
 
@@ -171,9 +176,9 @@ class Writer:
             write_text(self.folder / "summary.json", text + "\n")
 
     def _warnings(self) -> list[str]:
-        found = []
+        found = list(self._at_start)
         for contact in self.summary["contacts"]:
-            pair = f"contact of {contact['slave']} with {contact['master']}"
+            pair = _pair(contact)
             share = contact["max_penetration"] / contact["facet_size"]
             if share > DEEP:
                 found.append(
@@ -183,3 +188,19 @@ class Writer:
             if contact["points"]["open"] == sum(contact["points"][name] for name in STATUS):
                 found.append(f"{pair}: no point touches at the end")
         return found
+
+    def _overlaps(self) -> list[str]:
+        """Contacts whose bodies overlap before the first step."""
+        found = []
+        for contact in self.summary["contacts"]:
+            depth, size = contact["max_penetration"], contact["facet_size"]
+            if depth > OVERLAP * size:
+                found.append(
+                    f"{_pair(contact)}: the bodies overlap by {depth:.3g} at the start, "
+                    f"{depth / size:.0%} of the facet size; the first increment pushes them apart"
+                )
+        return found
+
+
+def _pair(contact: dict[str, Any]) -> str:
+    return f"contact of {contact['slave']} with {contact['master']}"

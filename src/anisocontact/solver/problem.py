@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc, Vec, fem
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
-from anisocontact.contact import AnyContact, Contact, FacetContact
+from anisocontact.contact import AnyContact, Contact
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.coupled import CoupledTangent
@@ -71,7 +71,7 @@ class Problem:
             LinearBulk(model, materials) if linear else NonlinearBulk(model, materials)
         )
         self._rigid = [c for c in self.contacts if isinstance(c, Contact)]
-        self._meshed = [c for c in self.contacts if isinstance(c, FacetContact)]
+        self._meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
         self._coupled = CoupledTangent(self.bulk.stiffness, model.space) if self._meshed else None
         self.supports = Supports(model)
         self.tractions = Tractions(model)

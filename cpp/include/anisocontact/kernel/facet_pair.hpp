@@ -38,6 +38,7 @@ struct PairPoint {
   std::int64_t facet{-1};
   Feature feature{Feature::off};
   std::array<double, 2> edge{};  ///< direction of the edge in coordinates
+  bool mirrored{false};          ///< whether directions turn about the inward normal
 };
 
 struct PairResult {
@@ -135,9 +136,10 @@ inline anisotropy::Axes<PairDual> carried(const std::optional<anisotropy::AnyFie
                                           const surface::Geometry<PairDual>& g) {
   if (!field) return anisotropy::axes_from(g, g.jet.d1[0], anisotropy::Turn{});
   const surface::Jet<double>& ref = p.reference;
-  const auto reference = surface::tangent_plane(
+  auto reference = surface::tangent_plane(
       moving(ref, constant<PairDual>(ref.position),
              {constant<PairDual>(ref.d1[0]), constant<PairDual>(ref.d1[1])}, dxi));
+  if (p.mirrored) reference.normal = -reference.normal;
   const Vector<PairDual> xi{{PairDual(p.xi[0]) + dxi[0], PairDual(p.xi[1]) + dxi[1]}};
   auto axes = anisotropy::axes(*field, reference, xi);
   if (!axes.valid) return axes;

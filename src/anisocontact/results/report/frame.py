@@ -22,6 +22,8 @@ __all__ = ["ContactView", "Frame"]
 
 Floats = npt.NDArray[np.float64]
 
+#: One less the cosine of the angle up to which directions are drawn as the same: 2.6 degrees.
+ALIKE = 1e-3
 #: Pixels of a map along its longer side.
 PIXELS = 500
 
@@ -88,8 +90,9 @@ class ContactView:
         if not len(axes):
             return None
         mean = self.frame.of(axes.mean(axis=0))
-        # The mean of equal unit vectors has length one.
-        return mean if np.all(np.linalg.norm(mean, axis=1) > 1.0 - 1e-6) else None
+        # The mean of equal unit vectors has length one; those that deforming bodies carry differ by
+        # a degree or two, which no picture shows.
+        return mean if np.all(np.linalg.norm(mean, axis=1) > 1.0 - ALIKE) else None
 
     @cached_property
     def box(self) -> Floats:
@@ -149,6 +152,6 @@ class ContactView:
 
 def _axis_name(axis: Floats) -> str:
     for letter, unit in zip("xyz", np.eye(3), strict=True):
-        if abs(axis @ unit) > 1.0 - 1e-9:
+        if abs(axis @ unit) > 1.0 - ALIKE:
             return letter if axis @ unit > 0.0 else f"-{letter}"
     return f"({', '.join(f'{v:.3g}' for v in axis)})"

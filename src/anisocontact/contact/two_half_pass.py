@@ -1,0 +1,132 @@
+"""Two bodies with the same part in their contact: half of the work is done from each side."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.facet_contact import FacetContact
+from anisocontact.contact.record import ContactRecord, Snapshot
+from anisocontact.interface import PairLaw, Response
+from anisocontact.mesh import Model
+
+Floats = npt.NDArray[np.float64]
+
+
+class TwoHalfPass(ContactRecord):
+    """Contact of two facet groups, integrated on both with half the weight.
+
+    Two `FacetContact`s with swapped parts, each with half of the area, so that neither side is
+    preferred. What it reports is seen from the slave: a point of the second pass counts at its foot
+    on the slave, with the reaction that acts there, so that sums over all points are forces,
+    moments and energies of the pair. Directions are those of the first pass in the reference
+    configuration; each pass carries them with the body that is its master.
+
+    Args:
+        model: Mesh with both groups.
+        slave: Facet group "body.group" of the first pass.
+        master: Facet group "body.group" that it meets.
+        law: Laws of the interface.
+        degree: Degree of the quadrature; twice the order of the displacement if not given.
+        reach: Distance within which each searches the other, length; twice the size of the facets
+            that search if not given.
+        current_area: Whether tractions act on the area of now (finite strain) or of the reference.
+        name: Name in output; the slave if not given.
+
+    Attributes:
+        passes: Both passes.
+
+    Raises:
+        InputError: No such facet group, one without facets, or the same for both.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        slave: str,
+        master: str,
+        *,
+        law: PairLaw,
+        degree: int | None = None,
+        reach: float | None = None,
+        current_area: bool = True,
+        name: str = "",
+    ) -> None:
+        self.master = master
+        self.interface = law
+        self.passes = tuple(
+            FacetContact(
+                model,
+                on,
+                against,
+                law=law,
+                degree=degree,
+                reach=reach,
+                current_area=current_area,
+                weight=0.5,
+                mirrored=mirrored,
+            )
+            for on, against, mirrored in ((slave, master, False), (master, slave, True))
+        )
+        start = self._joined()
+        super().__init__(model.mesh.comm, slave, name or slave, start.response.state, start)
+
+    def update(self, u: Floats, dt: float) -> Response:
+        """Response to nodal displacements from the committed history, kept as the trial.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+            dt: Time increment.
+
+        Returns:
+            The response of both passes as seen from the slave.
+        """
+        for half in self.passes:
+            half.update(u, dt)
+        self._trial = self._joined()
+        return self._trial.response
+
+    def commit(self) -> None:
+        """Make the trial the history."""
+        for half in self.passes:
+            half.commit()
+        super().commit()
+
+    def roll_back(self) -> None:
+        """Forget the trial."""
+        for half in self.passes:
+            half.roll_back()
+        super().roll_back()
+
+    def elastic_slip(self) -> Floats:
+        """Elastic part of the displacement of the slave relative to the master, (n, 3), length."""
+        first, second = self.passes
+        return np.concatenate([first.elastic_slip(), -second.elastic_slip()])
+
+    def add_force(self, out: Floats) -> None:
+        """Add the forces of the trial on both bodies to the local nodes, (nodes, 3), force."""
+        for half in self.passes:
+            half.add_force(out)
+
+    def lever(self) -> float:
+        """Forces that would move every point of the trial to the origin, norm over this rank."""
+        first, second = self.passes
+        return float(np.hypot(first.lever(), second.lever()))
+
+    def _joined(self) -> Snapshot:
+        """Points of both passes as seen from the slave."""
+        a, b = (half.current for half in self.passes)
+        r, s = a.response, b.response
+        feet = b.points - s.gap[:, None] * s.normal
+        response = Response(
+            traction=np.concatenate([r.traction, -s.traction]),
+            tangent=np.empty((0, 3, 3)),
+            state=np.concatenate([r.state, s.state]),
+            normal=np.concatenate([r.normal, -s.normal]),
+            directions_adhesion=np.concatenate([r.directions_adhesion, s.directions_adhesion]),
+            directions_friction=np.concatenate([r.directions_friction, s.directions_friction]),
+            failure=np.concatenate([r.failure, s.failure]),
+        )
+        return Snapshot(
+            np.concatenate([a.points, feet]), np.concatenate([a.areas, b.areas]), response
+        )

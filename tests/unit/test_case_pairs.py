@@ -1,0 +1,125 @@
+"""Two meshed bodies in a case file: what it may say of them, and one line for each mistake."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.case import load
+from anisocontact.case.build import build
+from anisocontact.cli import main
+from anisocontact.contact import FacetContact, TwoHalfPass
+
+CASE = """
+[mesh.box.block]
+origin = [0, 0, 0]
+size = [1, 1, 1]
+cells = [2, 2, 1]
+[mesh.box.base]
+origin = [-0.5, -0.5, -1]
+size = [2, 2, 1]
+cells = [3, 3, 1]
+[material.block]
+model = "linear-elastic"
+E = 1000
+nu = 0.3
+[material.base]
+model = "linear-elastic"
+E = 100
+nu = 0.3
+[surface.plate]
+shape = "plane"
+point = [0, 0, -1]
+normal = [0, 0, 1]
+[[contact]]
+slave = "block.bottom"
+master = "base.top"
+pass = "two-half"
+normal = { penalty = "auto" }
+adhesion = { stiffness = [1e3, 1e3] }
+friction = { coefficients = [0.3, 0.3] }
+[[step]]
+name = "press"
+increments = 1
+[step.displacement]
+"base.bottom" = { x = 0, y = 0, z = 0 }
+"block.top" = { x = 0, y = 0, z = -0.01 }
+"""
+
+WRONG = [
+    (
+        'master = "base.top"',
+        'master = "base.topp"',
+        "contact[0].master",
+        "did you mean 'base.top'?",
+    ),
+    ('master = "base.top"', 'master = "bas.top"', "contact[0].master", 'did you mean "base"?'),
+    ('master = "base.top"', 'master = "block.bottom"', "contact[0].master", "same facets"),
+    ('"two-half"', '"two-halves"', "contact[0].pass", "two-half"),
+    ('master = "base.top"', 'master = "plate"', "contact[0].pass", '"single" needed'),
+    ("pass =", 'evolution = "total"\npass =', "contact[0].evolution", '"transport" only'),
+    ("coefficients = [0.3, 0.3]", "coefficients = [0.3, 0.1]", "contact[0].friction", "directions"),
+]
+
+
+def _built(tmp_path, text):
+    path = tmp_path / "case.toml"
+    path.write_text(text)
+    return build(load(path))
+
+
+@pytest.mark.parametrize(("old", "new", "field", "says"), WRONG)
+def test_wrong_value(tmp_path, capsys, old, new, field, says):
+    """One line: the field, what was given, what is allowed; nothing is written."""
+    assert CASE.count(old) == 1
+    case, out = tmp_path / "case.toml", tmp_path / "out"
+    case.write_text(CASE.replace(old, new))
+    assert main(["run", str(case), "-o", str(out)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"error: {field}")
+    assert says in line
+    assert not out.exists()
+
+
+def test_same_pair_twice(tmp_path, capsys):
+    """A pair given once more with swapped parts would act twice."""
+    start, end = CASE.index("[[contact]]"), CASE.index("[[step]]")
+    again = CASE[start:end].replace('slave = "block.bottom"\nmaster = "base.top"',
+                                    'slave = "base.top"\nmaster = "block.bottom"')  # fmt: skip
+    (tmp_path / "case.toml").write_text(CASE[:end] + again + CASE[end:])
+    assert main(["check", str(tmp_path / "case.toml")]) == 2
+    assert "error: contact[1]: same pair as contact[0]" in capsys.readouterr().err
+
+
+def test_what_is_built(tmp_path, capsys):
+    """Single pass and two half passes, the area of now at finite strain, the softer penalty."""
+    contact = _built(tmp_path, CASE).problem.contacts[0]
+    assert isinstance(contact, TwoHalfPass)
+    # 10 E / h of the base: E = 100, facets of 2/3; the block has 1000 and 1/2
+    assert contact.interface.normal.named[1]["penalty"][0] == pytest.approx(1500.0)
+    assert contact.name == "block.bottom on base.top"
+    single = CASE.replace('pass = "two-half"\n', "")
+    assert isinstance(_built(tmp_path, single).problem.contacts[0], FacetContact)
+    soft = CASE.replace('model = "linear-elastic"\nE = 100\n', 'model = "neo-hookean"\nE = 100\n')
+    for text, current in ((CASE, False), (soft, True)):
+        for half in _built(tmp_path, text).problem.contacts[0].passes:
+            assert half.current_area is current
+    assert main(["check", str(tmp_path / "case.toml")]) == 0
+    assert "two half passes" in capsys.readouterr().out
+
+
+def test_initial_overlap_is_said(tmp_path, capsys):
+    """Bodies that overlap before the first step: a warning with the size, in log and summary."""
+    case, out = tmp_path / "case.toml", tmp_path / "out"
+    case.write_text(CASE.replace("origin = [0, 0, 0]", "origin = [0, 0, -0.005]"))
+    assert main(["run", str(case), "-o", str(out)]) == 0
+    said = "the bodies overlap by 0.005 at the start, 1% of the facet size"
+    assert said in capsys.readouterr().err
+    assert said in (out / "run.log").read_text().splitlines()[1]
+    assert said in json.loads((out / "summary.json").read_text())["warnings"][0]
+    case.write_text(CASE)
+    assert main(["run", str(case), "-o", str(out), "--overwrite"]) == 0
+    assert "overlap" not in capsys.readouterr().err
