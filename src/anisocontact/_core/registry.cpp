@@ -17,25 +17,38 @@ namespace {
 
 const char* word(Kind k) {
   switch (k) {
-    case Kind::scalar: return "scalar";
-    case Kind::pair: return "pair";
-    case Kind::vector: return "vector";
-    case Kind::axis: return "axis";
-    case Kind::array: return "array";
-    case Kind::integer: return "integer";
-    case Kind::integers: return "integers";
-    case Kind::flag: return "flag";
-    case Kind::choice: return "choice";
+    case Kind::scalar:
+      return "scalar";
+    case Kind::pair:
+      return "pair";
+    case Kind::vector:
+      return "vector";
+    case Kind::axis:
+      return "axis";
+    case Kind::array:
+      return "array";
+    case Kind::integer:
+      return "integer";
+    case Kind::integers:
+      return "integers";
+    case Kind::flag:
+      return "flag";
+    case Kind::choice:
+      return "choice";
   }
   return "";
 }
 
 const char* word(Bound b) {
   switch (b) {
-    case Bound::any: return "any";
-    case Bound::nonzero: return "nonzero";
-    case Bound::positive: return "positive";
-    case Bound::non_negative: return "non-negative";
+    case Bound::any:
+      return "any";
+    case Bound::nonzero:
+      return "nonzero";
+    case Bound::positive:
+      return "positive";
+    case Bound::non_negative:
+      return "non-negative";
   }
   return "";
 }

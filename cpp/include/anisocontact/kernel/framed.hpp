@@ -71,7 +71,8 @@ inline PointState commit(const law::NormalModel& normal, const PointState& old, 
     return u[0] * value(f.frame[0]) + u[1] * value(f.frame[1]);
   };
   const bool begins = old.status == static_cast<std::int64_t>(Contact::open);
-  if (!begins) s.origin = old.origin;
+  const Vector<double> increment = g.project_contra(spatial({f.increment[0].v, f.increment[1].v}));
+  s.origin = begins ? (Vector<double>{s.xi} - increment).c : old.origin;
   s.traction = g.project_co(spatial(r.traction)).c;
   s.stored = g.project_co(spatial(r.stored)).c;
   s.slip = g.project_contra(spatial(r.slip)).c;

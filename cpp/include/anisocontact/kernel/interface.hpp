@@ -97,12 +97,12 @@ PointState advanced(const InterfaceLaw& l, const PointState& old, const Kinemati
                     const anisotropy::Axes<S>& axes, const S& pressure, Contact status) {
   PointState s;
   s.xi = {value(k.xi[0]), value(k.xi[1])};
-  const bool begins = old.status == static_cast<std::int64_t>(Contact::open);
-  s.origin = begins ? s.xi : old.origin;
   const Covector<double> traction = value(r.traction);
   const Vector<double> slip = value(r.slip);
   const Vector<double> increment = value(t.increment);
   const Vector<double> elastic = value(t.elastic) + increment - slip;
+  const bool begins = old.status == static_cast<std::int64_t>(Contact::open);
+  s.origin = begins ? (Vector<double>{s.xi} - increment).c : old.origin;
   s.traction = traction.c;
   s.stored = value(r.stored).c;
   s.elastic = elastic.c;

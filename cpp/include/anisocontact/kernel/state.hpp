@@ -15,7 +15,8 @@ enum class Failure : std::int64_t { none = 0, projection = 1, direction = 2, law
 /// block of memory which can be copied, compared and stored whole.
 struct PointState {
   std::array<double, 2> xi{};        ///< coordinates of the projection
-  std::array<double, 2> origin{};    ///< coordinates where the contact began, xi_(0)
+  std::array<double, 2> origin{};    ///< coordinates where the contact began, xi_(0); from the slip
+                                     ///< of the first step, exact where coordinates are straight
   std::array<double, 2> traction{};  ///< T_i in the basis at xi
   std::array<double, 2> stored{};    ///< elastic force the next trial starts from, T_i
   std::array<double, 2> elastic{};   ///< elastic slip, xi^i
