@@ -69,7 +69,7 @@ class TwoHalfPass(ContactRecord):
             for on, against, mirrored in ((slave, master, False), (master, slave, True))
         )
         start = self._joined()
-        super().__init__(model.mesh.comm, slave, name or slave, start.response.state, start)
+        super().__init__(model.space, slave, name or slave, start.response.state, start)
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
