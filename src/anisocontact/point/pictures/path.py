@@ -46,6 +46,7 @@ def path_on_surface(
     lines = _directions(ax, interface, box, extent, toward)
     lines += _path(ax, history, toward)
     rows = chosen(history, forces)
+    lines += _bodies(ax, history, rows, toward)
     lines += _forces(ax, history, rows, extent, toward)
     lines += _ellipses(ax, history, interface, rows, extent, toward)
     figure.legend(handles=lines, loc="outside lower center", ncols=3, fontsize=8)
@@ -92,9 +93,16 @@ def _view(ax: Any, history: History) -> Floats:
     return np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
 
 
-def _faded(normal: Floats, toward: Floats) -> float:
-    """Opacity: what is on the far side is faint."""
-    return 1.0 if float(normal @ toward) > -0.05 else 0.15
+def _faded(normal: Floats, toward: Floats) -> Floats:
+    """Opacity at normals (..., 3): what is on the far side is faint."""
+    return np.where(normal @ toward > -0.05, 1.0, 0.15)
+
+
+def _lines(ax: Any, ends: Floats, colour: str, alpha: Floats, **look: Any) -> None:
+    """Straight lines (n, 2, 3), each with its opacity."""
+    from mpl_toolkits.mplot3d.art3d import Line3DCollection  # type: ignore[import-untyped]
+
+    ax.add_collection3d(Line3DCollection(ends, colors=[(colour, a) for a in alpha], **look))
 
 
 def _directions(
@@ -109,10 +117,11 @@ def _directions(
     axes, valid = field.axes(interface.surface, xi)
     at, n = interface.surface.position(xi), interface.surface.geometry(xi).normal
     half = 0.035 * extent
-    for k in np.flatnonzero(valid):
-        for a, (length, width) in enumerate(((1.0, 1.3), (0.45, 0.8))):
-            ends = at[k] + half * length * np.outer([-1.0, 1.0], axes[k, a])
-            ax.plot(*ends.T, color=AXES[a], linewidth=width, zorder=2, alpha=_faded(n[k], toward))
+    alpha = _faded(n[valid], toward)
+    for a, (length, width) in enumerate(((1.0, 1.3), (0.45, 0.8))):
+        arm = half * length * axes[valid, a]
+        ends = np.stack([at[valid] - arm, at[valid] + arm], axis=1)
+        _lines(ax, ends, AXES[a], alpha, linewidth=width, zorder=2)
     return [
         Line2D([], [], color=AXES[0], linewidth=1.3, label="first friction axis"),
         Line2D([], [], color=AXES[1], linewidth=0.8, label="second friction axis"),
@@ -127,21 +136,25 @@ def _path(ax: Any, history: History, toward: Floats) -> list[Line2D]:
         for status, rows in runs(history.points["status"][:, p]):
             seen.add(status)
             # In pieces, so that the far side can be faint.
-            for i in range(rows.start, rows.stop - 1):
-                piece = feet[i : i + 2, p]
-                alpha = _faded(normals[i, p], toward)
-                ax.plot(
-                    *piece.T,
-                    color=COLOURS[status],
-                    linewidth=3.2,
-                    zorder=4,
-                    alpha=alpha,
-                    solid_capstyle="round",
-                )
+            pieces = np.stack([feet[rows][:-1, p], feet[rows][1:, p]], axis=1)
+            alpha = _faded(normals[rows][:-1, p], toward)
+            _lines(ax, pieces, COLOURS[status], alpha, linewidth=3.2, zorder=4, capstyle="round")
         ax.plot(*feet[:1, p].T, "o", color=INK, markersize=5, zorder=6)
     lines = [Line2D([], [], color=COLOURS[s], linewidth=3.2, label=s) for s in COLOURS if s in seen]
     start = Line2D([], [], color=INK, marker="o", linestyle="", markersize=5, label="start")
     return [start, *lines]
+
+
+def _bodies(ax: Any, history: History, rows: list[int], toward: Floats) -> list[Line2D]:
+    """Where the group is, as a polygon through its points."""
+    if history.points.shape[1] < 2:
+        return []
+    look: dict[str, Any] = {"color": "#444444", "linewidth": 1.0}
+    for i in rows:
+        feet = history.feet[i]
+        alpha = float(_faded(history.points["normal"][i].mean(axis=0), toward))
+        ax.plot(*np.concatenate([feet, feet[:1]]).T, zorder=6, alpha=alpha, **look)
+    return [Line2D([], [], label="the group", **look)]
 
 
 def _forces(
@@ -156,18 +169,19 @@ def _forces(
     for i in rows:
         for p in range(t.shape[1]):
             if np.linalg.norm(t[i, p]) > 1e-9 * longest:
-                normal = history.points["normal"][i, p]
-                ax.quiver(
-                    *history.feet[i, p],
-                    *(scale * t[i, p]),
-                    color=INK,
-                    linewidth=1.1,
-                    arrow_length_ratio=0.2,
-                    zorder=5,
-                    alpha=_faded(normal, toward),
-                )
+                row = history.points[i, p]
+                arrow = _arrow(history.feet[i, p], scale * t[i, p], row["normal"])
+                alpha = float(_faded(row["normal"], toward))
+                ax.plot(*arrow.T, color=INK, linewidth=1.1, zorder=5, alpha=alpha)
     label = f"T on the slave, longest {number(longest)}"
     return [Line2D([], [], color=INK, linewidth=1.5, marker=">", label=label)]
+
+
+def _arrow(start: Floats, vector: Floats, normal: Floats) -> Floats:
+    """An arrow as one line, its head in the tangent plane, (5, 3)."""
+    side = 0.08 * np.cross(normal, vector)
+    tip, neck = start + vector, start + 0.8 * vector
+    return np.stack([start, tip, neck + side, tip, neck - side])
 
 
 def _ellipses(
@@ -180,25 +194,20 @@ def _ellipses(
 ) -> list[Line2D]:
     """Adhesion ellipses about their centres, enlarged about the point where they are small."""
     found = {
-        (i, p): ellipse
+        (i, p): domain
         for i in rows
         for p in range(history.points.shape[1])
-        if (ellipse := adhesion_domain(interface, history.points[i, p])) is not None
+        if (domain := adhesion_domain(interface, history.points[i, p])) is not None
     }
     if not found:
         return []
-    largest = max(float(np.nanmax(np.linalg.norm(e, axis=1))) for e in found.values())
-    if largest == 0.0:
-        return []
-    factor = 1.0 if largest > _SMALL * extent else 0.08 * extent / largest
-    if factor != 1.0:
-        factor = float(f"{factor:.1g}")
-    for (i, p), ellipse in found.items():
-        row = history.points[i, p]
-        centre = history.feet[i, p] - factor * row["elastic"]
-        alpha = _faded(row["normal"], toward)
+    largest = max(float(np.nanmax(np.linalg.norm(e, axis=1))) for _, e in found.values())
+    factor = 1.0 if largest > _SMALL * extent else float(f"{0.08 * extent / largest:.1g}")
+    for (i, p), (slip, limit) in found.items():
+        centre = history.feet[i, p] - factor * slip
+        alpha = float(_faded(history.points["normal"][i, p], toward))
         colour = COLOURS["stick"]
-        ax.plot(*(centre + factor * ellipse).T, color=colour, linewidth=1.0, zorder=3, alpha=alpha)
+        ax.plot(*(centre + factor * limit).T, color=colour, linewidth=1.0, zorder=3, alpha=alpha)
         ax.plot(*centre[:, None], "+", color=colour, markersize=5, zorder=3, alpha=alpha)
     times = "" if factor == 1.0 else f", enlarged {factor:g} times"
     label = f"adhesion domain and its centre{times}"
