@@ -10,14 +10,13 @@
 #include <cstdint>
 #include <limits>
 
-#include "anisocontact/projection/quadratic.hpp"
+#include "anisocontact/projection/relative_facet.hpp"
 #include "anisocontact/projection/squared_distance.hpp"
 #include "anisocontact/surface/facet.hpp"
 
 namespace anisocontact::projection {
 
 using surface::FacetKind;
-using surface::Topology;
 
 /// Where on a facet the closest point is. `interior`: x - rho is normal to the facet, also where
 /// the point happens to be on a side; `edge`: normal to a side alone; `vertex`: to none.
@@ -29,6 +28,7 @@ enum class Search : std::int8_t { found = 0, nothing = 1, failed = 2 };
 struct FacetPoint {
   std::array<double, 2> xi{};  ///< in the coordinates of the facet
   Vec3<double> position{Vec3<double>::Zero()};
+  Vec3<double> cross{Vec3<double>::Zero()};  ///< rho_1 x rho_2
   double distance2{std::numeric_limits<double>::infinity()};
   Feature feature{Feature::interior};
   std::int8_t entity{-1};    ///< side or vertex of the feature, in the numbers of the mesh
@@ -41,41 +41,6 @@ namespace facet_detail {
 /// Relative tolerance of "x - rho is normal to a tangent": far above the rounding of a projection,
 /// far below any angle or length that matters.
 inline constexpr double normal_tolerance = 1e-10;
-
-/// x - rho (as r = rho - x) and the derivatives of f/2 = r.r/2 at coordinates of the reference facet.
-struct Local {
-  Vec3<double> r, r1, r2;
-  double f, g1, g2, h11, h12, h22;
-};
-
-inline Local local(Topology t, const FacetNodes& nodes, const Vec3<double>& x,
-                   const std::array<double, 2>& xi) noexcept {
-  const auto j = surface::facet_jet({t, false}, nodes, xi[0], xi[1]);
-  Local l;
-  l.r = j.position - x;
-  l.r1 = j.d1[0];
-  l.r2 = j.d1[1];
-  l.f = 0.5 * l.r.squaredNorm();
-  l.g1 = l.r.dot(l.r1);
-  l.g2 = l.r.dot(l.r2);
-  l.h11 = l.r1.squaredNorm() + l.r.dot(j.d2[0]);
-  l.h12 = l.r1.dot(l.r2) + l.r.dot(j.d2[1]);
-  l.h22 = l.r2.squaredNorm() + l.r.dot(j.d2[2]);
-  return l;
-}
-
-/// Second-order model of f over a part, around s.
-inline Quadratic model(const Local& l, const Part& part, const std::array<double, 2>& s) noexcept {
-  const auto& [a, b] = part.edge;
-  const auto form = [&](const auto& p, const auto& q) {
-    return p[0] * (l.h11 * q[0] + l.h12 * q[1]) + p[1] * (l.h12 * q[0] + l.h22 * q[1]);
-  };
-  return {s,
-          {l.g1 * a[0] + l.g2 * a[1], l.g1 * b[0] + l.g2 * b[1]},
-          form(a, a),
-          form(a, b),
-          form(b, b)};
-}
 
 /// Where the next step goes: the minimum of the model over the part. Where the model has none, its
 /// Hessian H is replaced by |H|; along a side on which the step stays, H itself is good enough.
@@ -100,16 +65,16 @@ struct Minimum {
 
 /// Minimum of f over a part of a facet: each step goes to the minimum of the model over the part,
 /// or back from there until f falls.
-inline Minimum minimise(Topology t, const FacetNodes& nodes, const Vec3<double>& x,
-                        const Part& part, std::array<double, 2> s) noexcept {
+inline Minimum minimise(const RelativeFacet& facet, const Part& part,
+                        std::array<double, 2> s) noexcept {
   constexpr int most_steps = 60, most_halvings = 30;
   constexpr double quadratic_end = 1e-9, linear_end = 1e-13, loose_end = 1e-6, rounding = 1e-12;
-  const bool triangle = surface::triangular(t);
-  Local l = local(t, nodes, x, part.at(s));
+  const bool triangle = facet.triangular();
+  Local l = facet.at(part.at(s));
   double last = std::numeric_limits<double>::infinity();
   for (int step = 0; step < most_steps; ++step) {
     bool exact = false;
-    const Quadratic q = model(l, part, s);
+    const Quadratic q = l.model(part, s);
     const auto target = step_target(q, triangle, exact);
     const std::array<double, 2> d{target[0] - s[0], target[1] - s[1]};
     const double size = std::max(std::abs(d[0]), std::abs(d[1]));
@@ -117,14 +82,14 @@ inline Minimum minimise(Topology t, const FacetNodes& nodes, const Vec3<double>&
     // where f no longer tells points apart, steps that stop shrinking are at rounding
     const bool blurred = -slope <= rounding * l.f;
     if (blurred && size >= last) return {s, l.f, size < loose_end};
-    Local next = local(t, nodes, x, part.at(target));
+    Local next = facet.at(part.at(target));
     if (size <= (exact ? quadratic_end : linear_end)) return {target, next.f, true};
     double length = 1.0;
     std::array<double, 2> to = target;
     for (int k = 0; !blurred && next.f > l.f + 1e-4 * length * slope && k < most_halvings; ++k) {
       length *= 0.5;
       to = {s[0] + length * d[0], s[1] + length * d[1]};
-      next = local(t, nodes, x, part.at(to));
+      next = facet.at(part.at(to));
     }
     if (!blurred && next.f >= l.f) return {s, l.f, size < loose_end};
     s = to;
@@ -147,8 +112,8 @@ struct Best {
 
 /// The parts of a facet on which the least f can be, each to its minimum.
 template <class Polynomial>
-void branch_and_bound(Topology t, const FacetNodes& nodes, const Vec3<double>& x,
-                      const Polynomial& whole, double slack, Best& best) noexcept {
+void branch_and_bound(const RelativeFacet& facet, const Polynomial& whole, double slack,
+                      Best& best) noexcept {
   constexpr std::size_t most_waiting = 64, most_parts = 10000, many_parts = 100;
   // parts that could only win by this much are dropped where a minimum is known, or where parts
   // around a flat one pile up
@@ -163,7 +128,7 @@ void branch_and_bound(Topology t, const FacetNodes& nodes, const Vec3<double>& x
     if (p.lower() - slack >= 2.0 * best.f * (1.0 - share)) continue;
     const bool last = parts >= most_parts || count + 2 > most_waiting;
     if (last || p.single()) {
-      const Minimum m = minimise(t, nodes, x, p.part, p.lowest());
+      const Minimum m = minimise(facet, p.part, p.lowest());
       best.take(m, p.part);
       doubt = doubt || (last && p.lower() - slack < 2.0 * best.f * (1.0 - coarse_drop));
       if (last || m.converged) continue;
@@ -175,7 +140,7 @@ void branch_and_bound(Topology t, const FacetNodes& nodes, const Vec3<double>& x
   }
   if (doubt) best.search = Search::failed;
   if (best.search != Search::found) return;
-  const Minimum polished = minimise(t, nodes, x, whole_facet, best.xi);
+  const Minimum polished = minimise(facet, whole_facet, best.xi);
   if (polished.converged && polished.f <= best.f * (1.0 + drop)) {
     best.xi = polished.s;
     best.f = polished.f;
@@ -184,16 +149,15 @@ void branch_and_bound(Topology t, const FacetNodes& nodes, const Vec3<double>& x
 
 /// Least f = |r|^2 / 2 over a facet of more than three nodes, where it is below the limit.
 template <class Polynomial>
-Best global_minimum(Topology t, const FacetNodes& nodes, const Vec3<double>& x,
-                    const Polynomial& whole, double limit,
+Best global_minimum(const RelativeFacet& facet, const Polynomial& whole, double limit,
                     const std::array<double, 2>* start) noexcept {
   constexpr double rounding = 1e-14;
   const double slack = rounding * *std::max_element(whole.c.begin(), whole.c.end());
   Best best{{}, limit};
   if (whole.lower() - slack >= 2.0 * limit) return best;
-  const Minimum m = minimise(t, nodes, x, whole.part, start ? *start : whole.lowest());
+  const Minimum m = minimise(facet, whole.part, start ? *start : whole.lowest());
   best.take(m, whole.part);
-  if (!m.converged || !whole.single()) branch_and_bound(t, nodes, x, whole, slack, best);
+  if (!m.converged || !whole.single()) branch_and_bound(facet, whole, slack, best);
   return best;
 }
 
@@ -234,17 +198,23 @@ inline void classify(Topology t, const Local& l, FacetPoint& p) noexcept {
   p.entity = static_cast<std::int8_t>(a[0] == b[0] || a[0] == b[1] ? a[0] : a[1]);
 }
 
-inline Best search(Topology t, const FacetNodes& nodes, const Vec3<double>& x, double limit,
+inline Best search(const RelativeFacet& facet, double limit,
                    const std::array<double, 2>* start) noexcept {
-  if (t == Topology::tri3) {  // f is quadratic
-    const std::array<double, 2> s{0.0, 0.0};
-    return {minimum(model(local(t, nodes, x, s), whole_facet, s), true), 0.0, Search::found};
+  const auto& p = facet.controls;
+  switch (facet.topology) {
+    case Topology::tri3: {  // f is quadratic
+      const std::array<double, 2> s{0.0, 0.0};
+      return {minimum(facet.at(s).model(whole_facet, s), true), 0.0, Search::found};
+    }
+    case Topology::tri6:
+      return global_minimum(facet, triangle_distance(p), limit, start);
+    case Topology::quad4:
+      return global_minimum(facet, square_distance<1>(p), limit, start);
+    case Topology::quad8:
+    case Topology::quad9:
+      break;
   }
-  FacetNodes p = surface::control_points(t, nodes);
-  for (std::size_t i = 0; i < surface::control_count(t); ++i) p[i] -= x;
-  if (t == Topology::quad4) return global_minimum(t, nodes, x, square_distance<1>(p), limit, start);
-  if (t == Topology::tri6) return global_minimum(t, nodes, x, triangle_distance(p), limit, start);
-  return global_minimum(t, nodes, x, square_distance<2>(p), limit, start);
+  return global_minimum(facet, square_distance<2>(p), limit, start);
 }
 
 }  // namespace facet_detail
@@ -260,16 +230,20 @@ inline FacetPoint closest_point(const FacetKind& kind, const FacetNodes& nodes,
   FacetPoint p;
   std::array<double, 2> from{};
   if (start) from = surface::exchanged(kind, *start);
-  const auto m =
-      facet_detail::search(kind.topology, nodes, x, 0.5 * limit2, start ? &from : nullptr);
+  const RelativeFacet facet(kind.topology, nodes, x);
+  const auto m = facet_detail::search(facet, 0.5 * limit2, start ? &from : nullptr);
   p.search = m.search;
   if (m.search != Search::found) return p;
-  const auto l = facet_detail::local(kind.topology, nodes, x, m.xi);
+  const Local l = facet.at(m.xi);
+  p.distance2 = 2.0 * l.f;
+  if (!(p.distance2 < limit2)) {
+    p.search = Search::nothing;
+    return p;
+  }
   p.xi = surface::exchanged(kind, m.xi);
   p.position = x + l.r;
-  p.distance2 = 2.0 * l.f;
-  p.search = p.distance2 < limit2 ? Search::found : Search::nothing;
-  p.boundary = facet_detail::sides_at(surface::triangular(kind.topology), m.xi);
+  p.cross = kind.flip ? l.r2.cross(l.r1) : l.r1.cross(l.r2);
+  p.boundary = facet_detail::sides_at(facet.triangular(), m.xi);
   facet_detail::classify(kind.topology, l, p);
   return p;
 }

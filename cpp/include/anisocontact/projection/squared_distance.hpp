@@ -24,19 +24,38 @@ SquareBernstein<2 * P> square_distance(const FacetNodes& p) noexcept {
   return f;
 }
 
-/// |rho - x|^2 over a triangle of degree 2 from the control points relative to x.
-inline TriangleBernstein triangle_distance(const FacetNodes& p) noexcept {
-  TriangleBernstein f{{}, whole_facet};
+namespace triangle_detail {
+
+/// Exponents of u and v of the control points of a triangle of degree 2.
+inline constexpr std::array<std::array<std::size_t, 2>, 6> exponent{
+    {{0, 0}, {1, 0}, {2, 0}, {0, 1}, {1, 1}, {0, 2}}};
+
+/// Weight of the product of two control points in the coefficient of degree 4 it belongs to.
+inline constexpr auto weight = [] {
   const auto multinomial = [](std::size_t n, std::size_t i, std::size_t j) {
     return binomial(n, i) * binomial(n - i, j);
   };
-  for (std::size_t j = 0; j <= 2; ++j)
-    for (std::size_t i = 0; i + j <= 2; ++i)
-      for (std::size_t l = 0; l <= 2; ++l)
-        for (std::size_t k = 0; k + l <= 2; ++k)
-          f.c[TriangleBernstein::index(i + k, j + l)] +=
-              multinomial(2, i, j) * multinomial(2, k, l) / multinomial(4, i + k, j + l) *
-              p[surface::triangle_index(2, i, j)].dot(p[surface::triangle_index(2, k, l)]);
+  std::array<std::array<double, 6>, 6> w{};
+  for (std::size_t a = 0; a < 6; ++a)
+    for (std::size_t b = 0; b < 6; ++b) {
+      const auto [i, j] = exponent[a];
+      const auto [k, l] = exponent[b];
+      w[a][b] = multinomial(2, i, j) * multinomial(2, k, l) / multinomial(4, i + k, j + l);
+    }
+  return w;
+}();
+
+}  // namespace triangle_detail
+
+/// |rho - x|^2 over a triangle of degree 2 from the control points relative to x.
+inline TriangleBernstein triangle_distance(const FacetNodes& p) noexcept {
+  using triangle_detail::exponent, triangle_detail::weight;
+  TriangleBernstein f{{}, whole_facet};
+  for (std::size_t a = 0; a < 6; ++a)
+    for (std::size_t b = a; b < 6; ++b)
+      f.c[TriangleBernstein::index(exponent[a][0] + exponent[b][0],
+                                   exponent[a][1] + exponent[b][1])] +=
+          (a == b ? 1.0 : 2.0) * weight[a][b] * p[a].dot(p[b]);
   return f;
 }
 

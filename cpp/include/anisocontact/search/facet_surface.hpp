@@ -277,7 +277,7 @@ class FacetSurface {
       case Feature::vertex:
         return vertex_normal(mesh_.vertex(f, k));
     }
-    return unit_normal(c.facet, c.point.xi);
+    return c.point.cross.normalized();
   }
 
   FacetProjection finish(const Vec3<double>& x, const Query& q,

@@ -10,15 +10,8 @@ namespace anisocontact::surface {
 /// Positions of the nodes of a facet; entries from node_count on are not used.
 using FacetNodes = std::array<Vec3<double>, max_facet_nodes>;
 
-/// Place of the control point (i, j) of a quadrilateral, or of u^i v^j w^(d - i - j) of a triangle
-/// of degree d.
-constexpr std::size_t square_index(std::size_t degree, std::size_t i, std::size_t j) {
-  return (degree + 1) * j + i;
-}
-constexpr std::size_t triangle_index(std::size_t degree, std::size_t i, std::size_t j) {
-  return j * (2 * degree + 3 - j) / 2 + i;
-}
-
+/// Number of control points: those of a quadrilateral in rows of constant v, those of u^i v^j w^k of
+/// a triangle in rows of constant j.
 constexpr std::size_t control_count(Topology t) { return t == Topology::quad8 ? 9 : node_count(t); }
 
 namespace detail {
@@ -46,7 +39,7 @@ inline FacetNodes square_controls(const FacetNodes& x, const Vec3<double>& centr
 
 }  // namespace detail
 
-/// Control points of a facet, rows of constant v one after the other.
+/// Control points of a facet.
 inline FacetNodes control_points(Topology t, const FacetNodes& x) noexcept {
   switch (t) {
     case Topology::tri3:
