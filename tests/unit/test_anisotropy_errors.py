@@ -90,7 +90,7 @@ CASES: dict[str, tuple[Callable[[], Any], str]] = {
     ),
     "one place": (
         lambda: scattered(points=np.zeros((4, 3)), vectors=np.ones((4, 3))),
-        "direction field 'tabulated-points': points: all at the same place",
+        "direction field 'tabulated-points': points: all in one line",
     ),
     "grid of four nodes": (
         lambda: grid(counts=(5, 4), vectors=np.ones((20, 3))),

@@ -64,8 +64,8 @@ def _grid(sample: Any) -> dict[str, Any]:
 
 
 def _scattered(sample: Any) -> dict[str, Any]:
-    _, x, vectors = _nodes(sample, 24)
-    return {"points": x, "vectors": vectors, "radius": 0.5 * sample.size}
+    _, x, vectors = _nodes(sample, 60)
+    return {"points": x, "vectors": vectors}
 
 
 #: Parameters of every registered field on a sample of a surface.

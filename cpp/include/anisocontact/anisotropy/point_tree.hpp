@@ -2,7 +2,6 @@
 // Neighbours among scattered points: a balanced k-d tree without pointers.
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -35,25 +34,22 @@ class PointTree {
     visit(x, 0, order_.size(), [&] { return radius2; }, take);
   }
 
-  /// The K nearest points, nearest first; an infinite distance where there are fewer.
-  template <std::size_t K>
   struct Nearest {
-    std::array<std::size_t, K> index{};
-    std::array<double, K> distance2{};
+    std::size_t index{0};
+    double distance2{std::numeric_limits<double>::infinity()};
   };
-  template <std::size_t K>
-  Nearest<K> nearest(const Vec3<double>& x) const noexcept {
-    Nearest<K> r;
-    r.distance2.fill(std::numeric_limits<double>::infinity());
+  /// The nearest point that `accept(i)` takes; at an infinite distance where there is none.
+  template <class Accept>
+  Nearest nearest_of(const Vec3<double>& x, const Accept& accept) const noexcept {
+    Nearest r;
     const auto take = [&](std::size_t i, double d2) {
-      for (std::size_t k = 0; k < K; ++k)
-        if (d2 < r.distance2[k]) {
-          std::swap(d2, r.distance2[k]);
-          std::swap(i, r.index[k]);
-        }
+      if (d2 < r.distance2 && accept(i)) r = {i, d2};
     };
-    visit(x, 0, order_.size(), [&] { return r.distance2[K - 1]; }, take);
+    visit(x, 0, order_.size(), [&] { return r.distance2; }, take);
     return r;
+  }
+  std::size_t nearest(const Vec3<double>& x) const noexcept {
+    return nearest_of(x, [](std::size_t) { return true; }).index;
   }
 
  private:

@@ -73,7 +73,7 @@ class TabulatedPoints {
  private:
   template <class S>
   Axes<S> nearest(const surface::Geometry<S>& g) const {
-    const std::size_t i = table_->tree.nearest<1>(value(g.jet.position)).index[0];
+    const std::size_t i = table_->tree.nearest(value(g.jet.position));
     std::array<std::optional<Vec3<S>>, 2> e;
     for (std::size_t a = 0; a < table_->directions.size(); ++a)
       e[a] = unit_tangent<S>(g, constant<S>(table_->directions[a][i]));
@@ -114,16 +114,25 @@ class TabulatedPoints {
     return S(q3 * q * (4.0 * r + 1.0)) + S(-10.0 * q3) * (r2 - S(v));
   }
 
-  /// A quarter more than the largest distance of a point to its sixth neighbour, so that some two
-  /// rings of neighbours are within it.
+  /// Twice the largest distance of a point to the second of two neighbours that are not in a line
+  /// with it, so that a plane can be fitted everywhere: across scan lines too, on which the points
+  /// are denser than the lines are.
   static double usual_radius(const PointTree& tree) {
-    constexpr std::size_t k = 7;  // the point itself is the first
+    constexpr double sine2 = 0.25;  // of 30 degrees, above which three points make a triangle
     double most = 0.0;
-    for (std::size_t i = 0; i < tree.size(); ++i)
-      for (const double d2 : tree.nearest<k>(tree.point(i)).distance2)
-        if (std::isfinite(d2)) most = std::max(most, d2);
-    if (!(most > 0.0)) throw std::invalid_argument("points: all at the same place");
-    return 1.25 * std::sqrt(most);
+    for (std::size_t i = 0; i < tree.size(); ++i) {
+      const Vec3<double>& x = tree.point(i);
+      const auto first =
+          tree.nearest_of(x, [&](std::size_t j) { return (tree.point(j) - x).norm() > 0.0; });
+      const Vec3<double> d = tree.point(first.index) - x;
+      const auto second = tree.nearest_of(x, [&](std::size_t j) {
+        const Vec3<double> r = tree.point(j) - x;
+        return r.cross(d).squaredNorm() > sine2 * r.squaredNorm() * d.squaredNorm();
+      });
+      most = std::max(most, second.distance2);
+    }
+    if (!std::isfinite(most)) throw std::invalid_argument("points: all in one line");
+    return 2.0 * std::sqrt(most);
   }
 
   std::shared_ptr<const PointTable> table_;
