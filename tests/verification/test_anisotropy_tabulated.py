@@ -165,15 +165,23 @@ def test_a_direction_is_a_line(kind: str) -> None:
     assert np.array_equal(first, second)
 
 
-def test_orientation_of_the_table_is_kept() -> None:
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+@pytest.mark.parametrize("interpolation", ["bicubic", "smooth"])
+def test_orientation_of_the_table_is_kept(interpolation: str, sense: float) -> None:
     """Where the table has a sense, so has the axis; source: docs/theory/direction-fields.md."""
     surface, field, lower, upper = polar_case()
-    table = from_callable(
-        surface, lambda x: field.axes(surface, x[:, :2])[0][:, 0], lower=lower, upper=upper
-    )
+
+    def along(x: Any) -> Any:
+        return sense * field.axes(surface, x[:, :2])[0][:, 0]
+
     xi = points_between(lower, upper)
-    both = [f.axes(surface, xi)[0][:, 0] for f in (field, table)]
-    assert np.all(np.einsum("ni,ni->n", *both) > 0.99)
+    if interpolation == "smooth":
+        x = surface.position(xi)
+        table = make_directions("tabulated-points", points=x, vectors=along(x))
+    else:
+        table = from_callable(surface, along, lower=lower, upper=upper)
+    e = table.axes(surface, xi)[0][:, 0]
+    assert np.all(np.einsum("ni,ni->n", e, along(surface.position(xi))) > 0.99)
 
 
 def test_two_directions() -> None:

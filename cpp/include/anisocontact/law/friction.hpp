@@ -61,8 +61,8 @@ class HeCurnier {
  public:
   static Descriptor describe() {
     return {"he-curnier",
-            "Friction of two orthotropic surfaces, each with its own directions: F = C^-2, "
-            "C = alpha_1 I + alpha_2 m (x) m + alpha_3 k (x) k.",
+            "Friction of two orthotropic surfaces, F = C^-2, C = alpha_1 I + alpha_2 m (x) m + "
+            "alpha_3 k (x) k; m and k are the first axes of directions and directions_second.",
             {{"alpha", Kind::vector, "1",
               "isotropic part, part along the first axis m of the first surface, part along the "
               "first axis k of the second"}},
