@@ -137,10 +137,10 @@ def _contact(
     auto = min(
         auto_penalty(model, group, body) for (_, group), body in zip(sides, bodies, strict=True)
     )
+    finite = not all(body.linear for body in bodies)
     if section.meshed:
-        finite = not all(body.linear for body in bodies)
         return _meshed(section, model, auto, finite, place)
-    return _rigid(case, section, model, auto, place)
+    return _rigid(case, section, model, auto, finite, place)
 
 
 def _meshed(
@@ -153,12 +153,14 @@ def _meshed(
         return kind(model, section.slave, section.master, law=law, current_area=finite, name=name)
 
 
-def _rigid(case: Case, section: ContactSection, model: Model, auto: float, place: str) -> Contact:
+def _rigid(
+    case: Case, section: ContactSection, model: Model, auto: float, finite: bool, place: str
+) -> Contact:
     master = objects.surface(case.surface[section.master], f"surface.{section.master}")
     interface = objects.interface(section, master, place, auto)
     name = f"{section.slave} on {section.master}"
     with objects.within(place):
-        contact = Contact(model, section.slave, interface, name=name)
+        contact = Contact(model, section.slave, interface, current_area=finite, name=name)
     for law in ("adhesion", "friction"):
         field = getattr(interface, law).directions
         if field is not None:

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc
-from anisocontact.contact.quadrature import default_degree, facet_quadrature
+from anisocontact.contact.quadrature import Surfaced, default_degree, facet_quadrature
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.errors import InputError
 from anisocontact.interface import Interface, Response
@@ -19,9 +19,9 @@ Floats = npt.NDArray[np.float64]
 class Contact(ContactRecord):
     """Contact of a facet group with the master surface of an interface.
 
-    The residual gets `-integral of t . delta u` over the slave area in the reference
-    configuration, the tangent `-integral of delta u . (dt/dx) . du`; `t` is the traction on the
-    slave at `x = X + u`. The history advances with `commit` only.
+    The residual gets `-integral of t . delta u` over the slave area, the tangent
+    `-integral of delta u . (dt/dx) . du` and, where the area is that of now, its change; `t` is the
+    traction on the slave at `x = X + u`. The history advances with `commit` only.
 
     Args:
         model: Mesh with the facet group.
@@ -29,6 +29,7 @@ class Contact(ContactRecord):
         interface: Surface and laws, also laws written in Python.
         degree: Degree of the quadrature on the facets, >= 1; twice the order of the displacement
             if not given.
+        current_area: Whether tractions act on the area of now (finite strain) or of the reference.
         name: Name in output; the slave if not given.
 
     Attributes:
@@ -46,6 +47,7 @@ class Contact(ContactRecord):
         interface: Interface | PythonInterface,
         *,
         degree: int | None = None,
+        current_area: bool = False,
         name: str = "",
     ) -> None:
         facets = model.facets(slave, "slave")
@@ -55,7 +57,9 @@ class Contact(ContactRecord):
         if degree < 1:
             raise InputError(f"{degree!r} given, must be >= 1", "degree")
         self.interface = interface
+        self.current_area = current_area
         self.quadrature = facet_quadrature(model.space, facets, degree)
+        self._moved: Surfaced | None = None
         points = self.quadrature.reference
         state = interface.initial_state(points)
         start = interface.update(state, points, tangent=False)
@@ -79,7 +83,9 @@ class Contact(ContactRecord):
         """
         x = self.quadrature.reference + self.quadrature.at_points(u)
         response = self.interface.update(self.state, x, dt)
-        self._trial = Snapshot(x, self.quadrature.areas, response)
+        self._moved = self.quadrature.moved(u) if self.current_area else None
+        areas = self.quadrature.areas if self._moved is None else self._moved.areas
+        self._trial = Snapshot(x, areas, response)
         return response
 
     def elastic_slip(self) -> Floats:
@@ -89,11 +95,13 @@ class Contact(ContactRecord):
 
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial on the slave to the local nodes, (nodes, 3), force."""
-        self.quadrature.to_nodes(self.trial.traction, out)
+        self.quadrature.to_nodes(self.trial.traction, out, self.current.areas)
 
     def add_tangent(self, matrix: Mat) -> None:
         """Add `-d force / d u` of the trial to the matrix of the system."""
-        blocks = self.quadrature.facet_matrices(-self.trial.tangent)
+        blocks = self.quadrature.facet_matrices(-self.trial.tangent, self.current.areas)
+        if self._moved is not None:
+            blocks -= self._moved.area_matrices(self.trial.traction)
         nodes = self.quadrature.nodes
         matrix.setValuesBlockedLocalRCV(nodes, nodes, blocks, PETSc.InsertMode.ADD_VALUES)
 

@@ -25,12 +25,16 @@ class FacetQuadrature:
         basis: Value of each node's basis function at each point, (m, q, k).
         weights: Area that belongs to each point in the reference configuration, (m, q), length^2.
         reference: Position of each point in the reference configuration, (m q, 3), length.
+        gradient: Derivatives of the basis along the two coordinates of the facet, (m, q, k, 2).
+        tangents: Derivatives of the position in the reference configuration, (m, q, 2, 3), length.
     """
 
     nodes: Ints
     basis: Floats
     weights: Floats
     reference: Floats
+    gradient: Floats
+    tangents: Floats
 
     @property
     def count(self) -> int:
@@ -56,27 +60,94 @@ class FacetQuadrature:
         """Nodal vectors interpolated to the points: (local nodes, 3) -> (m q, 3)."""
         return np.asarray(self.interpolation @ nodal[: self.interpolation.shape[1]])
 
-    def to_nodes(self, traction: Floats, out: Floats) -> None:
-        """Add `integral of basis * traction` to the nodal vectors `out`, (local nodes, 3)."""
-        forces = self.interpolation.T @ (self.areas[:, None] * traction)
+    def moved(self, nodal: Floats) -> Surfaced:
+        """The facets with displaced nodes, (local nodes, 3), length."""
+        own = nodal[self.nodes][:, None]
+        return Surfaced(self, self.tangents + self.gradient.swapaxes(2, 3) @ own)
+
+    def to_nodes(self, traction: Floats, out: Floats, areas: Floats | None = None) -> None:
+        """Add `integral of basis * traction` to the nodal vectors `out`, (local nodes, 3).
+
+        Args:
+            traction: At each point, (m q, 3), stress.
+            out: Nodal forces, (local nodes, 3), force.
+            areas: Area of each point, (m q,), length^2; that of the reference if not given.
+        """
+        weights = self.areas if areas is None else areas
+        forces = self.interpolation.T @ (weights[:, None] * traction)
         out[: len(forces)] += forces
 
-    def facet_matrices(self, point_matrices: Floats) -> Floats:
+    def facet_matrices(self, point_matrices: Floats, areas: Floats | None = None) -> Floats:
         """`integral of basis_a D basis_b` on each facet.
 
         Args:
             point_matrices: D at each point, (m q, 3, 3), stress/length.
+            areas: Area of each point, (m q,), length^2; that of the reference if not given.
 
         Returns:
             One matrix for each facet, rows and columns node by node, (m, 3 k, 3 k).
         """
         m, q, k = self.basis.shape
-        weighted = self.weights[..., None, None] * point_matrices.reshape(m, q, 3, 3)
+        weights = self.weights if areas is None else areas.reshape(m, q)
+        weighted = weights[..., None, None] * point_matrices.reshape(m, q, 3, 3)
         pairs = self.basis[:, :, :, None] * self.basis[:, :, None, :]
         # (m, k k, q) (m, q, 9): one product of small matrices per facet.
         product = pairs.reshape(m, q, k * k).swapaxes(1, 2) @ weighted.reshape(m, q, 9)
         blocks = product.reshape(m, k, k, 3, 3).swapaxes(2, 3)
         return blocks.reshape(m, 3 * k, 3 * k)
+
+
+@dataclass(frozen=True)
+class Surfaced:
+    """Facets of a quadrature in another configuration.
+
+    Attributes:
+        quadrature: The facets in the reference configuration.
+        tangents: Derivatives of the position along the facet coordinates, (m, q, 2, 3), length.
+    """
+
+    quadrature: FacetQuadrature
+    tangents: Floats
+
+    @cached_property
+    def _cross(self) -> Floats:
+        return np.cross(self.tangents[:, :, 0], self.tangents[:, :, 1])
+
+    @cached_property
+    def _weights(self) -> Floats:
+        """Weights of the rule: what the area of the tangents is multiplied by, (m, q)."""
+        first = self.quadrature.tangents
+        return self.quadrature.weights / _norm(np.cross(first[:, :, 0], first[:, :, 1]))
+
+    @cached_property
+    def areas(self) -> Floats:
+        """Area of each point in this configuration, (m q,), length^2."""
+        return (self._weights * _norm(self._cross)).reshape(-1)
+
+    def area_matrices(self, traction: Floats) -> Floats:
+        """`sum over the points of basis_a t (d area / d x_b)` on each facet.
+
+        Args:
+            traction: t at each point, (m q, 3), stress.
+
+        Returns:
+            One matrix for each facet, rows and columns node by node, (m, 3 k, 3 k).
+        """
+        m, q, k = self.quadrature.basis.shape
+        unit = self._cross / _norm(self._cross)[..., None]
+        sides = np.stack(
+            [np.cross(self.tangents[:, :, 1], unit), np.cross(unit, self.tangents[:, :, 0])], axis=2
+        )
+        change = self.quadrature.gradient @ sides
+        pull = self._weights[..., None] * traction.reshape(m, q, 3)
+        blocks = np.einsum(
+            "mqa,mqi,mqbj->maibj", self.quadrature.basis, pull, change, optimize=True
+        )
+        return np.asarray(blocks.reshape(m, 3 * k, 3 * k))
+
+
+def _norm(vectors: Floats) -> Floats:
+    return np.asarray(np.linalg.norm(vectors, axis=-1))
 
 
 def default_degree(order: int) -> int:
@@ -102,23 +173,28 @@ def facet_quadrature(space: Any, facets: Ints, degree: int) -> FacetQuadrature:
     corners = basix.geometry(element.cell_type)
     topology = basix.topology(element.cell_type)[2]
     closure = element.entity_closure_dofs[2]
-    basis, position, jacobian = [], [], []
+    basis, gradient, position, jacobian = [], [], [], []
     for side, vertices in enumerate(topology):
         origin = corners[vertices[0]]
         edges = corners[vertices[1:3]] - origin
         at = origin + rule @ edges
-        basis.append(element.tabulate(0, at)[0, :, :, 0][:, closure[side]])
+        shape = element.tabulate(1, at)[..., 0][:, :, closure[side]]
+        basis.append(shape[0])
+        gradient.append(np.einsum("td,dqb->qbt", edges, shape[1:]))
         table = shape_element.tabulate(1, at)[..., 0]
         position.append(table[0])
         jacobian.append(np.einsum("td,dqb->tqb", edges, table[1:]))
     nodes = shape_points[shape_nodes[cells]]
     tangents = np.einsum("mtqb,mbi->mtqi", np.stack(jacobian)[local], nodes)
-    area = np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=-1)
+    tangents = tangents.swapaxes(1, 2)
+    area = _norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]))
     return FacetQuadrature(
         nodes=space.dofmap.list[cells[:, None], np.array(closure)[local]],
         basis=np.stack(basis)[local],
         weights=weights * area,
         reference=np.einsum("mqb,mbi->mqi", np.stack(position)[local], nodes).reshape(-1, 3),
+        gradient=np.stack(gradient)[local],
+        tangents=tangents,
     )
 
 

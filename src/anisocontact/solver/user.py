@@ -20,7 +20,7 @@ from anisocontact._fenicsx import (
     prescribed_rows,
     ufl,
 )
-from anisocontact.contact import AnyContact, Contact, FacetContact
+from anisocontact.contact import AnyContact, Contact
 from anisocontact.errors import InputError
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.newton import Newton, OptionValue
@@ -82,7 +82,7 @@ class ContactProblem:
         self._matrix = create_stiffness(self._tangent)
         self._diagonal = self._matrix.getDiagonal()
         self._support_scale = self._diagonal.sum() / self._diagonal.getSize()
-        meshed = any(isinstance(c, FacetContact) for c in contacts)
+        meshed = not all(isinstance(c, Contact) for c in contacts)
         self._coupled = CoupledTangent(self._matrix, space) if meshed else None
         self._dt = 1.0
         self._force = self._matrix.createVecLeft()
@@ -173,7 +173,7 @@ class ContactProblem:
                 contact.add_tangent(bulk)
         bulk.assemble()
         if self._coupled:
-            meshed = [c for c in self.contacts if isinstance(c, FacetContact)]
+            meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
             self._coupled.assemble(out, [c.couplings() for c in meshed])
         out.zeroRowsLocal(prescribed_rows(self.bcs), self._support_scale)
 
