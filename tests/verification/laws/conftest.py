@@ -1,13 +1,15 @@
-"""Random problems of the sliding rules that several verification tests start from."""
+"""Random problems and samples of the sliding rules, which the verification tests start from."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 import numpy.typing as npt
 import pytest
+
+from anisocontact import registry
 
 Floats = npt.NDArray[np.float64]
 
@@ -69,29 +71,48 @@ def random_slides() -> Callable[..., Slides]:
 
 @dataclass(frozen=True)
 class Rule:
-    """A sliding rule with values of its parameters."""
+    """A registered sliding rule with values of its parameters.
+
+    `isotropic` are values with which the rule is isotropic where B and F are.
+    """
 
     name: str
-    parameters: dict[str, object]
+    parameters: dict[str, object] = field(default_factory=dict)
+    isotropic: dict[str, object] | None = None
 
     @property
     def label(self) -> str:
         return "-".join([self.name, *(v for v in self.parameters.values() if isinstance(v, str))])
 
 
-RULES = (
-    Rule("maximum-dissipation", {}),
-    Rule("linear", {}),
-    Rule("coaxial", {}),
-    Rule("slip-ellipse", {"slip_axes": (3.0, 1.0), "slip_angle": 0.7}),
-    Rule("radial", {}),
-    Rule("explicit", {"history": "centre"}),
-    Rule("explicit", {"history": "incremental"}),
-    Rule("explicit", {"history": "kuhn-tucker"}),
-)
+# A new rule: its name here, with values for its parameters.
+SAMPLES: dict[str, list[Rule]] = {
+    "maximum-dissipation": [Rule("maximum-dissipation")],
+    "linear": [Rule("linear")],
+    "coaxial": [Rule("coaxial")],
+    "slip-ellipse": [
+        Rule(
+            "slip-ellipse",
+            {"slip_axes": (3.0, 1.0), "slip_angle": 0.7},
+            isotropic={"slip_axes": (1.3, 1.3), "slip_angle": 0.7},
+        )
+    ],
+    "radial": [Rule("radial")],
+    "explicit": [
+        Rule("explicit", {"history": h}) for h in ("centre", "incremental", "kuhn-tucker")
+    ],
+}
 
 
-@pytest.fixture(params=RULES, ids=lambda r: r.label)
-def rule(request) -> Rule:
-    """Every rule, `explicit` with each of its histories."""
-    return request.param
+def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
+    """Run a test that asks for a `rule` for every sample of every registered rule."""
+    if "rule" in metafunc.fixturenames:
+        names = [e.name for e in registry.sliding_rules()]
+        rules = [r for name in names for r in SAMPLES.get(name, [])]
+        metafunc.parametrize("rule", rules, ids=[r.label for r in rules])
+
+
+@pytest.fixture(scope="session")
+def samples() -> dict[str, list[Rule]]:
+    """The samples by the name of the rule."""
+    return SAMPLES

@@ -1,4 +1,4 @@
-"""No rule creates energy: D = -T . dxi_sl >= 0.
+"""No rule creates energy on a path through the interface: D = -T . dxi_sl >= 0.
 
 Requirement and source: the sign convention of the project (D of a slip increment on the slave) and
 the second law; section 4.1 d) of the paper asks for the greatest D. Why it holds for each rule is
@@ -8,65 +8,18 @@ shown in docs/theory/sliding-rules.md. A rounding of 1e-13 |T| |dxi_sl| is allow
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.interface import Interface
-from anisocontact.laws import Adhesion, Friction, NormalLaw, slide
+from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface
 
 ANGLE = st.floats(0.0, 2.0 * np.pi)
-SIZE = st.floats(-3.0, 3.0)  # powers of ten
 
 
-def tensor(angle, first, second):
-    c, s = np.cos(angle), np.sin(angle)
-    q = np.array([[c, -s], [s, c]])
-    return q @ np.diag([10.0**first, 10.0**second]) @ q.T
-
-
-def vector(angle, size):
-    return 10.0**size * np.array([np.cos(angle), np.sin(angle)])
-
-
-@settings(
-    max_examples=300, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
-@given(
-    s=st.tuples(ANGLE, SIZE, SIZE),
-    f=st.tuples(ANGLE, SIZE, SIZE),
-    stored=st.tuples(ANGLE, SIZE),
-    increment=st.tuples(ANGLE, SIZE),
-    ratio=st.floats(-8.0, -1e-6),
-)
-def test_every_slip_dissipates(rule, s, f, stored, increment, ratio):
-    """A trial force from any stored force and any increment: T_tr = T_n - S dxi."""
-    s, f, increment = tensor(*s), tensor(*f), vector(*increment)
-    trial = vector(*stored) - s @ increment
-    assume(np.linalg.norm(trial) > 0.0)
-    n = 10.0**ratio * np.sqrt(trial @ f @ trial)
-    r = slide(
-        s[None], f[None], trial[None], [n], rule.name, increment=increment[None], **rule.parameters
-    )
-    assert r.slides.all() and r.converged.all()
-    traction, slip = r.traction[0], r.slip[0]
-    if rule.parameters.get("history") == "incremental":
-        # slip and force belong to each other up to the rounding of S^-1 (T - T_tr)
-        allowed = (
-            1e-13
-            * np.linalg.norm(traction)
-            * np.linalg.norm(trial)
-            * np.linalg.norm(np.linalg.inv(s))
-        )
-    else:
-        allowed = 1e-13 * np.linalg.norm(traction) * np.linalg.norm(slip)
-    assert -traction @ slip >= -allowed
-
-
-@settings(
-    max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
-)
+@settings(max_examples=25, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), angle=ANGLE, turn=ANGLE)
 def test_accumulated_dissipation_never_falls(rule, seed, angle, turn):
     """A random walk with changing pressure through the interface, axes of S and F apart: the

@@ -1,9 +1,9 @@
 """The page on the sliding rules shows what the code gives.
 
 Requirement: the numbers of the documentation are asserted. The script that wrote the page runs
-again and has to give the same text, whose tables have two to five digits; the paths of the
-refinement are deterministic, and rounding moves none of these digits but by chance of a tie, which
-would show here.
+again; its text has to be the same and its numbers, too, to one unit of the last digit shown. The
+paths of the refinement are deterministic, but the history `kuhn-tucker` lets roundings decide
+whether a force that lies on the ellipse sticks, which is seen in the second digit.
 """
 
 from __future__ import annotations
@@ -38,8 +38,20 @@ def rows(page, path):
     return {rule: [float(x) for x in cells.split(" | ")] for rule, cells in found}
 
 
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]\d+)?")
+
+
+def last_digit(number):
+    """One unit of the last digit of a printed number."""
+    mantissa, _, exponent = number.partition("e")
+    return 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+
+
 def test_page_is_what_the_script_gives(script, page):
-    assert script.page() == page
+    computed = script.page()
+    assert NUMBER.split(computed) == NUMBER.split(page)
+    for a, b in zip(NUMBER.findall(computed), NUMBER.findall(page), strict=True):
+        assert abs(float(a) - float(b)) <= 1.01 * last_digit(b), (a, b)
 
 
 @pytest.mark.parametrize("path", ["half circle", "corner, N falling"])

@@ -19,22 +19,14 @@ IMPLICIT = (
     ("coaxial", {}),
     ("slip-ellipse", {"slip_axes": (30.0, 1.0), "slip_angle": 0.7}),
 )
-EVERY = (
-    *IMPLICIT,
-    ("radial", {}),
-    ("explicit", {"history": "centre"}),
-    ("explicit", {"history": "incremental"}),
-    ("explicit", {"history": "kuhn-tucker"}),
-)
-ids = [f"{name}-{p.get('history', '')}".rstrip("-") for name, p in EVERY]
 
 
-def conjugate(rule, friction, parameters):
-    if rule == "maximum-dissipation":
+def conjugate(name, friction, parameters):
+    if name == "maximum-dissipation":
         return friction
-    if rule == "coaxial":
+    if name == "coaxial":
         return np.broadcast_to(np.eye(2), friction.shape)
-    if rule == "linear":
+    if name == "linear":
         values, q = np.linalg.eigh(friction)
         return np.einsum("nij,nj,nkj->nik", q, np.sqrt(values), q)
     c, s = np.cos(parameters["slip_angle"]), np.sin(parameters["slip_angle"])
@@ -89,19 +81,19 @@ def test_far_meeting_where_the_near_pair_is_gone():
     assert r.traction[0] @ f @ r.traction[0] == pytest.approx(0.64, rel=1e-14)
 
 
-@pytest.mark.parametrize(("rule", "parameters"), IMPLICIT)
+@pytest.mark.parametrize(("name", "parameters"), IMPLICIT)
 @pytest.mark.parametrize(("condition", "decades"), [(1e2, 12.0), (1e8, 12.0), (1e8, 2.0)])
-def test_first_meeting_over_twelve_decades(random_slides, rule, parameters, condition, decades):
+def test_first_meeting_over_twelve_decades(random_slides, name, parameters, condition, decades):
     """Tensors along the axes, so that their conditions do no harm to the reference. Before the root
     the path is outside the ellipse (1e-9: a meeting that close is the root itself), at the root on
     it (1e-11, the rounding of two nearly opposite terms of 1e-12 relative size at worst)."""
     p = random_slides(
         2000, 5, condition=condition, ratio=(10.0**-decades, 1.0 - 1e-9), aligned=True
     )
-    r = slide(*p, rule, **parameters)
+    r = slide(*p, name, **parameters)
     assert r.converged.all() and np.isfinite(r.d_trial).all() and np.isfinite(r.d_pressure).all()
     assert np.abs(p.size(r.traction) - 1.0).max() < 1e-14
-    k = conjugate(rule, p.friction, parameters)
+    k = conjugate(name, p.friction, parameters)
     kt = np.einsum("nij,nj->ni", k, r.traction)
     multiplier = -(r.slip * kt).sum(1) / (kt * kt).sum(1)
     assert (multiplier > 0.0).all()
@@ -110,35 +102,8 @@ def test_first_meeting_over_twelve_decades(random_slides, rule, parameters, cond
     assert np.abs(path_size(p, k, multiplier[:, None]) - 1.0).max() < 1e-11
 
 
-@pytest.mark.parametrize(("rule", "parameters"), EVERY, ids=ids)
-def test_turned_tensors_of_condition_1e8(random_slides, rule, parameters):
-    """Turned axes: the components of F themselves carry its condition times the rounding, so the
-    force is on the ellipse to 1e-7, and every number is finite."""
-    p = random_slides(10_000, 6, condition=1e8, ratio=(1e-12, 0.999))
-    r = slide(*p, rule, **parameters)
-    assert r.converged.all()
-    for a in (r.traction, r.stored, r.slip, r.d_trial, r.d_pressure):
-        assert np.isfinite(a).all()
-    assert np.abs(p.size(r.traction) - 1.0).max() < 1e-7
-
-
-@pytest.mark.parametrize(("rule", "parameters"), EVERY, ids=ids)
-@pytest.mark.parametrize("ratio", [1e-300, 1e-100, 1e-30, 1.0 - 2e-16])
-def test_vanishing_pressure_and_the_limit_itself(rule, parameters, ratio):
-    """The force is N times a unit vector of the ellipse, whatever the size of N: 1e-14,
-    roundings."""
-    s, f = np.array([[3.0, 1.0], [1.0, 2.0]]), np.array([[10.0, 2.0], [2.0, 90.0]])
-    t = np.array([1.0, -0.4])
-    n = ratio * np.sqrt(t @ f @ t)
-    r = slide(s[None], f[None], t[None], [n], rule, **parameters)
-    assert r.converged.all() and np.isfinite(r.d_trial).all() and np.isfinite(r.d_pressure).all()
-    unit = r.traction[0] / n
-    assert np.sqrt(unit @ f @ unit) == pytest.approx(1.0, rel=1e-14)
-
-
-@pytest.mark.parametrize(("rule", "parameters"), EVERY, ids=ids)
 @pytest.mark.parametrize("angle", [0.0, 0.4])
-def test_strip_is_the_limit_of_a_thin_ellipse(rule, parameters, angle):
+def test_strip_is_the_limit_of_a_thin_ellipse(rule, angle):
     """eps_1 -> 0 [Konyukhov Schweizerhof 2006, section 4.6]: a force in the range of S, as the
     strip makes it, gives the force and slip of eps_1 = 0. The difference is of first order in
     eps_1: it falls by 100 (90 to 110) when eps_1 does, and at eps_1/eps_2 = 1e-10 is below 1e-7
@@ -150,13 +115,13 @@ def test_strip_is_the_limit_of_a_thin_ellipse(rule, parameters, angle):
 
     def solve(ratio):
         s = e2 * (np.outer(across, across) + ratio * np.outer(along, along))
-        return slide(s[None], f[None], t[None], [2.0], rule, **parameters)
+        return slide(s[None], f[None], t[None], [2.0], rule.name, **rule.parameters)
 
     strip = solve(0.0)
     assert strip.converged.all()
     error = [np.abs(solve(x).traction - strip.traction).max() for x in (1e-4, 1e-6, 1e-10)]
     assert error[2] < 1e-7
-    if parameters.get("history") != "incremental":
+    if rule.parameters.get("history") != "incremental":
         np.testing.assert_allclose(
             solve(1e-10).slip, strip.slip, rtol=0.0, atol=1e-5 * np.abs(strip.slip).max()
         )
@@ -164,9 +129,9 @@ def test_strip_is_the_limit_of_a_thin_ellipse(rule, parameters, angle):
         assert 90.0 < error[0] / error[1] < 110.0
 
 
-@pytest.mark.parametrize(("rule", "parameters"), IMPLICIT)
+@pytest.mark.parametrize(("name", "parameters"), IMPLICIT)
 @pytest.mark.parametrize("angle", [0.0, 0.4])
-def test_strip_with_a_force_it_cannot_relieve(rule, parameters, angle):
+def test_strip_with_a_force_it_cannot_relieve(name, parameters, angle):
     """A force along the strip (a direction field that turns can leave one) does not yield by slip.
     The force is then the limit eps_1 -> 0, of infinite lambda: N m/|m|_F with m = adj(S K) T_tr;
     its tangent is that of this map, checked against the thin ellipse to first order (1e-8 at
@@ -180,7 +145,7 @@ def test_strip_with_a_force_it_cannot_relieve(rule, parameters, angle):
             f[None],
             t[None],
             [2.0],
-            rule,
+            name,
             **parameters,
         )
         for x in (1e-9, 0.0)

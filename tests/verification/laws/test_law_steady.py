@@ -303,21 +303,3 @@ def test_kuhn_tucker_without_a_root_returns_radially(dxi):
         s[None], F[None], trial[None], [n], "explicit", history="kuhn-tucker", increment=[dxi]
     )
     np.testing.assert_allclose(r.stored[0], 0.3 * trial, rtol=1e-13)
-
-
-def test_isotropic_limit(random_slides, rule):
-    """All rules are T = mu N T_tr/|T_tr| for isotropic B and F [Konyukhov Schweizerhof 2006, eq.
-    (100)], with one exception that is meant: a slip ellipse that is no circle. 1e-12."""
-    p = random_slides(1000, 31)
-    mu, e = 0.27, 40.0
-    parameters = rule.parameters
-    if rule.name == "slip-ellipse":
-        parameters = {"slip_axes": (1.3, 1.3), "slip_angle": 0.7}
-    s, f = (np.broadcast_to(x * np.eye(2), (1000, 2, 2)) for x in (e, 1.0 / mu**2))
-    n = np.full(1000, 2.0)
-    r = slide(s, f, p.trial, n, rule.name, **parameters)
-    length = np.linalg.norm(p.trial, axis=1)
-    expected = p.trial * np.minimum(1.0, mu * 2.0 / length)[:, None]
-    np.testing.assert_allclose(r.traction, expected, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(r.stored, expected, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(r.slip, (expected - p.trial) / e, rtol=0, atol=1e-12)

@@ -1,4 +1,4 @@
-"""Consistent tangents of the sliding rules by order of convergence, in every branch.
+"""Consistent tangents through the interface by order of convergence, in every branch.
 
 Requirement: every tangent is exact, in stick and in slip, for every rule, with respect to the force
 and to the pressure, through the Python interface. Source: calculus (checked by order: halving the
@@ -27,45 +27,6 @@ def orders(function, tangent, steps):
         difference = (function(h) - function(-h)) / (2.0 * h)
         errors.append(np.sqrt(np.mean((difference - tangent) ** 2)))
     return np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
-
-
-@pytest.mark.parametrize("variable", ["T_tr,1", "T_tr,2", "N"])
-def test_slide_in_slip(random_slides, rule, variable):
-    """One step of the law alone at 2,000 random problems, away from the limit and from a second
-    meeting with the ellipse (N between 0.3 and 0.8 of the trial force), step 1e-3 of the force."""
-    p = random_slides(2000, 11, condition=10.0, ratio=(0.3, 0.8))
-    r = slide(*p, rule.name, **rule.parameters)
-    assert r.slides.all()
-    axis = {"T_tr,1": 0, "T_tr,2": 1, "N": None}[variable]
-
-    def traction(h):
-        trial, pressure = p.trial.copy(), p.pressure.copy()
-        if axis is None:
-            pressure *= 1.0 + h
-        else:
-            trial[:, axis] += h
-        return slide(
-            p.stiffness, p.friction, trial, pressure, rule.name, **rule.parameters
-        ).traction / p.pressure[:, None] ** (axis is None)
-
-    exact = r.d_pressure if axis is None else r.d_trial[:, :, axis]
-    found = orders(traction, exact, (2e-3, 1e-3, 5e-4))
-    if axis is None and (rule.name in ("radial", "explicit")):
-        # linear in N: the difference is exact but for rounding, some 1e-16/h
-        assert np.abs((traction(1e-3) - traction(-1e-3)) / 2e-3 - exact).max() < 1e-11
-        return
-    assert ((found > ORDER[0]) & (found < ORDER[1])).all(), found
-
-
-def test_slide_in_stick(random_slides, rule):
-    """Inside the ellipse the force is the trial force: tangent one and zero, to the last digit."""
-    p = random_slides(200, 12)
-    r = slide(p.stiffness, p.friction, p.trial, 1e5 * p.pressure, rule.name, **rule.parameters)
-    assert not r.slides.any()
-    np.testing.assert_array_equal(r.traction, p.trial)
-    np.testing.assert_array_equal(r.d_trial, np.broadcast_to(np.eye(2), (200, 2, 2)))
-    np.testing.assert_array_equal(r.d_pressure, 0.0)
-    np.testing.assert_array_equal(r.slip, 0.0)
 
 
 def interface(surface, rule):

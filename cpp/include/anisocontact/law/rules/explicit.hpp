@@ -68,11 +68,14 @@ class Explicit {
     const Covector<S> s = p.stiffness * p.increment;
     const Vector<S> fs = p.friction * s;
     const S a = dot(s, fs), b = -dot(p.trial, fs);
-    const S c = dot(p.trial, p.friction * p.trial) - p.pressure * p.pressure;
-    const S discriminant = b * b - a * c;
-    if (!(value(b) > 0.0) || !(value(discriminant) > 0.0)) return false;
-    r.slip = (c / (b + sqrt(discriminant))) * p.increment;
-    r.stored = p.trial + p.stiffness * r.slip;
+    if (!(value(b) > 0.0)) return false;
+    // the point of the line that is nearest to zero, and the half chord from there
+    const Covector<S> middle = p.trial + (b / a) * s;
+    const S chord = (p.pressure * p.pressure - dot(middle, p.friction * middle)) / a;
+    if (!(value(chord) > 0.0)) return false;
+    const S half = sqrt(chord);
+    r.slip = (b / a - half) * p.increment;
+    r.stored = middle - half * s;
     return true;
   }
 
