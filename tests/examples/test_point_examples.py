@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from anisocontact.case.trace import Trace, load_trace
 from anisocontact.cli import main
 from anisocontact.point import History, drive
+from anisocontact.point.history import ENERGY, POINT, STEP
 
 FOLDER = Path(__file__).parents[2] / "examples" / "point"
 CASES = sorted(path.stem for path in FOLDER.glob("*.toml"))
@@ -155,3 +157,23 @@ def test_example_runs_from_the_command(tmp_path: Path) -> None:
     """As it stands, with pictures."""
     assert main(["trace", str(FOLDER / "screw_cylinder.toml"), "-o", str(tmp_path / "out")]) == 0
     assert (tmp_path / "out" / "pictures" / "path.png").stat().st_size > 20_000
+
+
+def test_recipes_of_the_guide() -> None:
+    """The fragments of the page on loads are valid, given what its reader has at hand."""
+    page = Path(__file__).parents[2] / "docs" / "howto" / "point-loads.md"
+    names = (
+        "import numpy as np\n"
+        "from anisocontact.anisotropy import make_directions\n"
+        "from anisocontact.laws import Adhesion\n"
+        "from anisocontact.point import PrescribedPath, Push\n"
+    )
+    blocks = re.findall(r"^```python\n(.*?)^```", page.read_text(), re.DOTALL | re.MULTILINE)
+    assert len(blocks) == 2
+    exec(compile(names + "\n".join(blocks), str(page), "exec"), {})
+
+
+def test_guide_names_every_column() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "howto" / "point-loads.md").read_text()
+    names = [*POINT.names, *STEP.names, *ENERGY.names]
+    assert [name for name in names if f"`{name}`" not in page] == []
