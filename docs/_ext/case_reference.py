@@ -20,11 +20,21 @@ the JSON Schema this page is made from; editors use it to complete and check a c
 typed."""
 
 
-class CaseReference:
-    """The page of one schema."""
+TRACE_INTRODUCTION = """# Case file of the point driver
 
-    def __init__(self, schema: Schema) -> None:
+`anisocontact trace CASE.toml` moves a point, or several that are rigidly linked, over a rigid
+surface. The file has the surface, the laws of the contact, which are those of the main case file,
+and one load. `anisocontact schema --trace` prints the JSON Schema this page is made from. The
+cases in `examples/point/` use every kind of load."""
+
+
+class CaseReference:
+    """The page of one schema; `prefix` keeps its labels apart from those of other pages."""
+
+    def __init__(self, schema: Schema, introduction: str = INTRODUCTION, prefix: str = "") -> None:
         self.root = schema
+        self.introduction = introduction
+        self.prefix = prefix
         self.definitions: Mapping[str, Schema] = schema.get("$defs", {})
         self.places: dict[str, list[str]] = {}
         for key, value in schema.get("properties", {}).items():
@@ -32,7 +42,7 @@ class CaseReference:
 
     def page(self) -> str:
         """Return the page."""
-        parts = [INTRODUCTION, self._properties(self.root)]
+        parts = [self.introduction, self._properties(self.root)]
         return "\n\n".join(parts + [self._section(name) for name in self.places])
 
     def _visit(self, schema: Schema, path: str) -> None:
@@ -51,7 +61,12 @@ class CaseReference:
         heading = f"`{place}`" + (f": {kind}" if kind else "")
         also = f"Also as {', '.join(f'`{other}`' for other in others)}.\n\n" if others else ""
         about = schema.get("description", "")
-        return f"({name.lower()})=\n## {heading}\n\n{about}\n\n{also}{self._properties(schema)}"
+        return (
+            f"({self._label(name)})=\n## {heading}\n\n{about}\n\n{also}{self._properties(schema)}"
+        )
+
+    def _label(self, name: str) -> str:
+        return f"{self.prefix}{name.lower()}"
 
     def _kind(self, name: str) -> str:
         """Return the words that choose this table among others, such as the name of its model."""
@@ -82,7 +97,7 @@ class CaseReference:
         """Return what a value may be, in words."""
         if "$ref" in schema:
             name = schema["$ref"].rsplit("/", 1)[-1]
-            return f"[{self._kind(name) or 'table'}](#{name.lower()})"
+            return f"[{self._kind(name) or 'table'}](#{self._label(name)})"
         if "const" in schema or "enum" in schema:
             return ", ".join(map(code, schema.get("enum", [schema.get("const")])))
         options = [option for key in ("anyOf", "oneOf") for option in schema.get(key, ())]

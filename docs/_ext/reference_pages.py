@@ -12,7 +12,7 @@ from typing import Any
 
 from sphinx.application import Sphinx
 
-from case_reference import CaseReference
+from case_reference import TRACE_INTRODUCTION, CaseReference
 from markdown_parts import code, table
 
 # --- command -----------------------------------------------------------------------------------
@@ -122,6 +122,7 @@ def write_pages(app: Sphinx) -> None:
     """Write the pages that changed and remove those whose origin is gone."""
     from anisocontact import registry
     from anisocontact.case import json_schema
+    from anisocontact.case.trace import trace_schema
     from anisocontact.cli import build_parser
 
     rooms = {
@@ -134,6 +135,7 @@ def write_pages(app: Sphinx) -> None:
     }
     pages = {
         "case-file": CaseReference(json_schema()).page(),
+        "trace-file": CaseReference(trace_schema(), TRACE_INTRODUCTION, "trace-").page(),
         "command": command_page(build_parser()),
         "laws": registry_page(rooms),
     }
