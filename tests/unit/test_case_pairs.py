@@ -60,6 +60,8 @@ WRONG = [
     ('master = "base.top"', 'master = "block.bottom"', "contact[0].master", "same facets"),
     ('"two-half"', '"two-halves"', "contact[0].pass", "two-half"),
     ('master = "base.top"', 'master = "plate"', "contact[0].pass", '"single" needed'),
+    ("pass =", "degree = 31\npass =", "contact[0].degree", "31 given"),
+    ("pass =", "degree = 0\npass =", "contact[0].degree", "0 given"),
     ("pass =", 'evolution = "total"\npass =', "contact[0].evolution", '"transport" only'),
     ("coefficients = [0.3, 0.3]", "coefficients = [0.3, 0.1]", "contact[0].friction", "directions"),
 ]
@@ -101,6 +103,8 @@ def test_what_is_built(tmp_path, capsys):
     # 10 E / h of the base: E = 100, facets of 2/3; the block has 1000 and 1/2
     assert contact.interface.normal.named[1]["penalty"][0] == pytest.approx(1500.0)
     assert contact.name == "block.bottom on base.top"
+    finer = _built(tmp_path, CASE.replace("pass =", "degree = 6\npass =")).problem.contacts[0]
+    assert [len(half.areas) for half in finer.passes] == [4 * 16, 9 * 16]
     single = CASE.replace('pass = "two-half"\n', "")
     assert isinstance(_built(tmp_path, single).problem.contacts[0], FacetContact)
     soft = CASE.replace('model = "linear-elastic"\nE = 100\n', 'model = "neo-hookean"\nE = 100\n')

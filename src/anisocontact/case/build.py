@@ -150,7 +150,15 @@ def _meshed(
     kind = TwoHalfPass if section.half_passes else FacetContact
     name = f"{section.slave} on {section.master}"
     with objects.within(place):
-        return kind(model, section.slave, section.master, law=law, current_area=finite, name=name)
+        return kind(
+            model,
+            section.slave,
+            section.master,
+            law=law,
+            degree=section.degree,
+            current_area=finite,
+            name=name,
+        )
 
 
 def _rigid(
@@ -160,7 +168,9 @@ def _rigid(
     interface = objects.interface(section, master, place, auto)
     name = f"{section.slave} on {section.master}"
     with objects.within(place):
-        contact = Contact(model, section.slave, interface, current_area=finite, name=name)
+        contact = Contact(
+            model, section.slave, interface, degree=section.degree, current_area=finite, name=name
+        )
     for law in ("adhesion", "friction"):
         field = getattr(interface, law).directions
         if field is not None:

@@ -173,6 +173,17 @@ class ContactSection(Section):
 
     slave: str = Field(description='slave facets, "body.group"')
     master: str = Field(description='name of a surface, or facets of another body, "body.group"')
+    degree: Annotated[
+        int | None,
+        _number(
+            "integer",
+            "1",
+            "degree of the quadrature on slave facets, twice the order of the displacement if left "
+            "out",
+            "positive",
+            most=30,
+        ),
+    ] = None
     normal: Any
     adhesion: Any
     friction: Any
