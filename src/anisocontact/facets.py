@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import cast
 
 import numpy as np
 import numpy.typing as npt
@@ -12,16 +11,23 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.arrays import Floats, points
 from anisocontact.errors import InputError
+from anisocontact.facet_blocks import TOPOLOGIES, FacetBlocks, Integers, finite
 from anisocontact.geometry import PointGeometry
 from anisocontact.orientation import Orientation, orientation, triangular
 from anisocontact.surfaces import Jet, default_threads
 
-Integers = npt.NDArray[np.int32]
 Codes = npt.NDArray[np.int8]
 
-#: Number of nodes of each topology. Nodes are in the order of DOLFINx: vertices (0,0), (1,0), (0,1)
-#: of a triangle and (0,0), (1,0), (0,1), (1,1) of a quadrilateral, then edges, then the interior.
-TOPOLOGIES = {"tri3": 3, "tri6": 6, "quad4": 4, "quad8": 8, "quad9": 9}
+__all__ = [
+    "FACET_STATUS",
+    "FEATURES",
+    "TOPOLOGIES",
+    "FacetProjections",
+    "FacetSets",
+    "FacetSurface",
+    "Orientation",
+    "outward_flips",
+]
 
 #: Names of the codes in `FacetProjections.status`.
 FACET_STATUS = ("on", "off", "beyond", "failed")
@@ -122,27 +128,13 @@ class FacetSurface:
         topology: str | Sequence[str],
         flip: npt.ArrayLike | None = None,
     ) -> None:
-        names = [topology] if isinstance(topology, str) else list(topology)
-        given = (
-            [cast(npt.ArrayLike, connectivity)]
-            if isinstance(topology, str)
-            else list(cast(Sequence[npt.ArrayLike], connectivity))
-        )
-        if len(names) != len(given):
-            raise InputError(f"{len(names)} given for {len(given)} blocks", field="topology")
-        blocks = [_block(b, t) for b, t in zip(given, names, strict=True)]
-        counts = np.array([b.shape[0] for b in blocks], dtype=np.int32)
-        count = int(counts.sum())
-        turned = np.zeros(count, dtype=np.bool_) if flip is None else np.asarray(flip, np.bool_)
-        if turned.shape != (count,):
-            raise InputError(f"shape {turned.shape} given, ({count},) needed", field="flip")
-        nodes = np.concatenate([b.ravel() for b in blocks]) if blocks else np.zeros(0, np.int32)
-        x = _finite(points(coordinates, 3, "coordinates"))
+        mesh = FacetBlocks.of(connectivity, topology, flip)
+        x = finite(points(coordinates, 3, "coordinates"))
         try:
-            self.core = _core.FacetSurface(x, names, counts, nodes, np.ascontiguousarray(turned))
+            self.core = _core.FacetSurface(x, mesh.topologies, mesh.counts, mesh.nodes, mesh.flip)
         except ValueError as error:
             raise InputError(str(error), field="connectivity") from None
-        self._count = count
+        self._count = len(mesh.flip)
         self._points = x.shape[0]
 
     def __len__(self) -> int:
@@ -311,27 +303,6 @@ def outward_flips(
     outward = np.cross(j.d1[:, 0], j.d1[:, 1])
     flips: npt.NDArray[np.bool_] = np.sum((j.position - behind) * outward, axis=1) < 0.0
     return flips
-
-
-def _block(connectivity: npt.ArrayLike, topology: str) -> Integers:
-    if topology not in TOPOLOGIES:
-        raise InputError(f"given {topology!r}, allowed: {', '.join(TOPOLOGIES)}", field="topology")
-    b = np.asarray(connectivity)
-    n = TOPOLOGIES[topology]
-    if b.ndim != 2 or b.shape[1] != n or not np.issubdtype(b.dtype, np.integer):
-        raise InputError(
-            f"array of {b.dtype} of shape {b.shape} given, integers of shape (k, {n}) needed for "
-            f"{topology}",
-            field="connectivity",
-        )
-    return np.ascontiguousarray(b, dtype=np.int32)
-
-
-def _finite(x: Floats) -> Floats:
-    bad = np.flatnonzero(~np.isfinite(x).all(axis=1))
-    if bad.size:
-        raise InputError(f"point {bad[0]} is not finite", field="coordinates")
-    return x
 
 
 def _hint(hint: FacetProjections | npt.ArrayLike | None, n: int) -> tuple[Integers, Floats]:

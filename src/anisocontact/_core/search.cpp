@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "anisocontact/kernel/parallel.hpp"
+#include "anisocontact/search/smoothing.hpp"
 #include "geometries.hpp"
 #include "rooms.hpp"
 
@@ -175,6 +176,27 @@ nb::ndarray<nb::numpy, std::int32_t> sides(const FacetSurface& s) {
   return out.array;
 }
 
+nb::ndarray<nb::numpy, double> middles(const search::Smoothing& s, const Points& x) {
+  const auto m = s.middles(rows(x));
+  Array<double> out({m.size(), 3});
+  for (std::size_t i = 0; i < m.size(); ++i) put3(out.data, i, m[i]);
+  return out.array;
+}
+
+/// Row pointers, columns and blocks of a block-sparse matrix (middles x points).
+nb::tuple middle_derivatives(const search::Smoothing& s, const Points& x) {
+  const auto d = s.derivatives(rows(x));
+  Array<std::int64_t> first({d.first.size()});
+  Array<std::int32_t> points({d.points.size()});
+  Array<double> blocks({d.blocks.size(), 3, 3});
+  std::copy(d.first.begin(), d.first.end(), first.data);
+  std::copy(d.points.begin(), d.points.end(), points.data);
+  for (std::size_t i = 0; i < d.blocks.size(); ++i)
+    for (Eigen::Index k = 0; k < 9; ++k)
+      blocks.data[9 * i + static_cast<std::size_t>(k)] = d.blocks[i](k / 3, k % 3);
+  return nb::make_tuple(first.array, points.array, blocks.array);
+}
+
 auto jet_at(const FacetSurface& s, const Indices& facet, const Coordinates& xi) {
   return [&](std::size_t i) {
     return s.jet(facet.data()[i], {xi.data()[2 * i], xi.data()[2 * i + 1]});
@@ -216,6 +238,19 @@ void bind_search(nb::module_& m) {
       .def("within", &within, nb::arg("x"), nb::arg("distance"), nb::arg("threads"))
       .def("rings", &rings, nb::arg("facet"), nb::arg("count"))
       .def("sides", &sides);
+  nb::class_<search::Smoothing>(m, "Smoothing")
+      .def(
+          "__init__",
+          [](search::Smoothing* self, const Points& x, const std::vector<std::string>& topologies,
+             const Indices& counts, const Indices& nodes, const Flags& flip, double crease) {
+            new (self) search::Smoothing(rows(x), kinds(topologies, counts, flip),
+                                         {nodes.data(), nodes.data() + nodes.shape(0)}, crease);
+          },
+          nb::arg("points"), nb::arg("topologies"), nb::arg("counts"), nb::arg("nodes"),
+          nb::arg("flip"), nb::arg("crease"))
+      .def("nodes", &search::Smoothing::nodes, nb::arg("points"))
+      .def("middles", &middles, nb::arg("points"))
+      .def("derivatives", &middle_derivatives, nb::arg("points"));
 }
 
 }  // namespace anisocontact::bindings
