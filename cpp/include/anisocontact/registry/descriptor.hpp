@@ -39,8 +39,7 @@ struct Descriptor {
 class Values {
  public:
   Values() = default;
-  explicit Values(std::map<std::string, std::vector<double>> values)
-      : values_(std::move(values)) {}
+  explicit Values(std::map<std::string, std::vector<double>> values) : values_(std::move(values)) {}
 
   const std::vector<double>& list(const std::string& name) const {
     const auto it = values_.find(name);

@@ -156,8 +156,7 @@ Tangent1<double, P> value(const Tangent1<S, P>& u) {
 }
 template <class S, Place P, Place Q>
 Tangent2<double, P, Q> value(const Tangent2<S, P, Q>& m) {
-  return {
-      {{{value(m.c[0][0]), value(m.c[0][1])}, {value(m.c[1][0]), value(m.c[1][1])}}}};
+  return {{{{value(m.c[0][0]), value(m.c[0][1])}, {value(m.c[1][0]), value(m.c[1][1])}}}};
 }
 
 }  // namespace anisocontact
