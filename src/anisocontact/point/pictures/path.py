@@ -37,8 +37,7 @@ def path_on_surface(
     """
     figure = new_figure(8.5, 6.8)
     ax: Any = figure.add_subplot(projection="3d", computed_zorder=False)
-    feet = history.feet
-    extent = max(size(feet), 1e-12 * float(np.abs(feet).max()), 1e-300)
+    extent = _extent(history)
     box, patch = _patch(interface.surface, history, extent)
     toward = _view(ax, history)
     ax.plot_surface(*patch, color="#f1eee7", alpha=0.6, linewidth=0, zorder=0, shade=False)
@@ -56,6 +55,18 @@ def path_on_surface(
         "\n".join(filter(None, [title, f"Path on the surface, lengths {UNITS}"])), fontsize=11
     )
     return figure
+
+
+def _extent(history: History) -> float:
+    """A length that fills the picture: of the path, or of a point at rest that of its gap."""
+    feet, points = history.feet, history.points
+    least = 1e-9 * float(np.abs(feet).max())
+    lengths = (
+        size(feet),
+        10.0 * np.abs(points["elastic"]).max(),
+        10.0 * np.abs(points["gap"]).max(),
+    )
+    return next((float(v) for v in lengths if v > least), max(least, 1.0))
 
 
 def _patch(surface: Surface, history: History, extent: float) -> tuple[Floats, list[Floats]]:
@@ -228,6 +239,6 @@ def _limits(ax: Any, points: Floats) -> None:
     ax.set_box_aspect(span, zoom=0.86 if span[2] > 1.2 * span[:2].max() else 1.05)
     for axis, part in zip((ax.xaxis, ax.yaxis, ax.zaxis), span / span.max(), strict=True):
         axis.set_major_locator(MaxNLocator(6 if part > 0.5 else 1 if part < 0.2 else 3))
-        axis.set_major_formatter(FormatStrFormatter("%g"))
+        axis.set_major_formatter(FormatStrFormatter("%.7g"))
         axis.pane.set_visible(False)
         axis.set_tick_params(labelsize=8)
