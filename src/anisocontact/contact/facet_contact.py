@@ -51,7 +51,8 @@ class FacetContact(ContactRecord):
         name: Name in output; the slave if not given.
 
     Raises:
-        InputError: No such facet group, one without facets, or the same for both.
+        InputError: No such facet group, one without facets, the same for both, or more than one
+            process.
     """
 
     def __init__(
@@ -203,6 +204,10 @@ class FacetContact(ContactRecord):
 
 
 def _check(model: Model, slave: str, master: str) -> None:
+    if model.mesh.comm.size > 1:
+        raise InputError(
+            f"meshed bodies meet on one process only, {model.mesh.comm.size} given", "master"
+        )
     for name, field in ((slave, "slave"), (master, "master")):
         model.facets(name, field)
         if model.count_facets(name) == 0:

@@ -16,7 +16,7 @@ Floats = npt.NDArray[np.float64]
 class TwoHalfPass(ContactRecord):
     """Contact of two facet groups, integrated on both with half the weight.
 
-    Two `FacetContact`s with swapped parts, each with half of the area, so that neither side is
+    Two of `FacetContact` with swapped parts, each with half of the area, so that neither side is
     preferred. What it reports is seen from the slave: a point of the second pass counts at its foot
     on the slave, with the reaction that acts there, so that sums over all points are forces,
     moments and energies of the pair. Directions are those of the first pass in the reference
@@ -37,7 +37,7 @@ class TwoHalfPass(ContactRecord):
         passes: Both passes.
 
     Raises:
-        InputError: No such facet group, one without facets, or the same for both.
+        InputError: As of `FacetContact`.
     """
 
     def __init__(
