@@ -192,6 +192,20 @@ class FacetSurface:
     def rings(self, facet: NDArray[numpy.int32], count: int) -> Any: ...
     def sides(self) -> NDArray[numpy.int32]: ...
 
+class Smoothing:
+    def __init__(
+        self,
+        points: NDArray[numpy.float64],
+        topologies: Sequence[str],
+        counts: NDArray[numpy.int32],
+        nodes: NDArray[numpy.int32],
+        flip: NDArray[numpy.bool_],
+        crease: float,
+    ) -> None: ...
+    def nodes(self, points: int) -> list[int]: ...
+    def middles(self, points: NDArray[numpy.float64]) -> NDArray[numpy.float64]: ...
+    def derivatives(self, points: NDArray[numpy.float64]) -> Any: ...
+
 class FacetPairs:
     def __init__(
         self,
