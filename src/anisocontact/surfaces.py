@@ -144,7 +144,7 @@ class Surface:
         Args:
             x: Points, (n, 3) [length].
             guess: Coordinates that may be near, such as the last ones, (n, 2). They can save time
-                and never change the result.
+                and do not change the closest point.
             derivatives: Whether the derivatives with respect to x are wanted.
             threads: Number of threads; all processors if left out.
 

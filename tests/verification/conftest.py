@@ -9,15 +9,17 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from scipy.interpolate import NdBSpline
 
 from anisocontact import registry
-from anisocontact.surfaces import Surface, make_surface
+from anisocontact.surfaces import PROJECTION_STATUS, Surface, make_surface
 
 Floats = npt.NDArray[np.float64]
 
 ORIGIN = np.array([0.3, -0.7, 1.1])
 AXIS = np.array([2.0, -1.0, 2.0]) / 3.0
 START = np.array([1.0, 2.0, 0.0]) / np.sqrt(5.0)
+AXES = np.stack([START, np.cross(AXIS, START), AXIS])
 INFINITE = 1e4
 
 
@@ -38,6 +40,7 @@ class SurfaceSample:
         mirrored: Whether its second axis is reversed (the material outside).
         closed: Whether each coordinate may run past its ends.
         axis: Direction near which points are ambiguous or singular.
+        breaks: Lines of each coordinate where the surface is less smooth, seams and poles included.
     """
 
     name: str
@@ -52,6 +55,7 @@ class SurfaceSample:
     mirrored: bool = False
     closed: tuple[bool, bool] = (False, False)
     axis: Floats = field(default_factory=lambda: AXIS)
+    breaks: tuple[tuple[float, ...], tuple[float, ...]] = ((), ())
 
     def make(self) -> Surface:
         """The surface of the core."""
@@ -60,15 +64,21 @@ class SurfaceSample:
     def position(self, xi: Floats) -> Floats:
         """rho at coordinates (..., 2), in NumPy."""
         y = np.stack(np.broadcast_arrays(*self.local(xi[..., 0], xi[..., 1])), axis=-1)
-        axes = np.stack([START, np.cross(AXIS, START), AXIS])
-        if self.mirrored:
-            axes[1] *= -1.0
-        return self.centre + y @ axes
+        return self.centre + y @ (AXES * [[1], [-1 if self.mirrored else 1], [1]])
 
     def coordinates(self, n: int, seed: int = 0) -> Floats:
         """Random coordinates in the window, (n, 2)."""
         lower, upper = np.transpose(self.window)
         return np.random.default_rng(seed).uniform(lower, upper, (n, 2))
+
+    def smooth(self, xi: Floats, margin: float) -> npt.NDArray[np.bool_]:
+        """Which coordinates are farther from every break than a fraction of the range, (n,)."""
+        clear = np.ones(len(xi), bool)
+        for k in range(2):
+            width = margin * np.diff(self.whole[k])[0]
+            for line in self.breaks[k]:
+                clear &= np.abs(xi[:, k] - line) > width
+        return clear
 
     def bore(self) -> SurfaceSample:
         """The same with the slave inside: the angle runs the other way, curvatures change sign."""
@@ -225,6 +235,119 @@ def _ellipsoid(name: str, a: float, b: float, c: float) -> SurfaceSample:
     )
 
 
+def _nurbs(
+    name: str,
+    degrees: tuple[int, int],
+    knots: tuple[list[float], list[float]],
+    net: Floats,
+    weights: Floats | None = None,
+    closed: tuple[bool, bool] = (False, False),
+    window: tuple[float, float] = (0.02, 0.98),
+) -> SurfaceSample:
+    """A patch over the unit square with a net (n, m, 3) in its own axes; evaluated by SciPy."""
+    w = np.ones(net.shape[:2]) if weights is None else weights
+    spline = NdBSpline(
+        tuple(np.asarray(k, float) for k in knots),
+        np.concatenate([net * w[..., None], w[..., None]], axis=2),
+        degrees,
+    )
+
+    def local(u: Floats, v: Floats) -> tuple[Floats, ...]:
+        xi = np.stack([x - np.floor(x) if c else x for x, c in zip((u, v), closed, strict=True)])
+        h = spline(np.moveaxis(xi, 0, -1))
+        return tuple(np.moveaxis(h[..., :3] / h[..., 3:], -1, 0))
+
+    first, second = (tuple(k for k in set(line) if 0 < k < 1) for line in knots)
+    ends = tuple((0.0, 1.0) if c or name == "nurbs-sphere" else () for c in closed)
+    return SurfaceSample(
+        name=name,
+        shape="nurbs",
+        parameters={
+            "degrees": degrees,
+            "knots_1": knots[0],
+            "knots_2": knots[1],
+            "points": (ORIGIN + net @ AXES).ravel(),
+            "weights": w.ravel(),
+        },
+        size=1.0,
+        centre=ORIGIN,
+        window=(window, window),
+        whole=((0.0, 1.0), (0.0, 1.0)),
+        local=local,
+        closed=closed,
+        breaks=(first + ends[0], second + ends[1]),
+    )
+
+
+def _even(degree: int, count: int) -> list[float]:
+    """Clamped knots, evenly spaced inside."""
+    return [0.0] * degree + [float(k) for k in np.linspace(0, 1, count - degree + 1)] + [1.0] * degree
+
+
+#: Full and half circle of radius one as quadratic NURBS: points, weights and knots.
+ROOT = np.sqrt(0.5)
+CIRCLE = np.array([[1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0], [-1, -1], [0, -1], [1, -1], [1, 0]])
+CIRCLE_WEIGHTS = np.array([1, ROOT, 1, ROOT, 1, ROOT, 1, ROOT, 1])
+CIRCLE_KNOTS = [0, 0, 0, 0.25, 0.25, 0.5, 0.5, 0.75, 0.75, 1, 1, 1]
+ARC = np.array([[0, -1], [1, -1], [1, 0], [1, 1], [0, 1]])
+ARC_KNOTS = [0, 0, 0, 0.5, 0.5, 1, 1, 1]
+
+
+def nurbs_cylinder(radius: float = 0.8, height: float = 1.5) -> SurfaceSample:
+    """The cylinder exactly, its axis from the origin on."""
+    net = np.empty((9, 2, 3))
+    net[..., :2] = radius * CIRCLE[:, None]
+    net[..., 2] = (0.0, height)
+    return _nurbs(
+        "nurbs-cylinder",
+        (2, 1),
+        (CIRCLE_KNOTS, [0, 0, 1, 1]),
+        net,
+        np.repeat(CIRCLE_WEIGHTS[:, None], 2, axis=1),
+        (True, False),
+    )
+
+
+def nurbs_sphere(radius: float = 1.7) -> SurfaceSample:
+    """The sphere exactly, with its poles."""
+    net = np.empty((9, 5, 3))
+    net[..., :2] = radius * CIRCLE[:, None] * ARC[:, :1]
+    net[..., 2] = radius * ARC[:, 1]
+    weights = CIRCLE_WEIGHTS[:, None] * CIRCLE_WEIGHTS[:5]
+    return _nurbs(
+        "nurbs-sphere", (2, 2), (CIRCLE_KNOTS, ARC_KNOTS), net, weights, (True, False), (0.06, 0.94)
+    )
+
+
+def _patches() -> list[SurfaceSample]:
+    """A wavy bicubic spline, a rational patch of mixed degrees, a roof with a ridge and a valley, a
+    twisted bilinear patch, and a patch of degree five."""
+    rng = np.random.default_rng(42)
+
+    def sheet(n: int, m: int, height: float) -> Floats:
+        x, y = np.meshgrid(np.linspace(-1, 1, n), np.linspace(-1, 1, m), indexing="ij")
+        return np.stack([x, y, height * rng.normal(size=(n, m))], axis=-1)
+
+    ridge = sheet(5, 4, 0.1)
+    ridge[:, :, 2] += 0.8 * np.array([0, 0.5, 1, 0.5, 0])[:, None]
+    twisted = np.array([[[-1, -1, 0.7], [-1, 1, -0.7]], [[1, -1, -0.7], [1, 1, 0.9]]])
+    bent = sheet(4, 5, 0.3)
+    bent += 0.1 * rng.normal(size=bent.shape)
+    return [
+        _nurbs("nurbs-wavy", (3, 3), (_even(3, 8), _even(3, 7)), sheet(8, 7, 0.25)),
+        _nurbs(
+            "nurbs-rational",
+            (3, 2),
+            (_even(3, 4), _even(2, 5)),
+            bent,
+            rng.uniform(0.4, 2.5, (4, 5)),
+        ),
+        _nurbs("nurbs-ridge", (2, 3), ([0, 0, 0, 0.5, 0.5, 1, 1, 1], _even(3, 4)), ridge),
+        _nurbs("nurbs-twisted", (1, 1), (_even(1, 2), _even(1, 2)), twisted),
+        _nurbs("nurbs-quintic", (5, 4), (_even(5, 7), _even(4, 6)), sheet(7, 6, 0.4)),
+    ]
+
+
 def surface_samples() -> list[SurfaceSample]:
     """All samples; every registered surface has one."""
     revolved = [
@@ -235,7 +358,22 @@ def surface_samples() -> list[SurfaceSample]:
         _ellipsoid("ellipsoid", 1.3, 0.7, 2.0),
     ]
     spheroids = [_ellipsoid("oblate", 1.5, 1.5, 0.6), _ellipsoid("prolate", 0.8, 0.8, 2.4)]
-    return [_plane(), *revolved, *(s.bore() for s in revolved), *spheroids]
+    splines = [nurbs_cylinder(), nurbs_sphere(), *_patches()]
+    return [_plane(), *revolved, *(s.bore() for s in revolved), *spheroids, *splines]
+
+
+def one_sheet(surface: Surface, x: Floats, step: Floats, size: float) -> npt.NDArray[np.bool_]:
+    """Where the closest point stays interior and goes on, and does not jump to another part of the
+    surface that is as near; closer to the surface than 0.6 of its radii of curvature it moves by at
+    most 1/(1 - 0.6) = 2.5 steps."""
+    feet = []
+    inner = np.ones(len(x), bool)
+    for sign in (-1.0, 0.0, 1.0):
+        p = surface.project(x + sign * step)
+        inner &= p.status == PROJECTION_STATUS.index("interior")
+        feet.append(surface.position(p.xi))
+    moved = np.maximum(*(np.linalg.norm(f - feet[1], axis=1) for f in (feet[0], feet[2])))
+    return inner & (moved < 10 * np.linalg.norm(step, axis=1) + 1e-9 * size)
 
 
 class Surfaces:
@@ -244,6 +382,7 @@ class Surfaces:
     samples = tuple(surface_samples())
     moved = staticmethod(moved)
     rotation = staticmethod(rotation)
+    one_sheet = staticmethod(one_sheet)
 
 
 @pytest.fixture(scope="session")

@@ -5,6 +5,7 @@
 #include <concepts>
 
 #include "anisocontact/projection/ellipsoid.hpp"
+#include "anisocontact/projection/nurbs.hpp"
 #include "anisocontact/surface/foot.hpp"
 #include "anisocontact/surface/registry.hpp"
 

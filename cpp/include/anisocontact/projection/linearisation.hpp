@@ -9,12 +9,22 @@
 
 namespace anisocontact::projection {
 
+/// The larger eigenvalue of M = delta^i_j - xi^3 h^i_j, by magnitude.
+inline double larger_eigenvalue(const ContraCo<double>& m) noexcept {
+  const double half = 0.5 * trace(m);
+  return std::abs(half) + std::sqrt(std::max(half * half - det(m), 0.0));
+}
+
+/// Whether x is a centre of curvature, as far as numbers tell.
+inline bool is_focal(const ContraCo<double>& m) noexcept {
+  return !(std::abs(det(m)) > surface::focal_limit * larger_eigenvalue(m));
+}
+
 /// Inverse of M = delta^i_j - xi^3 h^i_j. At a centre of curvature, where an eigenvalue vanishes,
 /// the inverse on the other direction alone: M / lambda^2, since then M = lambda P.
 inline ContraCo<double> guarded_inverse(const ContraCo<double>& m) noexcept {
-  const double d = det(m), half = 0.5 * trace(m);
-  const double larger = std::abs(half) + std::sqrt(std::max(half * half - d, 0.0));
-  if (std::abs(d) > surface::focal_limit * larger) return inverse(m);
+  if (!is_focal(m)) return inverse(m);
+  const double larger = larger_eigenvalue(m);
   if (larger > surface::focal_limit) return (1.0 / (larger * larger)) * m;
   return {};
 }

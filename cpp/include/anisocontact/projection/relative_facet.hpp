@@ -2,29 +2,13 @@
 // A facet seen from a point: rho - x and its derivatives as polynomials, for the many evaluations of
 // a projection. Flips are not known here: coordinates are those of the reference facet.
 
-#include "anisocontact/projection/bernstein.hpp"
-#include "anisocontact/projection/quadratic.hpp"
+#include "anisocontact/projection/local.hpp"
 #include "anisocontact/surface/facet_bezier.hpp"
 
 namespace anisocontact::projection {
 
 using surface::FacetNodes;
 using surface::Topology;
-
-/// r = rho - x with its first derivatives, and those of f = r.r/2 up to the second.
-struct Local {
-  Vec3<double> r, r1, r2;
-  double f, g1, g2, h11, h12, h22;
-
-  /// Second-order model of f over a part, around s.
-  Quadratic model(const Part& part, const std::array<double, 2>& s) const noexcept {
-    const auto& [a, b] = part.edge;
-    const auto form = [&](const auto& p, const auto& q) {
-      return p[0] * (h11 * q[0] + h12 * q[1]) + p[1] * (h12 * q[0] + h22 * q[1]);
-    };
-    return {s, {g1 * a[0] + g2 * a[1], g1 * b[0] + g2 * b[1]}, form(a, a), form(a, b), form(b, b)};
-  }
-};
 
 class RelativeFacet {
  public:

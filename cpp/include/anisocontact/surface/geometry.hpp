@@ -30,6 +30,11 @@ struct Domain {
   std::array<double, 2> upper{infinity, infinity};
   std::array<bool, 2> periodic{false, false};
 
+  /// What to take off a periodic coordinate to bring it between its ends.
+  double turns(std::size_t i, double u) const {
+    const double period = upper[i] - lower[i];
+    return period * std::floor((u - lower[i]) / period);
+  }
   /// Difference of two coordinates, on a periodic coordinate the shorter way round.
   double difference(std::size_t i, double to, double from) const {
     const double d = to - from;

@@ -5,13 +5,14 @@
 #include "anisocontact/surface/analytic/cone.hpp"
 #include "anisocontact/surface/analytic/cylinder.hpp"
 #include "anisocontact/surface/analytic/ellipsoid.hpp"
+#include "anisocontact/surface/analytic/nurbs_pieces.hpp"
 #include "anisocontact/surface/analytic/plane.hpp"
 #include "anisocontact/surface/analytic/sphere.hpp"
 #include "anisocontact/surface/analytic/torus.hpp"
 
 namespace anisocontact::surface {
 
-using Surfaces = Registry<Plane, Cylinder, Sphere, Cone, Torus, Ellipsoid>;
+using Surfaces = Registry<Plane, Cylinder, Sphere, Cone, Torus, Ellipsoid, Nurbs>;
 using AnySurface = Surfaces::Any;
 
 inline Domain domain(const AnySurface& s) {
