@@ -281,7 +281,8 @@ def _nurbs(
 
 def _even(degree: int, count: int) -> list[float]:
     """Clamped knots, evenly spaced inside."""
-    return [0.0] * degree + [float(k) for k in np.linspace(0, 1, count - degree + 1)] + [1.0] * degree
+    inside = [float(k) for k in np.linspace(0, 1, count - degree + 1)]
+    return [0.0] * degree + inside + [1.0] * degree
 
 
 #: Full and half circle of radius one as quadratic NURBS: points, weights and knots.

@@ -190,7 +190,8 @@ def test_derivative_by_order_of_convergence(sample: Any, kind: str, placement: s
     Halving the step quarters the error. The median of the ratios is taken: a difference that
     reaches over a border of a tabulated field's cells has a lower order. Where the differences
     are as good as rounding lets them be (fields that do not change along the surface), they are
-    compared with 1e-7, some eps^(1/2).
+    compared with 1e-7, some eps^(1/2). The steps are shares of the range of the coordinates, so
+    that those of a patch on the unit square are not longer than those of a full turn.
     """
     field, surface = make_directions(kind, **FIELDS[kind](sample)), sample.make()
     xi = regular(sample, field)
@@ -205,7 +206,9 @@ def test_derivative_by_order_of_convergence(sample: Any, kind: str, placement: s
             e = np.maximum(e, np.abs((plus - minus) / (2 * h) - exact[..., k]).max(axis=(1, 2)))
         return e / size
 
-    coarse, fine = error(4e-3), error(2e-3)
+    lower, upper, _ = surface.domain
+    unit = min(1.0, *((b - a) / (2.0 * np.pi) for a, b in zip(lower, upper, strict=True)))
+    coarse, fine = error(4e-3 * unit), error(2e-3 * unit)
     resolved = coarse > 1e-7
     assert np.all(fine[~resolved] < 1e-7)
     if resolved.sum() > 20:

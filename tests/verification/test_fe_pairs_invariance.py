@@ -185,7 +185,7 @@ def _turned_base() -> Model:
         }
     )
     x = model.mesh.geometry.x
-    nodes = np.unique(model.mesh.geometry.dofmap[model.cells("base")])
+    nodes = np.unique(model.mesh.geometry.dofmaps[0][model.cells("base")])
     x[nodes] = Rotation.from_euler("z", 20.0, degrees=True).apply(x[nodes])
     return model
 
