@@ -24,7 +24,7 @@ inline Framed framed(const surface::AnySurface& surface, const law::NormalModel&
                      const Vec3<double>& x, double dt) noexcept {
   using S = Dual<3>;
   Framed out;
-  const auto p = projection::closest_point(surface, x);
+  const auto p = projection::closest_point(surface, x, &state.xi);
   if (p.status == projection::Status::failed) {
     out.failure = Failure::projection;
     return out;

@@ -34,6 +34,16 @@ Vec3<S> seeded(const Vec3<double>& x) {
     return {S::variable(x[0], 0), S::variable(x[1], 1), S::variable(x[2], 2)};
 }
 
+/// xi^3 at a foot from r = x - rho. Beyond an edge there is no surface for the point to meet,
+/// whatever side of the tangent plane it is on: its distance, which is positive.
+template <class S>
+S contact_gap(const projection::Projection& p, const Vec3<S>& r, const Vec3<S>& normal) {
+  using std::sqrt;
+  const bool beyond =
+      p.status == projection::Status::edge || p.status == projection::Status::corner;
+  return beyond ? sqrt(r.dot(r)) : r.dot(normal);
+}
+
 /// Kinematics of a projected point.
 template <class S>
 Kinematics<S> kinematics(const surface::AnySurface& surface, const PointState& state,
@@ -50,7 +60,7 @@ Kinematics<S> kinematics(const surface::AnySurface& surface, const PointState& s
   k.before = surface::constant_geometry<S>(
       surface::geometry(surface::jet(surface, state.xi[0], state.xi[1])));
   k.domain = surface::domain(surface);
-  k.gap = (x - k.now.jet.position).dot(k.now.normal);
+  k.gap = contact_gap<S>(p, x - k.now.jet.position, k.now.normal);
   k.dt = dt;
   return k;
 }
@@ -61,7 +71,7 @@ PointResult update(const Interface& itf, const PointState& state, const Vec3<dou
                    double dt) noexcept {
   PointResult out;
   out.state = state;
-  const auto p = projection::closest_point(itf.surface, x);
+  const auto p = projection::closest_point(itf.surface, x, &state.xi);
   if (p.status == projection::Status::failed) {
     out.failure = Failure::projection;
     return out;
@@ -96,7 +106,7 @@ inline PointState initial_state(const surface::AnySurface& surface, const Vec3<d
   }
   const auto g = surface::geometry(surface::jet(surface, p.xi[0], p.xi[1]));
   s.xi = s.origin = p.xi;
-  s.gap = (x - g.jet.position).dot(g.normal);
+  s.gap = contact_gap<double>(p, x - g.jet.position, g.normal);
   return s;
 }
 
