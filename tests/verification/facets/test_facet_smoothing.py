@@ -34,7 +34,8 @@ def grid_of_facets(surface: FacetSurface, topology: str) -> tuple[np.ndarray, np
 @pytest.mark.parametrize("shape", ["ball", "ring"])
 def test_nearer_to_the_curved_surface(meshes: SimpleNamespace, topology: str, shape: str) -> None:
     """Unit sphere and torus. Facets are off by h^2/8 R and their normals by h/2 R; halving h halves
-    the error of the normals of facets and quarters, or nearly (3 and more), that of patches."""
+    the error of their normals, and divides that of patches by four or more (3.5 asserted): on
+    twelve facets to a right angle a twentieth of that of the facets at most."""
 
     def off(x: np.ndarray, n: np.ndarray) -> tuple[float, float]:
         centre = 0.0 if shape == "ball" else meshes.unit(x * [1, 1, 0])
@@ -47,14 +48,17 @@ def test_nearer_to_the_curved_surface(meshes: SimpleNamespace, topology: str, sh
     errors = {}
     for n in (6, 12):
         mesh = meshes.ball(n, topology) if shape == "ball" else meshes.ring(4 * n, 2 * n, topology)
-        for kind, surface in (("facets", mesh.surface()), ("patches", smooth(mesh))):
+        for kind, surface in (
+            ("facets", mesh.surface()),
+            ("patches", smooth(mesh, crease_angle=1)),
+        ):
             facet, xi = grid_of_facets(surface, topology)
             position = surface.jet(facet, xi).position
             errors[kind, n] = off(position, surface.geometry(facet, xi).normal)
-    assert errors["patches", 12][0] < 0.25 * errors["facets", 12][0]
-    assert errors["patches", 12][1] < 0.25 * errors["facets", 12][1]
+    assert errors["patches", 12][0] < 0.05 * errors["facets", 12][0]
+    assert errors["patches", 12][1] < 0.05 * errors["facets", 12][1]
     assert errors["facets", 6][1] / errors["facets", 12][1] < 2.3
-    assert errors["patches", 6][1] / errors["patches", 12][1] > 3.0
+    assert errors["patches", 6][1] / errors["patches", 12][1] > 3.5
 
 
 @pytest.mark.parametrize("topology", LINEAR)
