@@ -38,6 +38,8 @@ nb::list state_layout() {
   add("elastic", offsetof(PointState, elastic), 2, "f8");
   add("slip", offsetof(PointState, slip), 2, "f8");
   add("gap", offsetof(PointState, gap), 1, "f8");
+  add("offset", offsetof(PointState, offset), 1, "f8");
+  add("multiplier", offsetof(PointState, multiplier), 1, "f8");
   add("pressure", offsetof(PointState, pressure), 1, "f8");
   add("slip_accumulated", offsetof(PointState, slip_accumulated), 1, "f8");
   add("dissipation", offsetof(PointState, dissipation), 1, "f8");

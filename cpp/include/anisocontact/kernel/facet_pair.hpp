@@ -160,9 +160,7 @@ inline PairResult update_pair(const InterfaceLaw& law, const PointState& state, 
   using S = PairDual;
   PairResult out;
   if (p.feature == Feature::off) {
-    out.state.slip_accumulated = state.slip_accumulated;
-    out.state.dissipation = state.dissipation;
-    out.state.dissipation_viscous = state.dissipation_viscous;
+    out.state = lasting(state);
     return out;
   }
   const Vec3<S> x = detail::seed(p.slave, Input::slave),
@@ -177,7 +175,7 @@ inline PairResult update_pair(const InterfaceLaw& law, const PointState& state, 
   const auto facet = surface::tangent_plane(jet);
   k.now = p.feature == Feature::interior ? facet : detail::ridge_geometry(p, jet, x);
   k.xi = {{S(p.xi[0]) + dxi[0], S(p.xi[1]) + dxi[1]}};
-  k.gap = (x - k.now.jet.position).dot(k.now.normal);
+  k.gap = (x - k.now.jet.position).dot(k.now.normal) - S(state.offset);
   k.dt = dt;
   if (state.facet < 0) {
     k.before = k.now;

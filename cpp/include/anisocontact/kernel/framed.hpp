@@ -45,7 +45,7 @@ inline Framed framed(const surface::AnySurface& surface, const law::NormalModel&
     out.elastic[i] = elastic.dot(out.frame[i]);
   }
   out.gap = k.gap;
-  out.pressure = law::pressure(normal, k.gap, state.gap, state.pressure, dt);
+  out.pressure = law::pressure(normal, k.gap, state.gap, state.pressure, dt, state.multiplier);
   out.xi = value(k.xi);
   return out;
 }
@@ -59,12 +59,9 @@ struct FramedResult {
 
 inline PointState commit(const law::NormalModel& normal, const PointState& old, const Framed& f,
                          const surface::Geometry<double>& g, const FramedResult& r, double dt) {
-  PointState s;
+  PointState s = lasting(old);
   s.xi = f.xi.c;
   s.gap = f.gap.v;
-  s.slip_accumulated = old.slip_accumulated;
-  s.dissipation = old.dissipation;
-  s.dissipation_viscous = old.dissipation_viscous;
   s.origin = s.xi;
   if (r.status == Contact::open) return s;
   const auto spatial = [&](const std::array<double, 2>& u) -> Vec3<double> {

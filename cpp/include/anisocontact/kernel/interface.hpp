@@ -44,23 +44,22 @@ struct Reaction {
 };
 
 /// Part of a step that a point spent in contact: 1 where it was in contact before, else what is
-/// left after the gap closed, the motion taken as straight.
+/// left after the gap closed, the motion taken as straight; nothing where a multiplier holds it at
+/// no gap, the limit of a stiff law.
 template <class S>
 S contact_fraction(const PointState& state, const S& gap) {
   if (state.status != static_cast<std::int64_t>(Contact::open) || !(state.gap > 0.0)) return S(1.0);
+  if (!(value(gap) < 0.0)) return S(0.0);
   return gap / (gap - S(state.gap));
 }
 
 /// State of a point that is not in contact: no force, no history but its path.
 template <class S>
 PointState opened(const PointState& old, const Kinematics<S>& k) {
-  PointState s;
+  PointState s = lasting(old);
   s.xi = {value(k.xi[0]), value(k.xi[1])};
   s.origin = s.xi;
   s.gap = value(k.gap);
-  s.slip_accumulated = old.slip_accumulated;
-  s.dissipation = old.dissipation;
-  s.dissipation_viscous = old.dissipation_viscous;
   return s;
 }
 
@@ -95,7 +94,7 @@ template <class S>
 PointState advanced(const InterfaceLaw& l, const PointState& old, const Kinematics<S>& k,
                     const Transported<S>& t, const law::SlideResult<S>& r,
                     const anisotropy::Axes<S>& axes, const S& pressure, Contact status) {
-  PointState s;
+  PointState s = lasting(old);
   s.xi = {value(k.xi[0]), value(k.xi[1])};
   const Covector<double> traction = value(r.traction);
   const Vector<double> slip = value(r.slip);
@@ -109,8 +108,8 @@ PointState advanced(const InterfaceLaw& l, const PointState& old, const Kinemati
   s.slip = slip.c;
   s.gap = value(k.gap);
   s.pressure = value(pressure);
-  s.slip_accumulated = old.slip_accumulated + std::sqrt(dot(slip, value(k.now.a_co) * slip));
-  s.dissipation = old.dissipation - dot(traction, slip);
+  s.slip_accumulated += std::sqrt(dot(slip, value(k.now.a_co) * slip));
+  s.dissipation -= dot(traction, slip);
   const auto tangential = law::energies(law::linear_model(l.adhesion), value(k.now),
                                         {value(axes.e[0]), value(axes.e[1])}, value(r.stored),
                                         elastic, increment - slip, k.dt);
@@ -118,7 +117,7 @@ PointState advanced(const InterfaceLaw& l, const PointState& old, const Kinemati
                                     s.gap - std::min(old.gap, 0.0), s.pressure, k.dt);
   s.energy_adhesion = tangential.elastic;
   s.energy_normal = normal.elastic;
-  s.dissipation_viscous = old.dissipation_viscous + tangential.viscous + normal.viscous;
+  s.dissipation_viscous += tangential.viscous + normal.viscous;
   s.status = static_cast<std::int64_t>(status);
   return s;
 }
@@ -128,7 +127,8 @@ template <class S, class AxesAt>
 Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinematics<S>& k,
                   const AxesAt& axes_at) {
   Reaction<S> r;
-  r.pressure = law::pressure(law::normal_model(l.normal), k.gap, state.gap, state.pressure, k.dt);
+  r.pressure = law::pressure(law::normal_model(l.normal), k.gap, state.gap, state.pressure, k.dt,
+                             state.multiplier);
   if (!(value(r.pressure) > 0.0)) {
     r.state = opened(state, k);
     return r;

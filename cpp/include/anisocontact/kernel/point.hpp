@@ -60,7 +60,7 @@ Kinematics<S> kinematics(const surface::AnySurface& surface, const PointState& s
   k.before = surface::constant_geometry<S>(
       surface::geometry(surface::jet(surface, state.xi[0], state.xi[1])));
   k.domain = surface::domain(surface);
-  k.gap = contact_gap<S>(p, x - k.now.jet.position, k.now.normal);
+  k.gap = contact_gap<S>(p, x - k.now.jet.position, k.now.normal) - S(state.offset);
   k.dt = dt;
   return k;
 }

@@ -21,15 +21,28 @@ struct PointState {
   std::array<double, 2> stored{};    ///< elastic force the next trial starts from, T_i
   std::array<double, 2> elastic{};   ///< elastic slip, xi^i
   std::array<double, 2> slip{};      ///< last sliding increment, xi^i
-  double gap{0.0};                   ///< xi^3
+  double gap{0.0};                   ///< xi^3 less the offset
   double pressure{0.0};              ///< N
   double slip_accumulated{0.0};      ///< length of the sliding path
   double dissipation{0.0};           ///< by friction, per area
   double dissipation_viscous{0.0};   ///< by the viscosity of the laws, per area
   double energy_adhesion{0.0};       ///< elastic energy of the tangential law, per area
   double energy_normal{0.0};         ///< elastic energy of the normal law, per area
+  double offset{0.0};                ///< gap at which the surfaces count as touching
+  double multiplier{0.0};  ///< N at no gap: the normal multiplier of an augmented Lagrangian
   std::int64_t status{0};
   std::int64_t facet{-1};  ///< facet of a meshed master; -1 on an analytic one
 };
+
+/// What a point keeps whatever happens to it.
+inline PointState lasting(const PointState& old) {
+  PointState s;
+  s.slip_accumulated = old.slip_accumulated;
+  s.dissipation = old.dissipation;
+  s.dissipation_viscous = old.dissipation_viscous;
+  s.offset = old.offset;
+  s.multiplier = old.multiplier;
+  return s;
+}
 
 }  // namespace anisocontact::kernel

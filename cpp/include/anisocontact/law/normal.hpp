@@ -13,13 +13,16 @@ struct NormalModel {
   double w{0.0}, a{1.0}, b{0.0}, c{0.0};
 };
 
-/// N at the end of a step; zero where there is a gap or the law would pull.
+/// N at the end of a step; zero where there is a gap or the law would pull. A multiplier is added
+/// to what a law without time gives: N = <lambda - eps_N g> [Alart Curnier 1991].
 template <class S>
-S pressure(const NormalModel& m, const S& gap, double gap_n, double pressure_n, double dt) {
-  if (!(value(gap) < 0.0)) return S(0.0);
+S pressure(const NormalModel& m, const S& gap, double gap_n, double pressure_n, double dt,
+           double multiplier = 0.0) {
+  if (!(value(gap) < 0.0) && !(multiplier > 0.0)) return S(0.0);
   const double from = std::min(gap_n, 0.0);
   const S n =
-      (S(m.w * pressure_n) + S(m.b) * (gap - S(from)) + S(dt * m.c) * gap) / S(m.w + dt * m.a);
+      (S(m.w * pressure_n) + S(m.b) * (gap - S(from)) + S(dt * m.c) * gap) / S(m.w + dt * m.a) +
+      S(multiplier);
   return value(n) > 0.0 ? n : S(0.0);
 }
 
