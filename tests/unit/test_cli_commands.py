@@ -141,7 +141,7 @@ def test_default_folder(no_report, monkeypatch, capsys, case):
 def test_a_run_that_cannot_go_on_keeps_what_converged(no_report, capsys, case, case_text):
     """Pressing takes four iterations; the whole drag in one increment takes more."""
     text = case_text.replace("increments = 4", "increments = 1")
-    case.write_text(text + "[solver]\noptions = { snes_max_it = 4 }\n")
+    case.write_text(text + "[solver]\ncuts = 0\noptions = { snes_max_it = 4 }\n")
     out = case.parent / "out"
     assert main(["run", str(case), "-o", str(out)]) == 3
     error = capsys.readouterr().err

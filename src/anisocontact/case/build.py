@@ -21,6 +21,7 @@ from anisocontact.contact import (
     auto_penalty,
 )
 from anisocontact.errors import InputError
+from anisocontact.limits import Limits
 from anisocontact.mesh import BoxSpec, Model, build_box, read_gmsh
 from anisocontact.solver import Problem, Solver, Step
 
@@ -77,7 +78,9 @@ def build(file: CaseFile) -> Built:
     _check_options(case.solver.options)
     problem = Problem(model, materials, contacts)
     with objects.within("solver"):
-        solver = Solver(problem, steps, options=case.solver.options)
+        given = case.solver
+        limits = Limits(given.smallest_increment, given.largest_increment, given.cuts)
+        solver = Solver(problem, steps, options=given.options, limits=limits)
     return Built(file, problem, steps, solver)
 
 

@@ -34,6 +34,10 @@ def check(case: Case) -> Iterator[InputError]:
         if (first := pairs.index(pairs[i])) != i:
             yield InputError(f"same pair as contact[{first}]", field=f"contact[{i}]")
     yield from _steps(case)
+    smallest, largest = case.solver.smallest_increment, case.solver.largest_increment
+    if smallest > largest:
+        text = f"{smallest!r} given, must be at most solver.largest_increment, {largest!r}"
+        yield InputError(text, field="solver.smallest_increment")
 
 
 def _mesh(case: Case) -> Iterator[InputError]:

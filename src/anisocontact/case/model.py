@@ -20,6 +20,7 @@ from anisocontact.case.registered import Key, OneOf, Registered, default_of
 from anisocontact.case.section import Section
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.limits import Limits
 from anisocontact.registry import Entry, Parameter
 
 __all__ = [
@@ -160,6 +161,23 @@ class Solver(Section):
         default_factory=dict,
         description="PETSc options without the prefix `anisocontact_`, such as `snes_max_it = 50`",
     )
+    smallest_increment: Annotated[
+        float,
+        _number(
+            "scalar",
+            "1",
+            "an increment that fails is cut into parts, this share of it the smallest",
+            "positive",
+            most=1.0,
+        ),
+    ] = Limits.smallest
+    largest_increment: Annotated[
+        float,
+        _number("scalar", "1", "largest part, a share of an increment", "positive", most=1.0),
+    ] = Limits.largest
+    cuts: Annotated[
+        int, _number("integer", "1", "most cuts within an increment", "non-negative")
+    ] = Limits.cuts
 
 
 class Directed(Registered):

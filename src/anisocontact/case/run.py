@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 from anisocontact.case.build import Built
 from anisocontact.results.writer import Writer
-from anisocontact.solver import Accepted, Progress, StoppedError
+from anisocontact.solver import Accepted, Cut, Progress, StoppedError
 
 __all__ = ["Listener", "Outcome", "RunError", "run"]
 
@@ -27,6 +27,9 @@ class Listener(Protocol):
 
     def accepted(self, accepted: Accepted, numbers: dict[str, Any]) -> None:
         """An increment has converged; `numbers` is the summary so far."""
+
+    def cut(self, cut: Cut) -> None:
+        """An increment has failed and is tried again in smaller parts."""
 
 
 @dataclass(frozen=True)
@@ -94,9 +97,13 @@ def _solve(built: Built, writer: Writer, listener: Listener) -> tuple[str, str]:
         writer.log(_iteration_line(progress))
         listener.iteration(progress)
 
+    def on_cut(cut: Cut) -> None:
+        writer.cut(cut)
+        listener.cut(cut)
+
     try:
         with _interrupt() as interrupted:
-            for accepted in built.solver.run(on_iteration):
+            for accepted in built.solver.run(on_iteration, on_cut):
                 writer.accept(accepted)
                 listener.accepted(accepted, writer.summary)
                 writer.log(accepted_line(accepted, writer.summary))
@@ -105,6 +112,7 @@ def _solve(built: Built, writer: Writer, listener: Listener) -> tuple[str, str]:
                     return "stopped", f"interrupted after {where}"
     except StoppedError as stop:
         writer.log(f"stopped: {stop}")
+        writer.log_culprits(stop.culprits)
         return "stopped", str(stop)
     return "done", ""
 
@@ -120,8 +128,9 @@ def accepted_line(accepted: Accepted, numbers: dict[str, Any]) -> str:
         f"{points_text(contact['points'])}  force {_force_text(contact['force'])}"
         for contact in numbers["contacts"]
     )
+    part = "" if accepted.done == 1.0 else f" ({accepted.done:.4g} of it)"
     return (
-        f"{accepted.step} {accepted.increment}  {accepted.iterations} iterations  "
+        f"{accepted.step} {accepted.increment}{part}  {accepted.iterations} iterations  "
         f"residual {accepted.residuals[-1]:.1e}  {contacts}"
     )
 

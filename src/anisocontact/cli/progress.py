@@ -11,7 +11,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsed
 from rich.progress import Progress as Bar
 
 from anisocontact.case.run import Listener, accepted_line, points_text
-from anisocontact.solver import Accepted, Progress, Step
+from anisocontact.solver import Accepted, Cut, Progress, Step
 
 __all__ = ["progress_on"]
 
@@ -50,6 +50,10 @@ class Lines:
         """Print the increment."""
         print(accepted_line(accepted, numbers), file=self._stream, flush=True)
 
+    def cut(self, cut: Cut) -> None:
+        """Print the cut."""
+        print(cut, file=self._stream, flush=True)
+
 
 class Terminal:
     """One bar for the whole run, with the iteration that is going on; a line for each step.
@@ -75,7 +79,13 @@ class Terminal:
 
     def accepted(self, accepted: Accepted, numbers: dict[str, Any]) -> None:
         """Move the bar on; say how a step ended."""
+        if accepted.done < 1.0:
+            return
         self._bar.update(self._task, advance=1)
         if accepted.increment == self._increments[accepted.step]:
             text = accepted_line(accepted, numbers)
             self._bar.console.print(text, highlight=False, soft_wrap=True)
+
+    def cut(self, cut: Cut) -> None:
+        """Show the cut beside the bar."""
+        self._bar.update(self._task, state=f"cut to {cut.next_size:.3g} of the increment")

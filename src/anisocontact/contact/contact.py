@@ -63,12 +63,14 @@ class Contact(ContactRecord):
         points = self.quadrature.reference
         state = interface.initial_state(points)
         start = interface.update(state, points, tangent=False)
+        facets_here, per_facet = self.quadrature.weights.shape
         super().__init__(
             model.space,
             slave,
             name or slave,
             state,
             Snapshot(points, self.quadrature.areas, start),
+            np.repeat(np.arange(facets_here), per_facet),
         )
 
     def update(self, u: Floats, dt: float) -> Response:

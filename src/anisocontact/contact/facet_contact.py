@@ -95,6 +95,7 @@ class FacetContact(ContactRecord):
             name or slave,
             state,
             self._respond(state, self._reference, 1.0, tangent=False),
+            self._points.facet,
         )
 
     @property

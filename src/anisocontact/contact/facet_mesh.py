@@ -111,6 +111,7 @@ class SlavePoints:
         share: Share of the area that counts.
 
     Attributes:
+        facet: Number of the facet of each point, (n,).
         nodes: Nodes of the facet of each point, (n, k).
         shape: Their shape functions at the point, (n, k).
         gradient: Derivatives of these, (n, k, 2).
@@ -129,6 +130,7 @@ class SlavePoints:
     ) -> None:
         count, q = len(facets.nodes), len(rule.weights)
         self.current_area = current_area
+        self.facet = np.repeat(np.arange(count), q)
         self.nodes = np.repeat(facets.nodes, q, axis=0)
         self.shape = np.tile(rule.shape, (count, 1))
         self.gradient = np.tile(rule.gradient, (count, 1, 1))

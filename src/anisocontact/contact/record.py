@@ -45,17 +45,28 @@ class ContactRecord:
         name: Name in output.
         state: State of the points before the first increment.
         start: The points then.
+        facet_of_point: Number of each point's facet in the group, of those of this rank, (n,).
 
     Attributes:
         state: Committed history, one record for each point.
+        facet_of_point: As given.
         space: Vector space of the displacement.
     """
 
-    def __init__(self, space: Any, slave: str, name: str, state: State, start: Snapshot) -> None:
+    def __init__(
+        self,
+        space: Any,
+        slave: str,
+        name: str,
+        state: State,
+        start: Snapshot,
+        facet_of_point: npt.NDArray[np.int64],
+    ) -> None:
         self.slave = slave
         self.name = name
         self.state = state
         self.space = space
+        self.facet_of_point = facet_of_point
         self._comm = space.mesh.comm
         self._accepted = start
         self._trial: Snapshot | None = None

@@ -35,6 +35,7 @@ class TwoHalfPass(ContactRecord):
 
     Attributes:
         passes: Both passes.
+        facet_of_point: Number of each point's facet in the group it lies on, (n,).
 
     Raises:
         InputError: As of `FacetContact`.
@@ -69,7 +70,8 @@ class TwoHalfPass(ContactRecord):
             for on, against, mirrored in ((slave, master, False), (master, slave, True))
         )
         start = self._joined()
-        super().__init__(model.space, slave, name or slave, start.response.state, start)
+        facets = np.concatenate([half.facet_of_point for half in self.passes])
+        super().__init__(model.space, slave, name or slave, start.response.state, start, facets)
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.

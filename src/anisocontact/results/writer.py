@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import math
 import time
 from collections.abc import Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,7 @@ from anisocontact.results.history import History
 from anisocontact.results.paraview import Bodies, Collection, slave_points
 from anisocontact.results.report import write_report
 from anisocontact.results.snapshot import Observer, laws
-from anisocontact.solver import Accepted, Problem, Step
+from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
 
 __all__ = ["Writer"]
 
@@ -60,6 +62,7 @@ class Writer:
         self._problem = problem
         self._steps = list(steps)
         self._every = every
+        self._increments = 0
         self._first = problem.model.mesh.comm.rank == 0
         self.folder = Path(folder)
         if self._first:
@@ -113,10 +116,25 @@ class Writer:
         self.summary["newton_iterations"] += accepted.iterations
         self.summary["time"] = accepted.time
         self._take(numbers)
-        last = accepted.increment == self._steps[accepted.step_index].increments
-        if last or self.summary["steps"] % self._every == 0:
-            self._write_fields(accepted.time)
+        if accepted.done == 1.0:
+            self._increments += 1
+            last = accepted.increment == self._steps[accepted.step_index].increments
+            if last or self._increments % self._every == 0:
+                self._write_fields(accepted.time)
         self._write_summary()
+
+    def cut(self, cut: Cut) -> None:
+        """Log a cut and keep it for the summary."""
+        self.log(str(cut))
+        self.log_culprits(cut.culprits, cut.count)
+        self.summary["cuts"].append(_finite(asdict(cut)))
+
+    def log_culprits(self, culprits: Sequence[Culprit], count: int = 0) -> None:
+        """Log the places that caused a failure, and how many there are if not all are given."""
+        for one in culprits:
+            self.log(f"    {one}")
+        if count > len(culprits):
+            self.log(f"    and {count - len(culprits)} more")
 
     def close(self, status: str, message: str = "") -> None:
         """Write the end of the run and its report.
@@ -152,6 +170,7 @@ class Writer:
             "steps": 0,
             "newton_iterations": 0,
             "time": 0.0,
+            "cuts": [],
             "warnings": [],
         }
 
@@ -200,6 +219,15 @@ class Writer:
                     f"{depth / size:.0%} of the facet size; the first increment pushes them apart"
                 )
         return found
+
+
+def _finite(value: Any) -> Any:
+    """Nested values as JSON can have them: a number that is none becomes null."""
+    if isinstance(value, dict):
+        return {key: _finite(one) for key, one in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(one) for one in value]
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _pair(contact: dict[str, Any]) -> str:

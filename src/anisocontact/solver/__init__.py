@@ -1,13 +1,17 @@
 """Newton's method, load steps and what a run reports."""
 
+from anisocontact.limits import Limits
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.solver import Solver
-from anisocontact.solver.steps import Accepted, Progress, Step, StoppedError
+from anisocontact.solver.steps import Accepted, Culprit, Cut, Progress, Step, StoppedError
 from anisocontact.solver.user import ContactProblem
 
 __all__ = [
     "Accepted",
     "ContactProblem",
+    "Culprit",
+    "Cut",
+    "Limits",
     "Problem",
     "Progress",
     "Solver",

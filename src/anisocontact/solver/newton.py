@@ -103,6 +103,7 @@ class Newton:
         self._problem = problem
         self._on_iteration = on_iteration
         self._residuals: list[float] = []
+        self._damping: Callable[[], float] | None = None
         self.snes = PETSc.SNES().create(problem.comm)
         self.snes.setOptionsPrefix(prefix)
         self.snes.setFunction(self._function, problem.new_vector())
@@ -114,6 +115,7 @@ class Newton:
         self.snes.getKSP().setFromOptions()
         self.snes.getKSP().getPC().setFromOptions()
         self.snes.setConvergenceTest(self._converged)
+        self.snes.setLineSearchPreCheck(self._damp)
         self._line_search = self.snes.getLineSearch().getType()
 
     def close(self) -> None:
@@ -121,18 +123,27 @@ class Newton:
         self.snes.destroy()
         self._database.clear()
 
-    def solve(self, x: Vec, full_steps: bool = False) -> NewtonResult:
+    @property
+    def residual(self) -> npt.NDArray[np.float64]:
+        """Residual of the unknowns this rank owns at the last iterate."""
+        return np.array(self.snes.getFunction()[0].array_r)
+
+    def solve(
+        self, x: Vec, full_steps: bool = False, damping: Callable[[], float] | None = None
+    ) -> NewtonResult:
         """Correct `x` until it is in equilibrium or no more can be done.
 
         Args:
             x: Start, overwritten by the last iterate, length.
             full_steps: Whether to go without line search: it holds back where a law jumps, as the
                 explicit rule does between stick and slip.
+            damping: Asked before every correction what share of it is to be taken, 0 to 1.
 
         Returns:
             What came of it.
         """
         self._residuals = []
+        self._damping = damping
         search = self.snes.getLineSearch()
         search.setType("basic" if full_steps else self._line_search)
         try:
@@ -149,6 +160,12 @@ class Newton:
 
     def _jacobian(self, _: SNES, x: Vec, matrix: Mat, __: Mat) -> None:
         self._problem.tangent(x, matrix)
+
+    def _damp(self, _: Vec, direction: Vec) -> bool:
+        share = 1.0 if self._damping is None else self._damping()
+        if share != 1.0:
+            direction.scale(share)
+        return share != 1.0
 
     def _converged(
         self, snes: SNES, iteration: int, norms: tuple[float, float, float]

@@ -13,6 +13,7 @@ from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
 from anisocontact.contact import AnyContact, Contact
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
+from anisocontact.solver.cells import DeformedCells
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.loads import Supports, Tractions
 from anisocontact.solver.steps import Step
@@ -70,6 +71,8 @@ class Problem:
         self.bulk: LinearBulk | NonlinearBulk = (
             LinearBulk(model, materials) if linear else NonlinearBulk(model, materials)
         )
+        finite = [name for name, material in materials.items() if not material.linear]
+        self._cells = DeformedCells(model, finite) if finite else None
         self._rigid = [c for c in self.contacts if isinstance(c, Contact)]
         self._meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
         self._coupled = CoupledTangent(self.bulk.stiffness, model.space) if self._meshed else None
@@ -209,6 +212,15 @@ class Problem:
         local = [contact.failed_points() for contact in self.contacts]
         everywhere = self._comm.allgather(np.concatenate([np.zeros((0, 3)), *local]))
         return np.concatenate(everywhere)
+
+    def inverted_cells(self) -> Floats:
+        """Middles of the cells of this rank that the last evaluation turned inside out, (n, 3).
+
+        Cells at small strain do not count: their equations know no det F.
+        """
+        if self._cells is None:
+            return np.zeros((0, 3))
+        return self._cells.inverted(self.u.x.array.reshape(-1, 3))
 
     def accepted(self) -> Vec:
         """Copy of the accepted displacements."""

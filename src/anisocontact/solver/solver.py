@@ -1,25 +1,60 @@
-"""Steps in increments: start, Newton, accept or stop."""
+"""Steps in increments: start, Newton, accept, cut or stop."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass
+
+import numpy as np
 
 from anisocontact._fenicsx import Vec
+from anisocontact.limits import Limits
+from anisocontact.solver.attempts import Attempts, Outcome
+from anisocontact.solver.culprits import NAMED
 from anisocontact.solver.loads import check_steps
 from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.pace import Pace
 from anisocontact.solver.problem import Problem
-from anisocontact.solver.steps import Accepted, Progress, Step, StoppedError
+from anisocontact.solver.steps import Accepted, Cut, Progress, Step, StoppedError
+from anisocontact.solver.watch import StatusWatch
+
+
+@dataclass
+class Place:
+    """How far a run has come.
+
+    Attributes:
+        step: Number of the step, from 0.
+        time: Time at which it began.
+        pace: Increments and parts of it.
+        begun: Whether the problem has the loads of the step.
+        before: State before the last accepted part of this step; None at its beginning.
+        spent: Newton iterations since the last accepted part.
+    """
+
+    step: int
+    time: float
+    pace: Pace
+    begun: bool = False
+    before: Vec | None = None
+    spent: int = 0
 
 
 class Solver:
     """Runs the steps of a problem.
+
+    An increment that does not converge is cut into parts, and the parts grow again where they
+    converge; the end of every increment that a step asks for is met exactly.
 
     Args:
         problem: The problem, in any accepted state.
         steps: What to do, in order.
         options_prefix: Prefix of the PETSc options of the Newton solver.
         options: PETSc options without prefix, such as {"snes_rtol": 1e-10}.
+        limits: Bounds of the increments.
+
+    Attributes:
+        place: How far the run has come.
 
     Raises:
         InputError: A step names an unknown facet group, or shared nodes get two values.
@@ -31,84 +66,133 @@ class Solver:
         steps: Sequence[Step],
         options_prefix: str = "anisocontact_",
         options: Mapping[str, OptionValue] | None = None,
+        limits: Limits | None = None,
     ) -> None:
         self.problem = problem
         self.steps = list(steps)
+        self.limits = limits or Limits()
         check_steps(problem.model, self.steps)
+        self.place = self._beginning(0, 0.0)
         self._prefix = options_prefix
         self._options = dict(options or {})
         self._on_iteration: Callable[[Progress], None] | None = None
-        self._where = ("", 0)
+        self._on_cut: Callable[[Cut], None] | None = None
+        self._watch = StatusWatch(problem.contacts)
 
-    def run(self, on_iteration: Callable[[Progress], None] | None = None) -> Iterator[Accepted]:
+    def run(
+        self,
+        on_iteration: Callable[[Progress], None] | None = None,
+        on_cut: Callable[[Cut], None] | None = None,
+    ) -> Iterator[Accepted]:
         """Solve increment by increment.
 
         Args:
-            on_iteration: Called at the start of each increment and after each Newton iteration.
+            on_iteration: Called at the start of each attempt and after each Newton iteration.
+            on_cut: Called when an increment failed and is cut.
 
         Yields:
-            Every accepted increment; the problem holds its state until the next one.
+            Every accepted increment, or part of one; the problem holds its state until the next.
 
         Raises:
             StoppedError: An increment did not converge; the problem holds the last accepted one.
         """
-        self._on_iteration = on_iteration
+        self._on_iteration, self._on_cut = on_iteration, on_cut
         newton = Newton(self.problem, self._prefix, self._options, self._report)
+        attempts = Attempts(self.problem, newton, self._watch)
         try:
-            yield from self._steps(newton)
+            while self.place.step < len(self.steps):
+                step = self.steps[self.place.step]
+                yield from self._step(attempts, step)
+                self.place = self._beginning(self.place.step + 1, self.place.time + step.duration)
         finally:
             newton.close()
 
-    def _steps(self, newton: Newton) -> Iterator[Accepted]:
-        time = 0.0
-        for index, step in enumerate(self.steps):
-            self.problem.begin(step)
-            dt = step.duration / step.increments
-            before: Vec | None = None
-            for increment in range(1, step.increments + 1):
-                self._where = (step.name, increment)
-                self.problem.set_level(increment / step.increments, dt)
-                last = self.problem.accepted()
-                result = self._increment(newton, last, before)
-                before = last
-                yield self._accepted(index, step, increment, time + increment * dt, result)
-            time += step.duration
+    def _beginning(self, step: int, time: float) -> Place:
+        return Place(step, time, Pace(self.limits, self.limits.largest))
 
-    def _increment(self, newton: Newton, last: Vec, before: Vec | None) -> NewtonResult:
-        """Solve an increment from the extrapolated state, else from the last with full steps."""
-        spent = 0
-        first = last if before is None else 2.0 * last - before
-        for start, full_steps in ((first, False), (last, True)):
-            x = start.copy()
-            try:
-                result = newton.solve(x, full_steps)
-                spent += result.iterations
-                if not result.reason:
-                    self.problem.commit(x)
-                    return replace(result, iterations=spent)
-                failed = StoppedError(*self._where, result.reason, self.problem.failed_points())
-            finally:
-                self.problem.roll_back()
-        raise failed
+    def _step(self, attempts: Attempts, step: Step) -> Iterator[Accepted]:
+        place, pace = self.place, self.place.pace
+        if not place.begun:
+            self.problem.begin(step)
+            place.begun = True
+        while pace.increment <= step.increments:
+            last = self.problem.accepted()
+            outcome = self._part(attempts, step, last)
+            place.spent += outcome.result.iterations
+            if outcome.result.reason:
+                self._cut(step, outcome)
+                continue
+            increment, done = pace.increment, pace.end
+            accepted = self._accepted(step, increment, done, outcome.result)
+            pace.advance(outcome.result.iterations)
+            place.before, place.spent = last, 0
+            yield accepted
+
+    def _part(self, attempts: Attempts, step: Step, last: Vec) -> Outcome:
+        """Solve the next part, from the state extrapolated to its end."""
+        pace, before = self.place.pace, self.place.before
+        dt = step.duration / step.increments
+        whole = _whole(pace.increment, pace.end)
+        self.problem.set_level(whole / step.increments, dt if pace.part == 1.0 else pace.part * dt)
+        first = last
+        if before is not None:
+            ratio = pace.part / pace.last
+            first = (1.0 + ratio) * last - ratio * before
+        return attempts.solve(first, last)
+
+    def _cut(self, step: Step, outcome: Outcome) -> None:
+        """Make the next part smaller, or give up."""
+        pace, result = self.place.pace, outcome.result
+        tried, cuts = pace.part, pace.cuts
+        if not pace.cut():
+            points = np.array([c.position for c in outcome.culprits if c.kind == "law"])
+            text = f"{cuts} cuts, the last part was {tried:.2g} of the increment" if cuts else ""
+            raise StoppedError(
+                step.name, pace.increment, result.reason, outcome.culprits[:NAMED], points, text
+            )
+        if self._on_cut is not None:
+            self._on_cut(
+                Cut(
+                    step=step.name,
+                    increment=pace.increment,
+                    time=self._time(step, pace.increment, pace.done),
+                    size=tried,
+                    next_size=pace.part,
+                    reason=result.reason,
+                    iterations=result.iterations,
+                    count=len(outcome.culprits),
+                    culprits=outcome.culprits[:NAMED],
+                )
+            )
 
     def _report(self, iteration: int, residual: float) -> None:
+        self._watch.note()
         if self._on_iteration is not None:
             counts = {c.name: c.counts() for c in self.problem.contacts}
-            self._on_iteration(Progress(*self._where, iteration, residual, counts))
+            step = self.steps[self.place.step].name
+            increment = self.place.pace.increment
+            self._on_iteration(Progress(step, increment, iteration, residual, counts))
 
-    def _accepted(
-        self, index: int, step: Step, increment: int, time: float, result: NewtonResult
-    ) -> Accepted:
+    def _time(self, step: Step, increment: int, done: float) -> float:
+        return self.place.time + _whole(increment, done) * (step.duration / step.increments)
+
+    def _accepted(self, step: Step, increment: int, done: float, result: NewtonResult) -> Accepted:
         contacts = self.problem.contacts
         return Accepted(
             step=step.name,
-            step_index=index,
+            step_index=self.place.step,
             increment=increment,
-            time=time,
-            iterations=result.iterations,
+            done=done,
+            time=self._time(step, increment, done),
+            iterations=self.place.spent,
             residuals=result.residuals,
             contacts={c.name: c.counts() for c in contacts},
             resultants={c.name: c.resultant() for c in contacts},
             reactions=self.problem.reactions(),
             energies=self.problem.energies(),
         )
+
+
+def _whole(increment: int, done: float) -> float:
+    """Increments from the beginning of the step to a share of one of them."""
+    return increment if done == 1.0 else increment - 1 + done

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -85,14 +85,15 @@ class Progress:
 
 @dataclass(frozen=True)
 class Accepted:
-    """An increment that converged.
+    """An increment, or a part of one, that converged.
 
     Attributes:
         step: Name of the step.
         step_index: Number of the step, from 0.
         increment: Number of the increment in the step, from 1.
-        time: Time at its end.
-        iterations: Newton iterations, with those of a first attempt that failed.
+        done: Share of that increment that is done: below 1 where it was cut into parts.
+        time: Time that is reached.
+        iterations: Newton iterations, with those of attempts that failed.
         residuals: Residual over the forces at work, of the start and after each iteration of the
             attempt that converged.
         contacts: Number of "open", "stick" and "slip" points of each contact, by name.
@@ -104,6 +105,7 @@ class Accepted:
     step: str
     step_index: int
     increment: int
+    done: float
     time: float
     iterations: int
     residuals: list[float]
@@ -113,23 +115,103 @@ class Accepted:
     energies: dict[str, float]
 
 
-class StoppedError(RuntimeError):
-    """The run stopped before its end; what converged is kept.
+@dataclass(frozen=True)
+class Culprit:
+    """A place that kept an increment from converging.
+
+    Attributes:
+        kind: "law" (a slave point without answer), "flipping" (a slave point whose status
+            alternates), "inverted" (a cell turned inside out) or "residual" (the node that is
+            farthest from equilibrium).
+        position: Where it is, (x, y, z), length.
+        why: What is wrong with it.
+        contact: Name of the contact of a slave point.
+        point: Number of the slave point in its contact, from 0; -1 for cells and nodes.
+        facet: Number of its facet in the facet group, from 0; -1 for cells and nodes.
+        statuses: Status of a slave point in the last Newton iterations, the latest at the end.
+    """
+
+    kind: str
+    position: tuple[float, float, float]
+    why: str
+    contact: str = ""
+    point: int = -1
+    facet: int = -1
+    statuses: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """One line."""
+        at = ", ".join(f"{v:.6g}" for v in self.position)
+        slave = f"{self.contact}, facet {self.facet}, " if self.contact else ""
+        history = f"; status {' '.join(self.statuses)}" if self.statuses else ""
+        return f"{slave}({at}): {self.why}{history}"
+
+
+@dataclass(frozen=True)
+class Cut:
+    """An increment, or a part of one, that failed and is tried again in smaller parts.
 
     Attributes:
         step: Name of the step.
-        increment: Number of the increment that failed.
-        reason: Why, in a few words.
-        points: Positions of slave points at which the law had no answer, (n, 3), length.
+        increment: Number of the increment in the step, from 1.
+        time: Last accepted time.
+        size: Share of the increment that was tried.
+        next_size: Share that is tried next.
+        reason: Why it failed.
+        iterations: Newton iterations that were spent on it.
+        count: How many places caused it, over all ranks.
+        culprits: The first of them.
     """
 
-    def __init__(self, step: str, increment: int, reason: str, points: Floats) -> None:
+    step: str
+    increment: int
+    time: float
+    size: float
+    next_size: float
+    reason: str
+    iterations: int
+    count: int
+    culprits: tuple[Culprit, ...]
+
+    def __str__(self) -> str:
+        """One line."""
+        return (
+            f"{self.step} {self.increment}  cut from {self.size:.3g} to {self.next_size:.3g} of "
+            f"the increment after {self.iterations} iterations: {self.reason}"
+        )
+
+
+class StoppedError(RuntimeError):
+    """The run stopped before its end; what converged is kept.
+
+    Args:
+        step: Name of the step.
+        increment: Number of the increment that failed.
+        reason: Why, in a few words.
+        culprits: The first places that caused it.
+        points: Positions of all slave points at which the law had no answer, (n, 3), length.
+        tried: What was tried, in a few words.
+    """
+
+    def __init__(
+        self,
+        step: str,
+        increment: int,
+        reason: str,
+        culprits: Sequence[Culprit] = (),
+        points: Floats | None = None,
+        tried: str = "",
+    ) -> None:
+        self.points: Floats = np.zeros((0, 3)) if points is None else points
         where = ""
-        if len(points):
-            first = ", ".join(f"{v:.6g}" for v in points[0])
-            where = f"; {len(points)} slave points failed, the first at ({first})"
-        super().__init__(f"step {step!r}, increment {increment}: {reason}{where}")
+        if len(self.points):
+            first = ", ".join(f"{v:.6g}" for v in self.points[0])
+            where = f"; {len(self.points)} slave points failed, the first at ({first})"
+        elif culprits:
+            where = f"; {culprits[0]}"
+        tried = f"; {tried}" if tried else ""
+        super().__init__(f"step {step!r}, increment {increment}: {reason}{where}{tried}")
         self.step = step
         self.increment = increment
         self.reason = reason
-        self.points = points
+        self.culprits = tuple(culprits)

@@ -1,0 +1,44 @@
+"""How far increments that fail may be cut."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from anisocontact.errors import InputError
+
+__all__ = ["Limits"]
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Bounds of the load increments, as shares of the increments that a step asks for.
+
+    Attributes:
+        smallest: A part that failed is not cut below this, > 0.
+        largest: Largest part, at most 1: the end of every increment of a step is met exactly.
+        cuts: Largest number of cuts within one increment, >= 0.
+
+    Raises:
+        InputError: A value is out of range.
+
+    Example:
+        >>> Limits(largest=0.5).smallest
+        0.0001
+    """
+
+    smallest: float = 1e-4
+    largest: float = 1.0
+    cuts: int = 50
+
+    def __post_init__(self) -> None:
+        if not 0.0 < self.largest <= 1.0:
+            raise InputError(
+                f"{self.largest!r} given, must be > 0 and at most 1", "largest_increment"
+            )
+        if not 0.0 < self.smallest <= self.largest:
+            raise InputError(
+                f"{self.smallest!r} given, must be > 0 and at most the largest, {self.largest!r}",
+                "smallest_increment",
+            )
+        if self.cuts < 0:
+            raise InputError(f"{self.cuts!r} given, must be >= 0", "cuts")

@@ -1,0 +1,117 @@
+"""Ways to solve one part of the load, one after the other until one converges."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+from anisocontact._fenicsx import Vec
+from anisocontact.solver.culprits import find_culprits
+from anisocontact.solver.newton import Newton, NewtonResult
+from anisocontact.solver.problem import Problem
+from anisocontact.solver.steps import Culprit
+from anisocontact.solver.watch import StatusWatch
+
+#: Share of a correction that is taken while the status of points alternates.
+DAMPING = 0.5
+#: Kinds of culprits, the gravest first.
+GRAVITY = ("law", "inverted", "flipping", "residual")
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of all attempts.
+
+    Attributes:
+        result: Of the attempt that converged, or of the last; iterations are those of all.
+        culprits: Places that caused the failure of one of them.
+    """
+
+    result: NewtonResult
+    culprits: tuple[Culprit, ...] = ()
+
+
+class Attempts:
+    """Solves for given loads and commits what converges.
+
+    The first attempt starts from the extrapolated state with a line search, the second from the
+    accepted state with full steps: a line search stops in front of a jump of the law. Where the
+    status of points alternated, a third one takes half of each correction as long as it does.
+
+    Args:
+        problem: The problem.
+        newton: Its solver.
+        watch: Is told of every iteration.
+    """
+
+    def __init__(self, problem: Problem, newton: Newton, watch: StatusWatch) -> None:
+        self._problem = problem
+        self._newton = newton
+        self._watch = watch
+
+    def solve(self, first: Vec, last: Vec) -> Outcome:
+        """Solve and commit, or roll back.
+
+        Args:
+            first: Extrapolated state.
+            last: Accepted state.
+
+        Returns:
+            Whether one converged, and what kept the others from it.
+        """
+        spent = 0
+        found: list[Culprit] = []
+        ways: list[tuple[Vec, bool, Callable[[], float] | None]] = [
+            (first, False, None),
+            (last, True, None),
+        ]
+        for start, full_steps, damping in ways:
+            result, culprits = self._attempt(start.copy(), full_steps, damping)
+            spent += result.iterations
+            if not result.reason:
+                return Outcome(replace(result, iterations=spent))
+            found = _graver(found, culprits)
+            if damping is None and full_steps and found[:1] and found[0].kind == "flipping":
+                ways.append((last, True, self._damping))
+        reason = _reason(result.reason, found)
+        return Outcome(replace(result, iterations=spent, reason=reason), tuple(found))
+
+    def _attempt(
+        self, x: Vec, full_steps: bool, damping: Callable[[], float] | None
+    ) -> tuple[NewtonResult, list[Culprit]]:
+        problem = self._problem
+        self._watch.clear()
+        try:
+            result = self._newton.solve(x, full_steps, damping)
+            if not result.reason and problem.comm.allreduce(len(problem.inverted_cells())):
+                result = replace(result, reason="cells are turned inside out")
+            if not result.reason:
+                problem.commit(x)
+                return result, []
+            return result, find_culprits(problem, self._watch, self._newton.residual)
+        finally:
+            problem.roll_back()
+
+    def _damping(self) -> float:
+        unsettled = self._problem.comm.allreduce(self._watch.unsettled())
+        return DAMPING if unsettled else 1.0
+
+
+def _graver(before: list[Culprit], now: list[Culprit]) -> list[Culprit]:
+    """The graver one of two findings, the later one of equals."""
+    if not before or not now:
+        return now or before
+    grave = GRAVITY.index
+    return now if grave(now[0].kind) <= grave(before[0].kind) else before
+
+
+def _reason(reason: str, culprits: list[Culprit]) -> str:
+    """Why it failed, by what caused it."""
+    kind = culprits[0].kind if culprits else ""
+    if kind == "law":
+        return culprits[0].why
+    if kind == "inverted":
+        return "cells are turned inside out"
+    if kind == "flipping":
+        return f"{reason}; the status of {len(culprits)} slave points alternates (chattering)"
+    return reason

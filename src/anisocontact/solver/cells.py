@@ -1,0 +1,52 @@
+"""Cells that the displacement has turned inside out."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import basix, scalar_element
+from anisocontact.mesh import Model
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+
+class DeformedCells:
+    """Change of volume `det F` of the cells of a model at their quadrature points.
+
+    Args:
+        model: The mesh.
+        bodies: Bodies whose cells count.
+    """
+
+    def __init__(self, model: Model, bodies: list[str]) -> None:
+        element = scalar_element(model.space)
+        points, _ = basix.make_quadrature(element.cell_type, 2 * element.degree)
+        table = np.asarray(element.tabulate(1, points))[1:, :, :, 0]
+        self._gradient: Floats = np.ascontiguousarray(np.moveaxis(table, 0, -1))
+        owned = model.mesh.topology.index_map(3).size_local
+        cells = np.concatenate([np.zeros(0, dtype=np.int32), *map(model.cells, bodies)])
+        self._nodes: Ints = model.space.dofmap.list[np.sort(cells[cells < owned])]
+        self._reference = np.asarray(model.space.tabulate_dof_coordinates())
+        self._rest = self._volumes(self._reference)
+
+    def inverted(self, u: Floats) -> Floats:
+        """Middles of the cells of this rank that are inverted, where they are now.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+
+        Returns:
+            Positions (n, 3), length.
+        """
+        now = self._reference + u
+        with np.errstate(invalid="ignore", over="ignore"):
+            ratio = self._volumes(now) / self._rest
+        wrong = ~(ratio > 0.0).all(axis=1)
+        return np.asarray(now[self._nodes[wrong]].mean(axis=1))
+
+    def _volumes(self, at: Floats) -> Floats:
+        """Determinant of the Jacobian, (cells, points)."""
+        jacobian = np.einsum("qbd,cbi->cqid", self._gradient, at[self._nodes], optimize=True)
+        return np.asarray(np.linalg.det(jacobian))

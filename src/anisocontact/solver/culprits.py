@@ -1,0 +1,94 @@
+"""What kept an increment from converging, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.interface import FAILURE, STATUS
+from anisocontact.solver.problem import Problem
+from anisocontact.solver.steps import Culprit
+from anisocontact.solver.watch import StatusWatch
+
+Floats = npt.NDArray[np.float64]
+
+#: How many places are named.
+NAMED = 5
+
+
+def find_culprits(problem: Problem, watch: StatusWatch, residual: Floats) -> list[Culprit]:
+    """Places that caused a failure, of the gravest kind that there is.
+
+    Args:
+        problem: The problem as the last evaluation left it.
+        watch: Status of the slave points in the last iterations.
+        residual: Last residual of the unknowns this rank owns, force.
+
+    Returns:
+        Over all ranks, the same on each: points without answer of their law, else inverted cells,
+        else points whose status alternates, else the node that is farthest from equilibrium.
+    """
+    for kind in (_of_laws(problem, watch), _inverted(problem), _alternating(problem, watch)):
+        found = _everywhere(problem, list(kind))
+        if found:
+            return found
+    worst = _everywhere(problem, list(_worst(problem, residual)))
+    return [max(worst, key=lambda one: one[0])[1]] if worst else []
+
+
+def _everywhere[T](problem: Problem, local: list[T]) -> list[T]:
+    return [one for part in problem.comm.allgather(local) for one in part]
+
+
+def _of_laws(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
+    for i, contact in enumerate(problem.contacts):
+        failure = contact.trial.failure
+        for point in np.flatnonzero(failure):
+            yield _slave_point(problem, watch, i, int(point), "law", FAILURE[failure[point]])
+
+
+def _alternating(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
+    for i, flags in enumerate(watch.alternating()):
+        for point in np.flatnonzero(flags):
+            seen = watch.history(i)[:, point]
+            names = " and ".join(STATUS[code] for code in np.unique(seen))
+            why = f"the status alternates between {names}"
+            yield _slave_point(problem, watch, i, int(point), "flipping", why)
+
+
+def _slave_point(
+    problem: Problem, watch: StatusWatch, contact: int, point: int, kind: str, why: str
+) -> Culprit:
+    found = problem.contacts[contact]
+    return Culprit(
+        kind=kind,
+        position=_place(found.current.points[point]),
+        why=why,
+        contact=found.name,
+        point=point,
+        facet=int(found.facet_of_point[point]),
+        statuses=tuple(STATUS[code] for code in watch.history(contact)[:, point]),
+    )
+
+
+def _inverted(problem: Problem) -> Iterator[Culprit]:
+    for middle in problem.inverted_cells():
+        yield Culprit("inverted", _place(middle), "the cell here is inverted (det F <= 0)")
+
+
+def _worst(problem: Problem, residual: Floats) -> Iterator[tuple[float, Culprit]]:
+    """The node of this rank with the largest residual, and how large it is."""
+    x = problem.model.space.tabulate_dof_coordinates()
+    nodal = np.linalg.norm(residual[: 3 * (len(residual) // 3)].reshape(-1, 3), axis=1)
+    nodal = nodal[: problem.model.space.dofmap.index_map.size_local]
+    if nodal.size and np.isfinite(nodal).any():
+        node = int(np.nanargmax(nodal))
+        now = x[node] + problem.u.x.array.reshape(-1, 3)[node]
+        why = f"the largest residual, {nodal[node]:.3g}, is that of the node here"
+        yield float(nodal[node]), Culprit("residual", _place(now), why)
+
+
+def _place(x: Floats) -> tuple[float, float, float]:
+    return float(x[0]), float(x[1]), float(x[2])

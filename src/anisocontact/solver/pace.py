@@ -1,0 +1,89 @@
+"""How large the next part of an increment is: cut after a failure, grown after success."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from anisocontact.limits import Limits
+
+#: What is left of a part that failed.
+CUT = 0.25
+#: What a part grows by.
+GROWTH = 2.0
+#: Parts in a row that have to converge before the next one grows.
+STREAK = 2
+#: Newton iterations beyond which a part was hard enough not to grow.
+HARD = 15
+
+
+@dataclass
+class Pace:
+    """Goes through the increments of a step in parts; all sizes are shares of an increment.
+
+    Args:
+        limits: Bounds of the parts.
+        size: Size that the next part should have.
+
+    Attributes:
+        increment: Number of the increment that is worked at, from 1.
+        done: Share of it that is done.
+        last: Size of the last part that converged, 0 at the start of a step.
+        streak: Parts in a row that converged.
+        cuts: Number of cuts within this increment.
+
+    Example:
+        >>> limits = Limits()
+        >>> pace = Pace(limits, limits.largest)
+        >>> pace.cut(), pace.end
+        (True, 0.25)
+        >>> pace.advance(iterations=3)
+        >>> pace.done, pace.end
+        (0.25, 0.5)
+    """
+
+    limits: Limits
+    size: float
+    increment: int = 1
+    done: float = 0.0
+    last: float = 0.0
+    streak: int = 0
+    cuts: int = 0
+
+    @property
+    def end(self) -> float:
+        """Where the next part ends: parts of equal size up to the end of the increment, 1."""
+        left = 1.0 - self.done
+        # Round-off in a size is no reason for one more part.
+        count = math.ceil(left / self.size * (1.0 - 1e-9))
+        return 1.0 if count <= 1 else self.done + left / count
+
+    @property
+    def part(self) -> float:
+        """Size of the next part."""
+        return self.end - self.done
+
+    def advance(self, iterations: int) -> None:
+        """Go on behind a part that has converged.
+
+        Args:
+            iterations: Newton iterations that it took.
+        """
+        end, self.last = self.end, self.part
+        self.done = end
+        self.streak += 1
+        if self.streak >= STREAK and iterations <= HARD:
+            self.size = min(GROWTH * self.size, self.limits.largest)
+        if end == 1.0:
+            self.increment += 1
+            self.done = 0.0
+            self.cuts = 0
+
+    def cut(self) -> bool:
+        """Make the next part smaller; False, and nothing changed, where a limit forbids it."""
+        if self.cuts >= self.limits.cuts or self.part <= self.limits.smallest:
+            return False
+        self.size = max(CUT * self.part, self.limits.smallest)
+        self.cuts += 1
+        self.streak = 0
+        return True

@@ -1,0 +1,193 @@
+"""Increments that fail: cut, grown again, told of; and the end of each met exactly."""
+
+from __future__ import annotations
+
+import dataclasses
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.errors import InputError
+from anisocontact.limits import Limits
+from anisocontact.solver import Solver, Step, StoppedError
+from anisocontact.solver.culprits import NAMED
+from anisocontact.solver.pace import Pace
+from anisocontact.solver.watch import StatusWatch
+
+PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
+DRAG = {"block.top": {"x": 0.02, "y": 0.01}}
+
+
+def solved(block, *steps, limits=None, **options):
+    """Accepted parts and cuts of a run."""
+    cuts: list = []
+    solver = Solver(block.problem, list(steps), options=options, limits=limits)
+    return list(solver.run(on_cut=cuts.append)), cuts
+
+
+@pytest.mark.parametrize(
+    ("values", "line"),
+    [
+        ({"largest": 1.5}, "largest_increment: 1.5 given, must be > 0 and at most 1"),
+        ({"smallest": 0.0}, "smallest_increment: 0.0 given, must be > 0 and at most the largest"),
+        ({"smallest": 0.2, "largest": 0.1}, "smallest_increment: 0.2 given, must be > 0 and at"),
+        ({"cuts": -1}, "cuts: -1 given, must be >= 0"),
+    ],
+)
+def test_wrong_limits_are_one_line(values, line):
+    with pytest.raises(InputError, match=line):
+        Limits(**values)
+
+
+@given(
+    outcomes=st.lists(st.booleans(), max_size=60),
+    largest=st.sampled_from([1.0, 0.3, 0.1]),
+)
+def test_every_end_is_met_exactly(outcomes, largest):
+    """Whatever fails, parts add up to whole increments and none is below the smallest."""
+    limits = Limits(smallest=1e-3, largest=largest)
+    pace = Pace(limits, limits.largest)
+    reached = 0.0
+    for good in outcomes:
+        before = pace.increment
+        if good:
+            assert pace.done < pace.end <= 1.0
+            # parts are of equal size up to the end: at least half of what was asked for
+            assert 0.5 * limits.smallest < pace.part <= largest * (1.0 + 1e-9)
+            end = pace.end
+            pace.advance(3)
+            assert (pace.increment == before + 1) == (end == 1.0)
+        elif not pace.cut():
+            assert pace.part <= limits.smallest or pace.cuts == limits.cuts
+        now = pace.increment + pace.done
+        assert now >= reached
+        reached = now
+
+
+def test_parts_grow_back_after_a_cut():
+    limits = Limits()
+    pace = Pace(limits, limits.largest)
+    assert pace.cut()
+    assert pace.cut()
+    sizes = []
+    while pace.increment == 1:
+        sizes.append(pace.part)
+        pace.advance(3)
+    assert sizes[:3] == [1 / 16, 1 / 16, 1 / 8]
+    assert sum(sizes) == 1.0
+    assert pace.part == 1.0
+
+
+def test_an_increment_that_fails_is_solved_in_parts(fe):
+    """Four iterations are enough for a part of the drag, not for the whole.
+
+    Requirement: cut back on failure, output times met exactly, each cut told with its reason. The
+    path is the one of more increments: its end agrees with 32 of them to the error of the parts.
+    """
+    block = fe.block(fe.interface(), cells=(3, 3, 2))
+    accepted, cuts = solved(block, Step("press", 2, PRESS), Step("drag", 2, DRAG), snes_max_it=4)
+    assert len(cuts) > 0
+    times = [a.time for a in accepted]
+    assert times == sorted(times)
+    assert [a.time for a in accepted if a.done == 1.0] == [0.5, 1.0, 1.5, 2.0]
+    assert len(times) > 4
+    first = cuts[0]
+    assert (first.step, first.increment, first.size, first.next_size) == ("drag", 1, 1.0, 0.25)
+    assert "no convergence in 4 Newton iterations" in first.reason
+    assert str(first).startswith("drag 1  cut from 1 to 0.25 of the increment after ")
+    fine = fe.block(fe.interface(), cells=(3, 3, 2))
+    wanted, none = solved(fine, Step("press", 2, PRESS), Step("drag", 32, DRAG))
+    assert none == []
+    ends = [run[-1].resultants["block.bottom"][0] for run in (accepted, wanted)]
+    assert np.linalg.norm(ends[0] - ends[1]) < 0.05 * np.linalg.norm(ends[1])
+
+
+def test_iterations_of_failures_are_counted(fe):
+    seen: list = []
+    block = fe.block(fe.interface(), cells=(2, 2, 1))
+    solver = Solver(
+        block.problem, [Step("a", 1, PRESS), Step("b", 1, DRAG)], options={"snes_max_it": 5}
+    )
+    spent = [a.iterations for a in solver.run(seen.append)]
+    assert sum(spent) == sum(p.iteration > 0 for p in seen)
+
+
+def test_largest_increment_is_kept(fe):
+    block = fe.block(fe.interface(), cells=(2, 2, 1))
+    accepted, _ = solved(block, Step("press", 2, PRESS), limits=Limits(largest=0.3))
+    assert [a.done for a in accepted] == pytest.approx([0.25, 0.5, 0.75, 1.0] * 2)
+    assert [a.time for a in accepted] == pytest.approx(np.arange(1, 9) / 8)
+
+
+def test_points_without_answer_are_named(fe):
+    """Requirement: each cut names the points that caused it, with facet and status history."""
+    interface = fe.interface()
+    update = interface.update
+
+    def partial(state, x, dt=1.0, *, tangent=True):
+        response = update(state, x, dt, tangent=tangent)
+        return dataclasses.replace(response, failure=(x[:, 0] > 1.001).astype(np.int8))
+
+    interface.update = partial
+    block = fe.block(interface, cells=(2, 2, 1))
+    block.run(Step("press", 1, PRESS))
+    cuts: list = []
+    solver = Solver(block.problem, [Step("drag", 1, {"block.top": {"x": 0.8}})])
+    with pytest.raises(StoppedError) as stopped:
+        list(solver.run(on_cut=cuts.append))
+    culprit = cuts[0].culprits[0]
+    assert (culprit.kind, culprit.contact) == ("law", "block.bottom")
+    assert culprit.why == "no closest point on the surface"
+    assert culprit.position[0] > 1.001
+    # four points on each of the four facets
+    assert culprit.facet == culprit.point // 4
+    assert cuts[0].count >= len(cuts[0].culprits)
+    assert len(cuts[0].culprits) <= NAMED
+    assert len(stopped.value.points) > 0
+    assert "cuts, the last part was" in str(stopped.value)
+    assert stopped.value.culprits[0].kind == "law"
+
+
+def test_a_cell_turned_inside_out_is_no_solution(fe):
+    """Requirement: inverted elements are a failure; here the top is moved below the sole.
+
+    A St. Venant-Kirchhoff body has an equilibrium with det F < 0, which has no meaning.
+    """
+    from anisocontact.bulk import make_material
+    from anisocontact.mesh import BoxSpec, build_box
+    from anisocontact.solver import Problem
+
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    problem = Problem(model, {"block": make_material("st-venant-kirchhoff", E=1e3, nu=0.0)})
+    hold = {"x": 0.0, "y": 0.0, "z": 0.0}
+    step = Step("through", 1, {"block.bottom": hold, "block.top": hold | {"z": -1.5}})
+    cuts: list = []
+    with pytest.raises(StoppedError, match="turned inside out") as stopped:
+        list(Solver(problem, [step]).run(on_cut=cuts.append))
+    assert cuts[0].culprits[0].kind == "inverted"
+    assert stopped.value.culprits[0].position[:2] == pytest.approx((0.5, 0.5))
+    top = model.space.tabulate_dof_coordinates()[:, 2] == 1.0
+    assert -1.0 < problem.u.x.array.reshape(-1, 3)[top, 2].min() < -0.9
+
+
+def test_alternating_points_are_found():
+    """Requirement: chattering is detected: points that flip, not those that change once."""
+    contact = SimpleNamespace(trial=SimpleNamespace(status=np.zeros(3, dtype=np.int8)))
+    watch = StatusWatch([contact])
+    assert not watch.unsettled()
+    for i in range(6):
+        contact.trial.status[:] = (1, 1 + i % 2, 0 if i < 3 else 1)
+        watch.note()
+    assert watch.alternating()[0].tolist() == [False, True, False]
+    assert watch.unsettled()
+    assert watch.history(0)[:, 1].tolist() == [1, 2, 1, 2, 1, 2]
+    for _ in range(3):
+        watch.note()
+    assert not watch.unsettled()
+    watch.clear()
+    assert not watch.alternating()[0].any()
