@@ -65,6 +65,10 @@ class FacetProjections:
     entity: Codes
     edge: Floats
 
+    def take(self, which: npt.NDArray[np.int64]) -> FacetProjections:
+        """Projections of some of the points, (k,)."""
+        return FacetProjections(**{name: value[which] for name, value in vars(self).items()})
+
 
 @dataclass(frozen=True)
 class FacetSets:
@@ -83,6 +87,20 @@ class FacetSets:
 
     def __len__(self) -> int:
         return len(self.offsets) - 1
+
+    def take(self, which: npt.NDArray[np.int64]) -> FacetSets:
+        """Sets of some of the points.
+
+        Args:
+            which: Points, in any order and as often as wanted, (k,).
+
+        Returns:
+            The set of each of them.
+        """
+        counts = np.diff(self.offsets)[which]
+        offsets = np.concatenate(([0], np.cumsum(counts))).astype(np.int64)
+        within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], counts)
+        return FacetSets(offsets, self.facets[np.repeat(self.offsets[which], counts) + within])
 
     def united(self, other: FacetSets) -> FacetSets:
         """Sets with the facets of both.

@@ -59,13 +59,14 @@ def test_directions_are_those_of_the_case(results):
     """Both half passes have the axes of the case, turned with bodies that deform a little.
 
     The second pass integrates over the other body, whose normal is opposite: with angles about
-    that normal its axes would be mirrored, 60 degrees off. Allowed: 6 degrees.
+    that normal its axes would be mirrored, 60 degrees off. At the edges of the block the mat is
+    sheared and turns its axes by 6.0 degrees; allowed are 10.
     """
     points = results.contact()
     touching = points.point_data["status"] > 0
     for name, axis in zip(("direction_friction_1", "direction_friction_2"), AXES, strict=True):
         cosine = points.point_data[name][touching][:, :2] @ axis
-        assert cosine.min() > np.cos(np.radians(6.0))
+        assert cosine.min() > np.cos(np.radians(10.0))
 
 
 def test_pictures_and_report(results):

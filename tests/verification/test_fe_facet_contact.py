@@ -7,13 +7,14 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
-from anisocontact.contact import FacetContact
+from anisocontact.contact import FacetContact, TwoHalfPass
 from anisocontact.errors import InputError
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -51,10 +52,12 @@ def _blocks(
     )
 
 
-def _problem(model: Model, law: PairLaw, material: str, **options: object) -> Problem:
+def _problem(
+    model: Model, law: PairLaw, material: str, kind: Any = FacetContact, **options: object
+) -> Problem:
     elastic = make_material(material, E=1000.0, nu=0.3)
     options.setdefault("current_area", material != "linear-elastic")
-    contact = FacetContact(model, "block.bottom", "base.top", law=law, **options)  # type: ignore[arg-type]
+    contact = kind(model, "block.bottom", "base.top", law=law, **options)
     return Problem(model, {"block": elastic, "base": elastic}, [contact])
 
 
@@ -92,13 +95,16 @@ def test_against_calculix() -> None:
     [("hexahedron", 1), ("hexahedron", 2), ("tetrahedron", 1), ("tetrahedron", 2)],
 )
 @pytest.mark.parametrize("mu", [0.3, 30.0])
-def test_tangent_of_the_system_by_order(cell: str, order: int, material: str, mu: float) -> None:
+@pytest.mark.parametrize("kind", [FacetContact, TwoHalfPass])
+def test_tangent_of_the_system_by_order(
+    cell: str, order: int, material: str, mu: float, kind: Any
+) -> None:
     """Halving the step quarters the error of central differences (asserted 3.5 to 4.5), with the
     points of the block sliding (mu = 0.3) or sticking (mu = 30), from a random state in contact."""
-    problem = _problem(_blocks(2, cell, order), _law(mu, ratio=0.5), material)
+    problem = _problem(_blocks(2, cell, order), _law(mu, ratio=0.5), material, kind)
     step = Step(
         name="press",
-        increments=1,
+        increments=2,
         displacement={**CLAMP, "block.top": {"x": 0.003, "y": 0.002, "z": -0.02}},
     )
     for _ in Solver(problem, [step]).run():

@@ -191,33 +191,39 @@ def _turned_base() -> Model:
 
 
 #: Largest error of the pressure and of the displacement, of the largest value, in the patch test:
-#: cell, kind, degree of the quadrature (0: default) -> measured bounds.
+#: cell, order, kind, degree of the quadrature (0: default) -> bounds. Those of two half passes are
+#: the tolerance of Newton, 1e-12 of the forces, times the condition of the system; those of a
+#: single pass are what was measured, docs/verification/meshed-contact.md.
 PATCH = {
-    ("hexahedron", FacetContact, 0): (1.3e-2, 3.0e-3),
-    ("hexahedron", TwoHalfPass, 0): (1.7e-1, 5.5e-3),
-    ("tetrahedron", FacetContact, 0): (2.1e-2, 1.6e-3),
-    ("tetrahedron", TwoHalfPass, 0): (9.4e-2, 4.2e-3),
-    ("hexahedron", FacetContact, 20): (5.0e-4, 6.0e-5),
-    ("hexahedron", TwoHalfPass, 30): (5.0e-3, 5.0e-4),
-    ("tetrahedron", FacetContact, 20): (1.6e-3, 1.0e-4),
-    ("tetrahedron", TwoHalfPass, 20): (1.2e-3, 6.0e-5),
+    ("hexahedron", 1, TwoHalfPass, 0): (1e-8, 1e-8),
+    ("hexahedron", 1, TwoHalfPass, 5): (1e-8, 1e-8),
+    ("hexahedron", 2, TwoHalfPass, 0): (1e-8, 1e-8),
+    ("tetrahedron", 1, TwoHalfPass, 0): (1e-8, 1e-8),
+    ("tetrahedron", 2, TwoHalfPass, 0): (1e-8, 1e-8),
+    ("hexahedron", 1, FacetContact, 0): (1.3e-2, 3.0e-3),
+    ("hexahedron", 1, FacetContact, 20): (5.0e-4, 6.0e-5),
+    ("hexahedron", 2, FacetContact, 0): (8.2e-2, 1.4e-2),
+    ("tetrahedron", 1, FacetContact, 0): (2.1e-2, 1.6e-3),
+    ("tetrahedron", 1, FacetContact, 20): (1.6e-3, 1.0e-4),
+    ("tetrahedron", 2, FacetContact, 0): (7.8e-2, 8.6e-3),
 }
 
 
-@pytest.mark.parametrize(("cell", "kind", "degree"), PATCH)
-def test_patch(cell: str, kind: Any, degree: int) -> None:
+@pytest.mark.parametrize(("cell", "order", "kind", "degree"), PATCH)
+def test_patch(cell: str, order: int, kind: Any, degree: int) -> None:
     """Uniform compression across meshes that do not match (4 x 4 on 3 x 3 facets).
 
+    Requirement: pressure at every point and displacement within 0.5 % for two half passes.
     Source: uniform stress, `p = delta / (1/E + 1/penalty)` for bodies of height one together, with
-    symmetry planes at two sides. The error is that of integrating shape functions of the other
-    body, which have kinks inside a facet, and falls with the degree. Asserted: what was measured,
-    docs/verification/meshed-contact.md.
+    symmetry planes at two sides. Two half passes integrate the shape functions of the other body
+    over the overlaps of the facets, which is exact here; a single pass samples them at its points,
+    and its error falls with the degree.
     """
     penalty, pressure = 4e4, 10.0
     model = build_box(
         {
-            "upper": BoxSpec((0, 0, 0), (1, 1, 0.5), (4, 4, 2), cell=cell),
-            "lower": BoxSpec((0, 0, -0.5), (1, 1, 0.5), (3, 3, 2), cell=cell),
+            "upper": BoxSpec((0, 0, 0), (1, 1, 0.5), (4, 4, 2), cell=cell, order=order),
+            "lower": BoxSpec((0, 0, -0.5), (1, 1, 0.5), (3, 3, 2), cell=cell, order=order),
         }
     )
     law = PairLaw(
@@ -243,5 +249,5 @@ def test_patch(cell: str, kind: Any, degree: int) -> None:
         float(np.abs(contact.last.pressure / pressure - 1.0).max()),
         _far(problem.u.x.array.reshape(-1, 3), exact),
     )
-    for error, bound in zip(errors, PATCH[cell, kind, degree], strict=True):
+    for error, bound in zip(errors, PATCH[cell, order, kind, degree], strict=True):
         assert error < bound

@@ -15,6 +15,7 @@ from anisocontact.contact.facet_mesh import (
 )
 from anisocontact.contact.quadrature import default_degree
 from anisocontact.contact.record import ContactRecord, Snapshot
+from anisocontact.contact.transfer import Couplings, Transfer
 from anisocontact.errors import InputError
 from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSurface
 from anisocontact.interface import STATE, PairLaw, Response, State, as_state, raw_state
@@ -24,7 +25,7 @@ from anisocontact.surfaces import default_threads
 #: Code of the kernel for a point without a facet below it.
 OFF = 3
 
-Ints = npt.NDArray[np.int32]
+Mask = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
 
 
@@ -48,6 +49,8 @@ class FacetContact(ContactRecord):
         weight: Share of the work of this pass: 0.5 for each of two half passes.
         mirrored: Whether angles of directions count about the normal of the slave, not of the
             master: the other way round.
+        overlaps: Whether forces on the master are integrated over the overlaps of the facets (see
+            `Transfer`) or act at the feet of the slave points.
         name: Name in output; the slave if not given.
 
     Raises:
@@ -67,6 +70,7 @@ class FacetContact(ContactRecord):
         current_area: bool = True,
         weight: float = 1.0,
         mirrored: bool = False,
+        overlaps: bool = False,
         name: str = "",
     ) -> None:
         _check(model, slave, master)
@@ -88,6 +92,10 @@ class FacetContact(ContactRecord):
         self.reach = reach if reach is not None else 2.0 * self._points.size
         self._hint: FacetProjections | None = None
         self._answer: dict[str, npt.NDArray[Any]] = {}
+        self._transfer = (
+            Transfer(own, rule, self._master, self._surface, self.reach) if overlaps else None
+        )
+        self._handed: Mask = np.zeros(len(self._points.nodes), dtype=bool)
         state = self._initial()
         super().__init__(
             model.space,
@@ -97,6 +105,8 @@ class FacetContact(ContactRecord):
             self._respond(state, self._reference, 1.0, tangent=False),
             self._points.facet,
         )
+        if self._transfer is not None:
+            self._transfer.place(self._reference)
 
     @property
     def passes(self) -> tuple[FacetContact, ...]:
@@ -113,8 +123,17 @@ class FacetContact(ContactRecord):
         Returns:
             The response; the committed history is unchanged.
         """
-        self._trial = self._respond(self.state, self._reference + u, dt, tangent=True)
+        self._now = self._reference + u
+        self._trial = self._respond(self.state, self._now, dt, tangent=True)
+        if self._transfer is not None:
+            self._hand_over(self._transfer)
         return self._trial.response
+
+    def commit(self) -> None:
+        """Make the trial the history."""
+        if self._trial is not None and self._transfer is not None:
+            self._transfer.place(self._now)
+        super().commit()
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
@@ -131,18 +150,29 @@ class FacetContact(ContactRecord):
         rows = self._answer["nodes"][:, : forces.shape[1] // 3]
         held = rows >= 0
         np.add.at(out, rows[held], forces.reshape(*rows.shape, 3)[held])
+        if self._transfer is not None:
+            self._transfer.add_force(out)
 
-    def couplings(self) -> tuple[Ints, Ints, Floats]:
+    def couplings(self) -> list[Couplings]:
         """Where `-d force / d u` of the trial has entries, and the entries.
 
         Returns:
-            Local nodes of the rows (p, r) and of the columns (p, c) of the p points in contact, -1
-            for none, and the block of each point, (p, 3 r, 3 c).
+            Each with local nodes of the rows (p, r) and of the columns (p, c), -1 for none, and p
+            blocks, (p, 3 r, 3 c).
         """
-        active = np.flatnonzero(self.trial.status != 0)
-        nodes = self._answer["nodes"][active]
-        tangent = self._answer["tangent"][active]
-        return nodes[:, : tangent.shape[1] // 3], nodes, tangent
+        touching = self.trial.status != 0
+        nodes, tangent = self._answer["nodes"], self._answer["tangent"]
+        rows = nodes[:, : tangent.shape[1] // 3]
+        if self._transfer is None:
+            return [(rows[touching], nodes[touching], tangent[touching])]
+        k = self._points.nodes.shape[1]
+        handed, kept = touching & self._handed, touching & ~self._handed
+        force = -tangent.reshape(len(tangent), -1, 3, tangent.shape[2])[:, :k].sum(axis=1)
+        return [
+            (rows[kept], nodes[kept], tangent[kept]),
+            (rows[handed, :k], nodes[handed], tangent[handed, : 3 * k]),
+            *self._transfer.couplings(nodes, force, handed),
+        ]
 
     def lever(self) -> float:
         """Forces that would move every point of the trial to the origin, norm over this rank."""
@@ -185,6 +215,13 @@ class FacetContact(ContactRecord):
             failure=np.where(lost, np.int8(1), answer["failure"]),
         )
         return Snapshot(x, answer["area"], response)
+
+    def _hand_over(self, transfer: Transfer) -> None:
+        """Let the forces on the master act where the overlaps have them."""
+        now, answer = self.current, self._answer
+        force = now.areas[:, None] * now.response.traction
+        self._handed = transfer.update(self._now, force, now.response.status != 0)
+        answer["residual"][self._handed, 3 * self._points.nodes.shape[1] :] = 0.0
 
     def _project(self, now: Floats, x: Floats) -> FacetProjections:
         self._surface.update(now)

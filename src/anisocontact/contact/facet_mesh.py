@@ -63,17 +63,79 @@ def node_positions(space: Any) -> Floats:
     return np.asarray(space.tabulate_dof_coordinates())
 
 
+def facet_corners(topology: str) -> list[int]:
+    """Vertices of a facet, once around."""
+    return [0, 1, 2] if topology.startswith("tri") else [0, 1, 3, 2]
+
+
+class FacetShapes:
+    """Shape functions of a reference facet, and what it is.
+
+    Args:
+        topology: "tri3", "tri6", "quad4" or "quad9".
+
+    Attributes:
+        cell: Triangle or quadrilateral.
+        order: Order of the shape functions.
+        area: Area of the reference facet.
+        middle: Its middle, (2,).
+        half_planes: Normals a and bounds b of its sides: a . xi <= b inside.
+        overlap_degree: Degree that integrates the functions of `moments` times a position on a
+            part of the facet.
+    """
+
+    def __init__(self, topology: str) -> None:
+        triangle = topology.startswith("tri")
+        self.cell = basix.CellType.triangle if triangle else basix.CellType.quadrilateral
+        self.order = 2 if topology in {"tri6", "quad9"} else 1
+        self.area = 0.5 if triangle else 1.0
+        self.middle = np.full(2, 1.0 / 3.0 if triangle else 0.5)
+        low = [(np.array([-1.0, 0.0]), 0.0), (np.array([0.0, -1.0]), 0.0)]
+        high = [(np.array([1.0, 0.0]), 1.0), (np.array([0.0, 1.0]), 1.0)]
+        self.half_planes = low + ([(np.array([1.0, 1.0]), 1.0)] if triangle else high)
+        self.overlap_degree = (1 if triangle else 2) * self.order + 1
+        self._element = basix.create_element(
+            basix.ElementFamily.P, self.cell, self.order, basix.LagrangeVariant.equispaced
+        )
+
+    def at(self, points: Floats) -> tuple[Floats, Floats]:
+        """Shape functions and their derivatives.
+
+        Args:
+            points: Coordinates on the reference facet, (n, 2).
+
+        Returns:
+            Values (n, k) and derivatives along the two coordinates (n, k, 2).
+        """
+        table = np.asarray(self._element.tabulate(1, points))[..., 0]
+        return table[0], np.stack([table[1], table[2]], axis=-1)
+
+    def moments(self, points: Floats, degree: int) -> Floats:
+        """Orthonormal polynomials up to a degree (in each coordinate of a quadrilateral), (n, k).
+
+        Args:
+            points: Coordinates on the reference facet, (n, 2).
+            degree: The degree.
+        """
+        kind = basix.PolynomialType.legendre
+        return np.asarray(basix.tabulate_polynomials(kind, self.cell, degree, points)).T
+
+
 @dataclass(frozen=True)
 class FacetRule:
     """Quadrature on the reference facet with the shape functions there.
 
     Attributes:
+        points: Coordinates on the reference facet, (q, 2).
         weights: Weights on the reference facet, (q,).
+        degree: Polynomials up to this degree are integrated exactly on flat facets.
         shape: Shape functions, (q, k).
         gradient: Their derivatives along the two coordinates, (q, k, 2).
     """
 
+    points: Floats
     weights: Floats
+    degree: int
     shape: Floats
     gradient: Floats
 
@@ -88,16 +150,10 @@ def facet_rule(topology: str, degree: int) -> FacetRule:
     Returns:
         Weights and shape functions.
     """
-    triangle = topology.startswith("tri")
-    cell = basix.CellType.triangle if triangle else basix.CellType.quadrilateral
-    order = 2 if topology in {"tri6", "quad9"} else 1
-    rule: Any = basix.make_quadrature(cell, degree)
+    shapes = FacetShapes(topology)
+    rule: Any = basix.make_quadrature(shapes.cell, degree)
     points, weights = np.asarray(rule[0]), np.asarray(rule[1])
-    element = basix.create_element(
-        basix.ElementFamily.P, cell, order, basix.LagrangeVariant.equispaced
-    )
-    table = np.asarray(element.tabulate(1, points))[..., 0]
-    return FacetRule(weights, table[0], np.stack([table[1], table[2]], axis=-1))
+    return FacetRule(points, weights, degree, *shapes.at(points))
 
 
 class SlavePoints:

@@ -66,6 +66,7 @@ class TwoHalfPass(ContactRecord):
                 current_area=current_area,
                 weight=0.5,
                 mirrored=mirrored,
+                overlaps=True,
             )
             for on, against, mirrored in ((slave, master, False), (master, slave, True))
         )

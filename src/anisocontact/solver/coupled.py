@@ -9,14 +9,10 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc
+from anisocontact.contact.transfer import Couplings
 
-Ints = npt.NDArray[np.int32]
 Keys = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
-
-#: Nodes of the rows and of the columns of each point and its block, as of
-#: `FacetContact.couplings`.
-type Couplings = tuple[Ints, Ints, Floats]
 
 
 class CoupledTangent:

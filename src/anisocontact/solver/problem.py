@@ -185,7 +185,7 @@ class Problem:
             contact.add_tangent(bulk)
         bulk.assemble()
         if self._coupled is not None:
-            self._coupled.assemble(out, [c.couplings() for c in self._meshed])
+            self._coupled.assemble(out, [k for c in self._meshed for k in c.couplings()])
         out.zeroRowsLocal(self.supports.unknowns.astype(PETSc.IntType), self._support_scale)
 
     def commit(self, x: Vec) -> None:

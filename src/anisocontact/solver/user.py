@@ -174,7 +174,7 @@ class ContactProblem:
         bulk.assemble()
         if self._coupled:
             meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
-            self._coupled.assemble(out, [c.couplings() for c in meshed])
+            self._coupled.assemble(out, [k for c in meshed for k in c.couplings()])
         out.zeroRowsLocal(prescribed_rows(self.bcs), self._support_scale)
 
     def _contact_force(self) -> Floats:

@@ -1,0 +1,220 @@
+"""Forces of slave points on the master, integrated over the overlaps of the facets.
+
+Where meshes do not match, the shape functions of the master have kinks inside a slave facet and
+the points of the slave do not integrate them. The traction, as a polynomial through its values at
+the points of a facet, is integrated over the overlaps instead: of the force F_g of a point the
+share omega_gs acts at point s of the overlaps, on the node b of the master facet there
+
+    f_b = - sum_s M_b(xi_s) sum_g omega_gs F_g ,    sum_s omega_gs = 1 ,
+
+so that forces balance, and a uniform traction gives the nodes of the master what they need.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import csr_array
+
+from anisocontact.contact.facet_mesh import FacetMesh, FacetRule, FacetShapes
+from anisocontact.contact.overlap import Overlaps, overlaps
+from anisocontact.facets import FEATURES, FacetProjections, FacetSets, FacetSurface
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+#: Nodes of rows and columns, (p, r) and (p, c), and blocks (p, 3 r, 3 c).
+type Couplings = tuple[Ints, Ints, Floats]
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """Points of the overlaps on facets in contact, at one state."""
+
+    points: npt.NDArray[np.int64]  # which of all points
+    hit: FacetProjections
+    position: Floats  # of the points, (s, 3)
+    force: Floats  # of the slave points, (facets, q, 3)
+    sums: Any  # sparse (pairs of facets, s): which pair a point counts for
+    owner: npt.NDArray[np.int64]  # slave facet of each pair
+    facet: Ints  # master facet of each pair
+
+
+class Transfer:
+    """Shares of the forces of slave points that act on the nodes of the master.
+
+    The overlaps are those of the committed state: in an increment their points move with the
+    slave, and the master's shape functions are taken where they are now, so that the tangent is
+    exact. A facet that the master does not cover hands its forces over at its own points.
+
+    Args:
+        slave: Slave facets.
+        rule: Quadrature on them.
+        master: Master facets.
+        surface: The same as a surface.
+        reach: Distance within which the master is searched, length.
+        excluded: Master facets that do not count, for each slave facet.
+    """
+
+    def __init__(
+        self,
+        slave: FacetMesh,
+        rule: FacetRule,
+        master: FacetMesh,
+        surface: FacetSurface,
+        reach: float,
+        excluded: FacetSets | None = None,
+    ) -> None:
+        self._slave, self._rule, self._master = slave, rule, master
+        self._surface, self._reach, self._excluded = surface, reach, excluded
+        self._shapes = FacetShapes(slave.topology)
+        self._degree = min(rule.degree // 2, self._shapes.order)
+        self._at_points = self._shapes.moments(rule.points, self._degree)
+        self._trial: _Trial | None = None
+        self._parts: Overlaps | None = None
+
+    def place(self, now: Floats) -> None:
+        """Put the overlaps where the facets are; the surface has to be there already.
+
+        Args:
+            now: Positions of the nodes, (nodes, 3), length.
+        """
+        self._parts = parts = overlaps(
+            self._slave, self._master, self._surface, now, self._reach, self._excluded
+        )
+        self._shape, self._gradient = self._shapes.at(parts.at)
+        moments = self._shapes.moments(parts.at, self._degree)
+        shares = parts.weight[:, None] * (moments @ self._at_points.T)
+        count = len(self._slave.nodes)
+        sums = np.ones((count, shares.shape[1]))
+        for g in range(shares.shape[1]):
+            found = np.bincount(parts.owner, weights=shares[:, g], minlength=count)
+            sums[parts.covered, g] = found[parts.covered]
+        self._share = shares / sums[parts.owner]
+        self._facet = parts.facet.copy()
+
+    def update(self, now: Floats, force: Floats, active: Mask) -> Mask:
+        """Take the forces of a trial.
+
+        Args:
+            now: Positions of the nodes, (nodes, 3), length.
+            force: Forces of the slave points on the slave, (n, 3).
+            active: Whether a point is in contact, (n,).
+
+        Returns:
+            Points whose forces on the master this gives, (n,).
+        """
+        parts, q = self._parts, len(self._rule.weights)
+        self._trial = None
+        if parts is None:
+            return np.zeros(len(force), dtype=bool)
+        touching = parts.covered & active.reshape(-1, q).any(axis=1)
+        points = np.flatnonzero(touching[parts.owner])
+        x, hit = self._project(now, parts.owner[points], points)
+        touching[parts.owner[points[hit.facet < 0]]] = False
+        kept = np.flatnonzero(touching[parts.owner[points]])
+        points, x, hit = points[kept], x[kept], hit.take(kept)
+        if points.size:
+            self._facet[points] = hit.facet
+            count = len(self._master.nodes)
+            pair, place = np.unique(parts.owner[points] * count + hit.facet, return_inverse=True)
+            entries = (np.ones(len(points)), (place.reshape(-1), np.arange(len(points))))
+            sums = csr_array(entries, shape=(len(pair), len(points)))
+            owner, facet = np.divmod(pair, count)
+            forces = force.reshape(-1, q, 3)
+            self._trial = _Trial(points, hit, x, forces, sums, owner, facet.astype(np.int32))
+        return np.repeat(touching, q)
+
+    def _project(
+        self, now: Floats, owner: npt.NDArray[np.int64], points: npt.NDArray[np.int64]
+    ) -> tuple[Floats, FacetProjections]:
+        """Positions of points of the overlaps and their closest points of the master."""
+        x = np.einsum("sk,ski->si", self._shape[points], now[self._slave.nodes[owner]])
+        excluded = None if self._excluded is None else self._excluded.take(owner)
+        hint = self._facet[points]
+        return x, self._surface.project(x, hint, self._reach, excluded)
+
+    def add_force(self, out: Floats) -> None:
+        """Add the forces of the trial on the master to the local nodes, (nodes, 3), force."""
+        if (t := self._trial) is None:
+            return
+        forces = -np.einsum("pgb,pgi->pbi", self._shares(t), t.force[t.owner])
+        np.add.at(out, self._master.nodes[t.facet], forces)
+
+    def couplings(self, nodes: Ints, derivative: Floats, active: Mask) -> list[Couplings]:
+        """Where `-d force / d u` on the master has entries, and the entries.
+
+        Args:
+            nodes: Nodes that the force of each slave point depends on, (n, c), -1 for none.
+            derivative: Derivative of the force of each slave point, (n, 3, 3 c).
+            active: Whether a point is in contact, (n,).
+
+        Returns:
+            For the change of the forces, and for that of the places where they act.
+        """
+        if (t := self._trial) is None:
+            return []
+        q = len(self._rule.weights)
+        pair, g = np.nonzero(active.reshape(-1, q)[t.owner])
+        point = t.owner[pair] * q + g
+        shares = self._shares(t)[pair, g]
+        blocks = shares[:, :, None, None] * derivative[point][:, None]
+        blocks = blocks.reshape(len(pair), 3 * shares.shape[1], derivative.shape[2])
+        return [(self._master.nodes[t.facet[pair]], nodes[point], blocks), self._moving(t)]
+
+    def _shares(self, t: _Trial) -> Floats:
+        """Share of each slave point on the nodes of each pair of facets, (pairs, q, k)."""
+        value, _, _ = self._surface.shapes(t.hit.facet, t.hit.xi)
+        value = value[:, : self._master.nodes.shape[1]]
+        share = self._share[t.points]
+        return np.stack(
+            [t.sums @ (share[:, g, None] * value) for g in range(share.shape[1])], axis=1
+        )
+
+    def _moving(self, t: _Trial) -> Couplings:
+        """Change of the places at which the forces act."""
+        parts = self._parts
+        assert parts is not None
+        km = self._master.nodes.shape[1]
+        value, first, _ = self._surface.shapes(t.hit.facet, t.hit.xi)
+        value, first = value[:, :km], first[:, :km]
+        shift = self._shift(t, value, first)
+        change = first @ shift
+        owner = parts.owner[t.points]
+        pull = np.einsum("sg,sgi->si", self._share[t.points], t.force[owner], optimize=True)
+        s, columns = len(change), shift.shape[2]
+        flat = change.reshape(s, -1)
+        sums = np.stack([(t.sums * pull[:, i]) @ flat for i in range(3)], axis=1)
+        turned = sums.reshape(len(t.owner), 3, km, columns).swapaxes(1, 2)
+        blocks = turned.reshape(len(t.owner), 3 * km, columns)
+        rows = self._master.nodes[t.facet]
+        return rows, np.concatenate([self._slave.nodes[t.owner], rows], axis=1), blocks
+
+    def _shift(self, t: _Trial, value: Floats, first: Floats) -> Floats:
+        """Derivative of the coordinates of the projections, (s, 2, 3 columns)."""
+        jet = self._surface.jet(t.hit.facet, t.hit.xi)
+        apart = t.position - jet.position
+        bent = np.einsum("si,ski->sk", apart, jet.d2)[:, [[0, 1], [1, 2]]]
+        metric = jet.d1 @ jet.d1.swapaxes(1, 2) - bent
+        inverse = _inverse(t.hit, metric)
+        slave = self._shape[t.points]
+        along = np.concatenate([slave, -value], axis=1)
+        right = along[:, None, :, None] * jet.d1[:, :, None, :]
+        right[:, :, slave.shape[1] :] += first.swapaxes(1, 2)[..., None] * apart[:, None, None]
+        return np.asarray(inverse @ right.reshape(len(apart), 2, -1))
+
+
+def _inverse(hit: FacetProjections, metric: Floats) -> Floats:
+    """Inverse of the equations of the projections: of both, of that along an edge, of none."""
+    out = np.zeros_like(metric)
+    interior = hit.feature == FEATURES.index("interior")
+    out[interior] = np.linalg.inv(metric[interior])
+    edge = hit.feature == FEATURES.index("edge")
+    e = hit.edge[edge]
+    slope = np.einsum("si,sij,sj->s", e, metric[edge], e)
+    out[edge] = np.einsum("si,sj->sij", e, e) / slope[:, None, None]
+    return out
