@@ -44,10 +44,12 @@ __all__ = [
     "assemble_force",
     "assemble_into",
     "basix",
+    "cell_nodes",
     "cell_permutation",
     "create_mesh",
     "create_stiffness",
     "dolfinx",
+    "facet_nodes",
     "facet_sides",
     "fem",
     "geometry",
@@ -98,14 +100,29 @@ def cell_permutation(cell: str, nodes: int) -> Nodes:
 
 def middle_nodes(cell: str) -> list[tuple[Nodes, Nodes]]:
     """Corners and middle node of the edges, and of the faces that have one, of a quadratic cell."""
-    kind = basix.CellType[cell]
-    variant = basix.LagrangeVariant.equispaced
-    element = basix.create_element(basix.ElementFamily.P, kind, 2, variant)
+    element = _lagrange(cell, 2)
+    topology = basix.topology(basix.CellType[cell])
     out = []
-    for corners, nodes in zip(basix.topology(kind)[1:3], element.entity_dofs[1:3], strict=True):
+    for corners, nodes in zip(topology[1:3], element.entity_dofs[1:3], strict=True):
         if nodes[0]:
             out.append((np.array(corners), np.array(nodes)[:, 0]))
     return out
+
+
+def cell_nodes(cell: str, degree: int) -> Nodes:
+    """Places of the nodes of a Lagrange cell in the reference cell, times the degree."""
+    places = np.rint(degree * _lagrange(cell, degree).points)
+    return np.asarray(places, dtype=np.int64)
+
+
+def facet_nodes(cell: str, degree: int) -> Nodes:
+    """Local nodes of each facet of a Lagrange cell, vertices first, (facets, nodes)."""
+    return np.array(_lagrange(cell, degree).entity_closure_dofs[2], dtype=np.int64)
+
+
+def _lagrange(cell: str, degree: int) -> Any:
+    variant = basix.LagrangeVariant.equispaced
+    return basix.create_element(basix.ElementFamily.P, basix.CellType[cell], degree, variant)
 
 
 def locate_entities(mesh: Any, dim: int, nodes: Nodes, values: Ints) -> tuple[Ints, Ints]:

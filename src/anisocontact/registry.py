@@ -35,6 +35,7 @@ class Parameter:
         required: Whether it must be given.
         default: Value where it is not required.
         choices: The words a "choice" may be.
+        count: How many numbers a list must have, if its kind does not say so.
     """
 
     name: str
@@ -45,6 +46,7 @@ class Parameter:
     required: bool = True
     default: tuple[float, ...] = ()
     choices: tuple[str, ...] = ()
+    count: int | None = None
 
 
 @dataclass(frozen=True)
@@ -237,7 +239,7 @@ def _numbers(p: Parameter, given: object, field: str) -> list[float]:
     if any(isinstance(v, bool) or not hasattr(v, "__float__") for v in items):
         raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
     numbers = [float(v) for v in items]
-    size = _SIZES.get(p.kind)
+    size = _SIZES.get(p.kind, p.count)
     scalar_form = size == 1
     if scalar_form == is_list or (size is not None and len(numbers) != size):
         raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
@@ -268,7 +270,7 @@ def _form(p: Parameter) -> str:
         "integer": "a whole number is",
         "integers": "a list of whole numbers is",
     }
-    return forms[p.kind]
+    return f"{p.count} whole numbers are" if p.count else forms[p.kind]
 
 
 def _check_bound(p: Parameter, numbers: list[float], given: object, field: str) -> None:

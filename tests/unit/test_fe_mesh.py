@@ -92,13 +92,18 @@ def test_box_has_its_faces(cell):
 @pytest.mark.parametrize(
     ("given", "line"),
     [
-        ({"size": (1, 0, 1)}, "size: got [1, 0, 1], every edge must be > 0"),
-        ({"cells": (2, 0, 1)}, "cells: got [2, 0, 1], needs whole numbers >= 1"),
-        ({"cells": (2, 1.5, 1)}, "cells: got [2, 1.5, 1], needs whole numbers >= 1"),
-        ({"origin": (0, float("nan"), 0)}, "origin: got [0, nan, 0], needs three finite numbers"),
-        ({"size": (1, 1)}, "size: got [1, 1], needs three finite numbers"),
-        ({"cell": "prism"}, "cell: got 'prism', allowed: hexahedron, tetrahedron"),
-        ({"order": 3}, "order: got 3, allowed: 1, 2"),
+        ({"size": (1, 0, 1)}, "size: (1, 0, 1) given, must be > 0"),
+        ({"cells": (2, 0, 1)}, "cells: (2, 0, 1) given, must be > 0"),
+        ({"cells": (2, 1.5, 1)}, "cells: (2, 1.5, 1) given, 3 whole numbers are needed"),
+        ({"cells": (2, 1)}, "cells: (2, 1) given, 3 whole numbers are needed"),
+        ({"origin": (0, float("nan"), 0)}, "origin: (0, nan, 0) given, finite numbers are needed"),
+        ({"size": (1, 1)}, "size: (1, 1) given, three numbers are needed"),
+        ({"cell": "prism"}, "cell: 'prism' given, allowed: hexahedron, tetrahedron"),
+        ({"order": 3}, "order: 3 given, allowed: 1, 2"),
+        (
+            {"planes_x": (0, 1), "ratio": (2, 1, 1)},
+            "planes_x: given with ratio 2 along x, one of the two",
+        ),
     ],
 )
 def test_bad_box_is_one_line(given, line):
@@ -274,11 +279,11 @@ def test_unsound_cells_are_refused():
 
     mesh = two_tetrahedra(1)
     mesh.points[0] = [1 / 3, 1 / 3, 1 / 3]
-    with pytest.raises(InputError, match="1 of 2 cells are flat or inverted"):
+    with pytest.raises(InputError, match="body 'a': 1 of 2 cells are flat or inverted"):
         check_cells(mesh)
     mesh = two_tetrahedra(1)
     mesh.cells[0] = mesh.cells[0, [1, 0, 2, 3]]
-    with pytest.raises(InputError, match="1 of 2 cells are flat or inverted"):
+    with pytest.raises(InputError, match="body 'a': 1 of 2 cells are flat or inverted"):
         check_cells(mesh)
     mesh = two_tetrahedra(1)
     third = dataclasses.replace(mesh, cells=np.vstack([mesh.cells, mesh.cells[:1]]))

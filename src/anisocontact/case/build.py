@@ -22,7 +22,8 @@ from anisocontact.contact import (
 )
 from anisocontact.errors import InputError
 from anisocontact.limits import Limits
-from anisocontact.mesh import BoxSpec, Model, build_box, read_gmsh
+from anisocontact.mesh import GmshFile, Model
+from anisocontact.mesh.arrays import MeshArrays, merge
 from anisocontact.solver import Problem, Solver, Step
 
 __all__ = ["Built", "build"]
@@ -86,14 +87,23 @@ def build(file: CaseFile) -> Built:
 
 def _model(file: CaseFile) -> Model:
     mesh = file.case.mesh
+    parts: list[MeshArrays] = []
     if mesh.file is not None:
-        return read_gmsh(file.resolve(mesh.file), bodies=list(file.case.material))
-    specs = {}
-    for name, box in mesh.box.items():
-        with objects.within(f"mesh.box.{name}"):
-            specs[name] = BoxSpec(**dict(box))
-    with objects.within("mesh.box"):
-        return build_box(specs)
+        shaped = {name for bodies in mesh.shaped().values() for name in bodies}
+        wanted = [name for name in file.case.material if name not in shaped]
+        parts.append(GmshFile(file.resolve(mesh.file), None if mesh.files else wanted).arrays())
+    for name, section in mesh.files.items():
+        place = f"mesh.files.{name}"
+        source = objects.mesh_file(section, file.resolve(section.path), place)
+        with objects.within(place):
+            parts.append(source.arrays())
+    for shape, bodies in mesh.shaped().items():
+        for name, table in bodies.items():
+            place = f"mesh.{shape}.{name}"
+            body = objects.body(table, name, place)
+            with objects.within(place):
+                parts.append(body.arrays())
+    return Model.from_arrays(merge(parts))
 
 
 def _check_bodies(case: Case, model: Model) -> None:

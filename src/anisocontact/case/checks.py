@@ -41,25 +41,31 @@ def check(case: Case) -> Iterator[InputError]:
 
 
 def _mesh(case: Case) -> Iterator[InputError]:
-    if (case.mesh.file is None) == (not case.mesh.box):
-        given = "both given" if case.mesh.box else "nothing given"
-        yield InputError(f"{given}, either mesh.file or boxes [mesh.box.<body>]", field="mesh")
-    for name in case.mesh.box:
+    shaped = [
+        (f"mesh.{shape}.{name}", name, section)
+        for shape, bodies in case.mesh.shaped().items()
+        for name, section in bodies.items()
+    ]
+    if not (shaped or case.mesh.from_files):
+        text = "nothing given, mesh.file or a shape such as [mesh.box.<body>] needed"
+        yield InputError(text, field="mesh")
+    places: dict[str, str] = {}
+    for place, name, section in shaped:
+        yield from _tried(objects.body, section, name, place)[1]
+        if (first := places.setdefault(name, place)) != place:
+            yield InputError(f"{first} has that name already", field=place)
         if name not in case.material:
             yield InputError("missing; every body needs a material", field=f"material.{name}")
-    if case.mesh.box:
+    if places and not case.mesh.from_files:
         for name in case.material:
-            if name not in case.mesh.box:
-                text = f"no such body; {near(name, list(case.mesh.box))}"
+            if name not in places:
+                text = f"no such body; {near(name, list(places))}"
                 yield InputError(text, field=f"material.{name}")
 
 
 def _names(case: Case) -> Iterator[InputError]:
-    for table, names in (
-        ("mesh.box", case.mesh.box),
-        ("material", case.material),
-        ("surface", case.surface),
-    ):
+    shaped = ((f"mesh.{shape}", bodies) for shape, bodies in case.mesh.shaped().items())
+    for table, names in (*shaped, ("material", case.material), ("surface", case.surface)):
         for name in names:
             if not name or "." in name:
                 yield InputError(f'"{name}" given, a name without a dot needed', field=table)

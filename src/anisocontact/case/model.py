@@ -6,25 +6,26 @@ that a new entry can be written in a case file without a change here.
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 from functools import cache
 from typing import Annotated, Any, Self
 
-from pydantic import Field, create_model, field_validator, model_validator
+from pydantic import Field, create_model, model_validator
 from pydantic_core import ErrorDetails
 
 from anisocontact import registry
-from anisocontact.case.quantity import FREE, Quantity, line
+from anisocontact.case.bodies import Mesh, mesh_type
+from anisocontact.case.quantity import FREE, line
+from anisocontact.case.quantity import number as _number
+from anisocontact.case.quantity import word as _word
 from anisocontact.case.registered import Key, OneOf, Registered, default_of
 from anisocontact.case.section import Section
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.limits import Limits
-from anisocontact.registry import Entry, Parameter
+from anisocontact.registry import Entry
 
 __all__ = [
-    "Box",
     "Case",
     "ContactSection",
     "Directed",
@@ -37,62 +38,12 @@ __all__ = [
     "laws",
 ]
 
-# More cells than fit in the memory of any one machine: a slip of the keyboard, not a mesh.
-_MOST_CELLS = 10**8
-
 _DIRECTIONS = "direction field of the axes; needed where the two values of a pair differ"
 _DIRECTIONS_SECOND = "directions of the second surface, for a friction model of two surfaces"
 
 
-def _number(kind: str, unit: str, doc: str, bound: str = "any", **more: Any) -> Quantity:
-    return Quantity(Parameter("", kind, unit, doc, bound), **more)
-
-
-def _word(doc: str, *choices: str) -> Quantity:
-    return Quantity(Parameter("", "choice", "1", doc, choices=choices))
-
-
-Point = tuple[float, float, float]
-
 SINGLE, TWO_HALF = "single", "two-half"
 _PASSES = "whether the slave alone is integrated over or, between bodies, both with half the weight"
-
-
-class Box(Section):
-    """A box parallel to the axes.
-
-    It is a body with the facet groups left, right, front, back, bottom and top: its faces at
-    x-, x+, y-, y+, z- and z+.
-    """
-
-    origin: Annotated[Point, _number("vector", "length", "lowest corner")]
-    size: Annotated[Point, _number("vector", "length", "edge lengths", "positive")]
-    cells: Annotated[
-        tuple[int, int, int],
-        _number("integers", "1", "cells along x, y, z", "positive", count=3),
-    ]
-    cell: Annotated[str, _word("shape of the cells", "hexahedron", "tetrahedron")] = "hexahedron"
-    order: Annotated[
-        int, _number("integer", "1", "order of the displacement", "positive", most=2)
-    ] = 1
-
-    @field_validator("cells", mode="after")
-    @classmethod
-    def _not_too_many(cls, cells: tuple[int, int, int]) -> tuple[int, int, int]:
-        if math.prod(cells) > _MOST_CELLS:
-            raise line(f"{math.prod(cells):.1e} cells given, at most {_MOST_CELLS:.0e} allowed")
-        return cells
-
-
-class Mesh(Section):
-    """The bodies: a gmsh file, or boxes."""
-
-    file: str | None = Field(
-        None,
-        description="gmsh file, relative to the case file; physical volumes name the bodies, "
-        "physical surfaces the facet groups",
-    )
-    box: dict[str, Box] = Field(default_factory=dict, description="boxes by body name")
 
 
 class Components(Section):
@@ -243,15 +194,17 @@ class Registries:
     sliding_rules: tuple[Entry, ...]
     evolution_forms: tuple[Entry, ...]
     materials: tuple[Entry, ...]
+    shapes: tuple[Entry, ...] = ()
 
     @classmethod
     def current(cls) -> Registries:
         """What is registered now."""
-        return replace(cls.of_points(), materials=_materials())
+        materials, shapes = _of_bodies()
+        return replace(cls.of_points(), materials=materials, shapes=shapes)
 
     @classmethod
     def of_points(cls) -> Registries:
-        """What is registered now, without the materials of bodies."""
+        """What is registered now, without materials and shapes of bodies."""
         return cls(
             registry.surfaces(),
             registry.direction_fields(),
@@ -264,13 +217,14 @@ class Registries:
         )
 
 
-def _materials() -> tuple[Entry, ...]:
-    """The materials; none where the finite-element level is not installed."""
+def _of_bodies() -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
+    """Materials and shapes of bodies; none where the finite-element level is not installed."""
     try:
         from anisocontact.bulk import materials
+        from anisocontact.mesh import shapes
     except ImportError:
-        return ()
-    return materials()
+        return (), ()
+    return materials(), shapes()
 
 
 @cache
@@ -291,6 +245,7 @@ def case_type(known: Registries) -> type[Case]:
     return create_model(
         "Case",
         __base__=Case,
+        mesh=(mesh_type(known.shapes), Field(description=str(Mesh.__doc__))),
         material=(
             dict[str, Annotated[Any, material]],
             Field(description="material of each body, by body name"),

@@ -1,9 +1,11 @@
-"""Point-level objects of the tables made from the registries."""
+"""Objects of the tables made from the registries."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from anisocontact.anisotropy import DirectionField, make_directions
@@ -16,8 +18,20 @@ from anisocontact.surfaces import Surface, make_surface
 
 if TYPE_CHECKING:
     from anisocontact.bulk import Material
+    from anisocontact.case.bodies import MeshFile, Placed, Rotate, Shaped
+    from anisocontact.mesh import Body, GmshFile, Placement, Rotation
 
-__all__ = ["interface", "material", "pair_law", "surface", "within"]
+__all__ = [
+    "body",
+    "interface",
+    "material",
+    "mesh_file",
+    "pair_law",
+    "placement",
+    "rotation",
+    "surface",
+    "within",
+]
 
 
 #: How the history enters a step where the master is meshed.
@@ -56,6 +70,52 @@ def material(section: Registered, place: str) -> Material:
 
     with within(place):
         return make_material(section.chosen["model"], **section.parameters())
+
+
+def body(section: Shaped, name: str, place: str) -> Body:
+    """The body of a `mesh.<shape>.<name>` table.
+
+    Args:
+        section: The table.
+        name: Name of the body.
+        place: Its path, for messages.
+
+    Returns:
+        The body, not meshed yet.
+
+    Raises:
+        InputError: A value only the shape can judge is wrong.
+    """
+    from anisocontact.mesh import Body, make_shape
+
+    with within(place):
+        shape = make_shape(
+            section.entries[0].name, cell=section.cell, order=section.order, **section.parameters()
+        )
+        return Body(name, shape, placement(section))
+
+
+def mesh_file(section: MeshFile, path: Path, place: str) -> GmshFile:
+    """The source of bodies of a `mesh.files` table; `path` is that of its file."""
+    from anisocontact.mesh import GmshFile
+
+    with within(place):
+        return GmshFile(path, section.bodies, section.rename, placement(section), "path")
+
+
+def placement(section: Placed) -> Placement:
+    """Where the bodies of a table stand."""
+    from anisocontact.mesh import Placement
+
+    turn = None if section.rotate is None else rotation(section.rotate)
+    return Placement(section.scale, turn, section.move)
+
+
+def rotation(section: Rotate) -> Rotation:
+    """The rotation of a table."""
+    from anisocontact.mesh import Rotation
+
+    return Rotation(section.axis, math.radians(section.angle_deg), section.point)
 
 
 def interface(section: Laws, master: Surface, place: str, auto: float = 1.0) -> Interface:

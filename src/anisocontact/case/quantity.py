@@ -14,7 +14,7 @@ from anisocontact import registry
 from anisocontact.errors import InputError
 from anisocontact.registry import Parameter
 
-__all__ = ["AUTO", "FREE", "Quantity", "key_of", "line", "shown"]
+__all__ = ["AUTO", "FREE", "Quantity", "key_of", "line", "number", "shown", "word"]
 
 #: Written instead of a stiffness that the run is to choose.
 AUTO = "auto"
@@ -163,7 +163,17 @@ class Quantity:
             row = {"type": "array", "items": number}
             return {"type": "array", "items": {"anyOf": [number, row]}}
         array: dict[str, Any] = {"type": "array", "items": number}
-        count = _ITEMS.get(p.kind, self.count)
+        count = _ITEMS.get(p.kind, self.count or p.count)
         if count:
             array |= {"minItems": count, "maxItems": count}
         return {"anyOf": [number, array]} if p.kind == "pair" else array
+
+
+def number(kind: str, unit: str, doc: str, bound: str = "any", **more: Any) -> Quantity:
+    """Annotation of a key that is not a parameter of the registry; see `Parameter`."""
+    return Quantity(Parameter("", kind, unit, doc, bound), **more)
+
+
+def word(doc: str, *choices: str) -> Quantity:
+    """Annotation of a key that is one of several words."""
+    return Quantity(Parameter("", "choice", "1", doc, choices=choices))

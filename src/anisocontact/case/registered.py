@@ -16,7 +16,7 @@ from anisocontact.case.quantity import AUTO, Quantity, key_of, line, shown
 from anisocontact.case.section import Section, near
 from anisocontact.registry import Entry, Parameter
 
-__all__ = ["Key", "OneOf", "Registered", "default_of", "table"]
+__all__ = ["Key", "OneOf", "Registered", "default_of", "table", "table_of"]
 
 
 class Registered(Section):
@@ -75,12 +75,33 @@ def table(name: str, keys: Mapping[Key, Entry], base: type[Registered]) -> type[
         default = entry.name if entry.name == key.default else ...
         schema = WithJsonSchema({"const": entry.name, "description": entry.doc})
         fields[key.name] = (Annotated[str, schema], default)
-    for p in (p for entry in keys.values() for p in entry.parameters):
-        fields[key_of(p)] = _field(p)
-    doc = " ".join(entry.doc for entry in keys.values())
-    model: type[Registered] = create_model(name, __base__=base, __doc__=doc, **fields)
+    model = table_of(name, tuple(keys.values()), base, fields)
     model.chosen = {key.name: entry.name for key, entry in keys.items()}
-    model.entries = tuple(keys.values())
+    return model
+
+
+def table_of(
+    name: str,
+    entries: tuple[Entry, ...],
+    base: type[Registered],
+    fields: Mapping[str, Any] | None = None,
+) -> type[Registered]:
+    """Table of the parameters of entries and of the keys of `base`, without a choosing key.
+
+    Args:
+        name: Name of the class; titles of the schema.
+        entries: The entries.
+        base: Class with the keys that do not come from a registry.
+        fields: Further keys that come first.
+
+    Returns:
+        The class.
+    """
+    keys = {key_of(p): _field(p) for entry in entries for p in entry.parameters}
+    doc = " ".join(entry.doc for entry in entries)
+    more: dict[str, Any] = {**(fields or {}), **keys}
+    model: type[Registered] = create_model(name, __base__=base, __doc__=doc, **more)
+    model.entries = entries
     return model
 
 

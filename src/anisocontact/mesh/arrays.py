@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact._fenicsx import cell_nodes, facet_nodes, middle_nodes
 from anisocontact.errors import InputError
 
 Nodes = npt.NDArray[np.int64]
@@ -101,25 +103,61 @@ def check_boundary(name: str, counts: Nodes) -> None:
         )
 
 
-def merge(parts: list[MeshArrays]) -> MeshArrays:
-    """One mesh of several parts that share no nodes.
+def rename_bodies(mesh: MeshArrays, names: Mapping[str, str]) -> MeshArrays:
+    """The mesh with other names of bodies; their facet groups follow.
+
+    Args:
+        mesh: The mesh.
+        names: Name of a body -> its new name.
 
     Raises:
-        InputError: The parts differ in cell or order.
+        InputError: No such body, a name with a dot, or two bodies of one name.
+    """
+    for old, new in names.items():
+        if old not in mesh.bodies:
+            raise InputError(f"no body {old!r}; there are: {', '.join(mesh.bodies)}", "rename")
+        if not new or "." in new:
+            raise InputError(f"{new!r} given, a name without a dot needed", "rename")
+    bodies = {names.get(name, name): cells for name, cells in mesh.bodies.items()}
+    if len(bodies) < len(mesh.bodies):
+        given = ", ".join(names.get(name, name) for name in mesh.bodies)
+        raise InputError(f"two bodies of one name: {given}", "rename")
+    facets = {}
+    for name, nodes in mesh.facets.items():
+        body, _, group = name.partition(".")
+        facets[f"{names.get(body, body)}.{group}"] = nodes
+    return replace(mesh, bodies=bodies, facets=facets)
+
+
+def merge(parts: Sequence[MeshArrays]) -> MeshArrays:
+    """One mesh of several parts that share no nodes.
+
+    Where one part has curved cells, those of the others become cells of that degree with straight
+    edges.
+
+    Raises:
+        InputError: The parts differ in cell or order, or two bodies have one name.
     """
     first = parts[0]
     for part in parts[1:]:
-        if (part.cell, part.degree, part.order) != (first.cell, first.degree, first.order):
+        if (part.cell, part.order) != (first.cell, first.order):
             raise InputError(
                 f"bodies {', '.join(first.bodies)} and {', '.join(part.bodies)}: "
                 "all bodies of a mesh need the same cell and order, "
-                f"not {first.cell} of order {first.order} and {part.cell} of order {part.order}"
+                f"not {first.cell} of order {first.order} and {part.cell} of order {part.order}",
+                "mesh",
             )
+    names = [name for part in parts for name in part.bodies]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"two bodies have the name {name!r}", "mesh")
+    degree = max(part.degree for part in parts)
+    parts = [lift(part) if part.degree < degree else part for part in parts]
     node = np.cumsum([0] + [len(p.points) for p in parts])
     cell = np.cumsum([0] + [len(p.cells) for p in parts])
     return MeshArrays(
         cell=first.cell,
-        degree=first.degree,
+        degree=degree,
         points=np.concatenate([p.points for p in parts]),
         cells=np.concatenate([p.cells + n for p, n in zip(parts, node[:-1], strict=True)]),
         bodies={
@@ -130,3 +168,30 @@ def merge(parts: list[MeshArrays]) -> MeshArrays:
         },
         order=first.order,
     )
+
+
+def lift(mesh: MeshArrays) -> MeshArrays:
+    """Cells of degree 1 as cells of degree 2 with straight edges: middle nodes are put in."""
+    corners = mesh.cells
+    cells = np.empty((len(corners), len(cell_nodes(mesh.cell, 2))), dtype=np.int64)
+    cells[:, : corners.shape[1]] = corners
+    points, count = [mesh.points], len(mesh.points)
+    for ends, place in middle_nodes(mesh.cell):
+        rows = np.sort(corners[:, ends].reshape(-1, ends.shape[1]), axis=1)
+        unique, number = np.unique(rows, axis=0, return_inverse=True)
+        cells[:, place] = count + number.reshape(len(corners), -1)
+        points.append(mesh.points[unique].mean(axis=1))
+        count += len(unique)
+    if mesh.cell == "hexahedron":
+        cells[:, -1] = count + np.arange(len(cells))
+        points.append(mesh.points[corners].mean(axis=1))
+    facets = {name: _with_middles(mesh, cells, nodes) for name, nodes in mesh.facets.items()}
+    return replace(mesh, degree=2, points=np.concatenate(points), cells=cells, facets=facets)
+
+
+def _with_middles(mesh: MeshArrays, lifted: Nodes, facets: Nodes) -> Nodes:
+    """All nodes of facets of which the corners are given, (facets, nodes)."""
+    owner, _ = facet_owners(mesh.cell, mesh.cells, facets)
+    sides = np.sort(mesh.cells[owner][:, CELL_FACETS[mesh.cell]], axis=2)
+    local = np.argmax(np.all(sides == np.sort(facets, axis=1)[:, None], axis=2), axis=1)
+    return np.asarray(lifted[owner[:, None], facet_nodes(mesh.cell, 2)[local]])

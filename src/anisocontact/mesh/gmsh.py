@@ -53,18 +53,20 @@ def read_gmsh(path: str | Path, bodies: Sequence[str] | None = None) -> Model:
     return Model.from_arrays(gmsh_arrays(Path(path), bodies))
 
 
-def gmsh_arrays(path: Path, bodies: Sequence[str] | None = None) -> MeshArrays:
-    """Plain arrays of a gmsh file, see `read_gmsh`."""
+def gmsh_arrays(
+    path: Path, bodies: Sequence[str] | None = None, field: str = "mesh.file"
+) -> MeshArrays:
+    """Plain arrays of a gmsh file, see `read_gmsh`; `field` is where the path was written."""
     if not path.is_file():
-        raise InputError(f"mesh file {str(path)!r} does not exist", "mesh.file")
+        raise InputError(f"mesh file {str(path)!r} does not exist", field)
     try:
         return _arrays(read_msh(path), bodies)
     except (MshError, OSError) as problem:
         raise InputError(
-            f"mesh file {str(path)!r} is not a readable gmsh file: {problem}", "mesh.file"
+            f"mesh file {str(path)!r} is not a readable gmsh file: {problem}", field
         ) from None
     except InputError as problem:
-        raise InputError(f"mesh file {str(path)!r}: {problem}", "mesh.file") from None
+        raise InputError(f"mesh file {str(path)!r}: {problem}", field) from None
 
 
 def _arrays(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:

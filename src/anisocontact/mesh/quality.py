@@ -25,7 +25,7 @@ _CORNERS = {
         ]
     ),
 }
-#: Volume at a corner over the largest in the mesh, below which a cell is flat.
+#: Volume at a corner over the largest in the body, below which a cell is flat.
 FLAT = 1e-12
 
 
@@ -39,9 +39,11 @@ def check_cells(mesh: MeshArrays) -> None:
         InputError: Says what is wrong and how often.
     """
     volumes = _corner_volumes(mesh)
-    bad = int(np.sum(volumes.min(axis=1) <= FLAT * np.abs(volumes).max()))
-    if bad:
-        raise InputError(f"{bad} of {len(mesh.cells)} cells are flat or inverted")
+    for name, cells in mesh.bodies.items():
+        own = volumes[cells]
+        bad = int(np.sum(own.min(axis=1) <= FLAT * np.abs(own).max()))
+        if bad:
+            raise InputError(f"body {name!r}: {bad} of {len(own)} cells are flat or inverted")
     shared = _facets_of_more_than_two(mesh)
     if shared:
         raise InputError(f"{shared} facets belong to more than two cells")

@@ -1,0 +1,92 @@
+"""Tables of the bodies: built-in shapes, gmsh files, and where they stand."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Field, create_model
+
+from anisocontact.case.quantity import number, word
+from anisocontact.case.registered import Registered, table_of
+from anisocontact.case.section import Section
+from anisocontact.registry import Entry
+
+__all__ = ["Mesh", "MeshFile", "Placed", "Point", "Rotate", "Shaped", "mesh_type"]
+
+Point = tuple[float, float, float]
+
+
+class Rotate(Section):
+    """A rotation about an axis, right-handed."""
+
+    axis: Annotated[Point, number("vector", "1", "direction of the axis", "nonzero")]
+    angle_deg: Annotated[float, number("scalar", "angle", "angle")]
+    point: Annotated[Point, number("vector", "length", "point on the axis")] = (0.0, 0.0, 0.0)
+
+
+class Placed(Registered):
+    """Where bodies stand: scaled about the origin, then turned, then moved."""
+
+    scale: Annotated[float, number("scalar", "1", "factor of all lengths", "positive")] = 1.0
+    rotate: Rotate | None = Field(None, description="rotation, after `scale`")
+    move: Annotated[Point, number("vector", "length", "translation, after `rotate`")] = (
+        0.0,
+        0.0,
+        0.0,
+    )
+
+
+class Shaped(Placed):
+    """A body of a built-in shape."""
+
+    cell: Annotated[str, word("shape of the cells", "hexahedron", "tetrahedron")] = "hexahedron"
+    order: Annotated[
+        int, number("integer", "1", "order of the displacement", "positive", most=2)
+    ] = 1
+
+
+class MeshFile(Placed):
+    """Bodies of a gmsh file: its physical volumes; its physical surfaces are facet groups."""
+
+    path: str = Field(description="gmsh file, relative to the case file")
+    bodies: list[str] | None = Field(
+        None, description="physical volumes to take, all of them if left out"
+    )
+    rename: dict[str, str] = Field(
+        default_factory=dict, description="physical volume = name of the body, where they differ"
+    )
+
+
+class Mesh(Section):
+    """The bodies: from gmsh files, from built-in shapes, or from both."""
+
+    file: str | None = Field(
+        None,
+        description="gmsh file, relative to the case file; physical volumes that have a material "
+        "are the bodies, physical surfaces the facet groups",
+    )
+    files: dict[str, MeshFile] = Field(
+        default_factory=dict, description="several gmsh files, each under a name of its own"
+    )
+
+    def shaped(self) -> dict[str, dict[str, Any]]:
+        """Shape -> body -> its table."""
+        named = {name: getattr(self, name) for name in type(self).model_fields}
+        return {name: named[name] for name in named if name not in Mesh.model_fields}
+
+    @property
+    def from_files(self) -> bool:
+        """Whether there are bodies of which only the files know the names."""
+        return self.file is not None or bool(self.files)
+
+
+def mesh_type(shapes: tuple[Entry, ...]) -> type[Mesh]:
+    """The table `mesh` with a key for every built-in shape."""
+    tables: dict[str, Any] = {}
+    for entry in shapes:
+        body = table_of(f"Mesh{entry.name.title()}", (entry,), Shaped)
+        about: Any = Field(
+            default_factory=dict, description=f"bodies of the shape {entry.name} by name"
+        )
+        tables[entry.name] = (dict[str, body], about)  # type: ignore[valid-type]
+    return create_model("Mesh", __base__=Mesh, **tables)

@@ -1,0 +1,123 @@
+"""One model of bodies that come from built-in shapes and from files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Protocol
+
+from anisocontact.errors import InputError
+from anisocontact.mesh.arrays import MeshArrays, merge, rename_bodies
+from anisocontact.mesh.blocks import mesh_blocks
+from anisocontact.mesh.gmsh import gmsh_arrays
+from anisocontact.mesh.model import Model
+from anisocontact.mesh.placement import IN_PLACE, Placement
+from anisocontact.mesh.quality import check_cells
+from anisocontact.mesh.shapes import BoxSpec, Shape, checked_blocks
+
+
+class Source(Protocol):
+    """Where bodies come from."""
+
+    def arrays(self) -> MeshArrays:
+        """The bodies in place."""
+        ...
+
+
+@dataclass(frozen=True)
+class Body:
+    """A body of a built-in shape.
+
+    Attributes:
+        name: Name of the body.
+        shape: Its shape.
+        placement: Where it stands.
+    """
+
+    name: str
+    shape: Shape
+    placement: Placement = IN_PLACE
+
+    def arrays(self) -> MeshArrays:
+        """The body in place; see `Source`."""
+        shape = self.shape
+        degree = shape.order if shape.curved else 1
+        blocks = checked_blocks(shape)
+        mesh = mesh_blocks(self.name, blocks, shape.cell, degree, shape.order)
+        check_cells(mesh)
+        return self.placement.apply(mesh)
+
+
+@dataclass(frozen=True)
+class GmshFile:
+    """The bodies of a gmsh file; see `read_gmsh`.
+
+    Attributes:
+        path: The file.
+        bodies: Volume groups to take; all of them if not given.
+        rename: Volume group -> name of the body, where it is to be another.
+        placement: Where they stand.
+        field: Where the path was written, for messages.
+    """
+
+    path: str | Path
+    bodies: Sequence[str] | None = None
+    rename: Mapping[str, str] = MappingProxyType({})
+    placement: Placement = IN_PLACE
+    field: str = "mesh.file"
+
+    def arrays(self) -> MeshArrays:
+        """The bodies in place; see `Source`."""
+        mesh = gmsh_arrays(Path(self.path), self.bodies, self.field)
+        return self.placement.apply(rename_bodies(mesh, self.rename))
+
+
+def build_mesh(sources: Iterable[Source]) -> Model:
+    """Model of bodies from shapes and files, in one mesh.
+
+    Args:
+        sources: Where the bodies come from.
+
+    Returns:
+        The model.
+
+    Raises:
+        InputError: No body, two bodies of one name, cells of several kinds, or a damaged file.
+
+    Example:
+        >>> from anisocontact.mesh import Body, Placement, make_shape
+        >>> drum = make_shape("cylinder", radius=1.0, length=2.0, cells=(8, 1, 2))
+        >>> plate = make_shape("box", origin=(-2, -2, 0), size=(4, 4, 1), cells=(4, 4, 1))
+        >>> up = Placement(move=(0.0, 0.0, 1.0))
+        >>> build_mesh([Body("drum", drum, up), Body("plate", plate)]).body_names()
+        ['drum', 'plate']
+    """
+    parts = [source.arrays() for source in sources]
+    if not parts:
+        raise InputError("no body given, at least one needed", "mesh")
+    return Model.from_arrays(merge(parts))
+
+
+def build_box(boxes: Mapping[str, BoxSpec]) -> Model:
+    """Mesh of one or several boxes, each a body of its own.
+
+    The faces of body "block" are block.left, .right (x- and x+), .front, .back (y- and y+),
+    .bottom, .top (z- and z+).
+
+    Args:
+        boxes: Body name -> box.
+
+    Returns:
+        The model.
+
+    Raises:
+        InputError: No box, or boxes of different cells.
+
+    Example:
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (4, 4, 2))})
+        >>> model.body_names()
+        ['block']
+    """
+    return build_mesh(Body(name, box) for name, box in boxes.items())

@@ -1,0 +1,99 @@
+"""Where a body stands: scaled, turned and moved."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from anisocontact.errors import InputError
+from anisocontact.mesh.arrays import Floats, MeshArrays
+
+
+@dataclass(frozen=True)
+class Rotation:
+    """A rotation about an axis in space, right-handed.
+
+    Attributes:
+        axis: Direction of the axis, of any length but zero.
+        angle: Angle, radian.
+        point: A point on the axis, length.
+
+    Raises:
+        InputError: The axis is zero, or a number is not finite.
+
+    Example:
+        >>> turn = Rotation((0, 0, 1), math.pi / 2)
+        >>> turn.apply(np.array([[1.0, 0.0, 2.0]])).round(12).tolist()
+        [[0.0, 1.0, 2.0]]
+    """
+
+    axis: Sequence[float]
+    angle: float
+    point: Sequence[float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        _check_vector("axis", self.axis)
+        _check_vector("point", self.point)
+        if not any(self.axis):
+            raise InputError(f"{list(self.axis)} given, must not be zero", "axis")
+        if not math.isfinite(self.angle):
+            raise InputError(f"{self.angle!r} given, a finite number is needed", "angle")
+
+    def matrix(self, share: float = 1.0) -> Floats:
+        """Rotation matrix of a share of the angle, (3, 3).
+
+        `R = I + sin(a) N + (1 - cos(a)) N^2` with `N x = n x x` (Rodrigues).
+        """
+        n = np.asarray(self.axis, dtype=float)
+        n = n / np.linalg.norm(n)
+        cross = np.cross(n, np.eye(3)).T
+        angle = share * self.angle
+        turned = np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
+        return np.asarray(np.eye(3) + turned)
+
+    def apply(self, points: Floats, share: float = 1.0) -> Floats:
+        """Points turned by a share of the angle, (n, 3)."""
+        centre = np.asarray(self.point, dtype=float)
+        return np.asarray(centre + (points - centre) @ self.matrix(share).T)
+
+
+@dataclass(frozen=True)
+class Placement:
+    """First scaled about the origin, then turned, then moved.
+
+    Attributes:
+        scale: Factor of all lengths, > 0.
+        rotate: Rotation, if there is one.
+        move: Translation, length.
+
+    Raises:
+        InputError: The scale is not > 0, or a number is not finite.
+    """
+
+    scale: float = 1.0
+    rotate: Rotation | None = None
+    move: Sequence[float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.scale) and self.scale > 0.0):
+            raise InputError(f"{self.scale!r} given, must be > 0", "scale")
+        _check_vector("move", self.move)
+
+    def apply(self, mesh: MeshArrays) -> MeshArrays:
+        """The mesh where it is to stand."""
+        points = self.scale * mesh.points
+        if self.rotate is not None:
+            points = self.rotate.apply(points)
+        return replace(mesh, points=points + np.asarray(self.move, dtype=float))
+
+
+def _check_vector(field: str, given: Sequence[float]) -> None:
+    if len(given) != 3 or not all(math.isfinite(v) for v in given):
+        raise InputError(f"{list(given)} given, three finite numbers are needed", field)
+
+
+#: Nothing scaled, turned or moved.
+IN_PLACE = Placement()

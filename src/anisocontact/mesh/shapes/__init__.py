@@ -1,0 +1,60 @@
+"""Built-in shapes by name; a new one is a file here and a line in `_SHAPES`."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from anisocontact import registry
+from anisocontact.mesh.shapes.ball import BallSpec
+from anisocontact.mesh.shapes.box import BoxSpec
+from anisocontact.mesh.shapes.cylinder import CylinderSpec
+from anisocontact.mesh.shapes.dome import DomeSpec
+from anisocontact.mesh.shapes.ring import RingSpec
+from anisocontact.mesh.shapes.shape import CELLS, Shape, checked_blocks
+from anisocontact.registry import Entry
+
+__all__ = [
+    "CELLS",
+    "BallSpec",
+    "BoxSpec",
+    "CylinderSpec",
+    "DomeSpec",
+    "RingSpec",
+    "Shape",
+    "checked_blocks",
+    "make_shape",
+    "shapes",
+]
+
+_SHAPES = {s.entry.name: s for s in (BoxSpec, CylinderSpec, RingSpec, BallSpec, DomeSpec)}
+
+
+def shapes() -> tuple[Entry, ...]:
+    """The built-in shapes with their parameters."""
+    return tuple(shape.entry for shape in _SHAPES.values())
+
+
+def make_shape(name: str, *, cell: str = "hexahedron", order: int = 1, **parameters: Any) -> Shape:
+    """Built-in shape by name.
+
+    Args:
+        name: Name of a registered shape.
+        cell: "hexahedron" or "tetrahedron" (six to each hexahedron).
+        order: Order of the displacement, 1 or 2; where the shape is curved cells of order 2 are.
+        **parameters: Its parameters.
+
+    Returns:
+        The shape.
+
+    Raises:
+        InputError: Unknown name or parameter, a parameter missing or out of range.
+
+    Example:
+        >>> make_shape("cylinder", radius=1.0, length=2.0, cells=(8, 1, 2)).order
+        1
+    """
+    entry = registry.entry(shapes(), name, "shape")
+    registry.values(entry, parameters)
+    shape: Shape = _SHAPES[name](cell=cell, order=order, **parameters)
+    checked_blocks(shape)
+    return shape

@@ -1,0 +1,74 @@
+"""The solid cylinder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from anisocontact.mesh.blocks import Block
+from anisocontact.mesh.shapes.disc import disc_blocks
+from anisocontact.mesh.shapes.shape import (
+    cells_parameter,
+    check_around,
+    check_core,
+    check_shape,
+    core_parameter,
+    ratio_parameter,
+)
+from anisocontact.registry import Entry, Parameter
+
+
+@dataclass(frozen=True)
+class CylinderSpec:
+    """A solid cylinder along z that stands on the origin.
+
+    Attributes:
+        radius: Radius, > 0, length.
+        length: Length along z, > 0, length.
+        cells: Number around (a multiple of 4), from the inner square to the rim, along z.
+        cell: "hexahedron" or "tetrahedron".
+        order: Order of the displacement, 1 or 2; cells of order 2 are curved.
+        ratio: Size of the last cell over the first, to the rim and along z, > 0.
+        core: Distance of the corners of the inner square from the axis over the radius, < 1.
+
+    Raises:
+        InputError: A value is out of range.
+    """
+
+    radius: float
+    length: float
+    cells: Sequence[int]
+    cell: str = "hexahedron"
+    order: int = 1
+    ratio: Sequence[float] = (1.0, 1.0)
+    core: float = 0.5
+
+    curved: ClassVar[bool] = True
+    entry: ClassVar[Entry] = Entry(
+        "cylinder",
+        "shape",
+        "A solid cylinder along z, its lower end around the origin; facet groups outer, bottom "
+        "and top.",
+        (
+            Parameter("radius", "scalar", "length", "radius", "positive"),
+            Parameter("length", "scalar", "length", "length along z", "positive"),
+            cells_parameter(
+                "around (a multiple of 4)", "from the inner square outwards", "along z"
+            ),
+            ratio_parameter("outwards", "along z"),
+            core_parameter(),
+        ),
+    )
+
+    def __post_init__(self) -> None:
+        check_shape(self)
+        check_around(self.cells, 4)
+        check_core(self.core)
+
+    def blocks(self) -> list[Block]:
+        """A square and four blocks around it; see `Shape`."""
+        size = np.array([self.radius, self.radius, self.length])
+        return disc_blocks(self.cells, self.ratio, self.core, lambda p: p * size)

@@ -1,0 +1,120 @@
+"""The ring: a hollow cylinder, or a sector of one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from anisocontact.errors import InputError
+from anisocontact.mesh.arrays import Floats
+from anisocontact.mesh.blocks import Block, Side, graded
+from anisocontact.mesh.shapes.shape import (
+    cells_parameter,
+    check_shape,
+    full_circle,
+    ratio_parameter,
+)
+from anisocontact.registry import Entry, Parameter
+
+
+@dataclass(frozen=True)
+class RingSpec:
+    """A ring or hollow cylinder along z that stands on the origin, or a sector of it.
+
+    Attributes:
+        inner: Inner radius, > 0, length.
+        outer: Outer radius, > inner, length.
+        length: Length along z, > 0, length.
+        cells: Number through the wall, around, along z; at least 3 around a whole ring.
+        cell: "hexahedron" or "tetrahedron".
+        order: Order of the displacement, 1 or 2; cells of order 2 are curved.
+        start: Angle at which the sector starts, from x towards y, radian.
+        end: Angle at which it ends, > start, at most a full turn further; radian.
+        ratio: Size of the last cell over the first, through the wall, around and along z, > 0.
+
+    Raises:
+        InputError: A value is out of range.
+    """
+
+    inner: float
+    outer: float
+    length: float
+    cells: Sequence[int]
+    cell: str = "hexahedron"
+    order: int = 1
+    start: float = 0.0
+    end: float = 2.0 * math.pi
+    ratio: Sequence[float] = (1.0, 1.0, 1.0)
+
+    curved: ClassVar[bool] = True
+    entry: ClassVar[Entry] = Entry(
+        "ring",
+        "shape",
+        "A ring or hollow cylinder along z, its lower end around the origin, or a sector of it; "
+        "facet groups inner, outer, bottom and top, of a sector also start and end.",
+        (
+            Parameter("inner", "scalar", "length", "inner radius", "positive"),
+            Parameter("outer", "scalar", "length", "outer radius", "positive"),
+            Parameter("length", "scalar", "length", "length along z", "positive"),
+            cells_parameter("through the wall", "around", "along z"),
+            Parameter(
+                "start",
+                "scalar",
+                "angle",
+                "angle at which a sector starts, from x towards y",
+                required=False,
+                default=(0.0,),
+            ),
+            Parameter(
+                "end",
+                "scalar",
+                "angle",
+                "angle at which a sector ends",
+                required=False,
+                default=(2.0 * math.pi,),
+            ),
+            ratio_parameter("through the wall", "around", "along z"),
+        ),
+    )
+
+    def __post_init__(self) -> None:
+        check_shape(self)
+        if not self.inner < self.outer:
+            text = f"{self.outer:g} given, must be > inner, {self.inner:g}"
+            raise InputError(text, "outer")
+        if not 0.0 < self._turn <= 2.0 * math.pi * (1.0 + 1e-12):
+            given, start = math.degrees(self.end), math.degrees(self.start)
+            text = f"{given:g} given, must be > start, {start:g}, and at most 360 more"
+            raise InputError(text, "end_deg")
+        if full_circle(self._turn) and self.cells[1] < 3:
+            text = f"{self.cells[1]} cells around a whole ring given, at least 3 needed"
+            raise InputError(text, "cells")
+        if self._turn / self.cells[1] >= math.pi:
+            text = f"{self.cells[1]} cells around {math.degrees(self._turn):g} degrees given, more "
+            raise InputError(f"{text}needed", "cells")
+
+    @property
+    def _turn(self) -> float:
+        return self.end - self.start
+
+    def blocks(self) -> list[Block]:
+        """One block; see `Shape`."""
+        wall, around, along = (graded(n, r) for n, r in zip(self.cells, self.ratio, strict=True))
+        sides: dict[Side, str] = {
+            (0, 0): "inner",
+            (0, 1): "outer",
+            (2, 0): "bottom",
+            (2, 1): "top",
+        }
+        if not full_circle(self._turn):
+            sides |= {(1, 0): "start", (1, 1): "end"}
+        return [Block((wall, around, along), self._place, sides)]
+
+    def _place(self, share: Floats) -> Floats:
+        s, t, z = share.T
+        radius, angle = self.inner + (self.outer - self.inner) * s, self.start + self._turn * t
+        return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), self.length * z])

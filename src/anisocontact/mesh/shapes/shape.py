@@ -1,0 +1,109 @@
+"""What a built-in shape is: parameters and the blocks they make."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import ClassVar, Protocol
+
+from anisocontact import registry
+from anisocontact.errors import InputError
+from anisocontact.mesh.blocks import Block, check_count
+from anisocontact.registry import Entry, Parameter
+
+CELLS = ("hexahedron", "tetrahedron")
+
+
+class Shape(Protocol):
+    """A body that is meshed block by block.
+
+    Attributes:
+        entry: Name, one line of text, parameters; they are attributes of the same names.
+        curved: Whether it has curved sides, so that cells of order 2 are curved.
+        cell: "hexahedron" or "tetrahedron" (six to each hexahedron).
+        order: Order of the displacement, 1 or 2.
+    """
+
+    entry: ClassVar[Entry]
+    curved: ClassVar[bool]
+
+    @property
+    def cell(self) -> str:
+        """Shape of the cells."""
+        ...
+
+    @property
+    def order(self) -> int:
+        """Order of the displacement."""
+        ...
+
+    def blocks(self) -> list[Block]:
+        """The blocks, in place."""
+        ...
+
+
+def cells_parameter(*axes: str) -> Parameter:
+    """Parameter `cells`: how many along each of the axes."""
+    doc = f"cells {', '.join(axes)}"
+    return Parameter("cells", "integers", "1", doc, "positive", count=len(axes))
+
+
+def ratio_parameter(*axes: str) -> Parameter:
+    """Parameter `ratio`: growth of the cells along each of the axes, even by default."""
+    doc = f"size of the last cell over the first {', '.join(axes)}"
+    one = (1.0,) * len(axes)
+    kind = {1: "scalar", 2: "pair", 3: "vector"}[len(axes)]
+    return Parameter("ratio", kind, "1", doc, "positive", required=False, default=one)
+
+
+def core_parameter() -> Parameter:
+    """Parameter `core`: size of the blocks in the middle of round shapes."""
+    doc = "distance of the corners of the inner block from the middle, as a share of the radius"
+    return Parameter("core", "scalar", "1", doc, "positive", required=False, default=(0.5,))
+
+
+def check_shape(shape: Shape) -> None:
+    """Check the parameters of a shape one by one, and the number of its cells.
+
+    Raises:
+        InputError: A value is of the wrong form or out of range.
+    """
+    given = {p.name: getattr(shape, p.name) for p in shape.entry.parameters}
+    registry.values(shape.entry, given)
+    if shape.cell not in CELLS:
+        raise InputError(f"{shape.cell!r} given, allowed: {', '.join(CELLS)}", "cell")
+    if shape.order not in (1, 2):
+        raise InputError(f"{shape.order!r} given, allowed: 1, 2", "order")
+
+
+def check_core(core: float) -> None:
+    """Refuse a core that leaves no room for cells around it."""
+    if not core < 1.0:
+        raise InputError(f"{core!r} given, must be < 1", "core")
+
+
+def check_around(cells: Sequence[int], multiple: int) -> None:
+    """Refuse a number of cells around that the blocks cannot share.
+
+    Raises:
+        InputError: Says what it must be a multiple of.
+    """
+    if cells[0] % multiple:
+        text = f"{cells[0]} cells around given, a multiple of {multiple} is needed"
+        raise InputError(text, "cells")
+
+
+def checked_blocks(shape: Shape) -> list[Block]:
+    """The blocks of a shape that are not too many.
+
+    Raises:
+        InputError: More cells than fit in memory.
+    """
+    blocks = shape.blocks()
+    check_count(blocks)
+    return blocks
+
+
+def full_circle(angle: float) -> bool:
+    """Whether an angle goes all the way around."""
+    return math.isclose(abs(angle), 2.0 * math.pi, rel_tol=1e-12)
