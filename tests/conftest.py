@@ -68,6 +68,7 @@ def make_block(
     young: float = 1000.0,
     nu: float = 0.3,
     move: Callable[[Any], Any] | None = None,
+    **of_contact: Any,
 ) -> Block:
     """Block with its lowest corner in the origin; `move` takes its nodes elsewhere."""
     from anisocontact.bulk import make_material
@@ -79,7 +80,7 @@ def make_block(
     if move is not None:
         model.mesh.geometry.x[:] = move(model.mesh.geometry.x)
     material = make_material("linear-elastic", E=young, nu=nu)
-    contact = Contact(model, "block.bottom", interface)
+    contact = Contact(model, "block.bottom", interface, **of_contact)
     return Block(model, material, contact, Problem(model, {"block": material}, [contact]))
 
 

@@ -6,12 +6,14 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc
+from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
 from anisocontact.contact.quadrature import Surfaced, default_degree, facet_quadrature
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.errors import InputError
 from anisocontact.interface import Interface, Response
 from anisocontact.mesh import Model
 from anisocontact.python_law import PythonInterface
+from anisocontact.rigid import MovingInterface, RigidBody
 
 Floats = npt.NDArray[np.float64]
 
@@ -31,6 +33,8 @@ class Contact(ContactRecord):
             if not given.
         current_area: Whether tractions act on the area of now (finite strain) or of the reference.
         name: Name in output; the slave if not given.
+        body: Rigid body that carries the surface and its directions; the surface rests if not
+            given.
 
     Attributes:
         state: Committed history, one record for each point.
@@ -49,6 +53,7 @@ class Contact(ContactRecord):
         degree: int | None = None,
         current_area: bool = False,
         name: str = "",
+        body: RigidBody | None = None,
     ) -> None:
         facets = model.facets(slave, "slave")
         if model.count_facets(slave) == 0:
@@ -57,12 +62,14 @@ class Contact(ContactRecord):
         if degree < 1:
             raise InputError(f"{degree!r} given, must be >= 1", "degree")
         self.interface = interface
+        self.body = body
+        self._master = interface if body is None else MovingInterface(interface, body)
         self.current_area = current_area
         self.quadrature = facet_quadrature(model.space, facets, degree)
         self._moved: Surfaced | None = None
         points = self.quadrature.reference
         state = interface.initial_state(points)
-        start = interface.update(state, points, tangent=False)
+        start = self._master.update(state, points, 1.0)
         facets_here, per_facet = self.quadrature.weights.shape
         super().__init__(
             model.space,
@@ -84,7 +91,7 @@ class Contact(ContactRecord):
             The response; the committed history is unchanged.
         """
         x = self.quadrature.reference + self.quadrature.at_points(u)
-        response = self.interface.update(self.state, x, dt)
+        response = self._master.update(self.state, x, dt)
         self._moved = self.quadrature.moved(u) if self.current_area else None
         areas = self.quadrature.areas if self._moved is None else self._moved.areas
         self._trial = Snapshot(x, areas, response)
@@ -93,7 +100,8 @@ class Contact(ContactRecord):
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
         jet = self.interface.surface.jet(self.state["xi"])
-        return np.asarray(np.einsum("ni,nij->nj", self.state["elastic"], jet.d1))
+        slip: Floats = np.einsum("ni,nij->nj", self.state["elastic"], jet.d1)
+        return slip if self.body is None else self.body.to_space(slip)
 
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial on the slave to the local nodes, (nodes, 3), force."""
@@ -107,6 +115,16 @@ class Contact(ContactRecord):
         nodes = self.quadrature.nodes
         matrix.setValuesBlockedLocalRCV(nodes, nodes, blocks, PETSc.InsertMode.ADD_VALUES)
 
+    def body_blocks(self) -> BodyBlocks:
+        """Rows and columns of the rigid body in the tangent of the trial.
+
+        Raises:
+            ValueError: The surface is that of no body.
+        """
+        if self.body is None:
+            raise ValueError("the surface is that of no rigid body")
+        return body_blocks(self.quadrature, self._moved, self.body, self.current)
+
     def lever(self) -> float:
         """Forces that would move every point of the trial to the origin, norm over this rank.
 
@@ -115,4 +133,7 @@ class Contact(ContactRecord):
         """
         now = self.current
         stiffness = np.linalg.norm(now.response.tangent, axis=(1, 2)) * now.areas
-        return float(np.linalg.norm(stiffness * np.linalg.norm(now.points, axis=1)))
+        distance = np.linalg.norm(now.points, axis=1)
+        if self.body is not None:
+            distance += np.linalg.norm(self.body.position)
+        return float(np.linalg.norm(stiffness * distance))

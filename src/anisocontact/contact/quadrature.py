@@ -134,16 +134,23 @@ class Surfaced:
             One matrix for each facet, rows and columns node by node, (m, 3 k, 3 k).
         """
         m, q, k = self.quadrature.basis.shape
+        blocks = np.einsum(
+            "mqa,mqi,mqbj->maibj",
+            self.quadrature.basis,
+            traction.reshape(m, q, 3),
+            self.area_changes,
+            optimize=True,
+        )
+        return np.asarray(blocks.reshape(m, 3 * k, 3 * k))
+
+    @cached_property
+    def area_changes(self) -> Floats:
+        """`d area / d x_b` of each point, (m, q, k, 3), length."""
         unit = self._cross / _norm(self._cross)[..., None]
         sides = np.stack(
             [np.cross(self.tangents[:, :, 1], unit), np.cross(unit, self.tangents[:, :, 0])], axis=2
         )
-        change = self.quadrature.gradient @ sides
-        pull = self._weights[..., None] * traction.reshape(m, q, 3)
-        blocks = np.einsum(
-            "mqa,mqi,mqbj->maibj", self.quadrature.basis, pull, change, optimize=True
-        )
-        return np.asarray(blocks.reshape(m, 3 * k, 3 * k))
+        return np.asarray(self._weights[..., None, None] * (self.quadrature.gradient @ sides))
 
 
 def _norm(vectors: Floats) -> Floats:

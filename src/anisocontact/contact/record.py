@@ -35,6 +35,12 @@ class Snapshot:
     areas: Floats
     response: Response
 
+    def wrench(self, about: Floats) -> Floats:
+        """Force and moment about a point on the slave over the points of this rank, (6,)."""
+        forces = self.areas[:, None] * self.response.traction
+        moments = np.cross(self.points - about, forces)
+        return np.concatenate([forces.sum(axis=0), moments.sum(axis=0)])
+
 
 class ContactRecord:
     """History of the slave points of one contact: it advances with `commit` only.
@@ -119,15 +125,16 @@ class ContactRecord:
         total = self._comm.allreduce(local)
         return {name: int(n) for name, n in zip(STATUS, total, strict=True)}
 
-    def resultant(self) -> tuple[Floats, Floats]:
-        """Force and moment about the origin on the slave after the accepted increment.
+    def resultant(self, about: npt.ArrayLike = (0.0, 0.0, 0.0)) -> tuple[Floats, Floats]:
+        """Force and moment on the slave after the accepted increment.
+
+        Args:
+            about: Point of the moment, (3,), length.
 
         Returns:
             Force (3,) and moment (3,), force and force times length.
         """
-        forces = self.areas[:, None] * self.last.traction
-        local = np.concatenate([forces.sum(axis=0), np.cross(self.points, forces).sum(axis=0)])
-        total = self._comm.allreduce(local)
+        total = self._comm.allreduce(self._accepted.wrench(np.asarray(about)))
         return total[:3], total[3:]
 
     def energies(self) -> dict[str, float]:

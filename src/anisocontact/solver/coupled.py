@@ -1,4 +1,4 @@
-"""Matrix of bodies that touch each other: the pattern of the bulk and the couplings of contact."""
+"""Matrix of bodies that touch: the pattern of the bulk and couplings of nodes and rigid bodies."""
 
 from __future__ import annotations
 
@@ -18,21 +18,34 @@ Floats = npt.NDArray[np.float64]
 class CoupledTangent:
     """Sum of a bulk matrix and blocks that couple nodes of different bodies.
 
+    Unknowns beyond those of the mesh come after them, on the last rank. They too are counted in
+    threes, as nodes that follow the local nodes of the mesh.
+
     Couplings that were once there keep their place, so the pattern grows only when a slave point
     meets a facet it has not met before; the symbolic factorisation is reused in between.
 
     Args:
         stiffness: Matrix of the bulk; its pattern stays.
         space: Vector space of the displacement.
+        extra: Number of nodes beyond those of the mesh.
     """
 
-    def __init__(self, stiffness: Mat, space: Any) -> None:
+    def __init__(self, stiffness: Mat, space: Any, extra: int = 0) -> None:
         self._bulk = stiffness.duplicate()
         self._lg = stiffness.getLGMap()
-        self._sizes = stiffness.getSizes()
+        comm = space.mesh.comm
+        (own, total), _ = stiffness.getSizes()
+        added = 3 * extra
+        self._size = (own + added * (comm.rank == comm.size - 1), total + added)
         index_map = space.dofmap.index_map
-        local = index_map.size_local + index_map.num_ghosts
-        self._global = index_map.local_to_global(np.arange(local, dtype=np.int32))
+        #: Number of local nodes of the mesh.
+        self.nodes = index_map.size_local + index_map.num_ghosts
+        self._global = np.concatenate(
+            [
+                index_map.local_to_global(np.arange(self.nodes, dtype=np.int32)),
+                index_map.size_global + np.arange(extra),
+            ]
+        )
         first = 3 * index_map.local_range[0]
         starts, columns, _ = stiffness.getValuesCSR()
         self._rows = np.repeat(np.arange(len(starts) - 1) + first, np.diff(starts))
@@ -47,7 +60,7 @@ class CoupledTangent:
     def new_matrix(self) -> Mat:
         """Matrix for `assemble`, with the pattern of the bulk for now."""
         matrix = PETSc.Mat().create(self._bulk.getComm())
-        matrix.setSizes(self._sizes, bsize=3)
+        matrix.setSizes((self._size, self._size), bsize=3)
         matrix.setType(PETSc.Mat.Type.AIJ)
         matrix.setLGMap(*self._lg)
         self._preallocate(matrix)

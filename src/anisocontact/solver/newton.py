@@ -30,6 +30,10 @@ MAX_ITERATIONS = 25
 DIVERGED = 1e8
 
 
+class SingularError(RuntimeError):
+    """The tangent has no inverse, and the system of equations knows why."""
+
+
 class System(Protocol):
     """What Newton asks of a system of equations; see `Problem`.
 
@@ -59,7 +63,11 @@ class System(Protocol):
         ...
 
     def tangent(self, x: Vec, out: Mat) -> None:
-        """Write d residual / d x into a matrix of `new_tangent`."""
+        """Write d residual / d x into a matrix of `new_tangent`.
+
+        Raises:
+            SingularError: It has no inverse.
+        """
         ...
 
 
@@ -149,6 +157,8 @@ class Newton:
         try:
             self.snes.solve(None, x)
         except PETSc.Error as error:
+            if isinstance(error.__cause__, SingularError):
+                return NewtonResult(len(self._residuals) - 1, self._residuals, str(error.__cause__))
             # What a callback raises (an interrupt too) comes wrapped by PETSc.
             raise error.__cause__ or error from None
         reason = self.snes.getConvergedReason()

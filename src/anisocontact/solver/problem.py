@@ -16,6 +16,7 @@ from anisocontact.mesh import Model
 from anisocontact.solver.cells import DeformedCells
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.loads import Supports, Tractions
+from anisocontact.solver.rigid import RigidBodies
 from anisocontact.solver.steps import Step
 
 Floats = npt.NDArray[np.float64]
@@ -40,6 +41,8 @@ class Problem:
 
     Attributes:
         u: Displacement, a DOLFINx function; holds the accepted state between increments.
+        rigid: Rigid bodies of the contacts. The unknowns of free ones follow those of the mesh, on
+            the last rank.
         force_scale: Norm of the forces at work in the last evaluation: of supports, contacts,
             loads or supports still to be moved, the largest.
         round_off: Residual that floating point leaves in the last evaluation, force; never more
@@ -73,21 +76,29 @@ class Problem:
         )
         finite = [name for name, material in materials.items() if not material.linear]
         self._cells = DeformedCells(model, finite) if finite else None
-        self._rigid = [c for c in self.contacts if isinstance(c, Contact)]
+        self._comm = model.mesh.comm
+        self.rigid = RigidBodies(self.contacts, self._comm)
+        self._analytic = [c for c in self.contacts if isinstance(c, Contact)]
         self._meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
-        self._coupled = CoupledTangent(self.bulk.stiffness, model.space) if self._meshed else None
+        extra = self.rigid.size // 3
+        self._coupled = (
+            CoupledTangent(self.bulk.stiffness, model.space, extra)
+            if self._meshed or extra
+            else None
+        )
         self.supports = Supports(model)
         self.tractions = Tractions(model)
         self.u: Any = fem.Function(model.space, name="displacement")
         self.force_scale = 0.0
         self.round_off = 0.0
-        self._comm = model.mesh.comm
         self._ghosted = self.u.x.petsc_vec.duplicate()
         self._load: Floats = np.zeros(self._owned)
         self._load_norm = 0.0
         self._level = 0.0
         self._dt = 0.0
         self._outside: Floats = np.zeros(self._owned)
+        self._evaluated: Floats | None = None
+        self._of_mesh = self.bulk.stiffness.createVecRight()
         self._accepted = self.new_vector()
         self._accepted_outside: Floats = np.zeros(self._owned)
         self._accepted_reaction: Floats = np.zeros(self._owned)
@@ -109,9 +120,17 @@ class Problem:
     def _owned(self) -> int:
         return int(3 * self.model.space.dofmap.index_map.size_local)
 
+    @property
+    def _last_rank(self) -> bool:
+        return bool(self._comm.rank == self._comm.size - 1)
+
     def new_vector(self) -> Vec:
         """Vector of the unknowns, zero."""
-        return self.bulk.stiffness.createVecRight()
+        vector = PETSc.Vec().create(self._comm)
+        own = self._owned + self.rigid.size * self._last_rank
+        vector.setSizes((own, None), bsize=3)
+        vector.setType(PETSc.Vec.Type.STANDARD)
+        return vector
 
     def new_tangent(self) -> Mat:
         """Matrix for `tangent`."""
@@ -133,24 +152,28 @@ class Problem:
         released = np.zeros(len(self.u.x.array))
         released[gone] = self._accepted_reaction[gone]
         self.tractions.begin(step, released)
+        self.rigid.begin(step)
 
     def set_level(self, fraction: float, dt: float) -> None:
         """Loads at a fraction of the step, time increment `dt` to there."""
+        self._evaluated = None
         self._level = fraction
         self._dt = dt
+        self.rigid.set_level(fraction)
         self._load = self._assembled(self.tractions.at(fraction))
-        self._load_norm = self._norm(self._load)
+        rigid = float(np.linalg.norm(self.rigid.loads()))
+        self._load_norm = float(np.hypot(self._norm(self._load), rigid))
 
     def evaluate(self, x: Vec) -> Floats:
         """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer.
 
         Args:
-            x: Displacements, length.
+            x: Displacements, and unknowns of rigid bodies, length.
 
         Returns:
             Residual, force.
         """
-        self._set_displacement(x)
+        moved_bodies = self._set_unknowns(x)
         forces = np.zeros(len(self.u.x.array))
         failed = False
         for contact in self.contacts:
@@ -158,43 +181,54 @@ class Problem:
             failed = failed or bool(response.failed.any())
             contact.add_force(forces.reshape(-1, 3))
         contact_force = self._assembled(forces)
-        self._outside = self.bulk.force(x).array_r - contact_force
+        u = self._of_mesh
+        self._outside = self.bulk.force(u).array_r - contact_force
         residual = self._outside - self._load
         rows = self.supports.unknowns
-        residual[rows] = self._support_scale * (x.array_r[rows] - self.supports.at(self._level))
+        residual[rows] = self._support_scale * (u.array_r[rows] - self.supports.at(self._level))
+        of_bodies = self.rigid.residual(moved_bodies, self._support_scale)
         at_work = (self._outside[rows], contact_force, residual[rows])
-        self.force_scale = max(self._load_norm, *map(self._norm, at_work))
+        self.force_scale = max(
+            self._load_norm,
+            *map(self._norm, at_work),
+            float(np.linalg.norm(self.rigid.forces_at_work())),
+            float(np.linalg.norm(of_bodies[self.rigid.held()])),
+        )
         levers = np.array([contact.lever() for contact in self.contacts])
-        moved = np.abs(x.array_r) + self.bulk.rest_length
+        moved = np.abs(u.array_r) + self.bulk.rest_length
         stiff = self._norm(self.bulk.diagonal.array_r * moved) + self._norm(levers)
         self.round_off = ROUND_OFF * stiff
         if self._load_norm > 0.0:
             self.round_off = min(self.round_off, LOAD_SHARE * self._load_norm)
         if self._comm.allreduce(failed):
             residual[:] = np.nan
-        return residual
+        return np.append(residual, of_bodies) if self._last_rank else residual
 
     def tangent(self, x: Vec, out: Mat) -> None:
         """Write d residual / d x into a matrix of `new_tangent`."""
-        owned = self.u.x.array[: self._owned]
-        if not np.array_equal(owned, x.array_r):
+        if self._evaluated is None or not np.array_equal(self._evaluated, x.array_r):
             self.evaluate(x)
         bulk = out if self._coupled is None else self._coupled.bulk
         self.bulk.tangent(bulk)
-        for contact in self._rigid:
+        for contact in self._analytic:
             contact.add_tangent(bulk)
         bulk.assemble()
         if self._coupled is not None:
-            self._coupled.assemble(out, [k for c in self._meshed for k in c.couplings()])
-        out.zeroRowsLocal(self.supports.unknowns.astype(PETSc.IntType), self._support_scale)
+            couplings = [k for c in self._meshed for k in c.couplings()]
+            couplings += self.rigid.couplings(self._coupled.nodes)
+            self._coupled.assemble(out, couplings)
+        held = np.flatnonzero(self.rigid.held()) if self._last_rank else np.zeros(0, dtype=np.int64)
+        rows = np.concatenate([self.supports.unknowns, self._owned + held])
+        first, _ = out.getOwnershipRange()
+        out.zeroRows((first + rows).astype(PETSc.IntType), self._support_scale)
 
     def commit(self, x: Vec) -> None:
         """Accept a state: the history of the contacts advances and energies are summed."""
         self.evaluate(x)
         # Everything the bodies get from outside, over the mean of both ends (trapezoidal rule).
         mean = 0.5 * (self._accepted_outside + self._outside)
-        work = float(mean @ (x.array_r - self._accepted.array_r))
-        self._external_work += self._comm.allreduce(work)
+        moved = x.array_r[: self._owned] - self._accepted.array_r[: self._owned]
+        self._external_work += self._comm.allreduce(float(mean @ moved)) + self.rigid.commit()
         self._accepted_outside = self._outside
         self._accepted_reaction = self._outside - self._load
         x.copy(self._accepted)
@@ -203,7 +237,9 @@ class Problem:
 
     def roll_back(self) -> None:
         """Return to the accepted state."""
-        self._set_displacement(self._accepted)
+        self._set_unknowns(self._accepted)
+        self._evaluated = None
+        self.rigid.roll_back()
         for contact in self.contacts:
             contact.roll_back()
 
@@ -239,20 +275,32 @@ class Problem:
         Returns:
             "external" work of supports and loads since the start (trapezoidal rule), stored
             "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
-            "friction" and "viscous" laws, energy of "stabilisation", and "residual", what is left
-            of "external" less all others: first order in the size of the increments.
+            "friction" and "viscous" laws, energy of "stabilisation" and, where rigid bodies have
+            them, of "springs", and "residual", what is left of "external" less all others: first
+            order in the size of the increments.
         """
-        stored = {"elastic": self.bulk.energy(self._accepted)}
+        self._of_mesh.array[:] = self._accepted.array_r[: self._owned]
+        stored = {"elastic": self.bulk.energy(self._of_mesh)}
         stored |= dict.fromkeys(("adhesion", "normal", "friction", "viscous", "stabilisation"), 0.0)
         for contact in self.contacts:
             for name, value in contact.energies().items():
                 stored[name] += value
+        if any(body.springs.any() for body in self.rigid.bodies):
+            stored["springs"] = self.rigid.energy()
         residual = self._external_work - sum(stored.values())
         return {"external": self._external_work} | stored | {"residual": residual}
 
-    def _set_displacement(self, x: Vec) -> None:
-        self.u.x.array[: self._owned] = x.array_r
+    def _set_unknowns(self, x: Vec) -> Floats:
+        """Bring all bodies to a state; on every rank the unknowns of rigid bodies."""
+        self._evaluated = np.array(x.array_r)
+        self._of_mesh.array[:] = x.array_r[: self._owned]
+        self.u.x.array[: self._owned] = self._of_mesh.array_r
         self.u.x.scatter_forward()
+        rigid = np.array(x.array_r[self._owned :])
+        if self.rigid.size:
+            rigid = np.asarray(self._comm.bcast(rigid, root=self._comm.size - 1))
+        self.rigid.place(rigid)
+        return rigid
 
     def _assembled(self, local: Floats) -> Floats:
         """Owned entries of forces on local unknowns, with what other ranks add to them."""

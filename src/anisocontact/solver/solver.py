@@ -72,6 +72,7 @@ class Solver:
         self.steps = list(steps)
         self.limits = limits or Limits()
         check_steps(problem.model, self.steps)
+        problem.rigid.check(self.steps)
         self.place = self._beginning(0, 0.0)
         self._prefix = options_prefix
         self._options = dict(options or {})

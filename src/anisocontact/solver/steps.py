@@ -28,6 +28,11 @@ class Step:
         displacement: Facet group -> axis "x", "y" or "z" -> displacement at the end, length.
         traction: Facet group -> axis -> force per reference area at the end, stress.
         duration: Time the step takes, > 0, time.
+        motion: Rigid body -> component "x", "y", "z" (translation of its reference point, length)
+            or "rx", "ry", "rz" (turn about the axes of space, radian) -> value at the end. None
+            frees the component of a free body.
+        load: Rigid body -> freed component -> force, or moment about the reference point, at the
+            end. Moments do not turn with the body.
 
     Raises:
         InputError: A value is out of range or no number.
@@ -38,6 +43,8 @@ class Step:
     displacement: Mapping[str, Mapping[str, float | None]] = field(default_factory=dict)
     traction: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     duration: float = 1.0
+    motion: Mapping[str, Mapping[str, float | None]] = field(default_factory=dict)
+    load: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if isinstance(self.increments, bool) or not isinstance(self.increments, int):
@@ -50,12 +57,19 @@ class Step:
             for group, values in groups.items():
                 for axis, value in values.items():
                     self._check(kind, group, axis, value)
+        for kind, bodies in (("motion", self.motion), ("load", self.load)):
+            for body, components in bodies.items():
+                for component, value in components.items():
+                    self._check_value(kind, f"{kind}.{body}.{component}", value)
 
     def _check(self, kind: str, group: str, axis: str, value: float | None) -> None:
         where = f"{kind}.{group}.{axis}"
         if axis not in AXES:
             raise self._error(where, f"no axis {axis!r}, allowed: {', '.join(AXES)}")
-        if value is None and kind == "displacement":
+        self._check_value(kind, where, value)
+
+    def _check_value(self, kind: str, where: str, value: float | None) -> None:
+        if value is None and kind in ("displacement", "motion"):
             return
         if not isinstance(value, int | float) or not math.isfinite(value):
             raise self._error(where, f"{value!r} given, needs a finite number")

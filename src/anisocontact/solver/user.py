@@ -40,7 +40,8 @@ class ContactProblem:
         F: Residual form, linear in its test function, of the function `u`.
         u: The displacement, a DOLFINx function of a vector Lagrange space.
         bcs: Dirichlet conditions; their values may change between solutions.
-        contacts: Contacts on a `Model.of` the space of `u`.
+        contacts: Contacts on a `Model.of` the space of `u`. A rigid body that carries a surface is
+            where `RigidBody.move` has brought it.
         J: Derivative of F; made by UFL if left out.
         petsc_options_prefix: Prefix of the options in the PETSc database.
         petsc_options: PETSc options without prefix.
@@ -52,7 +53,7 @@ class ContactProblem:
         round_off: Residual that floating point leaves in the last evaluation.
 
     Raises:
-        InputError: A contact lives on another space than `u`.
+        InputError: A contact lives on another space than `u`, or its rigid body is free.
 
     See `examples/dolfinx_script/rubber_pad.py` for a whole script.
     """
@@ -73,6 +74,12 @@ class ContactProblem:
             if contact.space != space:
                 raise InputError(
                     f"contact {contact.name!r} lives on another space than u", "contacts"
+                )
+        self._bodies = [c.body for c in contacts if isinstance(c, Contact) and c.body is not None]
+        for body in self._bodies:
+            if body.free:
+                raise InputError(
+                    f"rigid body {body.name!r} is free; a script can only move it", "contacts"
                 )
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
         self.force_scale = self.round_off = 0.0
@@ -112,8 +119,8 @@ class ContactProblem:
                 contact.roll_back()
             raise RuntimeError(result.reason)
         self.evaluate(x)
-        for contact in self.contacts:
-            contact.commit()
+        for part in (*self.contacts, *self._bodies):
+            part.commit()
         return result.iterations
 
     def close(self) -> None:

@@ -1,0 +1,17 @@
+"""Rigid bodies: motion of analytic surfaces, prescribed or free."""
+
+from anisocontact.rigid.body import COMPONENTS, Pose, RigidBody
+from anisocontact.rigid.moving import MovingInterface, motion_derivative
+from anisocontact.rigid.rotation import rotation, rotation_vector, skew, spin_of
+
+__all__ = [
+    "COMPONENTS",
+    "MovingInterface",
+    "Pose",
+    "RigidBody",
+    "motion_derivative",
+    "rotation",
+    "rotation_vector",
+    "skew",
+    "spin_of",
+]

@@ -1,0 +1,157 @@
+"""A rigid body: where its surfaces are and what holds it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.errors import InputError
+from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
+
+Floats = npt.NDArray[np.float64]
+
+#: Translation of the reference point along, and turn about the axes of space.
+COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Where a rigid body is.
+
+    Attributes:
+        translation: Of the reference point, (3,), length.
+        turn: Sum of all small rotations about the axes of space, (3,), radian. For a body that has
+            turned about one axis only it is the rotation vector.
+        rotation: Orientation, (3, 3).
+        spin: Small rotation in space per change of the turn, (3, 3).
+    """
+
+    translation: Floats
+    turn: Floats
+    rotation: Floats
+    spin: Floats
+
+    @property
+    def values(self) -> Floats:
+        """Translation and turn, (6,)."""
+        return np.concatenate([self.translation, self.turn])
+
+
+def at_rest() -> Pose:
+    """A body where it was drawn."""
+    return Pose(np.zeros(3), np.zeros(3), np.eye(3), np.eye(3))
+
+
+class RigidBody:
+    """A rigid body that carries the surfaces of one or several contacts.
+
+    A point `X` of it goes to `x = c + d + R (X - c)`, `c` the reference point. From one accepted
+    state to the next it turns by a rotation vector in space, `R = exp([v]) R_accepted`; the sum of
+    these vectors is the turn. So a step that turns it by `(0, 0, a)` turns it about the z axis
+    through the reference point, wherever and however it is.
+
+    Args:
+        name: Name in steps and output.
+        reference: Reference point `c` in the configuration the surfaces are given in, (3,), length.
+        free: Whether a step may free some of its components: it then has six unknowns.
+        springs: Component of `COMPONENTS` -> stiffness of a spring to ground, force/length for
+            translations and force length/radian for turns, >= 0.
+
+    Attributes:
+        accepted: Pose of the accepted state.
+        trial: Pose of the state that is tried.
+
+    Raises:
+        InputError: No name, a reference point that is no point, an unknown component or a negative
+            stiffness, or springs of a body that is not free.
+
+    Example:
+        >>> die = RigidBody("die", (0, 0, 1))
+        >>> die.move(rz=np.pi / 2)
+        >>> die.to_space(np.array([[1.0, 0.0, 0.0]])).round(12).tolist()
+        [[0.0, 1.0, 0.0]]
+    """
+
+    def __init__(
+        self,
+        name: str,
+        reference: npt.ArrayLike,
+        *,
+        free: bool = False,
+        springs: Mapping[str, float] | None = None,
+    ) -> None:
+        point = np.array(reference, dtype=np.float64)
+        if not name:
+            raise InputError("'' given, a name needed", "name")
+        if point.shape != (3,) or not np.isfinite(point).all():
+            raise InputError(f"{reference!r} given, needs three finite numbers", "reference")
+        self.name = name
+        self.reference = point
+        self.free = free
+        self.springs: Floats = np.zeros(6)
+        for component, value in (springs or {}).items():
+            where = f"springs.{component}"
+            self.springs[component_number(component, where)] = _stiffness(value, where)
+        if self.springs.any() and not free:
+            raise InputError("given for a body that is not free", "springs")
+        self.accepted = self.trial = at_rest()
+
+    @property
+    def position(self) -> Floats:
+        """Reference point of the trial, (3,), length."""
+        return np.asarray(self.reference + self.trial.translation)
+
+    def place(self, values: Floats) -> None:
+        """Bring the trial to a translation and a turn, (6,), from the accepted state."""
+        step = values[3:] - self.accepted.turn
+        self.trial = Pose(
+            values[:3].copy(),
+            values[3:].copy(),
+            rotation(step) @ self.accepted.rotation,
+            spin_of(step),
+        )
+
+    def move(self, **components: float) -> None:
+        """Bring the trial to the given components; the others stay as they are.
+
+        Args:
+            **components: Translation `x`, `y`, `z`, length, and turn `rx`, `ry`, `rz`, radian.
+        """
+        values = self.trial.values
+        for name, value in components.items():
+            values[component_number(name, name)] = value
+        self.place(values)
+
+    def commit(self) -> None:
+        """Accept the trial."""
+        now = self.trial
+        self.accepted = Pose(now.translation, now.turn, orthonormal(now.rotation), np.eye(3))
+        self.trial = self.accepted
+
+    def to_body(self, points: Floats) -> Floats:
+        """Points of space where the body has them in its first configuration, (n, 3)."""
+        return np.asarray((points - self.position) @ self.trial.rotation + self.reference)
+
+    def to_space(self, vectors: Floats) -> Floats:
+        """Vectors of the first configuration as they are in space, (..., 3)."""
+        return np.asarray(vectors @ self.trial.rotation.T)
+
+
+def component_number(name: str, field: str) -> int:
+    """Place of a component in `COMPONENTS`.
+
+    Raises:
+        InputError: There is none of that name.
+    """
+    if name not in COMPONENTS:
+        raise InputError(f"no component {name!r}, allowed: {', '.join(COMPONENTS)}", field)
+    return COMPONENTS.index(name)
+
+
+def _stiffness(value: object, field: str) -> float:
+    if not (isinstance(value, int | float) and np.isfinite(value) and value >= 0.0):
+        raise InputError(f"{value!r} given, must be >= 0", field)
+    return float(value)

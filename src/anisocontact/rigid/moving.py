@@ -1,0 +1,74 @@
+"""An interface on a rigid body: evaluated in the frame of the body, answered in space."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.interface import Interface, Response, State
+from anisocontact.python_law import PythonInterface
+from anisocontact.rigid.body import RigidBody
+from anisocontact.rigid.rotation import skew
+
+Floats = npt.NDArray[np.float64]
+
+
+class MovingInterface:
+    """An interface whose surface and directions move with a rigid body.
+
+    The slave points are brought into the frame of the body, `y = c + R^T (x - c - d)`, where the
+    surface rests; tractions, normals, axes and `dt/dx = R (dt'/dy) R^T` are turned back. A history
+    in components of the surface is the same in both frames, so a motion of body and slave points
+    as one rigid body changes nothing.
+
+    Args:
+        interface: The interface on the surface where it was drawn.
+        body: The body it moves with.
+    """
+
+    def __init__(self, interface: Interface | PythonInterface, body: RigidBody) -> None:
+        self._interface = interface
+        self._body = body
+
+    def update(self, state: State, x: Floats, dt: float) -> Response:
+        """Tractions at positions in space, with the body at its trial.
+
+        Args:
+            state: Committed state, (n,).
+            x: Slave points in space, (n, 3), length.
+            dt: Time increment.
+
+        Returns:
+            Tractions, tangent and axes in space, trial state.
+        """
+        body, turn = self._body, self._body.trial.rotation
+        answer = self._interface.update(state, body.to_body(x), dt)
+        return replace(
+            answer,
+            traction=body.to_space(answer.traction),
+            tangent=turn @ answer.tangent @ turn.T,
+            normal=body.to_space(answer.normal),
+            directions_adhesion=body.to_space(answer.directions_adhesion),
+            directions_friction=body.to_space(answer.directions_friction),
+        )
+
+
+def motion_derivative(body: RigidBody, x: Floats, response: Response) -> Floats:
+    """Change of the tractions with translation and turn of the body.
+
+    `dt = D (dx - dd - w x r) + w x t` with `D = dt/dx`, `r` from the reference point and
+    `w = J d(turn)`.
+
+    Args:
+        body: The body at its trial.
+        x: Slave points, (n, 3), length.
+        response: What a `MovingInterface` of the body answers there.
+
+    Returns:
+        dt/d(translation, turn), (n, 3, 6), stress/length and stress.
+    """
+    arms = skew(x - body.position)
+    by_spin = response.tangent @ arms - skew(response.traction)
+    return np.concatenate([-response.tangent, by_spin @ body.trial.spin], axis=2)

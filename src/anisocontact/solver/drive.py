@@ -1,0 +1,74 @@
+"""What a step prescribes of one rigid body: components of its motion, loads on the others."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.errors import InputError
+from anisocontact.rigid import COMPONENTS, RigidBody
+from anisocontact.rigid.body import component_number
+from anisocontact.solver.steps import Step
+
+Floats = npt.NDArray[np.float64]
+
+
+class Drive:
+    """Motion and loads of one rigid body along the steps; at first all components are held.
+
+    Args:
+        body: The body.
+
+    Attributes:
+        held: Which components are prescribed, (6,).
+    """
+
+    def __init__(self, body: RigidBody) -> None:
+        self._body = body
+        self.held = np.ones(6, dtype=bool)
+        self._start, self._end = np.zeros(6), np.zeros(6)
+        self._load_start, self._load_end = np.zeros(6), np.zeros(6)
+
+    def begin(self, step: Step, values: Floats, reaction: Floats) -> None:
+        """Take over a step; what it does not name stays as it is.
+
+        Args:
+            step: The step.
+            values: Translation and turn at its beginning, (6,).
+            reaction: Force and moment of the supports at its beginning, (6,). What is freed
+                begins with that, and it goes to the load that is given, or to zero.
+
+        Raises:
+            InputError: A component is unknown, is freed though the body is not free, or is loaded
+                though it is held.
+        """
+        name, place = self._body.name, f"step {step.name!r}"
+        was_held = self.held.copy()
+        self._start = values.copy()
+        for component, given in step.motion.get(name, {}).items():
+            where = f"{place}.motion.{name}.{component}"
+            i = component_number(component, where)
+            if given is None and not self._body.free:
+                raise InputError("the rigid body was not made free", where)
+            self.held[i] = given is not None
+            self._end[i] = 0.0 if given is None else float(given)
+        self._load_start = self._load_end.copy()
+        self._load_end[self.held] = 0.0
+        for component, value in step.load.get(name, {}).items():
+            where = f"{place}.load.{name}.{component}"
+            i = component_number(component, where)
+            if self.held[i]:
+                raise InputError(
+                    f"{COMPONENTS[i]} is held; a load acts on a component that motion frees", where
+                )
+            self._load_end[i] = float(value)
+        freed = was_held & ~self.held
+        self._load_start = np.where(self.held, 0.0, np.where(freed, reaction, self._load_start))
+
+    def values(self, fraction: float) -> Floats:
+        """Translation and turn at a fraction of the step where they are prescribed, (6,)."""
+        return np.where(self.held, (1.0 - fraction) * self._start + fraction * self._end, 0.0)
+
+    def load(self, fraction: float) -> Floats:
+        """Force and moment at a fraction of the step, (6,)."""
+        return (1.0 - fraction) * self._load_start + fraction * self._load_end

@@ -1,0 +1,236 @@
+"""Rigid bodies of a problem: their motion along the steps, rows and columns of free ones."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact import AnyContact, Contact
+from anisocontact.contact.transfer import Couplings
+from anisocontact.errors import InputError
+from anisocontact.rigid import RigidBody
+from anisocontact.solver.drive import Drive
+from anisocontact.solver.newton import SingularError
+from anisocontact.solver.steps import Step
+
+Floats = npt.NDArray[np.float64]
+
+#: Share of the stiffness of a body's contacts and springs below which a motion counts as free.
+_NOTHING = 1e-12
+_NAMES = ("along x", "along y", "along z", "about x", "about y", "about z")
+
+
+class RigidBodies:
+    """The rigid bodies of the contacts.
+
+    A free body adds six unknowns `(d, l v)`: translation and turn, the turn times a length of the
+    body so that all are lengths; and six rows: forces, and moments about its reference point over
+    the same length. Moments are those of space, and a moment that is applied does not turn with the
+    body. A prescribed component has the row `s (unknown - value)`.
+
+    Args:
+        contacts: All contacts of the problem.
+        comm: Communicator of the mesh.
+
+    Attributes:
+        bodies: The bodies in the order of their contacts.
+        free: Those with unknowns.
+
+    Raises:
+        InputError: Two bodies of one name.
+    """
+
+    def __init__(self, contacts: Sequence[AnyContact], comm: Any) -> None:
+        on_bodies = [c for c in contacts if isinstance(c, Contact) and c.body is not None]
+        self.bodies: list[RigidBody] = list(
+            dict.fromkeys(c.body for c in on_bodies if c.body is not None)
+        )
+        names = [body.name for body in self.bodies]
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError(f"two rigid bodies have the name {name!r}", "body")
+        self.free = [body for body in self.bodies if body.free]
+        self.contacts = {b: [c for c in on_bodies if c.body is b] for b in self.bodies}
+        self._comm = comm
+        self._drives = {body: Drive(body) for body in self.bodies}
+        self._scales = {body: self._scale(body) for body in self.bodies}
+        zero = np.zeros((len(self.bodies), 6))
+        self._outside, self._accepted_outside, self._accepted_load = zero, zero, zero
+        self._level = 0.0
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return 6 * len(self.free)
+
+    def check(self, steps: Iterable[Step]) -> None:
+        """Go through the motions and loads of all steps without solving.
+
+        Raises:
+            InputError: See `begin`.
+        """
+        drives = {body: Drive(body) for body in self.bodies}
+        for step in steps:
+            self._known(step)
+            for drive in drives.values():
+                drive.begin(step, np.zeros(6), np.zeros(6))
+
+    def begin(self, step: Step) -> None:
+        """Take over motions and loads of a step from the accepted state.
+
+        Raises:
+            InputError: No such body, or a component that cannot be moved, freed or loaded.
+        """
+        self._known(step)
+        reactions = self._accepted_outside - self._accepted_load
+        for body, reaction in zip(self.bodies, reactions, strict=True):
+            self._drives[body].begin(step, body.accepted.values, reaction)
+
+    def set_level(self, fraction: float) -> None:
+        """Motions and loads at a fraction of the step."""
+        self._level = fraction
+
+    def place(self, unknowns: Floats) -> None:
+        """Bring the bodies to their unknowns, (size,), and to what is prescribed."""
+        for body in self.bodies:
+            if not body.free:
+                body.place(self._drives[body].values(self._level))
+        for body, values in zip(self.free, unknowns.reshape(-1, 6), strict=True):
+            body.place(values / self._scales[body])
+
+    def unknowns(self) -> Floats:
+        """Unknowns of the accepted state, (size,), length."""
+        parts = [body.accepted.values * self._scales[body] for body in self.free]
+        return np.concatenate([np.zeros(0), *parts])
+
+    def residual(self, unknowns: Floats, support_scale: float) -> Floats:
+        """Rows of the free bodies at the trial of the contacts, (size,), force."""
+        self._outside = self._forces()
+        rows = np.zeros(self.size)
+        for i, body in enumerate(self.free):
+            drive, scale = self._drives[body], self._scales[body]
+            outside = self._outside[self.bodies.index(body)]
+            row = (outside - drive.load(self._level)) / scale
+            off = unknowns[6 * i : 6 * i + 6] - drive.values(self._level) * scale
+            rows[6 * i : 6 * i + 6] = np.where(drive.held, support_scale * off, row)
+        return rows
+
+    def loads(self) -> Floats:
+        """Loads of the free bodies as the rows have them, (size,), force."""
+        parts = [self._drives[b].load(self._level) / self._scales[b] for b in self.free]
+        return np.concatenate([np.zeros(0), *parts])
+
+    def forces_at_work(self) -> Floats:
+        """Forces of contacts and springs as the rows have them, (size,), force."""
+        parts = [self._outside[self.bodies.index(b)] / self._scales[b] for b in self.free]
+        return np.concatenate([np.zeros(0), *parts])
+
+    def held(self) -> npt.NDArray[np.bool_]:
+        """Which of the unknowns are prescribed, (size,)."""
+        return np.concatenate([np.zeros(0, dtype=bool), *(self._drives[b].held for b in self.free)])
+
+    def couplings(self, nodes: int) -> list[Couplings]:
+        """Blocks of the tangent in rows or columns of free bodies, of the contacts of this rank.
+
+        Args:
+            nodes: Number of local nodes: the i-th body has the "nodes" `nodes + 2 i` of its
+                translation and the one after it for its turn.
+
+        Raises:
+            SingularError: A motion of a body meets no stiffness at all.
+        """
+        found: list[Couplings] = []
+        for i, body in enumerate(self.free):
+            own = np.array([[nodes + 2 * i, nodes + 2 * i + 1]], dtype=np.int32)
+            scale = self._scales[body]
+            diagonal = np.diag(body.springs / scale**2) * (self._comm.rank == 0)
+            stiff = [diagonal]
+            for contact in self.contacts[body]:
+                blocks = contact.body_blocks()
+                there = np.broadcast_to(own, (len(blocks.nodes), 2))
+                found.append((blocks.nodes, there, blocks.node_body / scale))
+                found.append((there, blocks.nodes, blocks.body_node / scale[:, None]))
+                diagonal = diagonal + blocks.body / np.outer(scale, scale)
+                stiff.append((blocks.held / scale).reshape(-1, 6))
+            found.append((own, own, diagonal[None]))
+            self._check_support(body, np.concatenate(stiff))
+        return found
+
+    def commit(self) -> float:
+        """Accept the poses of the trial.
+
+        Returns:
+            Work that supports and loads did on the bodies, over the mean of both ends.
+        """
+        before = np.array([body.accepted.values for body in self.bodies]).reshape(-1, 6)
+        now = np.array([body.trial.values for body in self.bodies]).reshape(-1, 6)
+        work = float(np.sum(0.5 * (self._accepted_outside + self._outside) * (now - before)))
+        for body in self.bodies:
+            body.commit()
+        self._accepted_outside = self._outside
+        self._accepted_load = np.array(
+            [self._drives[body].load(self._level) for body in self.bodies]
+        ).reshape(-1, 6)
+        return work
+
+    def roll_back(self) -> None:
+        """Return to the accepted poses."""
+        for body in self.bodies:
+            body.trial = body.accepted
+
+    def energy(self) -> float:
+        """Energy of all springs in the accepted state, force times length."""
+        return sum(float(0.5 * b.springs @ b.accepted.values**2) for b in self.bodies)
+
+    def support(self, body: RigidBody) -> Floats:
+        """Force and moment of what prescribes the accepted motion of a body, (6,)."""
+        i = self.bodies.index(body)
+        reaction = self._accepted_outside[i] - self._accepted_load[i]
+        return np.where(self._drives[body].held, reaction, 0.0)
+
+    def _forces(self) -> Floats:
+        """What contacts and springs need from outside at the trial, (bodies, 6)."""
+        local = np.zeros((len(self.bodies), 6))
+        for i, body in enumerate(self.bodies):
+            for contact in self.contacts[body]:
+                local[i] += contact.current.wrench(body.position)
+        springs = [body.springs * body.trial.values for body in self.bodies]
+        return np.asarray(self._comm.allreduce(local) + np.reshape(springs, local.shape))
+
+    def _known(self, step: Step) -> None:
+        names = [body.name for body in self.bodies]
+        for what in ("motion", "load"):
+            for name in getattr(step, what):
+                if name not in names:
+                    raise InputError(
+                        f"no contact has a rigid body {name!r}, "
+                        f"allowed: {', '.join(names) or 'none'}",
+                        f"step {step.name!r}.{what}",
+                    )
+
+    def _scale(self, body: RigidBody) -> Floats:
+        """1 for translations, the distance to the farthest slave point for turns, (6,)."""
+        local = [
+            float(np.linalg.norm(c.points - body.reference, axis=1).max(initial=0.0))
+            for c in self.contacts[body]
+        ]
+        reach = max(self._comm.allgather(max(local)))
+        return np.repeat([1.0, reach or 1.0], 3)
+
+    def _check_support(self, body: RigidBody, stiff: Floats) -> None:
+        free = ~self._drives[body].held
+        triangles = self._comm.allgather(np.linalg.qr(stiff, mode="r"))
+        everything = np.concatenate(triangles)
+        _, sizes, axes = np.linalg.svd(everything[:, free], full_matrices=True)
+        sizes = np.append(sizes, np.zeros(len(axes) - len(sizes)))
+        loose = axes[sizes <= _NOTHING * float(np.linalg.norm(everything))]
+        if len(loose):
+            part = (loose**2).sum(axis=0)
+            named = [_NAMES[i] for i, p in zip(np.flatnonzero(free), part, strict=True) if p > 0.01]
+            raise SingularError(
+                f"nothing holds the rigid body {body.name!r} {', '.join(named)}: bring it into "
+                "contact by a prescribed motion first, give it a spring, or hold it there"
+            )

@@ -1,0 +1,244 @@
+"""Free rigid bodies: forces, moments, springs, balance, and what holds them."""
+
+import numpy as np
+import pytest
+
+TIGHT = {"snes_rtol": 1e-12}
+ALL = ("x", "y", "z", "rx", "ry", "rz")
+
+
+def on_sphere(coefficients=(0.3, 0.1), penalty=1e4):
+    """Anisotropic adhesion and friction on a sphere that lies just under a block."""
+    from anisocontact.anisotropy import make_directions
+    from anisocontact.interface import Interface
+    from anisocontact.laws import Adhesion, Friction, NormalLaw
+    from anisocontact.surfaces import make_surface
+
+    marks = make_directions("constant", vector=(1.0, 0.4, 0.0))
+    return Interface(
+        make_surface("sphere", centre=(0.5, 0.5, -1.0), radius=1.0),
+        NormalLaw(penalty=penalty),
+        Adhesion(stiffness=(4e3, 1e3), directions=marks),
+        Friction(coefficients=coefficients, directions=marks),
+    )
+
+
+def clamped():
+    return {"block.top": dict.fromkeys("xyz", 0.0)}
+
+
+def test_a_force_does_what_its_motion_does(fe):
+    """Sphere pressed with forces F: the same as moved by what F moves it.
+
+    Requirement: displacement of the sphere and tractions of the run under force equal those of
+    the run under prescribed displacement whose reactions F are, 1e-8. Source: both are the same
+    equations. Every increment is one step with its own F, so that the paths are the same too
+    (points slip, as the sphere also turns by prescribed angles). Tolerance: Newton to 1e-12.
+    """
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import Solver, Step
+
+    depths = (0.005, 0.01, 0.015, 0.02)
+    die = RigidBody("ball", (0.5, 0.5, -1.0))
+    moved = fe.block(on_sphere(), body=die, cells=(4, 4, 2))
+    ways = [{"z": z, "ry": 2.0 * (z - 0.005)} for z in depths]
+    steps = [Step(f"{i}", 1, clamped(), motion={"ball": way}) for i, way in enumerate(ways)]
+    forces = []
+    for _ in Solver(moved.problem, steps, options=TIGHT).run():
+        forces.append(moved.problem.rigid.support(die)[2])
+    ball = RigidBody("ball", (0.5, 0.5, -1.0), free=True)
+    pressed = fe.block(on_sphere(), body=ball, cells=(4, 4, 2))
+    steps = [Step("touch", 1, clamped(), motion={"ball": ways[0]})]
+    steps += [
+        Step(f"{f}", 1, motion={"ball": way | {"z": None}}, load={"ball": {"z": f}})
+        for way, f in zip(ways[1:], forces[1:], strict=True)
+    ]
+    pressed.run(*steps, **TIGHT)
+    assert moved.contact.counts()["slip"] > 0
+    assert ball.accepted.translation[2] == pytest.approx(depths[-1], rel=1e-8)
+    expected = moved.contact.last.traction
+    assert np.abs(pressed.contact.last.traction - expected).max() < 1e-8 * np.abs(expected).max()
+
+
+def test_balance_of_forces_and_moments(fe):
+    """Body free in all components under force, moment and springs: everything is in balance.
+
+    Requirement: 1e-8. Source: Euler's laws for the body about its moved reference point, and for
+    body and block together about the origin. Tolerance: Newton to 1e-12 of the forces at work.
+    """
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import Step
+
+    springs = {"x": 20.0, "y": 30.0, "z": 10.0, "rx": 4.0, "ry": 5.0, "rz": 6.0}
+    ball = RigidBody("ball", (0.4, 0.7, -0.9), free=True, springs=springs)
+    block = fe.block(on_sphere(), body=ball, cells=(4, 4, 2))
+    load = {"x": 0.3, "y": -0.2, "z": 6.0, "rx": 0.3, "ry": -0.2, "rz": 0.25}
+    block.run(
+        Step("touch", 1, clamped(), motion={"ball": {"z": 0.005}}),
+        Step("load", 4, motion={"ball": dict.fromkeys(ALL)}, load={"ball": load}),
+        **TIGHT,
+    )
+    applied = np.array(list(load.values()))
+    spring = -np.array(list(springs.values())) * ball.accepted.values
+    contact = -np.concatenate(block.contact.resultant(ball.position))
+    assert np.abs(contact + applied + spring).max() < 1e-8 * np.abs(applied).max()
+    assert np.linalg.norm(ball.accepted.turn) > 0.02
+    reaction = block.problem.reactions()["block.top"]
+    total = reaction + applied[:3] + spring[:3]
+    assert np.abs(total).max() < 1e-8 * np.abs(applied[:3]).max()
+    energies = block.problem.energies()
+    assert energies["springs"] > 0.0
+    assert abs(energies["residual"]) < 0.05 * energies["external"]
+
+
+def test_the_energy_balance_converges(fe):
+    """Work of loads on a free body goes into block, contact, springs and friction.
+
+    Requirement: what is left of the energy balance falls at first order or better with the
+    increments. Source: trapezoidal rule along a path with dissipation. All points touch from the
+    start, as a point that begins to touch within an increment makes the rest irregular. Tolerance:
+    the ratio of the first order is 2.
+    """
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import Step
+
+    left = []
+    for increments in (5, 10, 20):
+        die = RigidBody(
+            "die", (0.4, 0.7, -0.9), free=True, springs={"x": 5.0, "ry": 5.0, "rz": 3.0}
+        )
+        block = fe.block(fe.interface(angle=0.4), body=die)
+        block.run(
+            Step("touch", increments, clamped(), motion={"die": {"z": 0.02}}),
+            Step(
+                "load",
+                increments,
+                motion={"die": dict.fromkeys(("x", "y", "ry", "rz"))},
+                load={"die": {"x": 4.0, "y": -1.0, "ry": 1.5, "rz": 1.5}},
+            ),
+            **TIGHT,
+        )
+        energies = block.problem.energies()
+        left.append(abs(energies["residual"]) / energies["external"])
+    assert left[0] > 1.8 * left[1] > 1.8**2 * left[2]
+    assert left[2] < 0.01
+
+
+def test_springs_penalty_and_block_in_series(fe):
+    """Block in a stiff box on a die with springs: three springs in series, closed form.
+
+    Requirement: force and motion of the die within 1e-8. Source: normal, with w only through the
+    height, `F = d / (H/(M A) + 1/(eps A) + 1/k)`, M the oedometric modulus; tangential in stick
+    with sides that do not rise, `F = d / (H/(G A) + 1/(S A) + 1/k)`. Tolerance: both are linear
+    fields, exact in every element; Newton to 1e-12.
+    """
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import Step
+
+    height, penalty, stiffness, overlap, k = 0.5, 500.0, 800.0, 1e-12, {"z": 70.0, "x": 50.0}
+    die = RigidBody("die", (0.5, 0.5, 0.0), free=True, springs=k)
+    law = fe.interface(
+        stiffness=(stiffness, stiffness),
+        coefficients=(50.0, 50.0),
+        penalty=penalty,
+        point=(0.0, 0.0, overlap),
+    )
+    block = fe.block(law, body=die)
+    sides = {
+        "block.left": {"x": 0.0},
+        "block.right": {"x": 0.0},
+        "block.front": {"y": 0.0},
+        "block.back": {"y": 0.0},
+    }
+    press = 0.01
+    block.run(
+        Step("press", 1, sides | {"block.top": {"z": -press}}, motion={"die": {"z": None}}), **TIGHT
+    )
+    young, nu = 1000.0, 0.3
+    oedometric = young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
+    expected = (press + overlap) / (height / oedometric + 1.0 / penalty + 1.0 / k["z"])
+    force, _ = block.contact.resultant()
+    assert force[2] == pytest.approx(expected, rel=1e-8)
+    assert die.accepted.translation[2] == pytest.approx(-expected / k["z"], rel=1e-8)
+
+    die = RigidBody("die", (0.5, 0.5, 0.0), free=True, springs=k)
+    law = fe.interface(
+        stiffness=(stiffness, stiffness),
+        coefficients=(50.0, 50.0),
+        penalty=penalty,
+        point=(0.0, 0.0, 0.005),
+    )
+    block = fe.block(law, body=die)
+    flat = {f"block.{side}": {"z": 0.0} for side in ("left", "right", "front", "back")}
+    across = 0.002
+    top = {"block.top": {"x": 0.0, "y": 0.0, "z": 0.0}}
+    block.run(
+        Step("press", 1, flat | top),
+        Step("shift", 2, {"block.top": {"x": across}}, motion={"die": {"x": None}}),
+        **TIGHT,
+    )
+    shear = young / (2.0 * (1.0 + nu))
+    expected = across / (height / shear + 1.0 / stiffness + 1.0 / k["x"])
+    force, _ = block.contact.resultant()
+    assert force[0] == pytest.approx(-expected, rel=1e-8)
+    assert die.accepted.translation[0] == pytest.approx(expected / k["x"], rel=1e-8)
+
+
+def test_springs_alone(fe):
+    """A body away from the block under force and moment: displacement F/k, turn M/k, also beyond
+    a full turn.
+
+    Requirement: closed form, 1e-8. Source: Hooke. Turned about one axis, over two revolutions.
+    """
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import Step
+
+    ball = RigidBody("ball", (0.5, 0.5, -5.0), free=True, springs={"x": 20.0, "rz": 4.0})
+    law = fe.interface(point=(0.0, 0.0, -5.0))
+    block = fe.block(law, body=ball)
+    moment = 4.0 * 4.0 * np.pi * 1.1
+    block.run(
+        Step(
+            "load",
+            3,
+            clamped(),
+            motion={"ball": {"x": None, "rz": None}},
+            load={"ball": {"x": 5.0, "rz": moment}},
+        ),
+        **TIGHT,
+    )
+    assert ball.accepted.values == pytest.approx([0.25, 0, 0, 0, 0, 4.4 * np.pi], rel=1e-8)
+    half = 0.5 * (5.0 * 0.25 + moment * 4.4 * np.pi)
+    assert block.problem.energies()["springs"] == pytest.approx(half, rel=1e-8)
+    assert block.problem.energies()["external"] == pytest.approx(half, rel=1e-8)
+
+
+def test_nothing_holds_the_body(fe):
+    """Free, without contact and springs: the error names the body and its free directions."""
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import Step, StoppedError
+
+    ball = RigidBody("ball", (0.5, 0.5, -5.0), free=True, springs={"z": 1.0})
+    block = fe.block(fe.interface(point=(0.0, 0.0, -5.0)), body=ball)
+    step = Step("lift", 1, clamped(), motion={"ball": dict.fromkeys(("x", "z", "ry"))})
+    with pytest.raises(StoppedError, match="nothing holds the rigid body 'ball' along x, about y"):
+        block.run(step, Step("b", 1, motion={"ball": {"x": None}}, load={"ball": {"x": 1.0}}))
+
+
+def test_a_ball_without_friction_may_spin(fe):
+    """Pressed without adhesion and friction: free to turn about its centre, and only so."""
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import Step, StoppedError
+
+    ball = RigidBody("ball", (0.5, 0.5, -1.0), free=True)
+    block = fe.block(on_sphere(coefficients=(1e-30, 1e-30)), body=ball, cells=(4, 4, 2))
+    with pytest.raises(StoppedError, match="'ball' about x, about y, about z: bring"):
+        block.run(
+            Step("touch", 1, clamped(), motion={"ball": {"z": 0.01}}),
+            Step(
+                "load",
+                2,
+                motion={"ball": dict.fromkeys(("z", "rx", "ry", "rz"))},
+                load={"ball": {"z": 6.0, "rz": 0.1}},
+            ),
+        )
