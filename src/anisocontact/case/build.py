@@ -24,6 +24,7 @@ from anisocontact.errors import InputError
 from anisocontact.limits import Limits
 from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays, merge
+from anisocontact.rigid import RigidBody
 from anisocontact.solver import Problem, Solver, Step
 
 __all__ = ["Built", "build"]
@@ -71,8 +72,9 @@ def build(file: CaseFile) -> Built:
         name: objects.material(section, f"material.{name}")
         for name, section in case.material.items()
     }
+    bodies = _rigid_bodies(case)
     contacts = [
-        _contact(case, section, model, materials, f"contact[{i}]")
+        _contact(case, section, model, materials, bodies, f"contact[{i}]")
         for i, section in enumerate(case.contact)
     ]
     steps = _steps(case, model)
@@ -138,22 +140,42 @@ def _check_options(options: dict[str, str | int | float | bool]) -> None:
             database.delValue(prefix + name)
 
 
+def _rigid_bodies(case: Case) -> dict[str, RigidBody]:
+    """Rigid body that carries each surface, by name of the surface; free where a step frees it."""
+    freed = {
+        name
+        for step in case.step
+        for name, motion in step.motion.items()
+        if None in motion.components().values()
+    }
+    bodies = {}
+    for name, section in case.rigid.items():
+        with objects.within(f"rigid.{name}"):
+            body = RigidBody(
+                name, section.reference, free=name in freed, springs=section.springs.given()
+            )
+        bodies.update(dict.fromkeys(section.carries(name), body))
+    return bodies
+
+
 def _contact(
     case: Case,
     section: ContactSection,
     model: Model,
     materials: dict[str, Material],
+    bodies: dict[str, RigidBody],
     place: str,
 ) -> AnyContact:
     sides = [("slave", section.slave)] + [("master", section.master)] * section.meshed
-    bodies = [materials[model.body_of(group, f"{place}.{side}")] for side, group in sides]
+    made_of = [materials[model.body_of(group, f"{place}.{side}")] for side, group in sides]
     auto = min(
-        auto_penalty(model, group, body) for (_, group), body in zip(sides, bodies, strict=True)
+        auto_penalty(model, group, body) for (_, group), body in zip(sides, made_of, strict=True)
     )
-    finite = not all(body.linear for body in bodies)
+    finite = not all(body.linear for body in made_of)
     if section.meshed:
         return _meshed(section, model, auto, finite, place)
-    return _rigid(case, section, model, auto, finite, place)
+    body = bodies.get(section.master)
+    return _rigid(case, section, model, body, auto, finite, place)
 
 
 def _meshed(
@@ -175,14 +197,26 @@ def _meshed(
 
 
 def _rigid(
-    case: Case, section: ContactSection, model: Model, auto: float, finite: bool, place: str
+    case: Case,
+    section: ContactSection,
+    model: Model,
+    body: RigidBody | None,
+    auto: float,
+    finite: bool,
+    place: str,
 ) -> Contact:
     master = objects.surface(case.surface[section.master], f"surface.{section.master}")
     interface = objects.interface(section, master, place, auto)
     name = f"{section.slave} on {section.master}"
     with objects.within(place):
         contact = Contact(
-            model, section.slave, interface, degree=section.degree, current_area=finite, name=name
+            model,
+            section.slave,
+            interface,
+            degree=section.degree,
+            current_area=finite,
+            name=name,
+            body=body,
         )
     for law in ("adhesion", "friction"):
         field = getattr(interface, law).directions
@@ -210,6 +244,14 @@ def _steps(case: Case, model: Model) -> list[Step]:
         traction = {group: given.given() for group, given in section.traction.items()}
         with objects.within(f"step[{i}]"):
             steps.append(
-                Step(section.name, section.increments, displacement, traction, section.duration)
+                Step(
+                    section.name,
+                    section.increments,
+                    displacement,
+                    traction,
+                    section.duration,
+                    motion={name: given.components() for name, given in section.motion.items()},
+                    load={name: given.components() for name, given in section.load.items()},
+                )
             )
     return steps

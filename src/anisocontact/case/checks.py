@@ -7,6 +7,7 @@ from typing import Any
 
 from anisocontact.case import objects
 from anisocontact.case.model import SINGLE, TWO_HALF, Case, ContactSection
+from anisocontact.case.rigid_checks import check_rigid
 from anisocontact.case.section import near
 from anisocontact.errors import InputError
 from anisocontact.surfaces import Surface
@@ -33,6 +34,7 @@ def check(case: Case) -> Iterator[InputError]:
         yield from _contact(case, contact, f"contact[{i}]", surfaces)
         if (first := pairs.index(pairs[i])) != i:
             yield InputError(f"same pair as contact[{first}]", field=f"contact[{i}]")
+    yield from check_rigid(case)
     yield from _steps(case)
     smallest, largest = case.solver.smallest_increment, case.solver.largest_increment
     if smallest > largest:

@@ -19,6 +19,7 @@ from anisocontact.case.quantity import FREE, line
 from anisocontact.case.quantity import number as _number
 from anisocontact.case.quantity import word as _word
 from anisocontact.case.registered import Key, OneOf, Registered, default_of
+from anisocontact.case.rigid import Load, Motion, Rigid
 from anisocontact.case.section import Section
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -93,6 +94,12 @@ class StepSection(Section):
     )
     traction: dict[str, Traction] = Field(
         default_factory=dict, description='prescribed tractions by "body.group"'
+    )
+    motion: dict[str, Motion] = Field(
+        default_factory=dict, description="prescribed and freed motion by rigid body"
+    )
+    load: dict[str, Load] = Field(
+        default_factory=dict, description="forces and moments by rigid body"
     )
 
 
@@ -176,6 +183,9 @@ class Case(Section):
     mesh: Mesh
     material: dict[str, Any]
     surface: dict[str, Any] = Field(default_factory=dict)
+    rigid: dict[str, Rigid] = Field(
+        default_factory=dict, description="rigid bodies that carry surfaces, by name"
+    )
     contact: list[Any] = Field(default_factory=list)
     step: list[StepSection] = Field(min_length=1, description="load steps, one after the other")
     output: Output = Output()

@@ -1,0 +1,127 @@
+"""Tables of rigid bodies: surfaces that move, how they are moved and loaded."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Self
+
+from pydantic import Field, model_validator
+
+from anisocontact.case.quantity import FREE, line, number
+from anisocontact.case.section import Section
+
+__all__ = ["Load", "Motion", "Rigid", "Rotation", "Springs"]
+
+Point = tuple[float, float, float]
+
+_TURNS = ("rx", "ry", "rz")
+
+
+class Springs(Section):
+    """Springs from the reference point to ground, against translation and turn."""
+
+    x: Annotated[float, number("scalar", "force/length", "along x", "non-negative")] = 0.0
+    y: Annotated[float, number("scalar", "force/length", "along y", "non-negative")] = 0.0
+    z: Annotated[float, number("scalar", "force/length", "along z", "non-negative")] = 0.0
+    rx: Annotated[float, number("scalar", "force length/rad", "about x", "non-negative")] = 0.0
+    ry: Annotated[float, number("scalar", "force length/rad", "about y", "non-negative")] = 0.0
+    rz: Annotated[float, number("scalar", "force length/rad", "about z", "non-negative")] = 0.0
+
+    def given(self) -> dict[str, float]:
+        """Stiffnesses by component, those that are not zero."""
+        return {name: value for name, value in self if value > 0.0}
+
+
+class Rigid(Section):
+    """A rigid body: surfaces that move as one. What no step moves or frees is held."""
+
+    surfaces: list[str] | None = Field(
+        None, description="surfaces it carries; the one of its own name if left out"
+    )
+    reference: Annotated[
+        Point,
+        number("vector", "length", "reference point: it is turned about it, moments are about it"),
+    ]
+    springs: Springs = Field(Springs(), description=str(Springs.__doc__))
+
+    def carries(self, name: str) -> list[str]:
+        """Its surfaces, `name` being its own name."""
+        return [name] if self.surfaces is None else self.surfaces
+
+
+class Rotation(Section):
+    """A turn about an axis of space through the reference point, right-handed."""
+
+    axis: Annotated[Point, number("vector", "1", "direction of the axis", "nonzero")]
+    angle_deg: Annotated[float, number("scalar", "angle", "angle")]
+
+    def turn(self) -> dict[str, float]:
+        """Turns about the axes of space, radian."""
+        share = math.radians(self.angle_deg) / math.hypot(*self.axis)
+        return {name: share * a for name, a in zip(_TURNS, self.axis, strict=True)}
+
+
+def _turn(axis: str) -> Any:
+    return Annotated[float | str | None, number("scalar", "angle", f"turn about {axis}", word=FREE)]
+
+
+class Motion(Section):
+    """Motion of a rigid body at the end of the step; "free" lets a component go."""
+
+    x: Annotated[float | str | None, number("scalar", "length", "along x", word=FREE)] = None
+    y: Annotated[float | str | None, number("scalar", "length", "along y", word=FREE)] = None
+    z: Annotated[float | str | None, number("scalar", "length", "along z", word=FREE)] = None
+    rx_deg: _turn("x") = None  # type: ignore[valid-type]
+    ry_deg: _turn("y") = None  # type: ignore[valid-type]
+    rz_deg: _turn("z") = None  # type: ignore[valid-type]
+    rotation: Rotation | None = Field(
+        None, description="turn about any axis, instead of rx_deg, ry_deg and rz_deg"
+    )
+
+    @model_validator(mode="after")
+    def _once(self) -> Self:
+        turns = [f"{name}_deg" for name in _TURNS if getattr(self, f"{name}_deg") is not None]
+        if self.rotation is not None and turns:
+            raise line(f"rotation and {', '.join(turns)} given, only one way to turn allowed")
+        if not self.components():
+            raise line(
+                "nothing given, at least one of x, y, z, rx_deg, ry_deg, rz_deg, rotation needed"
+            )
+        return self
+
+    def components(self) -> dict[str, float | None]:
+        """Values by component as `Step.motion` has them: None where free, turns in radian."""
+        found: dict[str, float | None] = {}
+        for name in ("x", "y", "z"):
+            value = getattr(self, name)
+            if value is not None:
+                found[name] = None if value == FREE else value
+        for name in _TURNS:
+            value = getattr(self, f"{name}_deg")
+            if value is not None:
+                found[name] = None if value == FREE else math.radians(value)
+        return found | (self.rotation.turn() if self.rotation is not None else {})
+
+
+class Load(Section):
+    """Forces and moments on free components of a rigid body at the end of the step.
+
+    Moments are about the reference point and along axes of space; they do not turn with the body.
+    """
+
+    x: Annotated[float | None, number("scalar", "force", "force along x")] = None
+    y: Annotated[float | None, number("scalar", "force", "force along y")] = None
+    z: Annotated[float | None, number("scalar", "force", "force along z")] = None
+    rx: Annotated[float | None, number("scalar", "force length", "moment about x")] = None
+    ry: Annotated[float | None, number("scalar", "force length", "moment about y")] = None
+    rz: Annotated[float | None, number("scalar", "force length", "moment about z")] = None
+
+    @model_validator(mode="after")
+    def _some(self) -> Self:
+        if not self.components():
+            raise line("nothing given, at least one of x, y, z, rx, ry, rz needed")
+        return self
+
+    def components(self) -> dict[str, float]:
+        """What is given."""
+        return {name: value for name, value in self if value is not None}
