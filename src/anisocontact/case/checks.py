@@ -67,7 +67,12 @@ def _mesh(case: Case) -> Iterator[InputError]:
 
 def _names(case: Case) -> Iterator[InputError]:
     shaped = ((f"mesh.{shape}", bodies) for shape, bodies in case.mesh.shaped().items())
-    for table, names in (*shaped, ("material", case.material), ("surface", case.surface)):
+    for table, names in (
+        *shaped,
+        ("material", case.material),
+        ("surface", case.surface),
+        ("rigid", case.rigid),
+    ):
         for name in names:
             if not name or "." in name:
                 yield InputError(f'"{name}" given, a name without a dot needed', field=table)

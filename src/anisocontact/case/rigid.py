@@ -6,6 +6,7 @@ import math
 from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
+from pydantic_core import ErrorDetails
 
 from anisocontact.case.quantity import FREE, line, number
 from anisocontact.case.section import Section
@@ -77,6 +78,12 @@ class Motion(Section):
     rotation: Rotation | None = Field(
         None, description="turn about any axis, instead of rx_deg, ry_deg and rz_deg"
     )
+
+    @classmethod
+    def _text(cls, e: ErrorDetails) -> str:
+        if e["type"] == "extra_forbidden" and e["loc"][-1] in _TURNS:
+            return f"unknown key; turns are given in degrees: {e['loc'][-1]}_deg"
+        return super()._text(e)
 
     @model_validator(mode="after")
     def _once(self) -> Self:

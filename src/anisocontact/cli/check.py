@@ -38,7 +38,12 @@ def contents(built: Built) -> list[str]:
             f"contact   {section.slave} on {section.master}: {model.count_facets(section.slave)} "
             f"slave facets{penalty}, {section.friction.sliding_rule}{passes}"
         )
+    for rigid in problem.rigid.bodies:
+        how = "free where a step frees it" if rigid.free else "moved as prescribed"
+        at = ", ".join(f"{v:g}" for v in rigid.reference)
+        lines.append(f"rigid     {rigid.name}: reference point ({at}), {how}")
     for step in built.steps:
-        driven = ", ".join(dict.fromkeys([*step.displacement, *step.traction])) or "nothing new"
+        named = [*step.displacement, *step.traction, *step.motion, *step.load]
+        driven = ", ".join(dict.fromkeys(named)) or "nothing new"
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
     return lines

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from anisocontact.contact import AnyContact, FacetQuadrature, facet_quadrature
 from anisocontact.interface import STATUS
 from anisocontact.python_law import PythonInterface
+from anisocontact.rigid import RigidBody, rotation_vector
 from anisocontact.solver import Accepted, Problem, Step
 
 __all__ = ["Observer", "laws", "named_groups"]
@@ -46,7 +47,7 @@ class Observer:
             accepted: What the solver said of it; None before the first increment.
 
         Returns:
-            Nested numbers: `contacts`, `reactions`, `displacements`, `energy`.
+            Nested numbers: `contacts`, `reactions`, `displacements`, `rigid`, `energy`.
         """
         zero = np.zeros(3)
         reactions = accepted.reactions if accepted else {}
@@ -54,6 +55,7 @@ class Observer:
             "contacts": [self._contact(contact) for contact in self._problem.contacts],
             "reactions": {g: reactions.get(g, zero).tolist() for g in self._supports},
             "displacements": {g: self._mean(q).tolist() for g, q in self._watched.items()},
+            "rigid": {body.name: self._rigid(body) for body in self._problem.rigid.bodies},
             "energy": accepted.energies if accepted else self._problem.energies(),
         }
 
@@ -63,6 +65,21 @@ class Observer:
         local = np.append(quadrature.areas @ quadrature.at_points(u), quadrature.areas.sum())
         total = self._comm.allreduce(local)
         return np.asarray(total[:3] / total[3])
+
+    def _rigid(self, body: RigidBody) -> dict[str, Any]:
+        """Where a rigid body is and what acts on it; moments about its reference point of now."""
+        rigid, now = self._problem.rigid, body.accepted
+        force, support = rigid.contact_force(body), rigid.support(body)
+        return {
+            "position": (body.reference + now.translation).tolist(),
+            "translation": now.translation.tolist(),
+            "rotation": rotation_vector(now.rotation).tolist(),
+            "turn": now.turn.tolist(),
+            "force": force[:3].tolist(),
+            "moment": force[3:].tolist(),
+            "support_force": support[:3].tolist(),
+            "support_moment": support[3:].tolist(),
+        }
 
     def _contact(self, contact: AnyContact) -> dict[str, Any]:
         """Resultant, extremes and counts; the means are over the area that touches."""

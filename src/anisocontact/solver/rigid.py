@@ -191,6 +191,11 @@ class RigidBodies:
         reaction = self._accepted_outside[i] - self._accepted_load[i]
         return np.where(self._drives[body].held, reaction, 0.0)
 
+    def contact_force(self, body: RigidBody) -> Floats:
+        """Force of the contacts on a body and moment about its reference point, (6,), accepted."""
+        needed = self._accepted_outside[self.bodies.index(body)]
+        return np.asarray(body.springs * body.accepted.values - needed)
+
     def _forces(self) -> Floats:
         """What contacts and springs need from outside at the trial, (bodies, 6)."""
         local = np.zeros((len(self.bodies), 6))

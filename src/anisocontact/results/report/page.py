@@ -60,6 +60,8 @@ def page(
     body += ["<h2>Contacts at the end</h2>", table(_contacts(summary))]
     body += ["<h2>Laws</h2>", table(_laws(summary))]
     body += ["<h2>Supports at the end</h2>", table(_reactions(summary))]
+    if summary.get("rigid"):
+        body += ["<h2>Rigid bodies at the end</h2>", table(_rigid(summary))]
     body += ["<h2>Energies at the end [force length]</h2>", table([summary["energy"]])]
     body += [figure(picture) for picture in pictures]
     return document(title, body)
@@ -138,6 +140,19 @@ def _reactions(summary: dict[str, Any]) -> list[dict[str, Any]]:
             **_vector("displacement", moved[group], "length"),
         }
         for group, force in summary["reactions"].items()
+    ]
+
+
+def _rigid(summary: dict[str, Any]) -> list[dict[str, Any]]:
+    return [
+        {
+            "body": name,
+            **_vector("position", body["position"], "length"),
+            **_vector("rotation", body["rotation"], "rad"),
+            **_vector("force of contact", body["force"], "force"),
+            **_vector("moment of contact", body["moment"], "force length"),
+        }
+        for name, body in summary["rigid"].items()
     ]
 
 

@@ -100,13 +100,22 @@ class RunData:
         return ContactView(self.results.contact(index), contact)
 
     def path_length(self) -> tuple[str, Floats]:
-        """How far the group that moves most has come, or the time where nothing is moved."""
-        best, name = np.zeros(0), ""
-        for group in self.summary["displacements"]:
-            moved = np.vstack([np.zeros(3), self.vectors(f"displacements.{group}")])
-            length = np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))
-            if length.size and (not best.size or length[-1] > best[-1]):
-                best, name = length, group
-        if not best.size or best[-1] == 0.0:
-            return "time [time]", self.history["time"]
-        return f"distance that {name} has moved [length]", best
+        """How far what moves most has come: a group, a rigid body, its angle, or else the time."""
+        rigid = self.summary.get("rigid", {})
+        moves = {g: f"displacements.{g}" for g in self.summary["displacements"]}
+        moves |= {body: f"rigid.{body}.translation" for body in rigid}
+        turns = {body: f"rigid.{body}.turn" for body in rigid}
+        for text, columns in (
+            ("distance that {} has moved [length]", moves),
+            ("angle that {} has turned [rad]", turns),
+        ):
+            paths = {name: self._path(column) for name, column in columns.items()}
+            longest = max(paths, key=lambda name: paths[name][-1], default=None)
+            if longest is not None and paths[longest][-1] > 0.0:
+                return text.format(longest), paths[longest]
+        return "time [time]", self.history["time"]
+
+    def _path(self, column: str) -> Floats:
+        """Length of the path of a vector up to each row, (rows,)."""
+        moved = np.vstack([np.zeros(3), self.vectors(column)])
+        return np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))
