@@ -44,6 +44,7 @@ __all__ = [
     "assemble_force",
     "assemble_into",
     "basix",
+    "body_shares",
     "cell_nodes",
     "cell_permutation",
     "create_mesh",
@@ -169,6 +170,13 @@ def vector_space(mesh: Any, degree: int) -> Any:
 def scalar_element(space: Any) -> Any:
     """Basix element of one component of a vector space."""
     return space.element.basix_element
+
+
+def body_shares(space: Any, cells: Ints) -> Floats:
+    """Integral of the basis function of each local node over cells, (nodes,), length^3."""
+    dx = ufl.Measure("dx", domain=space.mesh, subdomain_data=[(1, np.sort(cells))])
+    form = fem.form(ufl.TestFunction(space)[0] * dx(1))
+    return np.array(fem.assemble_vector(form).array[::3])
 
 
 def create_stiffness(form: Any) -> Mat:

@@ -234,24 +234,29 @@ def _rigid(
 def _steps(case: Case, model: Model) -> list[Step]:
     steps = []
     for i, section in enumerate(case.step):
-        for what in ("displacement", "traction"):
-            for group in getattr(section, what):
-                model.facets(group, f"step[{i}].{what}")
+        place = f"step[{i}]"
+        for what, group in section.groups():
+            model.facets(group, f"{place}.{what}")
         displacement = {
             group: {axis: None if v == FREE else v for axis, v in given.given().items()}
             for group, given in section.displacement.items()
         }
-        traction = {group: given.given() for group, given in section.traction.items()}
-        with objects.within(f"step[{i}]"):
+        vectors = {
+            kind: {name: given.given() for name, given in getattr(section, kind).items()}
+            for kind in ("traction", "force", "body_force")
+        }
+        with objects.within(place):
             steps.append(
                 Step(
                     section.name,
                     section.increments,
                     displacement,
-                    traction,
-                    section.duration,
+                    duration=section.duration,
                     motion={name: given.components() for name, given in section.motion.items()},
                     load={name: given.components() for name, given in section.load.items()},
+                    pressure=section.pressure,
+                    rotation={group: objects.turn(t) for group, t in section.rotation.items()},
+                    **vectors,
                 )
             )
     return steps

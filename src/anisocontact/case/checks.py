@@ -121,9 +121,16 @@ def _steps(case: Case) -> Iterator[InputError]:
         if first != i:
             text = f'"{step.name}" given, step[{first}] has that name already'
             yield InputError(text, field=f"step[{i}].name")
-        for what in ("displacement", "traction"):
-            for group in getattr(step, what):
-                yield from _group(case, group, f"step[{i}].{what}")
+        for what, group in step.groups():
+            yield from _group(case, group, f"step[{i}].{what}")
+        for group in step.rotation:
+            if group in step.displacement:
+                text = "given with a displacement of the same group, one of the two is allowed"
+                yield InputError(text, field=f'step[{i}].rotation."{group}"')
+        for body in step.body_force:
+            if body not in case.material:
+                text = f'"{body}" given, no such body; {near(body, list(case.material))}'
+                yield InputError(text, field=f"step[{i}].body_force")
 
 
 def _tried(make: Callable[..., Any], *arguments: Any) -> tuple[Any, tuple[InputError, ...]]:

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Annotated, Any, Self
+from typing import Annotated, Any
 
-from pydantic import Field, create_model, model_validator
-from pydantic_core import ErrorDetails
+from pydantic import Field, create_model
 
 from anisocontact import registry
 from anisocontact.case.bodies import Mesh, mesh_type
-from anisocontact.case.quantity import FREE, line
+from anisocontact.case.loads import Loading
 from anisocontact.case.quantity import number as _number
 from anisocontact.case.quantity import word as _word
 from anisocontact.case.registered import Key, OneOf, Registered, default_of
@@ -47,54 +46,12 @@ SINGLE, TWO_HALF = "single", "two-half"
 _PASSES = "whether the slave alone is integrated over or, between bodies, both with half the weight"
 
 
-class Components(Section):
-    """Components of a vector; what is left out is not prescribed."""
-
-    @model_validator(mode="after")
-    def _some(self) -> Self:
-        if not self.given():
-            raise line("nothing given, at least one of x, y, z needed")
-        return self
-
-    @classmethod
-    def _text(cls, e: ErrorDetails) -> str:
-        text = super()._text(e)
-        in_pieces = e["type"] == "extra_forbidden" and isinstance(e["input"], dict)
-        return f'{text}; a group is written in quotes: "body.group"' if in_pieces else text
-
-    def given(self) -> dict[str, Any]:
-        """The components that are prescribed."""
-        return {key: value for key, value in self if value is not None}
-
-
-class Displacement(Components):
-    """Displacement of a facet group at the end of the step; "free" releases the support."""
-
-    x: Annotated[float | str | None, _number("scalar", "length", "along x", word=FREE)] = None
-    y: Annotated[float | str | None, _number("scalar", "length", "along y", word=FREE)] = None
-    z: Annotated[float | str | None, _number("scalar", "length", "along z", word=FREE)] = None
-
-
-class Traction(Components):
-    """Force per reference area on a facet group at the end of the step."""
-
-    x: Annotated[float | None, _number("scalar", "stress", "along x")] = None
-    y: Annotated[float | None, _number("scalar", "stress", "along y")] = None
-    z: Annotated[float | None, _number("scalar", "stress", "along z")] = None
-
-
-class StepSection(Section):
+class StepSection(Loading):
     """A load step: values are reached at its end, linearly; what is not named is held."""
 
     name: str = Field(description="name of the step, used once")
     increments: Annotated[int, _number("integer", "1", "number of equal increments", "positive")]
     duration: Annotated[float, _number("scalar", "time", "time the step takes", "positive")] = 1.0
-    displacement: dict[str, Displacement] = Field(
-        default_factory=dict, description='prescribed displacements by "body.group"'
-    )
-    traction: dict[str, Traction] = Field(
-        default_factory=dict, description='prescribed tractions by "body.group"'
-    )
     motion: dict[str, Motion] = Field(
         default_factory=dict, description="prescribed and freed motion by rigid body"
     )

@@ -19,7 +19,9 @@ from anisocontact.surfaces import Surface, make_surface
 if TYPE_CHECKING:
     from anisocontact.bulk import Material
     from anisocontact.case.bodies import MeshFile, Placed, Rotate, Shaped
+    from anisocontact.case.loads import Turning
     from anisocontact.mesh import Body, GmshFile, Placement, Rotation
+    from anisocontact.solver import Turn
 
 __all__ = [
     "body",
@@ -30,6 +32,7 @@ __all__ = [
     "placement",
     "rotation",
     "surface",
+    "turn",
     "within",
 ]
 
@@ -116,6 +119,13 @@ def rotation(section: Rotate) -> Rotation:
     from anisocontact.mesh import Rotation
 
     return Rotation(section.axis, math.radians(section.angle_deg), section.point)
+
+
+def turn(section: Turning) -> Turn:
+    """The rotation of a facet group along a step."""
+    from anisocontact.solver import Turn
+
+    return Turn(section.axis, math.radians(section.angle_deg), section.point, section.move)
 
 
 def interface(section: Laws, master: Surface, place: str, auto: float = 1.0) -> Interface:

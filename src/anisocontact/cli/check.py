@@ -43,7 +43,6 @@ def contents(built: Built) -> list[str]:
         at = ", ".join(f"{v:g}" for v in rigid.reference)
         lines.append(f"rigid     {rigid.name}: reference point ({at}), {how}")
     for step in built.steps:
-        named = [*step.displacement, *step.traction, *step.motion, *step.load]
-        driven = ", ".join(dict.fromkeys(named)) or "nothing new"
+        driven = ", ".join(step.driven()) or "nothing new"
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
     return lines

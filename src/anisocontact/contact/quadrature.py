@@ -152,6 +152,27 @@ class Surfaced:
         )
         return np.asarray(self._weights[..., None, None] * (self.quadrature.gradient @ sides))
 
+    @property
+    def vector_areas(self) -> Floats:
+        """Area of each point times the normal that the tangents make, (m, q, 3), length^2."""
+        return np.asarray(self._weights[..., None] * self._cross)
+
+    def vector_area_matrices(self) -> Floats:
+        """`sum over the points of basis_a (d vector area / d x_b)` on each facet.
+
+        Returns:
+            One matrix for each facet, rows and columns node by node, (m, 3 k, 3 k).
+        """
+        m, _, k = self.quadrature.basis.shape
+        # d(t1 x t2) = (g2 t1 - g1 t2) x dx, with g the gradient of the basis of x_b
+        first, second = self.tangents[:, :, None, 0], self.tangents[:, :, None, 1]
+        g = self.quadrature.gradient[..., None]
+        arm = g[..., 1, :] * first - g[..., 0, :] * second
+        turned = np.cross(arm[..., None, :], np.eye(3))
+        weighted = self._weights[..., None] * self.quadrature.basis
+        blocks = np.einsum("mqa,mqbji->maibj", weighted, turned, optimize=True)
+        return np.asarray(blocks.reshape(m, 3 * k, 3 * k))
+
 
 def _norm(vectors: Floats) -> Floats:
     return np.asarray(np.linalg.norm(vectors, axis=-1))

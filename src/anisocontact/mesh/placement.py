@@ -35,8 +35,8 @@ class Rotation:
     point: Sequence[float] = (0.0, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        _check_vector("axis", self.axis)
-        _check_vector("point", self.point)
+        check_vector("axis", self.axis)
+        check_vector("point", self.point)
         if not any(self.axis):
             raise InputError(f"{list(self.axis)} given, must not be zero", "axis")
         if not math.isfinite(self.angle):
@@ -80,7 +80,7 @@ class Placement:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.scale) and self.scale > 0.0):
             raise InputError(f"{self.scale!r} given, must be > 0", "scale")
-        _check_vector("move", self.move)
+        check_vector("move", self.move)
 
     def apply(self, mesh: MeshArrays) -> MeshArrays:
         """The mesh where it is to stand."""
@@ -90,7 +90,8 @@ class Placement:
         return replace(mesh, points=points + np.asarray(self.move, dtype=float))
 
 
-def _check_vector(field: str, given: Sequence[float]) -> None:
+def check_vector(field: str, given: Sequence[float]) -> None:
+    """Refuse what is not three finite numbers."""
     if len(given) != 3 or not all(math.isfinite(v) for v in given):
         raise InputError(f"{list(given)} given, three finite numbers are needed", field)
 

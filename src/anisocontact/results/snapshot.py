@@ -32,12 +32,11 @@ class Observer:
         self._comm = problem.model.mesh.comm
         model = problem.model
         steps = list(steps)
-        self._supports = named_groups(step.displacement for step in steps)
+        self._supports = named_groups(step.led() for step in steps)
         self._watched: dict[str, FacetQuadrature] = {
             group: facet_quadrature(model.space, model.facets(group), degree=2)
-            for group in named_groups(
-                loads for step in steps for loads in (step.displacement, step.traction)
-            )
+            for group in named_groups(step.driven() for step in steps)
+            if group in model.facet_names()
         }
 
     def numbers(self, accepted: Accepted | None = None) -> dict[str, Any]:

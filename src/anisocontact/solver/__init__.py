@@ -4,6 +4,7 @@ from anisocontact.limits import Limits
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.solver import Solver
 from anisocontact.solver.steps import Accepted, Culprit, Cut, Progress, Step, StoppedError
+from anisocontact.solver.turn import Turn
 from anisocontact.solver.user import ContactProblem
 
 __all__ = [
@@ -17,4 +18,5 @@ __all__ = [
     "Solver",
     "Step",
     "StoppedError",
+    "Turn",
 ]

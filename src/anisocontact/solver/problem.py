@@ -15,9 +15,10 @@ from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.cells import DeformedCells
 from anisocontact.solver.coupled import CoupledTangent
-from anisocontact.solver.loads import Supports, Tractions
+from anisocontact.solver.loads import Loads
 from anisocontact.solver.rigid import RigidBodies
 from anisocontact.solver.steps import Step
+from anisocontact.solver.supports import Supports
 
 Floats = npt.NDArray[np.float64]
 
@@ -87,13 +88,12 @@ class Problem:
             else None
         )
         self.supports = Supports(model)
-        self.tractions = Tractions(model)
+        self.loads = Loads(model, materials)
         self.u: Any = fem.Function(model.space, name="displacement")
         self.force_scale = 0.0
         self.round_off = 0.0
         self._ghosted = self.u.x.petsc_vec.duplicate()
         self._load: Floats = np.zeros(self._owned)
-        self._load_norm = 0.0
         self._level = 0.0
         self._dt = 0.0
         self._outside: Floats = np.zeros(self._owned)
@@ -144,14 +144,14 @@ class Problem:
         """Take over the loads of a step from the accepted state.
 
         Raises:
-            InputError: See `Supports.begin` and `Tractions.begin`.
+            InputError: See `Supports.begin` and `DeadLoads.begin`.
         """
         held = self.supports.unknowns
         self.supports.begin(step, self.u.x.array.copy())
         gone = np.setdiff1d(held, self.supports.unknowns)
         released = np.zeros(len(self.u.x.array))
         released[gone] = self._accepted_reaction[gone]
-        self.tractions.begin(step, released)
+        self.loads.begin(step, released)
         self.rigid.begin(step)
 
     def set_level(self, fraction: float, dt: float) -> None:
@@ -160,9 +160,7 @@ class Problem:
         self._level = fraction
         self._dt = dt
         self.rigid.set_level(fraction)
-        self._load = self._assembled(self.tractions.at(fraction))
-        rigid = float(np.linalg.norm(self.rigid.loads()))
-        self._load_norm = float(np.hypot(self._norm(self._load), rigid))
+        self.loads.set_level(fraction)
 
     def evaluate(self, x: Vec) -> Floats:
         """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer.
@@ -181,6 +179,9 @@ class Problem:
             failed = failed or bool(response.failed.any())
             contact.add_force(forces.reshape(-1, 3))
         contact_force = self._assembled(forces)
+        self._load = self._assembled(self.loads.force(self.u.x.array.reshape(-1, 3)))
+        rigid_load = float(np.linalg.norm(self.rigid.loads()))
+        load_norm = float(np.hypot(self._norm(self._load), rigid_load))
         u = self._of_mesh
         self._outside = self.bulk.force(u).array_r - contact_force
         residual = self._outside - self._load
@@ -189,7 +190,7 @@ class Problem:
         of_bodies = self.rigid.residual(moved_bodies, self._support_scale)
         at_work = (self._outside[rows], contact_force, residual[rows])
         self.force_scale = max(
-            self._load_norm,
+            load_norm,
             *map(self._norm, at_work),
             float(np.linalg.norm(self.rigid.forces_at_work())),
             float(np.linalg.norm(of_bodies[self.rigid.held()])),
@@ -198,8 +199,8 @@ class Problem:
         moved = np.abs(u.array_r) + self.bulk.rest_length
         stiff = self._norm(self.bulk.diagonal.array_r * moved) + self._norm(levers)
         self.round_off = ROUND_OFF * stiff
-        if self._load_norm > 0.0:
-            self.round_off = min(self.round_off, LOAD_SHARE * self._load_norm)
+        if load_norm > 0.0:
+            self.round_off = min(self.round_off, LOAD_SHARE * load_norm)
         if self._comm.allreduce(failed):
             residual[:] = np.nan
         return np.append(residual, of_bodies) if self._last_rank else residual
@@ -212,6 +213,7 @@ class Problem:
         self.bulk.tangent(bulk)
         for contact in self._analytic:
             contact.add_tangent(bulk)
+        self.loads.add_tangent(bulk)
         bulk.assemble()
         if self._coupled is not None:
             couplings = [k for c in self._meshed for k in c.couplings()]

@@ -71,7 +71,7 @@ class Solver:
         self.problem = problem
         self.steps = list(steps)
         self.limits = limits or Limits()
-        check_steps(problem.model, self.steps)
+        check_steps(problem.model, problem.materials, self.steps)
         problem.rigid.check(self.steps)
         self.place = self._beginning(0, 0.0)
         self._prefix = options_prefix

@@ -10,8 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.errors import InputError
+from anisocontact.solver.turn import Turn
 
 AXES = ("x", "y", "z")
+# Fields of a step that are forces with a direction.
+_FORCES = ("traction", "force", "body_force")
 Floats = npt.NDArray[np.float64]
 
 
@@ -33,6 +36,11 @@ class Step:
             frees the component of a free body.
         load: Rigid body -> freed component -> force, or moment about the reference point, at the
             end. Moments do not turn with the body.
+        force: Facet group -> axis -> force on the whole group at the end, as a uniform traction.
+        pressure: Facet group -> pressure at the end, stress, positive into the body; at finite
+            strain on the area and against the normal of now, else of the reference.
+        body_force: Body -> axis -> force per reference volume at the end, stress/length.
+        rotation: Facet group -> rotation it is led through along the step.
 
     Raises:
         InputError: A value is out of range or no number.
@@ -45,6 +53,10 @@ class Step:
     duration: float = 1.0
     motion: Mapping[str, Mapping[str, float | None]] = field(default_factory=dict)
     load: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    force: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    pressure: Mapping[str, float] = field(default_factory=dict)
+    body_force: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    rotation: Mapping[str, Turn] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if isinstance(self.increments, bool) or not isinstance(self.increments, int):
@@ -53,14 +65,33 @@ class Step:
             raise self._error("increments", f"{self.increments} given, must be >= 1")
         if not (math.isfinite(self.duration) and self.duration > 0.0):
             raise self._error("duration", f"{self.duration!r} given, must be > 0")
-        for kind, groups in (("displacement", self.displacement), ("traction", self.traction)):
-            for group, values in groups.items():
-                for axis, value in values.items():
-                    self._check(kind, group, axis, value)
+        for kind in ("displacement", *_FORCES):
+            self._check_vectors(kind)
         for kind, bodies in (("motion", self.motion), ("load", self.load)):
             for body, components in bodies.items():
                 for component, value in components.items():
                     self._check_value(kind, f"{kind}.{body}.{component}", value)
+        for group, pressure in self.pressure.items():
+            self._check_value("pressure", f"pressure.{group}", pressure)
+        for group in self.rotation:
+            if group in self.displacement:
+                text = "given with a displacement of the same group, one of the two is allowed"
+                raise self._error(f"rotation.{group}", text)
+
+    def led(self) -> list[str]:
+        """Names of the facet groups with prescribed displacements, each once."""
+        return list(dict.fromkeys([*self.displacement, *self.rotation]))
+
+    def driven(self) -> list[str]:
+        """Names of all groups and bodies that are led or loaded, each once."""
+        loaded = [name for kind in (*_FORCES, "pressure") for name in getattr(self, kind)]
+        return list(dict.fromkeys([*self.led(), *loaded, *self.motion, *self.load]))
+
+    def _check_vectors(self, kind: str) -> None:
+        groups: Mapping[str, Mapping[str, float | None]] = getattr(self, kind)
+        for group, values in groups.items():
+            for axis, value in values.items():
+                self._check(kind, group, axis, value)
 
     def _check(self, kind: str, group: str, axis: str, value: float | None) -> None:
         where = f"{kind}.{group}.{axis}"

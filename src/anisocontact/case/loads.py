@@ -1,0 +1,120 @@
+"""Tables of what a load step prescribes."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Self
+
+from pydantic import Field, model_validator
+from pydantic_core import ErrorDetails
+
+from anisocontact.case.bodies import Point, Rotate
+from anisocontact.case.quantity import FREE, line, number
+from anisocontact.case.section import Section
+
+__all__ = ["Loading", "Turning"]
+
+
+class Components(Section):
+    """Components of a vector; what is left out is not prescribed."""
+
+    @model_validator(mode="after")
+    def _some(self) -> Self:
+        if not self.given():
+            raise line("nothing given, at least one of x, y, z needed")
+        return self
+
+    @classmethod
+    def _text(cls, e: ErrorDetails) -> str:
+        text = super()._text(e)
+        in_pieces = e["type"] == "extra_forbidden" and isinstance(e["input"], dict)
+        return f'{text}; a group is written in quotes: "body.group"' if in_pieces else text
+
+    def given(self) -> dict[str, Any]:
+        """The components that are prescribed."""
+        values = {axis: getattr(self, axis) for axis in ("x", "y", "z")}
+        return {axis: value for axis, value in values.items() if value is not None}
+
+
+class Displacement(Components):
+    """Displacement of a facet group at the end of the step; "free" releases the support."""
+
+    x: Annotated[float | str | None, number("scalar", "length", "along x", word=FREE)] = None
+    y: Annotated[float | str | None, number("scalar", "length", "along y", word=FREE)] = None
+    z: Annotated[float | str | None, number("scalar", "length", "along z", word=FREE)] = None
+
+
+class Traction(Components):
+    """Force per reference area on a facet group at the end of the step."""
+
+    x: Annotated[float | None, number("scalar", "stress", "along x")] = None
+    y: Annotated[float | None, number("scalar", "stress", "along y")] = None
+    z: Annotated[float | None, number("scalar", "stress", "along z")] = None
+
+
+class Force(Components):
+    """Force on a whole facet group at the end of the step, as a uniform traction."""
+
+    x: Annotated[float | None, number("scalar", "force", "along x")] = None
+    y: Annotated[float | None, number("scalar", "force", "along y")] = None
+    z: Annotated[float | None, number("scalar", "force", "along z")] = None
+
+
+class BodyForce(Components):
+    """Force on a body per reference volume, or its acceleration where a density is given."""
+
+    x: Annotated[float | None, number("scalar", "stress/length", "along x")] = None
+    y: Annotated[float | None, number("scalar", "stress/length", "along y")] = None
+    z: Annotated[float | None, number("scalar", "stress/length", "along z")] = None
+    density: Annotated[
+        float,
+        number(
+            "scalar",
+            "mass/length^3",
+            "factor of the components, which are then accelerations",
+            "positive",
+        ),
+    ] = 1.0
+
+    def given(self) -> dict[str, Any]:
+        """Components of the force per volume."""
+        return {axis: self.density * value for axis, value in super().given().items()}
+
+
+class Turning(Rotate):
+    """Rotation of a facet group along the step, from where it is, about an axis that may move."""
+
+    move: Annotated[Point, number("vector", "length", "way of the axis along the step")] = (
+        0.0,
+        0.0,
+        0.0,
+    )
+
+
+class Loading(Section):
+    """What a step prescribes of facet groups and bodies."""
+
+    displacement: dict[str, Displacement] = Field(
+        default_factory=dict, description='prescribed displacements by "body.group"'
+    )
+    rotation: dict[str, Turning] = Field(
+        default_factory=dict, description='prescribed rotations by "body.group"'
+    )
+    traction: dict[str, Traction] = Field(
+        default_factory=dict, description='forces per reference area by "body.group"'
+    )
+    force: dict[str, Force] = Field(
+        default_factory=dict, description='forces on whole facet groups by "body.group"'
+    )
+    pressure: dict[str, Annotated[float, number("scalar", "stress", "pressure")]] = Field(
+        default_factory=dict,
+        description='pressures by "body.group", positive into the body; they follow a body at '
+        "finite strain",
+    )
+    body_force: dict[str, BodyForce] = Field(
+        default_factory=dict, description="forces per volume by body"
+    )
+
+    def groups(self) -> list[tuple[str, str]]:
+        """Every facet group that is named, with the key it is named under."""
+        kinds = ("displacement", "rotation", "traction", "force", "pressure")
+        return [(kind, group) for kind in kinds for group in getattr(self, kind)]

@@ -1,0 +1,108 @@
+"""Pressures on facet groups, which follow the surface where strains are finite."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import Mat, PETSc, facet_sides, geometry
+from anisocontact.bulk import Material
+from anisocontact.contact import FacetQuadrature, facet_quadrature
+from anisocontact.contact.quadrature import Surfaced
+from anisocontact.mesh import Model
+from anisocontact.solver.steps import Step
+
+Floats = npt.NDArray[np.float64]
+
+
+class Pressures:
+    """Forces `-p n` on the area of now, n the outward normal of now.
+
+    The force at node a is `-integral of N_a p (t_1 x t_2)` over the coordinates of the facet, with
+    the tangents `t_i = d x / d xi_i`; its derivative is exact. On a body of linear material normal
+    and area are those of the reference.
+
+    Args:
+        model: Mesh with named facets.
+        materials: Body name -> material.
+    """
+
+    def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
+        self._model = model
+        self._materials = materials
+        self._surfaces: dict[str, _Surface] = {}
+        self._start: dict[str, float] = {}
+        self._end: dict[str, float] = {}
+        self._now: dict[str, float] = {}
+
+    def begin(self, step: Step) -> None:
+        """Take over the pressures of a step.
+
+        Raises:
+            InputError: An unknown facet group.
+        """
+        self._start = dict(self._end)
+        for group, value in step.pressure.items():
+            field = f"step {step.name!r}.pressure"
+            body = self._model.body_of(group, field)
+            if group not in self._surfaces:
+                self._surfaces[group] = _Surface(self._model, group, self._materials[body].linear)
+            self._end[group] = float(value)
+
+    def set_level(self, fraction: float) -> None:
+        """Go to a fraction of the step."""
+        self._now = {
+            group: (1.0 - fraction) * self._start.get(group, 0.0) + fraction * end
+            for group, end in self._end.items()
+        }
+
+    def add_force(self, u: Floats, out: Floats) -> None:
+        """Add the forces at the displacement `u` to the local nodes, both (nodes, 3)."""
+        for group, value in self._now.items():
+            self._surfaces[group].add_force(value, u, out)
+
+    def add_tangent(self, matrix: Mat) -> None:
+        """Add `-d force / d u` of the last `add_force` to the matrix of the system."""
+        for group, value in self._now.items():
+            self._surfaces[group].add_tangent(value, matrix)
+
+
+class _Surface:
+    """A facet group under pressure."""
+
+    def __init__(self, model: Model, group: str, fixed: bool) -> None:
+        facets = model.facets(group)
+        # N_a and each of the tangents are of the order of the displacement.
+        self._quadrature = facet_quadrature(model.space, facets, 3 * model.order)
+        self._sign = _outward(model, group, self._quadrature)
+        count = len(model.space.tabulate_dof_coordinates())
+        self._rest = self._quadrature.moved(np.zeros((count, 3)))
+        self._fixed = fixed
+        self._moved: Surfaced = self._rest
+
+    def add_force(self, pressure: float, u: Floats, out: Floats) -> None:
+        if not self._fixed:
+            self._moved = self._quadrature.moved(u)
+        push = -pressure * self._sign[:, None, None] * self._moved.vector_areas
+        self._quadrature.to_nodes(push.reshape(-1, 3), out, np.ones(self._quadrature.count))
+
+    def add_tangent(self, pressure: float, matrix: Mat) -> None:
+        if self._fixed:
+            return
+        change = self._moved.vector_area_matrices()
+        blocks = pressure * self._sign[:, None, None] * change
+        nodes = self._quadrature.nodes
+        matrix.setValuesBlockedLocalRCV(nodes, nodes, blocks, PETSc.InsertMode.ADD_VALUES)
+
+
+def _outward(model: Model, group: str, quadrature: FacetQuadrature) -> Floats:
+    """1 where the first tangent cross the second points out of the body, else -1, (m,)."""
+    cells, _ = facet_sides(model.mesh, np.sort(model.facets(group)))
+    _, nodes, points = geometry(model.mesh)
+    count = len(model.space.tabulate_dof_coordinates())
+    area = quadrature.moved(np.zeros((count, 3))).vector_areas.sum(axis=1)
+    middle = quadrature.reference.reshape(*quadrature.weights.shape, 3).mean(axis=1)
+    away = middle - points[nodes[cells]].mean(axis=1)
+    return np.asarray(np.sign(np.einsum("mi,mi->m", away, area)))

@@ -1,0 +1,153 @@
+"""Prescribed displacements along the steps."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import fem
+from anisocontact.errors import InputError
+from anisocontact.mesh import Model
+from anisocontact.solver.steps import AXES, Step
+from anisocontact.solver.turn import Turn
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Support = tuple[str, int]  # facet group, axis
+
+
+# What an unknown is led to: a value, through a turn, or nowhere (after a turn).
+Goal = float | Turn | None
+
+
+class Supports:
+    """Unknowns that are prescribed, and their values along a step.
+
+    An unknown that several groups prescribe (an edge) counts as one of the first of them.
+
+    Attributes:
+        unknowns: Local numbers of the prescribed unknowns this rank owns, (p,).
+        start: Their values at the beginning of the step, length.
+        end: Their values at its end, length.
+    """
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._nodes: dict[str, Ints] = {}
+        self._goals: dict[Support, Goal] = {}
+        self._owner: dict[Support, Ints] = {}
+        self._turned: list[tuple[Turn, Ints, Floats]] = []
+        self.unknowns: Ints = np.zeros(0, dtype=np.int64)
+        self.start: Floats = np.zeros(0)
+        self.end: Floats = np.zeros(0)
+
+    def begin(self, step: Step, u: Floats) -> None:
+        """Take over the supports of a step.
+
+        Args:
+            step: The step.
+            u: Local unknowns at its beginning, length.
+
+        Raises:
+            InputError: An unknown facet group, or two groups that give shared nodes different
+                values.
+        """
+        self._take_over(step)
+        taken = np.full(len(u), np.nan)
+        owner: dict[Support, Ints] = {}
+        for (group, axis), goal in self._goals.items():
+            unknowns = 3 * self._owned_nodes(group) + axis
+            value = self._end(goal, unknowns, u)
+            clash = ~np.isnan(taken[unknowns]) & (taken[unknowns] != value)
+            if clash.any():
+                raise self._clash(step, group, axis, owner, unknowns[clash], taken, value[clash])
+            owner[group, axis] = unknowns[np.isnan(taken[unknowns])]
+            taken[unknowns] = value
+        self._owner = owner
+        self.unknowns = np.flatnonzero(~np.isnan(taken))
+        self.start, self.end = u[self.unknowns], taken[self.unknowns]
+        self._turned = [
+            (goal, held, self._positions(held // 3, u))
+            for key, held in owner.items()
+            if isinstance(goal := self._goals[key], Turn)
+        ]
+
+    def at(self, fraction: float) -> Floats:
+        """Prescribed values at a fraction of the step."""
+        values = (1.0 - fraction) * self.start + fraction * self.end
+        for turn, held, start in self._turned:
+            place = np.searchsorted(self.unknowns, held)
+            moved = turn.path(start, fraction) - start
+            values[place] = self.start[place] + moved[np.arange(len(held)), held % 3]
+        return values
+
+    def _take_over(self, step: Step) -> None:
+        for key, goal in self._goals.items():
+            if isinstance(goal, Turn):
+                self._goals[key] = None
+        for group, values in step.displacement.items():
+            self._model.facets(group, f"step {step.name!r}.displacement")
+            for name, given in values.items():
+                self._goals.pop((group, AXES.index(name)), None)
+                if given is not None:
+                    self._goals[group, AXES.index(name)] = float(given)
+        for group, turn in step.rotation.items():
+            self._model.facets(group, f"step {step.name!r}.rotation")
+            for axis in range(3):
+                self._goals.pop((group, axis), None)
+                self._goals[group, axis] = turn
+
+    def _end(self, goal: Goal, unknowns: Ints, u: Floats) -> Floats:
+        """Values of unknowns of one axis at the end of the step."""
+        if goal is None:
+            return np.asarray(u[unknowns])
+        if isinstance(goal, Turn):
+            start = self._positions(unknowns // 3, u)
+            moved = goal.path(start, 1.0) - start
+            return np.asarray(u[unknowns] + moved[np.arange(len(unknowns)), unknowns % 3])
+        return np.full(len(unknowns), goal)
+
+    def _positions(self, nodes: Ints, u: Floats) -> Floats:
+        reference = np.asarray(self._model.space.tabulate_dof_coordinates())
+        return np.asarray(reference[nodes] + u.reshape(-1, 3)[nodes])
+
+    def reactions(self, force: Floats) -> dict[str, Floats]:
+        """Force of each group's supports on the body.
+
+        Args:
+            force: Force of the supports on the unknowns this rank owns.
+
+        Returns:
+            Facet group -> force, (3,), over all ranks.
+        """
+        sums: dict[str, Floats] = {}
+        for (group, axis), unknowns in self._owner.items():
+            sums.setdefault(group, np.zeros(3))[axis] = force[unknowns].sum()
+        return {group: self._model.mesh.comm.allreduce(local) for group, local in sums.items()}
+
+    def _owned_nodes(self, group: str) -> Ints:
+        if group not in self._nodes:
+            space = self._model.space
+            nodes = fem.locate_dofs_topological(space, 2, self._model.facets(group))
+            owned = nodes[nodes < space.dofmap.index_map.size_local]
+            self._nodes[group] = owned.astype(np.int64)
+        return self._nodes[group]
+
+    def _clash(
+        self,
+        step: Step,
+        group: str,
+        axis: int,
+        owner: dict[Support, Ints],
+        shared: Ints,
+        taken: Floats,
+        value: Floats,
+    ) -> InputError:
+        other = next(
+            g for (g, a), held in owner.items() if a == axis and np.isin(shared, held).any()
+        )
+        return InputError(
+            f"{other!r} prescribes {taken[shared[0]]:g} and {group!r} {value[0]:g} for "
+            f"{AXES[axis]} on {len(shared)} shared nodes",
+            f"step {step.name!r}.displacement",
+        )

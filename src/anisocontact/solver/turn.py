@@ -1,0 +1,46 @@
+"""A rotation that a facet group is led through along a step."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.mesh.placement import Rotation, check_vector
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Turn(Rotation):
+    """A screw motion: a rotation about an axis that moves along the step.
+
+    At the share s of the step a point that began it at x is at
+    `p + R(s angle) (x - p) + s move`, R the rotation about the axis through p.
+
+    Attributes:
+        axis: Direction of the axis, of any length but zero.
+        angle: Angle turned along the step, right-handed, radian; may be many turns.
+        point: Where the axis is at the beginning of the step, length.
+        move: How far the axis goes along the step, length.
+
+    Raises:
+        InputError: The axis is zero, or a number is not finite.
+
+    Example:
+        >>> roll = Turn((0, 1, 0), np.pi / 2, point=(0, 0, 1), move=(np.pi / 2, 0, 0))
+        >>> (roll.path(np.array([[0.0, 0.0, 0.0]]), 1.0) + 0.0).round(3).tolist()
+        [[0.571, 0.0, 1.0]]
+    """
+
+    move: Sequence[float] = (0.0, 0.0, 0.0)
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        check_vector("move", self.move)
+
+    def path(self, start: Floats, share: float) -> Floats:
+        """Positions at a share of the step, (n, 3), of points that began it at `start`, (n, 3)."""
+        return self.apply(start, share) + share * np.asarray(self.move, dtype=float)
