@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import fem
+from anisocontact._fenicsx import MPI, fem
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.steps import AXES, Step
@@ -15,6 +15,9 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 Support = tuple[str, int]  # facet group, axis
 
+
+#: Displacements that count as the same, over the largest coordinate.
+SAME = 1e-13
 
 # What an unknown is led to: a value, through a turn, or nowhere (after a turn).
 Goal = float | Turn | None
@@ -33,6 +36,9 @@ class Supports:
 
     def __init__(self, model: Model) -> None:
         self._model = model
+        x = np.abs(model.space.tabulate_dof_coordinates()).max(initial=0.0)
+        # Two values for a node are one if they differ by round-off of a rotation.
+        self._same = SAME * float(model.mesh.comm.allreduce(x, MPI.MAX))
         self._nodes: dict[str, Ints] = {}
         self._goals: dict[Support, Goal] = {}
         self._owner: dict[Support, Ints] = {}
@@ -58,7 +64,7 @@ class Supports:
         for (group, axis), goal in self._goals.items():
             unknowns = 3 * self._owned_nodes(group) + axis
             value = self._end(goal, unknowns, u)
-            clash = ~np.isnan(taken[unknowns]) & (taken[unknowns] != value)
+            clash = np.abs(taken[unknowns] - value) > self._same
             if clash.any():
                 raise self._clash(step, group, axis, owner, unknowns[clash], taken, value[clash])
             owner[group, axis] = unknowns[np.isnan(taken[unknowns])]
