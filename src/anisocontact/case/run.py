@@ -13,6 +13,8 @@ from types import FrameType
 from typing import Any, Protocol
 
 from anisocontact.case.build import Built
+from anisocontact.results.checkpoint import NAME, Stored, distribute
+from anisocontact.results.files import WriteError
 from anisocontact.results.writer import Writer
 from anisocontact.solver import Accepted, Cut, Progress, StoppedError
 
@@ -41,46 +43,51 @@ class Outcome:
         message: Why it stopped; empty if it is done.
         folder: Where its results are.
         warnings: What the user should look at.
+        goes_on: Whether it has a checkpoint from which it can go on.
     """
 
     status: str
     message: str
     folder: Path
     warnings: tuple[str, ...] = ()
+    goes_on: bool = False
 
 
 class RunError(RuntimeError):
     """A run ended in an error of the program; the results folder has what converged."""
 
 
-def run(built: Built, folder: str | Path, listener: Listener) -> Outcome:
+def run(
+    built: Built, folder: str | Path, listener: Listener, checkpoint: Stored | None = None
+) -> Outcome:
     """Solve the steps of a case and write its results.
 
-    A first Ctrl-C ends the run after the current increment, a second one at once.
+    A first Ctrl-C, or the signal TERM, ends the run after the current increment, a second one at
+    once. After every accepted increment the folder has a checkpoint.
 
     Args:
         built: The case with its problem.
-        folder: Results folder; an earlier run in it is replaced.
+        folder: Results folder; an earlier run in it is replaced, or goes on.
         listener: Is told of iterations and increments.
+        checkpoint: Where to go on; from the beginning if not given.
 
     Returns:
         Done, or stopped and why; what converged is in the folder.
 
     Raises:
+        InputError: The checkpoint does not fit the mesh or the contacts.
         RunError: Something unforeseen happened; `run.log` has the details.
     """
-    case = built.file.case
-    writer = Writer(
-        folder,
-        built.problem,
-        built.steps,
-        masters=[contact.master for contact in case.contact],
-        title=case.title or built.file.name,
-        every=case.output.every,
-        case=built.file.path.read_text(encoding="utf-8"),
-    )
+    text = built.file.path.read_text(encoding="utf-8")
+    if checkpoint is not None:
+        solver = built.solver
+        solver.restore(distribute(checkpoint, built.problem.model, solver.persistent()))
     try:
-        status, message = _solve(built, writer, listener)
+        writer = _writer(built, folder, text, checkpoint)
+    except WriteError as error:
+        return Outcome("stopped", str(error), Path(folder), goes_on=checkpoint is not None)
+    try:
+        status, message = _solve(built, writer, listener, text)
     except KeyboardInterrupt:
         status, message = "stopped", "interrupted"
     except Exception as error:
@@ -89,10 +96,25 @@ def run(built: Built, folder: str | Path, listener: Listener) -> Outcome:
         writer.close("stopped", f"internal error: {text}")
         raise RunError(f"{text}; details in {writer.folder / 'run.log'}") from error
     writer.close(status, message)
-    return Outcome(status, message, writer.folder, tuple(writer.summary["warnings"]))
+    warnings = tuple(writer.summary["warnings"])
+    return Outcome(status, message, writer.folder, warnings, (writer.folder / NAME).is_file())
 
 
-def _solve(built: Built, writer: Writer, listener: Listener) -> tuple[str, str]:
+def _writer(built: Built, folder: str | Path, text: str, checkpoint: Stored | None) -> Writer:
+    case = built.file.case
+    return Writer(
+        folder,
+        built.problem,
+        built.steps,
+        masters=[contact.master for contact in case.contact],
+        title=case.title or built.file.name,
+        every=case.output.every,
+        case=text,
+        resumed=checkpoint.facts["writer"] if checkpoint else None,
+    )
+
+
+def _solve(built: Built, writer: Writer, listener: Listener, text: str) -> tuple[str, str]:
     def on_iteration(progress: Progress) -> None:
         writer.log(_iteration_line(progress))
         listener.iteration(progress)
@@ -101,19 +123,29 @@ def _solve(built: Built, writer: Writer, listener: Listener) -> tuple[str, str]:
         writer.cut(cut)
         listener.cut(cut)
 
+    def keep() -> None:
+        place = built.solver.place
+        facts = {"case": text, "begun": place.step + place.begun}
+        writer.keep(built.solver.persistent(), facts)
+
+    comm = built.problem.comm
     try:
         with _interrupt() as interrupted:
+            keep()
             for accepted in built.solver.run(on_iteration, on_cut):
                 writer.accept(accepted)
+                keep()
                 listener.accepted(accepted, writer.summary)
                 writer.log(accepted_line(accepted, writer.summary))
-                if interrupted.is_set():
+                if comm.allreduce(interrupted.is_set()):
                     where = f"step {accepted.step!r}, increment {accepted.increment}"
                     return "stopped", f"interrupted after {where}"
     except StoppedError as stop:
         writer.log(f"stopped: {stop}")
         writer.log_culprits(stop.culprits)
         return "stopped", str(stop)
+    except WriteError as error:
+        return "stopped", str(error)
     return "done", ""
 
 
@@ -148,7 +180,7 @@ def _force_text(force: list[float]) -> str:
 
 @contextmanager
 def _interrupt() -> Iterator[threading.Event]:
-    """An event that the first Ctrl-C sets; the second one interrupts as ever."""
+    """An event that the first Ctrl-C or TERM sets; the second one interrupts at once."""
     asked = threading.Event()
     if threading.current_thread() is not threading.main_thread():
         yield asked  # only the main thread may handle signals
@@ -159,8 +191,10 @@ def _interrupt() -> Iterator[threading.Event]:
             signal.default_int_handler(number, frame)
         asked.set()
 
-    before = signal.signal(signal.SIGINT, handle)
+    signals = (signal.SIGINT, signal.SIGTERM)
+    before = [signal.signal(number, handle) for number in signals]
     try:
         yield asked
     finally:
-        signal.signal(signal.SIGINT, before)
+        for number, handler in zip(signals, before, strict=True):
+            signal.signal(number, handler)

@@ -40,12 +40,21 @@ def build_parser() -> argparse.ArgumentParser:
         metavar="DIR",
         help="results folder; results/<name of the case> if left out",
     )
-    run.add_argument(
+    earlier = run.add_mutually_exclusive_group()
+    earlier.add_argument(
         "--overwrite", action="store_true", help="replace the results of an earlier run"
+    )
+    earlier.add_argument(
+        "--restart",
+        action="store_true",
+        help="go on with a run that was stopped or killed, from its last accepted increment",
     )
 
     check = _command(commands, "check", "read a case and its mesh and say what it contains")
     _case_argument(check)
+
+    report = _command(commands, "report", "draw the pictures and the report of a results folder")
+    report.add_argument("folder", metavar="DIR", help="results folder of `run`")
 
     trace = _command(commands, "trace", "move a point over a surface and write what it meets")
     _case_argument(trace)

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import argparse
 import os
+import shlex
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from anisocontact.case import load
+from anisocontact.case.restart import checkpoint_of
 from anisocontact.cli.main import DONE, INTERNAL, STOPPED
 from anisocontact.results.files import check_folder
+
+if TYPE_CHECKING:
+    from anisocontact.results.checkpoint import Stored
 
 __all__ = ["command"]
 
@@ -18,7 +24,11 @@ def command(arguments: argparse.Namespace) -> int:
     """Solve a case; 0 if it is done, 3 if it stopped before its end."""
     file = load(arguments.case)
     folder = Path(arguments.output or Path("results") / file.name)
-    check_folder(folder, arguments.overwrite)
+    if arguments.restart:
+        checkpoint = checkpoint_of(folder, file.path)
+    else:
+        check_folder(folder, arguments.overwrite)
+        checkpoint = None
 
     from anisocontact.case.build import build
     from anisocontact.case.run import RunError, run
@@ -29,9 +39,11 @@ def command(arguments: argparse.Namespace) -> int:
     if built.problem.model.mesh.comm.rank > 0:
         sys.stdout = sys.stderr = open(os.devnull, "w")  # noqa: SIM115 (for good)
     print("\n".join(contents(built)), flush=True)
+    if arguments.restart:
+        print(_beginning(checkpoint), flush=True)
     try:
         with progress_on(sys.stdout, built.steps) as listener:
-            outcome = run(built, folder, listener)
+            outcome = run(built, folder, listener, checkpoint)
     except RunError as error:
         print(f"error: internal: {error}", file=sys.stderr)
         return INTERNAL
@@ -41,4 +53,14 @@ def command(arguments: argparse.Namespace) -> int:
         print(f"done      {folder}")
         return DONE
     print(f"error: stopped: {outcome.message}; what converged is in {folder}", file=sys.stderr)
+    if outcome.goes_on:
+        words = ["anisocontact", "run", str(arguments.case), "-o", str(folder), "--restart"]
+        print(f"to go on: {shlex.join(words)}", file=sys.stderr)
     return STOPPED
+
+
+def _beginning(checkpoint: Stored | None) -> str:
+    if checkpoint is None:
+        return "restart   from the beginning: no increment was accepted before"
+    summary = checkpoint.facts["writer"]["summary"]
+    return f"restart   after {summary['steps']} accepted increments, time {summary['time']:.6g}"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
@@ -96,6 +98,10 @@ class Contact(ContactRecord):
         areas = self.quadrature.areas if self._moved is None else self._moved.areas
         self._trial = Snapshot(x, areas, response)
         return response
+
+    def persistent(self) -> dict[str, npt.NDArray[Any]]:
+        """As of `ContactRecord`, with the positions in the reference configuration."""
+        return super().persistent() | {"reference": self.quadrature.reference.copy()}
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -90,19 +92,24 @@ class FacetContact(ContactRecord):
         self._kinds = np.full(len(self._master.nodes), kind, dtype=np.int8)
         self._threads = default_threads()
         self.reach = reach if reach is not None else 2.0 * self._points.size
-        self._hint: FacetProjections | None = None
+        self._now = self._reference
+        self._hint = self._surface.project(
+            self._points.positions(self._now), max_distance=self.reach
+        )
         self._answer: dict[str, npt.NDArray[Any]] = {}
         self._transfer = (
             Transfer(own, rule, self._master, self._surface, self.reach) if overlaps else None
         )
         self._handed: Mask = np.zeros(len(self._points.nodes), dtype=bool)
         state = self._initial()
+        start = self._respond(state, self._reference, 1.0, tangent=False)
+        self._committed = (self._now, self._hint)
         super().__init__(
             model.space,
             slave,
             name or slave,
             state,
-            self._respond(state, self._reference, 1.0, tangent=False),
+            start,
             self._points.facet,
         )
         if self._transfer is not None:
@@ -134,6 +141,32 @@ class FacetContact(ContactRecord):
         if self._trial is not None and self._transfer is not None:
             self._transfer.place(self._now)
         super().commit()
+        self._committed = (self._now, self._hint)
+
+    def roll_back(self) -> None:
+        """Forget the trial; the surface goes back to where it was."""
+        if self._trial is not None:
+            self._now, self._hint = self._committed
+            self._surface.update(self._now)
+        super().roll_back()
+
+    def persistent(self) -> dict[str, npt.NDArray[Any]]:
+        """As of `ContactRecord`, with the last projection: the next one starts from it."""
+        kept = super().persistent()
+        hint = self._committed[1]
+        kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
+        return kept | {"reference": self._points.positions(self._reference)}
+
+    def restore(self, kept: Mapping[str, npt.NDArray[Any]], u: Floats) -> None:
+        """Go on from what `persistent` gave."""
+        super().restore(kept, u)
+        names = [f.name for f in fields(FacetProjections)]
+        self._hint = FacetProjections(*(np.array(kept[f"projection.{n}"]) for n in names))
+        self._now = self._reference + u
+        self._committed = (self._now, self._hint)
+        self._surface.update(self._now)
+        if self._transfer is not None:
+            self._transfer.place(self._now)
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
@@ -230,10 +263,9 @@ class FacetContact(ContactRecord):
 
     def _initial(self) -> State:
         """Free of force; a point near the master knows its facet, coordinates and gap."""
-        x = self._points.positions(self._reference)
-        hit = self._project(self._reference, x)
+        hit = self._hint
         near = hit.status == FACET_STATUS.index("on")
-        state = np.zeros(len(x), dtype=STATE)
+        state = np.zeros(len(hit.facet), dtype=STATE)
         state["facet"] = np.where(near, hit.facet, -1)
         state["xi"][near] = hit.xi[near]
         state["origin"] = state["xi"]

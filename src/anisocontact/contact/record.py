@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +20,9 @@ _ENERGIES = {
     "friction": "dissipation",
     "viscous": "dissipation_viscous",
 }
+
+#: What of a response is kept beside its state.
+_KEPT = ("traction", "normal", "directions_adhesion", "directions_friction", "failure")
 
 
 @dataclass(frozen=True)
@@ -118,6 +122,37 @@ class ContactRecord:
     def roll_back(self) -> None:
         """Forget the trial."""
         self._trial = None
+
+    @property
+    def parts(self) -> tuple[ContactRecord, ...]:
+        """The passes over slave points that have a history of their own: itself."""
+        return (self,)
+
+    def persistent(self) -> dict[str, npt.NDArray[Any]]:
+        """All that the next increments and the output depend on, an entry for each point."""
+        now = self._accepted
+        fields = {name: getattr(now.response, name) for name in _KEPT}
+        own = {"state": self.state, "points": now.points, "areas": now.areas}
+        return {name: values.copy() for name, values in (own | fields).items()}
+
+    def restore(self, kept: Mapping[str, npt.NDArray[Any]], u: Floats) -> None:
+        """Go on from what `persistent` gave.
+
+        Args:
+            kept: The state.
+            u: Displacement of the local nodes in that state, (nodes, 3), length.
+        """
+        self.state = np.array(kept["state"])
+        response = Response(
+            tangent=np.empty((0, 3, 3)),
+            state=self.state,
+            **{name: np.array(kept[name]) for name in _KEPT},
+        )
+        self._accepted = Snapshot(np.array(kept["points"]), np.array(kept["areas"]), response)
+        self._trial = None
+
+    def rejoin(self) -> None:
+        """Take over what its parts have restored."""
 
     def counts(self) -> dict[str, int]:
         """Number of open, sticking and slipping points of the trial, over all ranks."""

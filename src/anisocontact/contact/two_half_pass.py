@@ -101,6 +101,17 @@ class TwoHalfPass(ContactRecord):
             half.roll_back()
         super().roll_back()
 
+    @property
+    def parts(self) -> tuple[ContactRecord, ...]:
+        """Both passes."""
+        return self.passes
+
+    def rejoin(self) -> None:
+        """Take over what both passes have restored."""
+        self._trial = None
+        self._accepted = self._joined()
+        self.state = self.last.state
+
     def elastic_slip(self) -> Floats:
         """Elastic part of the displacement of the slave relative to the master, (n, 3), length."""
         first, second = self.passes

@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from anisocontact.errors import InputError
 
-__all__ = ["check_folder", "clear", "replacing", "write_text"]
+__all__ = [
+    "Disk",
+    "WriteError",
+    "check_folder",
+    "clear",
+    "clear_drafts",
+    "replacing",
+    "write_text",
+]
 
 #: Everything a run writes into its folder.
 OWN = (
@@ -25,10 +35,49 @@ OWN = (
     "pictures",
     "report.html",
     "case.toml",
+    "checkpoint.npz",
     "run.log",
 )
+#: Name of a file that is being written.
+_DRAFT = re.compile(r"\..+-\d+\.(csv|html|json|log|npz|png|pvd|toml|vtp|vtu)")
 #: Files that show that a folder is that of a run.
 MARKS = ("summary.json", "run.log")
+
+
+class WriteError(RuntimeError):
+    """Results cannot be written; what is there is whole."""
+
+
+class Disk:
+    """Writes on the first rank; a failure there is raised on all ranks at the next `check`.
+
+    Args:
+        comm: Communicator of the run.
+    """
+
+    def __init__(self, comm: Any) -> None:
+        self._comm = comm
+        self._failure = ""
+
+    def write(self, action: Callable[[], object]) -> None:
+        """Do something with files; nothing on other ranks, or once something has failed."""
+        if self._comm.rank > 0 or self._failure:
+            return
+        try:
+            action()
+        except OSError as error:
+            name = f" '{error.filename}'" if error.filename else ""
+            self._failure = f"cannot write{name}: {error.strerror or error}"
+
+    def check(self) -> None:
+        """Raise what has failed.
+
+        Raises:
+            WriteError: A disk is full, or a folder gone or protected.
+        """
+        failure = self._comm.bcast(self._failure)
+        if failure:
+            raise WriteError(failure)
 
 
 @contextmanager
@@ -49,6 +98,15 @@ def write_text(path: Path, text: str) -> None:
     """Write a text file at once."""
     with replacing(path) as draft:
         draft.write_text(text, encoding="utf-8", newline="\n")
+
+
+def clear_drafts(folder: Path) -> None:
+    """Remove what a run that was killed had not finished writing."""
+    for place in (folder, *(folder / name for name in OWN)):
+        if place.is_dir() and not place.is_symlink():
+            for path in place.iterdir():
+                if _DRAFT.fullmatch(path.name):
+                    path.unlink()
 
 
 def check_folder(folder: Path, overwrite: bool = False) -> None:
@@ -83,6 +141,7 @@ def check_folder(folder: Path, overwrite: bool = False) -> None:
 
 def clear(folder: Path) -> None:
     """Remove the files of an earlier run; others stay."""
+    clear_drafts(folder)
     for name in OWN:
         path = folder / name
         if path.is_dir() and not path.is_symlink():

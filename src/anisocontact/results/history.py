@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -21,12 +22,25 @@ class History:
     """The table, a row appended at a time; a row is on disk before the next increment starts.
 
     Args:
-        path: The file, which is begun anew.
+        path: The file, begun with the first row.
     """
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self._columns: list[str] = []
+        self._size = 0
+
+    def state(self) -> dict[str, Any]:
+        """What `resume` needs, as JSON can have it."""
+        return {"columns": self._columns, "size": self._size}
+
+    def resume(self, state: Mapping[str, Any]) -> None:
+        """Go on behind the rows of a state; later ones are cut off."""
+        self._columns, self._size = list(state["columns"]), state["size"]
+        if self._size:
+            os.truncate(self._path, self._size)
+        else:
+            self._path.unlink(missing_ok=True)
 
     def append(self, row: Mapping[str, Any]) -> None:
         """Add a row of nested numbers; the first one fixes the columns."""
@@ -37,7 +51,7 @@ class History:
             text = _line(self._columns)
         text += _line([_shown(values[column]) for column in self._columns])
         with self._path.open("ab") as file:
-            file.write(text.encode())
+            self._size += file.write(text.encode())
 
 
 def flat(nested: Any, name: str = "") -> Iterator[tuple[str, Any]]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import errno
+import os
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import quoteattr
@@ -23,6 +25,8 @@ __all__ = ["Bodies", "Collection", "slave_points"]
 
 Floats = npt.NDArray[np.float64]
 
+#: Last line of a file of VTK.
+_END = b"</VTKFile>"
 #: Rows and columns of the stress components, in the order VTK has them.
 _SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
 
@@ -40,6 +44,19 @@ class Collection:
         self._suffix = suffix
         self._entries: list[tuple[float, str]] = []
 
+    def state(self) -> list[list[Any]]:
+        """What `resume` needs, as JSON can have it."""
+        return [list(entry) for entry in self._entries]
+
+    def resume(self, state: Iterable[Sequence[Any]]) -> None:
+        """Go on behind the data sets of a state; later ones are removed."""
+        self._entries = [(float(time), str(name)) for time, name in state]
+        listed = {Path(name).name for _, name in self._entries}
+        for path in self._path.with_suffix("").glob(f"*{self._suffix}"):
+            if path.name not in listed:
+                path.unlink()
+        self._write_list()
+
     def add(self, time: float, data: pyvista.DataSet) -> None:
         """Write a data set and then the list with it."""
         folder = self._path.with_suffix("")
@@ -47,7 +64,11 @@ class Collection:
         target = folder / f"{len(self._entries):04d}{self._suffix}"
         with replacing(target) as draft:
             data.save(str(draft), binary=True)
+            _check_whole(draft)
         self._entries.append((time, f"{folder.name}/{target.name}"))
+        self._write_list()
+
+    def _write_list(self) -> None:
         rows = "".join(
             f'    <DataSet timestep="{t!r}" part="0" file={quoteattr(name)}/>\n'
             for t, name in self._entries
@@ -57,6 +78,15 @@ class Collection:
             '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
             f"{rows}  </Collection>\n</VTKFile>\n",
         )
+
+
+def _check_whole(path: Path) -> None:
+    """Raise OSError where VTK has lost the end of a file without a word."""
+    with path.open("rb") as file:
+        size = file.seek(0, os.SEEK_END)
+        file.seek(max(0, size - len(_END) - 1))
+        if _END not in file.read():
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
 
 
 class Bodies:

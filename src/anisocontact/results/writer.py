@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -13,12 +13,14 @@ from typing import Any
 from anisocontact import __version__
 from anisocontact.contact import facet_size
 from anisocontact.interface import STATUS
-from anisocontact.results.files import clear, write_text
+from anisocontact.results.checkpoint import gathered, save_checkpoint
+from anisocontact.results.files import Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
 from anisocontact.results.paraview import Bodies, Collection, slave_points
 from anisocontact.results.report import write_report
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
+from anisocontact.solver.persistent import Persistent
 
 __all__ = ["Writer"]
 
@@ -41,6 +43,10 @@ class Writer:
         title: Heading of the report.
         every: Fields are written every so many increments, and at the end of each step.
         case: Text of the case file, kept beside the results.
+        resumed: What `state` gave: the folder is that of a run which goes on.
+
+    Raises:
+        WriteError: The folder cannot be written.
 
     Attributes:
         folder: The folder.
@@ -57,20 +63,16 @@ class Writer:
         title: str = "",
         every: int = 1,
         case: str = "",
+        resumed: Mapping[str, Any] | None = None,
     ) -> None:
         self._began = time.perf_counter()
         self._problem = problem
         self._steps = list(steps)
         self._every = every
         self._increments = 0
-        self._first = problem.model.mesh.comm.rank == 0
+        self._disk = Disk(problem.model.mesh.comm)
         self.folder = Path(folder)
-        if self._first:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            clear(self.folder)
-            write_text(self.folder / "run.log", f"anisocontact {__version__}\n")
-            if case:
-                write_text(self.folder / "case.toml", case)
+        self._disk.write(lambda: self._open(case, resumed is not None))
         names = masters or [contact.name for contact in problem.contacts]
         self._observer = Observer(problem, self._steps)
         self._constants = [
@@ -87,21 +89,81 @@ class Writer:
         self._fields = Collection(self.folder / "fields.pvd", ".vtu")
         self._points = Collection(self.folder / "contact.pvd", ".vtp")
         self.summary: dict[str, Any] = self._head(title)
-        self._take(self._observer.numbers())
-        self._at_start = self._overlaps()
-        for warning in self._at_start:
-            self.log(f"warning: {warning}")
-        self._write_fields(0.0)
+        if resumed is None:
+            self._take(self._observer.numbers())
+            self._at_start = self._overlaps()
+            for warning in self._at_start:
+                self.log(f"warning: {warning}")
+            self._write_fields(0.0)
+        else:
+            self._resume(resumed)
         self._write_summary()
+        self._disk.check()
+
+    def _open(self, case: str, resumed: bool) -> None:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        if resumed:
+            clear_drafts(self.folder)
+        else:
+            clear(self.folder)
+            write_text(self.folder / "run.log", f"anisocontact {__version__}\n")
+        if case:
+            write_text(self.folder / "case.toml", case)
+
+    def _resume(self, state: Mapping[str, Any]) -> None:
+        """Take up the files where they were at a checkpoint."""
+        for name, value in state["summary"].items():
+            if name not in ("title", "version", "ranks", "unknowns"):
+                self.summary[name] = value
+        self._began -= state["summary"]["wall_time_s"]
+        self._at_start = list(state["at_start"])
+        self._increments, self._written = state["increments"], state["written"]
+        self._disk.write(lambda: self._history.resume(state["history"]))
+        self._disk.write(lambda: self._fields.resume(state["fields"]))
+        self._disk.write(lambda: self._points.resume(state["contact"]))
+        self.log(f"goes on after {self.summary['steps']} accepted increments")
+
+    def state(self) -> dict[str, Any]:
+        """Where the files are, as JSON can have it."""
+        return {
+            "summary": self.summary,
+            "at_start": self._at_start,
+            "increments": self._increments,
+            "written": self._written,
+            "history": self._history.state(),
+            "fields": self._fields.state(),
+            "contact": self._points.state(),
+        }
+
+    def keep(self, kept: Persistent, facts: Mapping[str, Any]) -> None:
+        """Write a checkpoint, from which the run can go on.
+
+        Args:
+            kept: State of the run, of this rank.
+            facts: What the next run has to know beside it.
+
+        Raises:
+            WriteError: It cannot be written; the one before is still there.
+        """
+        joined = gathered(self._problem.model, kept)
+        content = {"writer": self.state(), **facts}
+        self._disk.write(lambda: save_checkpoint(self.folder, joined, content))
+        self._disk.check()
 
     def log(self, text: str) -> None:
         """Add a line to `run.log`."""
-        if self._first:
-            with (self.folder / "run.log").open("a", encoding="utf-8") as file:
-                file.write(text + "\n")
+        self._disk.write(lambda: self._append(text))
+
+    def _append(self, text: str) -> None:
+        with (self.folder / "run.log").open("a", encoding="utf-8") as file:
+            file.write(text + "\n")
 
     def accept(self, accepted: Accepted) -> None:
-        """Write an accepted increment: table and summary, and fields where they are due."""
+        """Write an accepted increment: table and summary, and fields where they are due.
+
+        Raises:
+            WriteError: Something cannot be written.
+        """
         numbers = self._observer.numbers(accepted)
         row = {
             "step": accepted.step,
@@ -110,8 +172,7 @@ class Writer:
             "newton_iterations": accepted.iterations,
             "residual": accepted.residuals[-1],
         }
-        if self._first:
-            self._history.append(row | numbers)
+        self._disk.write(lambda: self._history.append(row | numbers))
         self.summary["steps"] += 1
         self.summary["newton_iterations"] += accepted.iterations
         self.summary["time"] = accepted.time
@@ -122,6 +183,7 @@ class Writer:
             if last or self._increments % self._every == 0:
                 self._write_fields(accepted.time)
         self._write_summary()
+        self._disk.check()
 
     def cut(self, cut: Cut) -> None:
         """Log a cut and keep it for the summary."""
@@ -149,9 +211,11 @@ class Writer:
         self.summary["message"] = message
         self.summary["warnings"] = self._warnings()
         self._write_summary()
-        if self._first:
-            for line in write_report(self.folder):
-                self.log(line)
+        self._disk.write(self._report)
+
+    def _report(self) -> None:
+        for line in write_report(self.folder):
+            self._append(line)
 
     def _head(self, title: str) -> dict[str, Any]:
         model = self._problem.model
@@ -183,16 +247,15 @@ class Writer:
         grid = self._bodies.grid()
         points = slave_points(self._problem.contacts, self._problem.model.mesh.comm)
         if grid is not None:
-            self._fields.add(at, grid)
+            self._disk.write(lambda: self._fields.add(at, grid))
         if points is not None:
-            self._points.add(at, points)
+            self._disk.write(lambda: self._points.add(at, points))
         self._written = at
 
     def _write_summary(self) -> None:
         self.summary["wall_time_s"] = round(time.perf_counter() - self._began, 3)
-        if self._first:
-            text = json.dumps(self.summary, indent=2, allow_nan=False)
-            write_text(self.folder / "summary.json", text + "\n")
+        text = json.dumps(self.summary, indent=2, allow_nan=False)
+        self._disk.write(lambda: write_text(self.folder / "summary.json", text + "\n"))
 
     def _warnings(self) -> list[str]:
         found = list(self._at_start)

@@ -53,6 +53,18 @@ class CoupledTangent:
         self._keys: Keys = np.empty(0, dtype=np.int64)
 
     @property
+    def pattern(self) -> Keys:
+        """Couplings that have a place, pairs of nodes as one number each.
+
+        The order of elimination depends on them, and with it the last bits of a solution.
+        """
+        return self._keys.copy()
+
+    @pattern.setter
+    def pattern(self, keys: Keys) -> None:
+        self._keys = keys.copy()
+
+    @property
     def bulk(self) -> Mat:
         """Matrix to write the tangent of the bulk into."""
         return self._bulk

@@ -16,6 +16,7 @@ from anisocontact.mesh import Model
 from anisocontact.solver.cells import DeformedCells
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.loads import Loads
+from anisocontact.solver.persistent import Persistent
 from anisocontact.solver.rigid import RigidBodies
 from anisocontact.solver.steps import Step
 from anisocontact.solver.supports import Supports
@@ -103,6 +104,7 @@ class Problem:
         self._accepted_outside: Floats = np.zeros(self._owned)
         self._accepted_reaction: Floats = np.zeros(self._owned)
         self._external_work = 0.0
+        self._begun = self._at_hand()
         diagonal = self.bulk.diagonal
         self._support_scale = diagonal.sum() / diagonal.getSize()
 
@@ -146,6 +148,7 @@ class Problem:
         Raises:
             InputError: See `Supports.begin` and `DeadLoads.begin`.
         """
+        self._begun = self._at_hand()
         held = self.supports.unknowns
         self.supports.begin(step, self.u.x.array.copy())
         gone = np.setdiff1d(held, self.supports.unknowns)
@@ -250,6 +253,81 @@ class Problem:
         local = [contact.failed_points() for contact in self.contacts]
         everywhere = self._comm.allgather(np.concatenate([np.zeros((0, 3)), *local]))
         return np.concatenate(everywhere)
+
+    def persistent(self) -> Persistent:
+        """All that the next increments depend on, of this rank."""
+        now, begun = self._at_hand(), self._begun
+        common = now.common | {f"begun_{name}": values for name, values in begun.common.items()}
+        if self._coupled is not None and self._comm.size == 1:
+            common["couplings"] = self._coupled.pattern
+        return Persistent(
+            nodal=now.nodal | {f"begun_{name}": values for name, values in begun.nodal.items()},
+            points=[part.persistent() for contact in self.contacts for part in contact.parts],
+            common=common,
+        )
+
+    def restore(self, kept: Persistent, steps: Sequence[Step]) -> None:
+        """Go on from what `persistent` gave.
+
+        Args:
+            kept: The state, of this rank.
+            steps: Steps that had been begun, the last one not necessarily done.
+        """
+        for step in steps[:-1]:
+            self.begin(step)  # what a step prescribes at its end does not depend on where it began
+        self._put(kept, "begun_")
+        for step in steps[-1:]:
+            self.begin(step)
+        self._put(kept, "")
+        if self._coupled is not None and "couplings" in kept.common:
+            self._coupled.pattern = kept.common["couplings"]
+        points = iter(kept.points)
+        for contact in self.contacts:
+            for part in contact.parts:
+                part.restore(next(points), self.u.x.array.reshape(-1, 3))
+            contact.rejoin()
+
+    def split(self, x: Vec) -> tuple[Floats, Floats]:
+        """Values at the nodes this rank owns, (nodes, 3), and of the rigid bodies on every rank."""
+        values = np.array(x.array_r)
+        rigid = self._comm.bcast(values[self._owned :], root=self._comm.size - 1)
+        return values[: self._owned].reshape(-1, 3), rigid
+
+    def joined(self, nodal: Floats, rigid: Floats) -> Vec:
+        """Vector of the parts that `split` gives."""
+        x = self.new_vector()
+        x.array[: self._owned] = nodal.reshape(-1)
+        if self._last_rank:
+            x.array[self._owned :] = rigid
+        return x
+
+    def _at_hand(self) -> Persistent:
+        """Accepted state, without that of the contacts and without what a step prescribes."""
+        displacement, rigid = self.split(self._accepted)
+        nodal = {
+            "displacement": displacement,
+            "outside": self._accepted_outside.reshape(-1, 3).copy(),
+            "reaction": self._accepted_reaction.reshape(-1, 3).copy(),
+        }
+        common = {"external_work": np.array([self._external_work]), "rigid": rigid}
+        return Persistent(nodal, [], common | self.rigid.persistent())
+
+    def _put(self, kept: Persistent, prefix: str) -> None:
+        """Take an accepted state that `_at_hand` gave."""
+        nodal = {n: kept.nodal[f"{prefix}{n}"] for n in ("displacement", "outside", "reaction")}
+        common = {
+            name.removeprefix(prefix): values
+            for name, values in kept.common.items()
+            if name.startswith(prefix)
+        }
+        self._accepted = self.joined(nodal["displacement"], common["rigid"])
+        self._accepted_outside = nodal["outside"].reshape(-1).copy()
+        self._accepted_reaction = nodal["reaction"].reshape(-1).copy()
+        self._external_work = float(common["external_work"][0])
+        self.rigid.restore(common)
+        self._set_unknowns(self._accepted)
+        self.rigid.roll_back()
+        self._evaluated = None
 
     def inverted_cells(self) -> Floats:
         """Middles of the cells of this rank that the last evaluation turned inside out, (n, 3).

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from anisocontact.contact import AnyContact, Contact
 from anisocontact.contact.transfer import Couplings
 from anisocontact.errors import InputError
 from anisocontact.rigid import RigidBody
+from anisocontact.rigid.body import Pose
 from anisocontact.solver.drive import Drive
 from anisocontact.solver.newton import SingularError
 from anisocontact.solver.steps import Step
@@ -180,6 +181,26 @@ class RigidBodies:
         """Return to the accepted poses."""
         for body in self.bodies:
             body.trial = body.accepted
+
+    def persistent(self) -> dict[str, Floats]:
+        """All that the next increments depend on, the same on every rank."""
+        poses = [body.accepted for body in self.bodies]
+        return {
+            "rigid.values": np.array([pose.values for pose in poses]).reshape(-1, 6),
+            "rigid.rotation": np.array([pose.rotation for pose in poses]).reshape(-1, 3, 3),
+            "rigid.outside": self._accepted_outside.copy(),
+            "rigid.load": self._accepted_load.copy(),
+        }
+
+    def restore(self, kept: Mapping[str, Floats]) -> None:
+        """Go on from what `persistent` gave."""
+        pairs = zip(self.bodies, kept["rigid.values"], kept["rigid.rotation"], strict=True)
+        for body, values, rotation in pairs:
+            body.accepted = body.trial = Pose(
+                values[:3].copy(), values[3:].copy(), rotation.copy(), np.eye(3)
+            )
+        self._accepted_outside = kept["rigid.outside"].copy()
+        self._accepted_load = kept["rigid.load"].copy()
 
     def energy(self) -> float:
         """Energy of all springs in the accepted state, force times length."""

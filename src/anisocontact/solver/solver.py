@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from anisocontact.solver.culprits import NAMED
 from anisocontact.solver.loads import check_steps
 from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
 from anisocontact.solver.pace import Pace
+from anisocontact.solver.persistent import Persistent
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Accepted, Cut, Progress, Step, StoppedError
 from anisocontact.solver.watch import StatusWatch
@@ -107,6 +108,29 @@ class Solver:
                 self.place = self._beginning(self.place.step + 1, self.place.time + step.duration)
         finally:
             newton.close()
+
+    def persistent(self) -> Persistent:
+        """State of the problem and of the run after the last accepted part, of this rank."""
+        kept = self.problem.persistent()
+        place, pace = self.place, self.place.pace
+        numbers = asdict(pace)
+        del numbers["limits"]
+        numbers |= {"step": place.step, "time": place.time, "begun": place.begun}
+        kept.common.update({f"place.{name}": np.array(v) for name, v in numbers.items()})
+        if place.before is not None:
+            kept.nodal["before"], kept.common["before"] = self.problem.split(place.before)
+        return kept
+
+    def restore(self, kept: Persistent) -> None:
+        """Go on from what `persistent` gave; `run` continues there."""
+        numbers = {name: v.item() for name, v in kept.common.items() if name.startswith("place.")}
+        numbers = {name.removeprefix("place."): v for name, v in numbers.items()}
+        step, time, begun = (numbers.pop(name) for name in ("step", "time", "begun"))
+        before = None
+        if "before" in kept.nodal:
+            before = self.problem.joined(kept.nodal["before"], kept.common["before"])
+        self.place = Place(step, time, Pace(self.limits, **numbers), begun, before)
+        self.problem.restore(kept, self.steps[: step + begun])
 
     def _beginning(self, step: int, time: float) -> Place:
         return Place(step, time, Pace(self.limits, self.limits.largest))

@@ -1,0 +1,115 @@
+"""Going on with a run: its checkpoint, and whether the case file is still the same."""
+
+from __future__ import annotations
+
+import csv
+import tomllib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from anisocontact.errors import InputError
+from anisocontact.results.files import MARKS
+
+if TYPE_CHECKING:
+    from anisocontact.results.checkpoint import Stored
+
+__all__ = ["check_same", "checkpoint_of"]
+
+#: Tables of a case file that may change: they say nothing of the state.
+FREE_TO_CHANGE = ("title", "output", "solver")
+
+
+def checkpoint_of(folder: Path, case: Path) -> Stored | None:
+    """The checkpoint of a results folder, if the case file fits it.
+
+    Args:
+        folder: Results folder of the run that is to go on.
+        case: The case file as it is now.
+
+    Returns:
+        The checkpoint; None if the run was killed before its first accepted increment.
+
+    Raises:
+        InputError: There is no run to go on with, or the case file does not fit it.
+    """
+    from anisocontact.results.checkpoint import load_checkpoint
+
+    stored = load_checkpoint(folder)
+    if stored is not None:
+        before = tomllib.loads(stored.facts["case"])
+        check_same(before, tomllib.loads(case.read_text(encoding="utf-8")), stored.facts["begun"])
+        return stored
+    if not any((folder / mark).is_file() for mark in MARKS):
+        raise InputError(f"--restart: '{folder}' holds no run to go on with")
+    if _rows(folder / "history.csv") > 1:
+        raise InputError(
+            f"--restart: '{folder}' has results but no checkpoint: they would be lost; "
+            "run without --restart into another folder"
+        )
+    return None
+
+
+def check_same(before: Mapping[str, Any], now: Mapping[str, Any], begun: int) -> None:
+    """Refuse a case file that has become another one.
+
+    Title, output, solver and steps that have not begun may change.
+
+    Args:
+        before: Tables of the run that is to go on.
+        now: Tables as they are now.
+        begun: Number of steps that had begun.
+
+    Raises:
+        InputError: Names the first entry that is not the same.
+    """
+    different = _difference(_of_state(before, begun), _of_state(now, begun), "")
+    if different is not None:
+        place, old, new = different
+        raise InputError(
+            f"{_shown(new)} given, the run that is to go on had {_shown(old)}: run without "
+            "--restart",
+            field=place,
+        )
+
+
+def _of_state(tables: Mapping[str, Any], begun: int) -> dict[str, Any]:
+    """What must stay the same."""
+    kept = {key: value for key, value in tables.items() if key not in FREE_TO_CHANGE}
+    return kept | {"step": tables["step"][:begun]}
+
+
+_MISSING = object()
+
+
+def _difference(old: Any, new: Any, place: str) -> tuple[str, Any, Any] | None:
+    """Path of the first entry that differs, and both values."""
+    if isinstance(old, Mapping) and isinstance(new, Mapping):
+        pairs = [
+            (f"{place}.{key}" if place else key, old.get(key, _MISSING), new.get(key, _MISSING))
+            for key in dict.fromkeys([*old, *new])
+        ]
+    elif _is_list(old) and _is_list(new) and len(old) == len(new):
+        pairs = [(f"{place}[{i}]", a, b) for i, (a, b) in enumerate(zip(old, new, strict=True))]
+    else:
+        return None if old == new else (place, old, new)
+    found = (_difference(a, b, where) for where, a, b in pairs)
+    return next((one for one in found if one is not None), None)
+
+
+def _is_list(value: Any) -> bool:
+    return isinstance(value, Sequence) and not isinstance(value, str)
+
+
+def _shown(value: Any) -> str:
+    if value is _MISSING:
+        return "nothing"
+    text = repr(value)
+    return text if len(text) < 60 else f"{text[:57]}..."
+
+
+def _rows(table: Path) -> int:
+    if not table.is_file():
+        return 0
+    with table.open(encoding="utf-8", newline="") as file:
+        return sum(1 for _ in csv.reader(file))

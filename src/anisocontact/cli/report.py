@@ -1,0 +1,33 @@
+"""`anisocontact report`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from anisocontact.cli.main import DONE
+from anisocontact.errors import InputError
+
+__all__ = ["command"]
+
+
+def command(arguments: argparse.Namespace) -> int:
+    """Make the report of a folder anew from what is in it."""
+    folder = Path(arguments.folder)
+    from anisocontact.results.report import write_report
+
+    if (folder / "trace.csv").is_file():
+        raise InputError(f"'{folder}' is a folder of `trace`, whose report is not made anew")
+    try:
+        failed = write_report(folder)
+    except (ValueError, KeyError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"'{folder}' holds results that cannot be read: {error}") from None
+    except OSError as error:
+        raise InputError(f"'{folder}' cannot be written: {error.strerror or error}") from None
+    for line in failed:
+        print(f"warning: {line}", file=sys.stderr)
+    print(f"report    {folder / 'report.html'}")
+    return DONE
