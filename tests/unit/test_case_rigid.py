@@ -67,15 +67,19 @@ def test_run(rigid_text, tmp_path, capsys):
     assert "picture" not in (tmp_path / "out" / "run.log").read_text()
 
 
-def test_one_body_of_two_surfaces_and_any_axis(rigid_text):
-    """`surfaces` names several; `rotation` is a turn about any axis."""
+def test_one_body_of_two_surfaces_and_any_axis(rigid_text, tmp_path):
+    """`surfaces` names several; `rotation` leads the body about any axis."""
     text = rigid_text.replace("springs = {", 'surfaces = ["plate"]\nsprings = {')
-    text = text.replace("rz_deg = 5", "rotation = { axis = [0, 3, 4], angle_deg = 10 }")
-    case = validate(tomllib.loads(text))
-    motion = case.step[1].motion["plate"].components()
-    assert motion["x"] is None
-    angle = np.radians(10.0)
-    assert [motion[c] for c in ("rx", "ry", "rz")] == pytest.approx([0, 0.6 * angle, 0.8 * angle])
+    turn = "rotation = { plate = { axis = [0, 3, 4], angle_deg = 10, point = [0, 0, 1] } }"
+    case = tmp_path / "case.toml"
+    case.write_text(
+        text.replace("\n[output]", f'\n[[step]]\nname = "t"\nincrements = 1\n{turn}\n[output]')
+    )
+    built = build(load(case))
+    assert [body.name for body in built.problem.rigid.bodies] == ["plate"]
+    turned = built.steps[2].rotation["plate"]
+    assert turned.vector == pytest.approx(np.radians(10.0) * np.array([0.0, 0.6, 0.8]))
+    assert turned.point == (0.0, 0.0, 1.0)
 
 
 WRONG = [
@@ -94,10 +98,12 @@ WRONG = [
     ("z = 0.01 }", "}", "step[0].motion.plate", "at least one of x, y, z, rx_deg"),
     ("rz_deg = 5", "rz = 5", "step[1].motion.plate.rz", "in degrees: rz_deg"),
     ("rz_deg = 5", 'rz_deg = "fre"', "step[1].motion.plate.rz_deg", '"free"'),
-    ("rz_deg = 5", "rz_deg = 5, rotation = { axis = [0, 0, 1], angle_deg = 5 }",
-     "step[1].motion.plate", "rotation and rz_deg given"),
-    ("rz_deg = 5", "rotation = { axis = [0, 0, 0], angle_deg = 5 }",
-     "step[1].motion.plate.rotation.axis", "zero"),
+    ("load = {", "rotation = { plate = { axis = [0, 0, 1], angle_deg = 5 } }\nload = {",
+     "step[1].rotation.plate", "given with a motion of the same body"),
+    ("motion = { plate = { z = 0.01", "rotation = { plat = { axis = [0, 0, 1], angle_deg = 5",
+     "step[0].rotation", 'did you mean "plate"?'),
+    ("motion = { plate = { z = 0.01", "rotation = { plate = { axis = [0, 0, 0], angle_deg = 5",
+     "step[0].rotation.plate.axis", "zero"),
     ("springs = {", "surfaces = []\nsprings = {", "rigid.plate.surfaces", "at least one"),
     ("springs = {", 'surfaces = ["disc"]\nsprings = {', "rigid.plate.surfaces", "no surface"),
     ("springs = {", "surfaces = 3\nsprings = {", "rigid.plate.surfaces", "a list"),

@@ -9,8 +9,9 @@ pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
 
 from anisocontact.rigid import RigidBody, rotation, rotation_vector, skew, spin_of
 from anisocontact.rigid.rotation import orthonormal
-from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver import Problem, Solver, Step, Turn
 
+TURN = Turn((0, 0, 1), 0.1)
 VECTORS = [np.array(v) for v in ([0, 0, 0], [1e-9, 0, 2e-9], [6e-3, 8e-3, 0], [0.3, -1, 2])]
 
 
@@ -70,7 +71,8 @@ def test_turns_add_up():
 @pytest.mark.parametrize(
     ("arguments", "text"),
     [
-        ({"name": ""}, "name: '' given"),
+        ({"name": ""}, "name: '' given, a name without a dot"),
+        ({"name": "a.b"}, "name: 'a.b' given, a name without a dot"),
         ({"reference": (0, 1)}, "reference: .* needs three finite numbers"),
         ({"reference": (0, 1, np.nan)}, "reference: .* needs three finite numbers"),
         ({"springs": {"z": -1.0}}, "springs.z: -1.0 given, must be >= 0"),
@@ -94,6 +96,7 @@ def test_refused_motion():
     ("step", "text"),
     [
         ({"motion": {"punch": {"z": 1.0}}}, r"motion: no contact has a rigid body 'punch', .* die"),
+        ({"rotation": {"punch": TURN}}, r"rotation: no contact has a rigid body 'punch', .* die"),
         ({"load": {"punch": {"z": 1.0}}}, r"load: no contact has a rigid body 'punch', .* die"),
         ({"motion": {"die": {"u": 1.0}}}, r"motion.die.u: no component 'u', allowed: x, y, z, rx"),
         ({"load": {"die": {"z": 1.0}}}, r"load.die.z: z is held; a load acts on a component"),
@@ -122,6 +125,10 @@ def test_refused_steps(fe, step, text):
         ({"motion": {"die": {"z": "down"}}}, r"step 's'.motion.die.z: 'down' given"),
         ({"load": {"die": {"z": None}}}, r"step 's'.load.die.z: None given, needs a finite number"),
         ({"load": {"die": {"z": np.inf}}}, r"step 's'.load.die.z: inf given"),
+        (
+            {"rotation": {"die": TURN}, "motion": {"die": {"z": 0.0}}},
+            r"rotation.die: given with a m",
+        ),
     ],
 )
 def test_refused_values(step, text):

@@ -169,3 +169,38 @@ def test_turning_disc(fe):
     assert moment[2] == pytest.approx(expected, rel=3e-4)
     support = block.problem.rigid.support(die)
     assert np.allclose(support[3:], moment, atol=1e-12 * abs(expected))
+
+
+@pytest.mark.parametrize("free", [False, True])
+def test_rotation_about_any_axis_that_moves(fe, free):
+    """A rotation about an axis away from the reference point, while the axis moves.
+
+    Requirement: the same tractions as those of a body whose reference point lies on the axis, and
+    that is moved and turned; 1e-9. Source: a motion of a rigid body does not depend on the point
+    that describes it. Tolerance: Newton to 1e-12. The step after holds the body there.
+    """
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import Step, Turn
+
+    angle, axis, point, move = 0.04, (0.6, 0.0, 0.8), (0.7, 0.2, -0.4), (0.01, 0.0, 0.02)
+    about = RigidBody("die", (0.1, 0.9, 2.0), free=free)
+    through = RigidBody("die", point)
+    way = dict(zip("xyz", move, strict=True))
+    way |= dict(zip(("rx", "ry", "rz"), angle * np.array(axis), strict=True))
+    held = {"block.top": dict.fromkeys("xyz", 0.0)}
+    blocks = []
+    for body, load in (
+        (about, {"rotation": {"die": Turn(axis, angle, point, move)}}),
+        (through, {"motion": {"die": way}}),
+    ):
+        block = fe.block(fe.interface(angle=0.3, coefficients=(0.1, 0.2)), body=body)
+        block.run(Step("turn", 4, held, **load), Step("hold", 1), **TIGHT)
+        blocks.append(block)
+    expected = blocks[1].contact.last.traction
+    assert blocks[1].contact.counts()["slip"] > 0
+    difference = np.abs(blocks[0].contact.last.traction - expected).max()
+    assert difference < 1e-9 * np.abs(expected).max()
+    moments = [blocks[i].problem.rigid.support(b)[3:] for i, b in enumerate((about, through))]
+    arm = about.accepted.translation + about.reference - through.accepted.translation - point
+    force = blocks[0].problem.rigid.support(about)[:3]
+    assert np.allclose(moments[1], moments[0] + np.cross(arm, force), atol=1e-9)

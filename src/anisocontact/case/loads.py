@@ -81,7 +81,10 @@ class BodyForce(Components):
 
 
 class Turning(Rotate):
-    """Rotation of a facet group along the step, from where it is, about an axis that may move."""
+    """Rotation of a facet group or rigid body along the step, from where it is.
+
+    The axis may move.
+    """
 
     move: Annotated[Point, number("vector", "length", "way of the axis along the step")] = (
         0.0,
@@ -97,7 +100,7 @@ class Loading(Section):
         default_factory=dict, description='prescribed displacements by "body.group"'
     )
     rotation: dict[str, Turning] = Field(
-        default_factory=dict, description='prescribed rotations by "body.group"'
+        default_factory=dict, description='prescribed rotations by "body.group" or rigid body'
     )
     traction: dict[str, Traction] = Field(
         default_factory=dict, description='forces per reference area by "body.group"'
@@ -117,4 +120,5 @@ class Loading(Section):
     def groups(self) -> list[tuple[str, str]]:
         """Every facet group that is named, with the key it is named under."""
         kinds = ("displacement", "rotation", "traction", "force", "pressure")
-        return [(kind, group) for kind in kinds for group in getattr(self, kind)]
+        named = [(kind, group) for kind in kinds for group in getattr(self, kind)]
+        return [(kind, name) for kind, name in named if kind != "rotation" or "." in name]

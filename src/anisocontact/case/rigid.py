@@ -11,7 +11,7 @@ from pydantic_core import ErrorDetails
 from anisocontact.case.quantity import FREE, line, number
 from anisocontact.case.section import Section
 
-__all__ = ["Load", "Motion", "Rigid", "Rotation", "Springs"]
+__all__ = ["Load", "Motion", "Rigid", "Springs"]
 
 Point = tuple[float, float, float]
 
@@ -50,24 +50,15 @@ class Rigid(Section):
         return [name] if self.surfaces is None else self.surfaces
 
 
-class Rotation(Section):
-    """A turn about an axis of space through the reference point, right-handed."""
-
-    axis: Annotated[Point, number("vector", "1", "direction of the axis", "nonzero")]
-    angle_deg: Annotated[float, number("scalar", "angle", "angle")]
-
-    def turn(self) -> dict[str, float]:
-        """Turns about the axes of space, radian."""
-        share = math.radians(self.angle_deg) / math.hypot(*self.axis)
-        return {name: share * a for name, a in zip(_TURNS, self.axis, strict=True)}
-
-
 def _turn(axis: str) -> Any:
     return Annotated[float | str | None, number("scalar", "angle", f"turn about {axis}", word=FREE)]
 
 
 class Motion(Section):
-    """Motion of a rigid body at the end of the step; "free" lets a component go."""
+    """Motion of a rigid body at the end of the step; "free" lets a component go.
+
+    Turns are about axes of space through its reference point; `rotation` has others.
+    """
 
     x: Annotated[float | str | None, number("scalar", "length", "along x", word=FREE)] = None
     y: Annotated[float | str | None, number("scalar", "length", "along y", word=FREE)] = None
@@ -75,9 +66,6 @@ class Motion(Section):
     rx_deg: _turn("x") = None  # type: ignore[valid-type]
     ry_deg: _turn("y") = None  # type: ignore[valid-type]
     rz_deg: _turn("z") = None  # type: ignore[valid-type]
-    rotation: Rotation | None = Field(
-        None, description="turn about any axis, instead of rx_deg, ry_deg and rz_deg"
-    )
 
     @classmethod
     def _text(cls, e: ErrorDetails) -> str:
@@ -86,14 +74,9 @@ class Motion(Section):
         return super()._text(e)
 
     @model_validator(mode="after")
-    def _once(self) -> Self:
-        turns = [f"{name}_deg" for name in _TURNS if getattr(self, f"{name}_deg") is not None]
-        if self.rotation is not None and turns:
-            raise line(f"rotation and {', '.join(turns)} given, only one way to turn allowed")
+    def _some(self) -> Self:
         if not self.components():
-            raise line(
-                "nothing given, at least one of x, y, z, rx_deg, ry_deg, rz_deg, rotation needed"
-            )
+            raise line("nothing given, at least one of x, y, z, rx_deg, ry_deg, rz_deg needed")
         return self
 
     def components(self) -> dict[str, float | None]:
@@ -107,7 +90,7 @@ class Motion(Section):
             value = getattr(self, f"{name}_deg")
             if value is not None:
                 found[name] = None if value == FREE else math.radians(value)
-        return found | (self.rotation.turn() if self.rotation is not None else {})
+        return found
 
 
 class Load(Section):

@@ -48,10 +48,16 @@ def _surfaces(case: Case) -> Iterator[InputError]:
 def _step(
     case: Case, step: StepSection, place: str, free: dict[str, set[str]]
 ) -> Iterator[InputError]:
-    for what in ("motion", "load"):
-        for name in getattr(step, what):
+    turned = [name for name in step.rotation if "." not in name]
+    for what, names in (("motion", step.motion), ("load", step.load), ("rotation", turned)):
+        for name in names:
             if name not in case.rigid:
                 yield InputError(_unknown(case, name), field=f"{place}.{what}")
+    for name in turned:
+        free[name] = set()
+        if name in step.motion:
+            text = "given with a motion of the same body, one of the two is allowed"
+            yield InputError(text, field=f"{place}.rotation.{name}")
     for name, motion in step.motion.items():
         for component, value in motion.components().items():
             change = free.setdefault(name, set())

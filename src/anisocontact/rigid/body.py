@@ -65,8 +65,8 @@ class RigidBody:
         trial: Pose of the state that is tried.
 
     Raises:
-        InputError: No name, a reference point that is no point, an unknown component or a negative
-            stiffness, or springs of a body that is not free.
+        InputError: No name or one with a dot, a reference point that is no point, an unknown
+            component or a negative stiffness, or springs of a body that is not free.
 
     Example:
         >>> die = RigidBody("die", (0, 0, 1))
@@ -84,8 +84,8 @@ class RigidBody:
         springs: Mapping[str, float] | None = None,
     ) -> None:
         point = np.array(reference, dtype=np.float64)
-        if not name:
-            raise InputError("'' given, a name needed", "name")
+        if not name or "." in name:
+            raise InputError(f"{name!r} given, a name without a dot needed", "name")
         if point.shape != (3,) or not np.isfinite(point).all():
             raise InputError(f"{reference!r} given, needs three finite numbers", "reference")
         self.name = name

@@ -9,6 +9,7 @@ from anisocontact.errors import InputError
 from anisocontact.rigid import COMPONENTS, RigidBody
 from anisocontact.rigid.body import component_number
 from anisocontact.solver.steps import Step
+from anisocontact.solver.turn import Turn
 
 Floats = npt.NDArray[np.float64]
 
@@ -27,10 +28,11 @@ class Drive:
         self._body = body
         self.held = np.ones(6, dtype=bool)
         self._start, self._end = np.zeros(6), np.zeros(6)
+        self._turn: Turn | None = None
         self._load_start, self._load_end = np.zeros(6), np.zeros(6)
 
     def begin(self, step: Step, values: Floats, reaction: Floats) -> None:
-        """Take over a step; what it does not name stays as it is.
+        """Take over a step; what it does not name stays where it is.
 
         Args:
             step: The step.
@@ -42,33 +44,48 @@ class Drive:
             InputError: A component is unknown, is freed though the body is not free, or is loaded
                 though it is held.
         """
-        name, place = self._body.name, f"step {step.name!r}"
         was_held = self.held.copy()
-        self._start = values.copy()
+        self._start, self._end = values.copy(), values.copy()
+        self._turn = step.rotation.get(self._body.name)
+        if self._turn is not None:
+            self.held[:] = True
+        self._take_motion(step)
+        self._load_start = self._load_end.copy()
+        self._load_end[self.held] = 0.0
+        self._take_load(step)
+        freed = was_held & ~self.held
+        self._load_start = np.where(self.held, 0.0, np.where(freed, reaction, self._load_start))
+
+    def values(self, fraction: float) -> Floats:
+        """Translation and turn at a fraction of the step where they are prescribed, (6,)."""
+        if self._turn is not None:
+            place = self._body.reference + self._start[:3]
+            moved = self._turn.path(place[None], fraction)[0] - place
+            change = np.concatenate([moved, fraction * self._turn.vector])
+            return np.asarray(self._start + change)
+        return np.where(self.held, (1.0 - fraction) * self._start + fraction * self._end, 0.0)
+
+    def load(self, fraction: float) -> Floats:
+        """Force and moment at a fraction of the step, (6,)."""
+        return (1.0 - fraction) * self._load_start + fraction * self._load_end
+
+    def _take_motion(self, step: Step) -> None:
+        name = self._body.name
         for component, given in step.motion.get(name, {}).items():
-            where = f"{place}.motion.{name}.{component}"
+            where = f"step {step.name!r}.motion.{name}.{component}"
             i = component_number(component, where)
             if given is None and not self._body.free:
                 raise InputError("the rigid body was not made free", where)
             self.held[i] = given is not None
             self._end[i] = 0.0 if given is None else float(given)
-        self._load_start = self._load_end.copy()
-        self._load_end[self.held] = 0.0
+
+    def _take_load(self, step: Step) -> None:
+        name = self._body.name
         for component, value in step.load.get(name, {}).items():
-            where = f"{place}.load.{name}.{component}"
+            where = f"step {step.name!r}.load.{name}.{component}"
             i = component_number(component, where)
             if self.held[i]:
                 raise InputError(
                     f"{COMPONENTS[i]} is held; a load acts on a component that motion frees", where
                 )
             self._load_end[i] = float(value)
-        freed = was_held & ~self.held
-        self._load_start = np.where(self.held, 0.0, np.where(freed, reaction, self._load_start))
-
-    def values(self, fraction: float) -> Floats:
-        """Translation and turn at a fraction of the step where they are prescribed, (6,)."""
-        return np.where(self.held, (1.0 - fraction) * self._start + fraction * self._end, 0.0)
-
-    def load(self, fraction: float) -> Floats:
-        """Force and moment at a fraction of the step, (6,)."""
-        return (1.0 - fraction) * self._load_start + fraction * self._load_end

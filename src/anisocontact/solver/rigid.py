@@ -228,8 +228,9 @@ class RigidBodies:
 
     def _known(self, step: Step) -> None:
         names = [body.name for body in self.bodies]
-        for what in ("motion", "load"):
-            for name in getattr(step, what):
+        given = (("motion", step.motion), ("load", step.load), ("rotation", step.turned_bodies()))
+        for what, bodies in given:
+            for name in bodies:
                 if name not in names:
                     raise InputError(
                         f"no contact has a rigid body {name!r}, "

@@ -40,7 +40,8 @@ class Step:
         pressure: Facet group -> pressure at the end, stress, positive into the body; at finite
             strain on the area and against the normal of now, else of the reference.
         body_force: Body -> axis -> force per reference volume at the end, stress/length.
-        rotation: Facet group -> rotation it is led through along the step.
+        rotation: Facet group "body.group", or rigid body, -> rotation it is led through along the
+            step.
 
     Raises:
         InputError: A value is out of range or no number.
@@ -77,15 +78,26 @@ class Step:
             if group in self.displacement:
                 text = "given with a displacement of the same group, one of the two is allowed"
                 raise self._error(f"rotation.{group}", text)
+            if group in self.motion:
+                text = "given with a motion of the same rigid body, one of the two is allowed"
+                raise self._error(f"rotation.{group}", text)
 
     def led(self) -> list[str]:
         """Names of the facet groups with prescribed displacements, each once."""
-        return list(dict.fromkeys([*self.displacement, *self.rotation]))
+        return list(dict.fromkeys([*self.displacement, *self.turned_groups()]))
+
+    def turned_groups(self) -> dict[str, Turn]:
+        """Rotations of facet groups; names of rigid bodies have no dot."""
+        return {name: turn for name, turn in self.rotation.items() if "." in name}
+
+    def turned_bodies(self) -> dict[str, Turn]:
+        """Rotations of rigid bodies."""
+        return {name: turn for name, turn in self.rotation.items() if "." not in name}
 
     def driven(self) -> list[str]:
         """Names of all groups and bodies that are led or loaded, each once."""
         loaded = [name for kind in (*_FORCES, "pressure") for name in getattr(self, kind)]
-        return list(dict.fromkeys([*self.led(), *loaded, *self.motion, *self.load]))
+        return list(dict.fromkeys([*self.led(), *loaded, *self.rotation, *self.motion, *self.load]))
 
     def _check_vectors(self, kind: str) -> None:
         groups: Mapping[str, Mapping[str, float | None]] = getattr(self, kind)

@@ -97,7 +97,7 @@ class Supports:
                 self._goals.pop((group, AXES.index(name)), None)
                 if given is not None:
                     self._goals[group, AXES.index(name)] = float(given)
-        for group, turn in step.rotation.items():
+        for group, turn in step.turned_groups().items():
             self._model.facets(group, f"step {step.name!r}.rotation")
             for axis in range(3):
                 self._goals.pop((group, axis), None)

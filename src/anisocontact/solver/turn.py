@@ -1,4 +1,4 @@
-"""A rotation that a facet group is led through along a step."""
+"""A rotation that a facet group or a rigid body is led through along a step."""
 
 from __future__ import annotations
 
@@ -40,6 +40,12 @@ class Turn(Rotation):
     def __post_init__(self) -> None:
         super().__post_init__()
         check_vector("move", self.move)
+
+    @property
+    def vector(self) -> Floats:
+        """Angle times the unit vector of the axis, (3,), radian."""
+        n = np.asarray(self.axis, dtype=float)
+        return np.asarray(self.angle * n / np.linalg.norm(n))
 
     def path(self, start: Floats, share: float) -> Floats:
         """Positions at a share of the step, (n, 3), of points that began it at `start`, (n, 3)."""
