@@ -1,0 +1,66 @@
+"""Ironing: a stiff die in a soft block, slid over it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.case import load
+from anisocontact.case.build import build
+from anisocontact.cli import main
+from anisocontact.results import Results
+
+CASE = Path(__file__).parents[2] / "examples" / "ironing" / "case.toml"
+DIE_WIDTH = 4.0
+
+MU = np.array([0.1, 0.3])  # along the grain and across
+ANGLE = np.radians(30.0)
+# Rows: directions of the axes on the block.
+AXES = np.array([[np.cos(ANGLE), np.sin(ANGLE)], [-np.sin(ANGLE), np.cos(ANGLE)]])
+
+
+def steady_slip() -> np.ndarray:
+    """T/N in steady slip along x: -F^-1 e / sqrt(e.F^-1 e), maximum dissipation."""
+    e = AXES @ [1.0, 0.0]
+    return -AXES.T @ (MU**2 * e) / np.linalg.norm(MU * e)
+
+
+def test_newton_converges_quadratically() -> None:
+    """On the press and the first width of the slide.
+
+    The residuals r, relative to the forces at work, of the last two corrections of every increment
+    fulfil r_n <= 10 r_(n-1)^2, up to round-off of 2e-11; measured is 4 r_(n-1)^2. With linear
+    convergence the last of them, from 1e-6 or so, would be far above 1e-11.
+    """
+    built = build(load(CASE))
+    slide = replace(built.steps[1], increments=10, displacement={"die.top": {"x": 4.0}})
+    built.solver.steps[1] = slide
+    residuals = np.array([a.residuals[-3:] for a in built.solver.run()])
+    assert residuals.shape == (15, 3)
+    assert residuals[:, -1].max() < 1e-8
+    assert np.all(residuals[:, 1:] <= 10.0 * residuals[:, :-1] ** 2 + 2e-11)
+
+
+@pytest.mark.slow
+def test_ten_widths(tmp_path: Path) -> None:
+    """The whole run: at most seven iterations an increment, and the force of steady slip.
+
+    Drag and lateral force over the normal force are those of slip along x on a plane, to 3 % of
+    the friction: the block is a trough under the die, which tilts its surface by up to 20 degrees
+    and adds a little to the drag.
+    """
+    assert main(["run", str(CASE), "-o", str(tmp_path / "out")]) == 0
+    history = Results(tmp_path / "out").history
+    assert history["displacements.die.top.x"][-1] == pytest.approx(10.0 * DIE_WIDTH)
+    assert history["newton_iterations"].mean() <= 7.0
+    force = np.column_stack([history[f"contacts.0.force.{axis}"] for axis in "xyz"])
+    way = history["displacements.die.top.x"]
+    steady = force[(way > 8.0) & (way < 36.0)].mean(axis=0)
+    assert np.allclose(
+        steady[:2] / steady[2], steady_slip(), atol=0.03 * np.linalg.norm(steady_slip())
+    )
