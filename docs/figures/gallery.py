@@ -36,21 +36,27 @@ class Scene:
         results = Results(folder)
         self.history = results.history
         self.points = results.contact(index)
-        self.bodies = dict(zip(results.summary["bodies"], parts(results.fields(index)), strict=True))
+        self.bodies = dict(
+            zip(results.summary["bodies"], parts(results.fields(index)), strict=True)
+        )
         self.plotter: Any = pv.Plotter(off_screen=True, window_size=list(SIZE))
         self.plotter.set_background("white")
         self.plotter.enable_anti_aliasing("ssaa")
 
     def body(self, name: str, **style: Any) -> None:
         """A deformed body with the edges of its cells."""
-        skin = self.bodies[name].extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
+        skin = self.bodies[name].extract_surface(
+            algorithm="dataset_surface", nonlinear_subdivision=2
+        )
         if "scalars" not in style:
             style = {"color": STEEL} | style
         self.plotter.add_mesh(
             skin, smooth_shading=True, split_sharp_edges=True, ambient=0.3, **style
         )
-        edges = self.bodies[name].separate_cells().extract_surface(
-            algorithm="dataset_surface", nonlinear_subdivision=2
+        edges = (
+            self.bodies[name]
+            .separate_cells()
+            .extract_surface(algorithm="dataset_surface", nonlinear_subdivision=2)
         )
         lines = edges.extract_feature_edges(
             feature_angle=40, boundary_edges=True, manifold_edges=False, non_manifold_edges=False
@@ -89,7 +95,9 @@ class Scene:
             always_visible=True,
         )
 
-    def tractions(self, scale: float, every: int = 1, number: int = 0, colour: str = ACCENT) -> None:
+    def tractions(
+        self, scale: float, every: int = 1, number: int = 0, colour: str = ACCENT
+    ) -> None:
         """Tangential tractions on the slave as arrows, `scale` length per stress."""
         data = self.points
         chosen = (data["status"] > 0) & (data["contact"] == number)

@@ -38,7 +38,7 @@ def test_newton_converges_quadratically() -> None:
     convergence the last of them, from 1e-6 or so, would be far above 1e-11.
     """
     built = build(load(CASE))
-    slide = replace(built.steps[1], increments=10, displacement={"die.top": {"x": 4.0}})
+    slide = replace(built.steps[1], increments=10, displacement={"die.inner": {"x": 4.0}})
     built.solver.steps[1] = slide
     residuals = np.array([a.residuals[-3:] for a in built.solver.run()])
     assert residuals.shape == (15, 3)
@@ -56,10 +56,10 @@ def test_ten_widths(tmp_path: Path) -> None:
     """
     assert main(["run", str(CASE), "-o", str(tmp_path / "out")]) == 0
     history = Results(tmp_path / "out").history
-    assert history["displacements.die.top.x"][-1] == pytest.approx(10.0 * DIE_WIDTH)
+    assert history["displacements.die.inner.x"][-1] == pytest.approx(10.0 * DIE_WIDTH)
     assert history["newton_iterations"].mean() <= 7.0
     force = np.column_stack([history[f"contacts.0.force.{axis}"] for axis in "xyz"])
-    way = history["displacements.die.top.x"]
+    way = history["displacements.die.inner.x"]
     steady = force[(way > 8.0) & (way < 36.0)].mean(axis=0)
     assert np.allclose(
         steady[:2] / steady[2], steady_slip(), atol=0.03 * np.linalg.norm(steady_slip())
