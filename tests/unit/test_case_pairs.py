@@ -11,7 +11,7 @@ pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.cli import main
-from anisocontact.contact import FacetContact, TwoHalfPass
+from anisocontact.contact import FacetContact, SelfContact, TwoHalfPass
 
 CASE = """
 [mesh.box.block]
@@ -58,6 +58,8 @@ WRONG = [
     ),
     ('master = "base.top"', 'master = "bas.top"', "contact[0].master", 'did you mean "base"?'),
     ('master = "base.top"', 'master = "block.bottom"', "contact[0].master", "same facets"),
+    ("pass =", "apart = 0.3\npass =", "contact[0].apart", "self_contact = true"),
+    ('pass = "two-half"', "self_contact = true", "contact[0].master", '"block.bottom" needed'),
     ('"two-half"', '"two-halves"', "contact[0].pass", "two-half"),
     ('master = "base.top"', 'master = "plate"', "contact[0].pass", '"single" needed'),
     ("pass =", "degree = 31\npass =", "contact[0].degree", "31 given"),
@@ -84,6 +86,15 @@ def test_wrong_value(tmp_path, capsys, old, new, field, says):
     assert line.startswith(f"error: {field}")
     assert says in line
     assert not out.exists()
+
+
+def test_self_contact(tmp_path):
+    """A group that is its own master is one contact of its own kind."""
+    text = CASE.replace('master = "base.top"', 'master = "block.bottom"\napart = 0.2')
+    text = text.replace('pass = "two-half"', "self_contact = true")
+    (contact,) = _built(tmp_path, text).problem.contacts
+    assert isinstance(contact, SelfContact)
+    assert contact.counts()["open"] == len(contact.points)
 
 
 def test_same_pair_twice(tmp_path, capsys):
@@ -127,3 +138,20 @@ def test_initial_overlap_is_said(tmp_path, capsys):
     case.write_text(CASE)
     assert main(["run", str(case), "-o", str(out), "--overwrite"]) == 0
     assert "overlap" not in capsys.readouterr().err
+
+
+def test_points_that_run_off_the_end_are_said(tmp_path, capsys):
+    """One line of the log and of the output for each increment in which points leave the base."""
+    text = CASE.replace('pass = "two-half"', 'pass = "single"').replace(
+        '"block.top" = { x = 0, y = 0, z = -0.01 }',
+        '"block.top" = { x = 0, y = 0, z = -0.01 }\n[[step]]\nname = "off"\nincrements = 3\n'
+        '[step.displacement]\n"block.top" = { x = 0.9 }',
+    )
+    case, out = tmp_path / "case.toml", tmp_path / "out"
+    case.write_text(text)
+    assert main(["run", str(case), "-o", str(out)]) == 0
+    said = "ran off the end of the master, the first at ("
+    for lines in ((out / "run.log").read_text(), capsys.readouterr().out):
+        found = [line for line in lines.splitlines() if said in line]
+        assert 1 <= len(found) <= 3
+        assert found[0].strip().startswith("block.bottom on base.top: ")

@@ -17,6 +17,7 @@ from anisocontact.contact import (
     Contact,
     FacetContact,
     MeshedContact,
+    SelfContact,
     TwoHalfPass,
     auto_penalty,
 )
@@ -182,6 +183,17 @@ def _meshed(
     section: ContactSection, model: Model, auto: float, finite: bool, place: str
 ) -> MeshedContact:
     law = objects.pair_law(section, place, auto)
+    if section.self_contact:
+        with objects.within(place):
+            return SelfContact(
+                model,
+                section.slave,
+                law=law,
+                degree=section.degree,
+                apart=section.apart,
+                current_area=finite,
+                name=f"{section.slave} on itself",
+            )
     kind = TwoHalfPass if section.half_passes else FacetContact
     name = f"{section.slave} on {section.master}"
     with objects.within(place):

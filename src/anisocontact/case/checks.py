@@ -82,8 +82,15 @@ def _contact(
     case: Case, contact: ContactSection, place: str, surfaces: dict[str, Surface | None]
 ) -> Iterator[InputError]:
     yield from _group(case, contact.slave, f"{place}.slave")
+    if contact.apart is not None and not contact.self_contact:
+        text = "given without self_contact = true, which it belongs to"
+        yield InputError(text, field=f"{place}.apart")
     if contact.meshed:
         yield from _meshed(case, contact, place)
+        return
+    if contact.self_contact:
+        text = f'"{contact.master}" given, "{contact.slave}" needed: the slave is its own master'
+        yield InputError(text, field=f"{place}.master")
         return
     if contact.half_passes:
         text = f'"{TWO_HALF}" given, "{SINGLE}" needed: a rigid master cannot be the slave'
@@ -97,8 +104,20 @@ def _contact(
 
 
 def _meshed(case: Case, contact: ContactSection, place: str) -> Iterator[InputError]:
-    if contact.master == contact.slave:
-        text = f'"{contact.master}" given, the same facets as the slave'
+    if contact.self_contact:
+        if contact.master != contact.slave:
+            text = (
+                f'"{contact.master}" given, "{contact.slave}" needed: the slave is its own master'
+            )
+            yield InputError(text, field=f"{place}.master")
+        if contact.half_passes:
+            text = f'"{TWO_HALF}" given, "{SINGLE}" needed: self-contact has both sides in one pass'
+            yield InputError(text, field=f"{place}.pass")
+    elif contact.master == contact.slave:
+        text = (
+            f'"{contact.master}" given, the same facets as the slave; '
+            "a body that folds onto itself needs self_contact = true"
+        )
         yield InputError(text, field=f"{place}.master")
     else:
         yield from _group(case, contact.master, f"{place}.master")

@@ -105,7 +105,10 @@ class ContactSection(Section):
     """A pair in contact: slave facets against a rigid surface or the facets of another body."""
 
     slave: str = Field(description='slave facets, "body.group"')
-    master: str = Field(description='name of a surface, or facets of another body, "body.group"')
+    master: str = Field(
+        description='name of a surface, or facets of another body, "body.group"; the slave once '
+        "more for self-contact"
+    )
     degree: Annotated[
         int | None,
         _number(
@@ -115,6 +118,20 @@ class ContactSection(Section):
             "out",
             "positive",
             most=30,
+        ),
+    ] = None
+    self_contact: Annotated[
+        bool,
+        _number("flag", "1", "whether the slave is its own master: a body that folds onto itself"),
+    ] = False
+    apart: Annotated[
+        float | None,
+        _number(
+            "scalar",
+            "length",
+            "self-contact: facets nearer to each other than this in the reference configuration do "
+            "not meet, three facet sizes if left out",
+            "positive",
         ),
     ] = None
     normal: Any

@@ -137,6 +137,8 @@ def _solve(built: Built, writer: Writer, listener: Listener, text: str) -> tuple
                 keep()
                 listener.accepted(accepted, writer.summary)
                 writer.log(accepted_line(accepted, writer.summary))
+                for said in ran_off_lines(accepted):
+                    writer.log(said)
                 if comm.allreduce(interrupted.is_set()):
                     where = f"step {accepted.step!r}, increment {accepted.increment}"
                     return "stopped", f"interrupted after {where}"
@@ -165,6 +167,16 @@ def accepted_line(accepted: Accepted, numbers: dict[str, Any]) -> str:
         f"{accepted.step} {accepted.increment}{part}  {accepted.iterations} iterations  "
         f"residual {accepted.residuals[-1]:.1e}  {contacts}"
     )
+
+
+def ran_off_lines(accepted: Accepted) -> list[str]:
+    """A line for each contact with points that left the end of the master in an increment."""
+    lines = []
+    for name, points in accepted.ran_off.items():
+        first = ", ".join(f"{v:.4g}" for v in points[0])
+        count = f"{len(points)} point{'s' * (len(points) > 1)}"
+        lines.append(f"  {name}: {count} ran off the end of the master, the first at ({first})")
+    return lines
 
 
 def points_text(points: dict[str, int]) -> str:

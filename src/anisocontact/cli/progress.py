@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 
-from anisocontact.case.run import Listener, accepted_line, points_text
+from anisocontact.case.run import Listener, accepted_line, points_text, ran_off_lines
 from anisocontact.solver import Accepted, Cut, Progress, Step
 
 __all__ = ["progress_on"]
@@ -48,7 +48,8 @@ class Lines:
 
     def accepted(self, accepted: Accepted, numbers: dict[str, Any]) -> None:
         """Print the increment."""
-        print(accepted_line(accepted, numbers), file=self._stream, flush=True)
+        for text in (accepted_line(accepted, numbers), *ran_off_lines(accepted)):
+            print(text, file=self._stream, flush=True)
 
     def cut(self, cut: Cut) -> None:
         """Print the cut."""

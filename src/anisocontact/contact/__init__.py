@@ -4,6 +4,7 @@ from anisocontact.contact.contact import Contact
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.penalty import PENALTY_FACTOR, auto_penalty, facet_size
 from anisocontact.contact.quadrature import FacetQuadrature, facet_quadrature
+from anisocontact.contact.self_contact import SelfContact
 from anisocontact.contact.two_half_pass import TwoHalfPass
 
 #: Contact of two meshed bodies.
@@ -18,6 +19,7 @@ __all__ = [
     "FacetContact",
     "FacetQuadrature",
     "MeshedContact",
+    "SelfContact",
     "TwoHalfPass",
     "auto_penalty",
     "facet_quadrature",

@@ -13,13 +13,14 @@ from anisocontact.contact.facet_mesh import (
     SlavePoints,
     facet_mesh,
     facet_rule,
+    near_facets,
     node_positions,
 )
 from anisocontact.contact.quadrature import default_degree
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.contact.transfer import Couplings, Transfer
 from anisocontact.errors import InputError
-from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSurface
+from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSets, FacetSurface
 from anisocontact.interface import STATE, PairLaw, Response, State, as_state, raw_state
 from anisocontact.mesh import Model
 from anisocontact.surfaces import default_threads
@@ -51,6 +52,8 @@ class FacetContact(ContactRecord):
         weight: Share of the work of this pass: 0.5 for each of two half passes.
         mirrored: Whether angles of directions count about the normal of the slave, not of the
             master: the other way round.
+        apart: Facets nearer to each other than this in the reference configuration, and neighbours,
+            do not meet, length; needed where the groups share facets (see `SelfContact`).
         overlaps: Whether forces on the master are integrated over the overlaps of the facets (see
             `Transfer`) or act at the feet of the slave points.
         name: Name in output; the slave if not given.
@@ -73,9 +76,10 @@ class FacetContact(ContactRecord):
         weight: float = 1.0,
         mirrored: bool = False,
         overlaps: bool = False,
+        apart: float | None = None,
         name: str = "",
     ) -> None:
-        _check(model, slave, master)
+        _check(model, slave, master, apart)
         self.master = master
         self.interface = law
         self.current_area = current_area
@@ -92,13 +96,17 @@ class FacetContact(ContactRecord):
         self._kinds = np.full(len(self._master.nodes), kind, dtype=np.int8)
         self._threads = default_threads()
         self.reach = reach if reach is not None else 2.0 * self._points.size
+        self._excluded: FacetSets | None = None
+        near = None
+        if apart is not None:
+            near = near_facets(own, self._surface, self._reference, apart)
+            self._excluded = near.take(self._points.facet)
         self._now = self._reference
-        self._hint = self._surface.project(
-            self._points.positions(self._now), max_distance=self.reach
-        )
+        x = self._points.positions(self._now)
+        self._hint = self._surface.project(x, max_distance=self.reach, exclude=self._excluded)
         self._answer: dict[str, npt.NDArray[Any]] = {}
         self._transfer = (
-            Transfer(own, rule, self._master, self._surface, self.reach) if overlaps else None
+            Transfer(own, rule, self._master, self._surface, self.reach, near) if overlaps else None
         )
         self._handed: Mask = np.zeros(len(self._points.nodes), dtype=bool)
         state = self._initial()
@@ -138,8 +146,10 @@ class FacetContact(ContactRecord):
 
     def commit(self) -> None:
         """Make the trial the history."""
-        if self._trial is not None and self._transfer is not None:
-            self._transfer.place(self._now)
+        if self._trial is not None:
+            self.ran_off = self._lost_off_the_end(self._trial)
+            if self._transfer is not None:
+                self._transfer.place(self._now)
         super().commit()
         self._committed = (self._now, self._hint)
 
@@ -258,8 +268,16 @@ class FacetContact(ContactRecord):
 
     def _project(self, now: Floats, x: Floats) -> FacetProjections:
         self._surface.update(now)
-        self._hint = self._surface.project(x, hint=self._hint, max_distance=self.reach)
+        self._hint = self._surface.project(x, self._hint, self.reach, self._excluded)
         return self._hint
+
+    def _lost_off_the_end(self, trial: Snapshot) -> Floats:
+        """Points that had a facet below them and now lie beyond the border, (n, 3)."""
+        left = np.flatnonzero((self.state["facet"] >= 0) & (trial.response.state["facet"] < 0))
+        excluded = None if self._excluded is None else self._excluded.take(left)
+        x = trial.points[left]
+        hit = self._surface.project(x, exclude=excluded)
+        return np.asarray(x[hit.status == FACET_STATUS.index("off")])
 
     def _initial(self) -> State:
         """Free of force; a point near the master knows its facet, coordinates and gap."""
@@ -273,7 +291,7 @@ class FacetContact(ContactRecord):
         return state
 
 
-def _check(model: Model, slave: str, master: str) -> None:
+def _check(model: Model, slave: str, master: str, apart: float | None) -> None:
     if model.mesh.comm.size > 1:
         raise InputError(
             f"meshed bodies meet on one process only, {model.mesh.comm.size} given", "master"
@@ -283,7 +301,9 @@ def _check(model: Model, slave: str, master: str) -> None:
         if model.count_facets(name) == 0:
             raise InputError(f"facet group {name!r} has no facets", field)
     shared = np.intersect1d(model.facets(slave), model.facets(master))
-    if shared.size:
+    if apart is not None and not apart > 0.0:
+        raise InputError(f"{apart!r} given, must be > 0", "apart")
+    if shared.size and apart is None:
         raise InputError(
             f"{slave!r} and {master!r} share {shared.size} facets, they must not overlap", "master"
         )

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import basix, facet_sides, scalar_element
-from anisocontact.facets import outward_flips
+from anisocontact.facets import FacetSets, FacetSurface, outward_flips
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
@@ -56,6 +56,35 @@ def facet_mesh(space: Any, facets: Ints) -> FacetMesh:
     middle = x[space.dofmap.list[cells]].mean(axis=1)
     topology = TOPOLOGY[element.cell_type.name, element.degree]
     return FacetMesh(topology, nodes, outward_flips(x, nodes, topology, middle))
+
+
+def near_facets(mesh: FacetMesh, surface: FacetSurface, x: Floats, apart: float) -> FacetSets:
+    """Facets that a facet cannot meet: those that are near from the beginning.
+
+    Args:
+        mesh: The facets.
+        surface: The same as a surface, in the reference configuration.
+        x: Positions of the local nodes there, (nodes, 3), length.
+        apart: Facets nearer than this to the middle or a corner of a facet are near, and its
+            neighbours.
+
+    Returns:
+        A set for each facet, with itself.
+    """
+    corners = x[mesh.nodes[:, facet_corners(mesh.topology)]]
+    points = np.concatenate([corners, corners.mean(axis=1, keepdims=True)], axis=1)
+    count, each, _ = points.shape
+    found = surface.within(points.reshape(-1, 3), apart)
+    rings = surface.rings(np.arange(count))
+    owner = np.concatenate(
+        [
+            np.repeat(np.arange(count * each) // each, np.diff(found.offsets)),
+            np.repeat(np.arange(count), np.diff(rings.offsets)),
+        ]
+    )
+    pairs = np.unique(owner * count + np.concatenate([found.facets, rings.facets]))
+    offsets = np.searchsorted(pairs, np.arange(count + 1) * count)
+    return FacetSets(offsets.astype(np.int64), (pairs % count).astype(np.int32))
 
 
 def node_positions(space: Any) -> Floats:

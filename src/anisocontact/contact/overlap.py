@@ -124,12 +124,12 @@ def _normals(shapes: FacetShapes, mesh: FacetMesh, now: Floats) -> Floats:
 
 def _coordinates(shapes: FacetShapes, x: Floats, corners: Floats) -> Floats:
     """Coordinates on slave facets of the feet of points, (pairs, corners, 2)."""
-    pairs, count, _ = corners.shape
+    pairs, count, k = *corners.shape[:2], x.shape[1]
     eta = np.tile(shapes.middle, (pairs, count, 1))
     for _ in range(CORRECTIONS):
         value, gradient = shapes.at(eta.reshape(-1, 2))
-        value = value.reshape(pairs, count, -1)
-        t = np.einsum("pckd,pki->pcdi", gradient.reshape(pairs, count, -1, 2), x)
+        value = value.reshape(pairs, count, k)
+        t = np.einsum("pckd,pki->pcdi", gradient.reshape(pairs, count, k, 2), x)
         apart = corners - value @ x
         metric = t @ t.swapaxes(2, 3)
         eta = eta + np.linalg.solve(metric, t @ apart[..., None])[..., 0]
@@ -147,11 +147,11 @@ def _clip(polygons: Floats, counts: Ints, normal: Floats, bound: float) -> tuple
     crossing = (d <= 0.0) != (e <= 0.0)
     share = d / np.where(crossing, d - e, 1.0)
     out = np.stack([polygons, polygons + share[..., None] * (follower - polygons)], axis=2)
-    held = np.stack([there & (d <= 0.0), there & crossing], axis=2).reshape(n, -1)
+    held = np.stack([there & (d <= 0.0), there & crossing], axis=2).reshape(n, 2 * most)
     order = np.argsort(~held, axis=1, kind="stable")
     counts = held.sum(axis=1)
     order = order[:, : max(int(counts.max(initial=0)), 3)]
-    return np.take_along_axis(out.reshape(n, -1, 2), order[..., None], axis=1), counts
+    return np.take_along_axis(out.reshape(n, 2 * most, 2), order[..., None], axis=1), counts
 
 
 def _fan(polygons: Floats, counts: Ints, shapes: FacetShapes) -> tuple[Floats, Floats, Ints]:

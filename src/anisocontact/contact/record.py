@@ -61,6 +61,7 @@ class ContactRecord:
         state: Committed history, one record for each point.
         facet_of_point: As given.
         space: Vector space of the displacement.
+        ran_off: Slave points that left the end of the master in the accepted increment, (k, 3).
     """
 
     def __init__(
@@ -78,6 +79,7 @@ class ContactRecord:
         self.space = space
         self.facet_of_point = facet_of_point
         self._comm = space.mesh.comm
+        self.ran_off: Floats = np.zeros((0, 3))
         self._accepted = start
         self._trial: Snapshot | None = None
 

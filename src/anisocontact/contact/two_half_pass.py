@@ -93,6 +93,8 @@ class TwoHalfPass(ContactRecord):
         """Make the trial the history."""
         for half in self.passes:
             half.commit()
+        # points of the second pass come from under an end of the slave whenever it moves
+        self.ran_off = self.passes[0].ran_off
         super().commit()
 
     def roll_back(self) -> None:

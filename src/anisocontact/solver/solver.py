@@ -215,6 +215,7 @@ class Solver:
             resultants={c.name: c.resultant() for c in contacts},
             reactions=self.problem.reactions(),
             energies=self.problem.energies(),
+            ran_off={c.name: c.ran_off for c in contacts if len(c.ran_off)},
         )
 
 

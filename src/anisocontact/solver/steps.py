@@ -157,6 +157,8 @@ class Accepted:
         resultants: Force and moment about the origin on each slave, by name of the contact.
         reactions: Force of each support on the body, by facet group.
         energies: See `Problem.energies`.
+        ran_off: Slave points that left the end of their master in it, by name of the contact, each
+            (k, 3), length; contacts without any are left out.
     """
 
     step: str
@@ -170,6 +172,7 @@ class Accepted:
     resultants: dict[str, tuple[Floats, Floats]]
     reactions: dict[str, Floats]
     energies: dict[str, float]
+    ran_off: dict[str, Floats]
 
 
 @dataclass(frozen=True)
