@@ -26,7 +26,7 @@ from anisocontact.limits import Limits
 from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays, merge
 from anisocontact.rigid import RigidBody
-from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver import ElasticSupport, Problem, Solver, Spring, Step
 
 __all__ = ["Built", "build"]
 
@@ -80,7 +80,7 @@ def build(file: CaseFile) -> Built:
     ]
     steps = _steps(case, model)
     _check_options(case.solver.options)
-    problem = Problem(model, materials, contacts)
+    problem = Problem(model, materials, contacts, _attached(case), case.symmetry)
     with objects.within("solver"):
         given = case.solver
         limits = Limits(given.smallest_increment, given.largest_increment, given.cuts)
@@ -107,6 +107,15 @@ def _model(file: CaseFile) -> Model:
             with objects.within(place):
                 parts.append(body.arrays())
     return Model.from_arrays(merge(parts))
+
+
+def _attached(case: Case) -> list[ElasticSupport | Spring]:
+    beds = [
+        ElasticSupport(group, bed.normal, bed.tangential)
+        for group, bed in case.elastic_support.items()
+    ]
+    springs = [Spring(name, s.group, s.stiffness, s.to) for name, s in case.spring.items()]
+    return [*beds, *springs]
 
 
 def _check_bodies(case: Case, model: Model) -> None:
@@ -255,7 +264,7 @@ def _steps(case: Case, model: Model) -> list[Step]:
         }
         vectors = {
             kind: {name: given.given() for name, given in getattr(section, kind).items()}
-            for kind in ("traction", "force", "body_force")
+            for kind in ("traction", "force", "body_force", "anchor")
         }
         with objects.within(place):
             steps.append(

@@ -35,6 +35,7 @@ def check(case: Case) -> Iterator[InputError]:
         if (first := pairs.index(pairs[i])) != i:
             yield InputError(f"same pair as contact[{first}]", field=f"contact[{i}]")
     yield from check_rigid(case)
+    yield from _held(case)
     yield from _steps(case)
     smallest, largest = case.solver.smallest_increment, case.solver.largest_increment
     if smallest > largest:
@@ -133,6 +134,28 @@ def _group(case: Case, name: str, field: str) -> Iterator[InputError]:
         yield InputError(text, field=field)
 
 
+def _held(case: Case) -> Iterator[InputError]:
+    """Symmetry planes, elastic supports and springs."""
+    for i, group in enumerate(case.symmetry):
+        yield from _group(case, group, f"symmetry[{i}]")
+        if group in case.symmetry[:i]:
+            yield InputError(f'"{group}" given twice', field=f"symmetry[{i}]")
+    for group, bed in case.elastic_support.items():
+        yield from _group(case, group, "elastic_support")
+        if bed.normal == bed.tangential == 0.0:
+            text = "normal or tangential needed, a stiffness > 0"
+            yield InputError(text, field=f'elastic_support."{group}"')
+    for name, spring in case.spring.items():
+        place = f"spring.{name}"
+        for key in ("group", "to"):
+            if (group := getattr(spring, key)) is not None:
+                yield from _group(case, group, f"{place}.{key}")
+        if spring.to == spring.group:
+            yield InputError(f'"{spring.to}" given, the group itself', field=f"{place}.to")
+        if not any(spring.stiffness):
+            yield InputError("all components are 0", field=f"{place}.stiffness")
+
+
 def _steps(case: Case) -> Iterator[InputError]:
     seen: dict[str, int] = {}
     for i, step in enumerate(case.step):
@@ -146,6 +169,11 @@ def _steps(case: Case) -> Iterator[InputError]:
             if group in step.displacement:
                 text = "given with a displacement of the same group, one of the two is allowed"
                 yield InputError(text, field=f'step[{i}].rotation."{group}"')
+        grounded = [name for name, spring in case.spring.items() if spring.to is None]
+        for name in step.anchor:
+            if name not in grounded:
+                text = f'"{name}" given, no such spring to ground; {near(name, grounded)}'
+                yield InputError(text, field=f"step[{i}].anchor")
         for body in step.body_force:
             if body not in case.material:
                 text = f'"{body}" given, no such body; {near(body, list(case.material))}'

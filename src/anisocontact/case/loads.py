@@ -11,7 +11,7 @@ from anisocontact.case.bodies import Point, Rotate
 from anisocontact.case.quantity import FREE, line, number
 from anisocontact.case.section import Section
 
-__all__ = ["Loading", "Turning"]
+__all__ = ["ElasticBed", "GroupSpring", "Loading", "Turning"]
 
 
 class Components(Section):
@@ -80,6 +80,35 @@ class BodyForce(Components):
         return {axis: self.density * value for axis, value in super().given().items()}
 
 
+class Anchor(Components):
+    """Displacement of a spring's end on ground at the end of the step."""
+
+    x: Annotated[float | None, number("scalar", "length", "along x")] = None
+    y: Annotated[float | None, number("scalar", "length", "along y")] = None
+    z: Annotated[float | None, number("scalar", "length", "along z")] = None
+
+
+class ElasticBed(Section):
+    """A bed of springs between a facet group and ground, along the reference normal and across."""
+
+    normal: Annotated[
+        float, number("scalar", "stress/length", "stiffness along the normal", "non-negative")
+    ] = 0.0
+    tangential: Annotated[
+        float, number("scalar", "stress/length", "stiffness along the surface", "non-negative")
+    ] = 0.0
+
+
+class GroupSpring(Section):
+    """A spring between a facet group, by its mean displacement, and ground or another group."""
+
+    group: str = Field(description='facet group, "body.group"')
+    to: str | None = Field(None, description="the other facet group; ground if left out")
+    stiffness: Annotated[
+        Point, number("vector", "force/length", "stiffness along x, y and z", "non-negative")
+    ]
+
+
 class Turning(Rotate):
     """Rotation of a facet group or rigid body along the step, from where it is.
 
@@ -115,6 +144,10 @@ class Loading(Section):
     )
     body_force: dict[str, BodyForce] = Field(
         default_factory=dict, description="forces per volume by body"
+    )
+
+    anchor: dict[str, Anchor] = Field(
+        default_factory=dict, description="displacements of the ends of springs on ground, by name"
     )
 
     def groups(self) -> list[tuple[str, str]]:

@@ -14,7 +14,7 @@ from pydantic import Field, create_model
 
 from anisocontact import registry
 from anisocontact.case.bodies import Mesh, mesh_type
-from anisocontact.case.loads import Loading
+from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
 from anisocontact.case.quantity import number as _number
 from anisocontact.case.quantity import word as _word
 from anisocontact.case.registered import Key, OneOf, Registered, default_of
@@ -161,6 +161,15 @@ class Case(Section):
         default_factory=dict, description="rigid bodies that carry surfaces, by name"
     )
     contact: list[Any] = Field(default_factory=list)
+    symmetry: list[str] = Field(
+        default_factory=list, description='flat facet groups that stay in their plane, "body.group"'
+    )
+    elastic_support: dict[str, ElasticBed] = Field(
+        default_factory=dict, description='elastic supports by "body.group"'
+    )
+    spring: dict[str, GroupSpring] = Field(
+        default_factory=dict, description="springs of facet groups by name"
+    )
     step: list[StepSection] = Field(min_length=1, description="load steps, one after the other")
     output: Output = Output()
     solver: Solver = Solver()

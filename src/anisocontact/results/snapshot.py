@@ -32,7 +32,7 @@ class Observer:
         self._comm = problem.model.mesh.comm
         model = problem.model
         steps = list(steps)
-        self._supports = named_groups(step.led() for step in steps)
+        self._supports = named_groups([problem.holding, *(step.led() for step in steps)])
         self._watched: dict[str, FacetQuadrature] = {
             group: facet_quadrature(model.space, model.facets(group), degree=2)
             for group in named_groups(step.driven() for step in steps)

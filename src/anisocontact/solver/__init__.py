@@ -1,6 +1,7 @@
 """Newton's method, load steps and what a run reports."""
 
 from anisocontact.limits import Limits
+from anisocontact.solver.attached import ElasticSupport, Spring
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.solver import Solver
 from anisocontact.solver.steps import Accepted, Culprit, Cut, Progress, Step, StoppedError
@@ -12,10 +13,12 @@ __all__ = [
     "ContactProblem",
     "Culprit",
     "Cut",
+    "ElasticSupport",
     "Limits",
     "Problem",
     "Progress",
     "Solver",
+    "Spring",
     "Step",
     "StoppedError",
     "Turn",

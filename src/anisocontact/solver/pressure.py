@@ -76,7 +76,7 @@ class _Surface:
         facets = model.facets(group)
         # N_a and each of the tangents are of the order of the displacement.
         self._quadrature = facet_quadrature(model.space, facets, 3 * model.order)
-        self._sign = _outward(model, group, self._quadrature)
+        self._sign = _sides(model, group, self._quadrature)
         count = len(model.space.tabulate_dof_coordinates())
         self._rest = self._quadrature.moved(np.zeros((count, 3)))
         self._fixed = fixed
@@ -97,7 +97,16 @@ class _Surface:
         matrix.setValuesBlockedLocalRCV(nodes, nodes, blocks, PETSc.InsertMode.ADD_VALUES)
 
 
-def _outward(model: Model, group: str, quadrature: FacetQuadrature) -> Floats:
+def outward(model: Model, group: str, quadrature: FacetQuadrature) -> Floats:
+    """Outward unit normals at the points of a quadrature of a group, reference, (m q, 3)."""
+    count = len(model.space.tabulate_dof_coordinates())
+    areas = quadrature.moved(np.zeros((count, 3))).vector_areas
+    areas = _sides(model, group, quadrature)[:, None, None] * areas
+    flat = areas.reshape(-1, 3)
+    return np.asarray(flat / np.linalg.norm(flat, axis=1)[:, None])
+
+
+def _sides(model: Model, group: str, quadrature: FacetQuadrature) -> Floats:
     """1 where the first tangent cross the second points out of the body, else -1, (m,)."""
     cells, _ = facet_sides(model.mesh, np.sort(model.facets(group)))
     _, nodes, points = geometry(model.mesh)

@@ -13,6 +13,7 @@ from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
 from anisocontact.contact import AnyContact, Contact
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
+from anisocontact.solver.attached import Attachments, ElasticSupport, Spring
 from anisocontact.solver.cells import DeformedCells
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.loads import Loads
@@ -20,6 +21,7 @@ from anisocontact.solver.persistent import Persistent
 from anisocontact.solver.rigid import RigidBodies
 from anisocontact.solver.steps import Step
 from anisocontact.solver.supports import Supports
+from anisocontact.solver.symmetry import SymmetryPlanes
 
 Floats = npt.NDArray[np.float64]
 
@@ -40,6 +42,8 @@ class Problem:
         model: Mesh with named bodies and facets.
         materials: Body name -> material, one for each body.
         contacts: Contacts on the same model.
+        attached: Elastic supports and springs that hold the bodies for the whole run.
+        symmetry: Flat facet groups whose nodes stay in their plane.
 
     Attributes:
         u: Displacement, a DOLFINx function; holds the accepted state between increments.
@@ -67,6 +71,8 @@ class Problem:
         model: Model,
         materials: Mapping[str, Material],
         contacts: Sequence[AnyContact] = (),
+        attached: Sequence[ElasticSupport | Spring] = (),
+        symmetry: Sequence[str] = (),
     ) -> None:
         _check(model, materials, contacts)
         self.model = model
@@ -82,10 +88,11 @@ class Problem:
         self.rigid = RigidBodies(self.contacts, self._comm)
         self._analytic = [c for c in self.contacts if isinstance(c, Contact)]
         self._meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
+        self.attached = Attachments(attached, model)
         extra = self.rigid.size // 3
         self._coupled = (
             CoupledTangent(self.bulk.stiffness, model.space, extra)
-            if self._meshed or extra
+            if self._meshed or extra or self.attached.coupling
             else None
         )
         self.supports = Supports(model)
@@ -101,6 +108,7 @@ class Problem:
         self._evaluated: Floats | None = None
         self._of_mesh = self.bulk.stiffness.createVecRight()
         self._accepted = self.new_vector()
+        self._planes = SymmetryPlanes(model, symmetry, self._accepted.getLocalSize())
         self._accepted_outside: Floats = np.zeros(self._owned)
         self._accepted_reaction: Floats = np.zeros(self._owned)
         self._external_work = 0.0
@@ -117,6 +125,11 @@ class Problem:
     def comm(self) -> Any:
         """Communicator of the mesh."""
         return self._comm
+
+    @property
+    def holding(self) -> list[str]:
+        """Names in `reactions` of what holds the bodies for the whole run."""
+        return [*self._planes.groups, *self.attached.names]
 
     @property
     def _owned(self) -> int:
@@ -153,9 +166,12 @@ class Problem:
         self.supports.begin(step, self.u.x.array.copy())
         gone = np.setdiff1d(held, self.supports.unknowns)
         released = np.zeros(len(self.u.x.array))
-        released[gone] = self._accepted_reaction[gone]
+        _, reaction = self._planes.forces(self._accepted_reaction)
+        released[gone] = reaction[gone]
         self.loads.begin(step, released)
         self.rigid.begin(step)
+        self.attached.begin(step)
+        self._planes.begin(self.supports.unknowns, self.supports.end, step.name)
 
     def set_level(self, fraction: float, dt: float) -> None:
         """Loads at a fraction of the step, time increment `dt` to there."""
@@ -164,6 +180,7 @@ class Problem:
         self._dt = dt
         self.rigid.set_level(fraction)
         self.loads.set_level(fraction)
+        self.attached.set_level(fraction)
 
     def evaluate(self, x: Vec) -> Floats:
         """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer.
@@ -181,17 +198,22 @@ class Problem:
             response = contact.update(self.u.x.array.reshape(-1, 3), self._dt)
             failed = failed or bool(response.failed.any())
             contact.add_force(forces.reshape(-1, 3))
+        nodal = self.u.x.array.reshape(-1, 3)
+        self.attached.add_force(nodal, forces.reshape(-1, 3))
         contact_force = self._assembled(forces)
-        self._load = self._assembled(self.loads.force(self.u.x.array.reshape(-1, 3)))
+        self._load = self._assembled(self.loads.force(nodal))
         rigid_load = float(np.linalg.norm(self.rigid.loads()))
         load_norm = float(np.hypot(self._norm(self._load), rigid_load))
         u = self._of_mesh
         self._outside = self.bulk.force(u).array_r - contact_force
         residual = self._outside - self._load
+        if self._planes:
+            residual = self._planes.reduce(residual, u.array_r, self._support_scale)
         rows = self.supports.unknowns
+        held = np.concatenate([rows, self._planes.slaves])
         residual[rows] = self._support_scale * (u.array_r[rows] - self.supports.at(self._level))
         of_bodies = self.rigid.residual(moved_bodies, self._support_scale)
-        at_work = (self._outside[rows], contact_force, residual[rows])
+        at_work = (self._outside[held], contact_force, residual[rows])
         self.force_scale = max(
             load_norm,
             *map(self._norm, at_work),
@@ -217,11 +239,15 @@ class Problem:
         for contact in self._analytic:
             contact.add_tangent(bulk)
         self.loads.add_tangent(bulk)
+        self.attached.add_tangent(bulk)
         bulk.assemble()
         if self._coupled is not None:
             couplings = [k for c in self._meshed for k in c.couplings()]
             couplings += self.rigid.couplings(self._coupled.nodes)
+            couplings += self.attached.couplings()
             self._coupled.assemble(out, couplings)
+        if self._planes:
+            self._planes.transform(out, self._support_scale)
         held = np.flatnonzero(self.rigid.held()) if self._last_rank else np.zeros(0, dtype=np.int64)
         rows = np.concatenate([self.supports.unknowns, self._owned + held])
         first, _ = out.getOwnershipRange()
@@ -234,6 +260,7 @@ class Problem:
         mean = 0.5 * (self._accepted_outside + self._outside)
         moved = x.array_r[: self._owned] - self._accepted.array_r[: self._owned]
         self._external_work += self._comm.allreduce(float(mean @ moved)) + self.rigid.commit()
+        self._external_work += self.attached.commit(self.u.x.array.reshape(-1, 3))
         self._accepted_outside = self._outside
         self._accepted_reaction = self._outside - self._load
         x.copy(self._accepted)
@@ -309,7 +336,11 @@ class Problem:
             "outside": self._accepted_outside.reshape(-1, 3).copy(),
             "reaction": self._accepted_reaction.reshape(-1, 3).copy(),
         }
-        common = {"external_work": np.array([self._external_work]), "rigid": rigid}
+        common = {
+            "external_work": np.array([self._external_work]),
+            "rigid": rigid,
+            "springs": self.attached.persistent(),
+        }
         return Persistent(nodal, [], common | self.rigid.persistent())
 
     def _put(self, kept: Persistent, prefix: str) -> None:
@@ -325,6 +356,7 @@ class Problem:
         self._accepted_reaction = nodal["reaction"].reshape(-1).copy()
         self._external_work = float(common["external_work"][0])
         self.rigid.restore(common)
+        self.attached.restore(common["springs"])
         self._set_unknowns(self._accepted)
         self.rigid.roll_back()
         self._evaluated = None
@@ -343,11 +375,16 @@ class Problem:
         return self._accepted.copy()
 
     def reactions(self) -> dict[str, Floats]:
-        """Force of the supports of each facet group on the bodies, (3,), force.
+        """Force of the supports of each facet group on the bodies, and of springs, (3,), force.
 
         Unknowns on an edge that several groups prescribe count for the first of them.
         """
-        return self.supports.reactions(self._accepted_reaction)
+        across, rest = self._planes.forces(self._accepted_reaction)
+        sums = self.supports.reactions(rest)
+        attached = self.attached.reactions(self.u.x.array.reshape(-1, 3))
+        for name, force in (*across.items(), *attached.items()):
+            sums[name] = sums.get(name, 0.0) + force
+        return sums
 
     def energies(self) -> dict[str, float]:
         """Energies of the accepted state, force times length.
@@ -355,9 +392,9 @@ class Problem:
         Returns:
             "external" work of supports and loads since the start (trapezoidal rule), stored
             "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
-            "friction" and "viscous" laws, energy of "stabilisation" and, where rigid bodies have
-            them, of "springs", and "residual", what is left of "external" less all others: first
-            order in the size of the increments.
+            "friction" and "viscous" laws, energy of "stabilisation" and, where there are
+            any, of "springs" and elastic supports, and "residual", what is left of "external" less
+            all others: first order in the size of the increments.
         """
         self._of_mesh.array[:] = self._accepted.array_r[: self._owned]
         stored = {"elastic": self.bulk.energy(self._of_mesh)}
@@ -365,8 +402,9 @@ class Problem:
         for contact in self.contacts:
             for name, value in contact.energies().items():
                 stored[name] += value
-        if any(body.springs.any() for body in self.rigid.bodies):
-            stored["springs"] = self.rigid.energy()
+        if self.attached or any(body.springs.any() for body in self.rigid.bodies):
+            now = self.u.x.array.reshape(-1, 3)
+            stored["springs"] = self.rigid.energy() + self.attached.energy(now)
         residual = self._external_work - sum(stored.values())
         return {"external": self._external_work} | stored | {"residual": residual}
 

@@ -73,6 +73,8 @@ class Solver:
         self.steps = list(steps)
         self.limits = limits or Limits()
         check_steps(problem.model, problem.materials, self.steps)
+        for step in self.steps:
+            problem.attached.check(step)
         problem.rigid.check(self.steps)
         self.place = self._beginning(0, 0.0)
         self._prefix = options_prefix

@@ -42,6 +42,7 @@ class Step:
         body_force: Body -> axis -> force per reference volume at the end, stress/length.
         rotation: Facet group "body.group", or rigid body, -> rotation it is led through along the
             step.
+        anchor: Spring -> axis -> displacement of its end on ground at the end, length.
 
     Raises:
         InputError: A value is out of range or no number.
@@ -58,6 +59,7 @@ class Step:
     pressure: Mapping[str, float] = field(default_factory=dict)
     body_force: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     rotation: Mapping[str, Turn] = field(default_factory=dict)
+    anchor: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if isinstance(self.increments, bool) or not isinstance(self.increments, int):
@@ -66,7 +68,7 @@ class Step:
             raise self._error("increments", f"{self.increments} given, must be >= 1")
         if not (math.isfinite(self.duration) and self.duration > 0.0):
             raise self._error("duration", f"{self.duration!r} given, must be > 0")
-        for kind in ("displacement", *_FORCES):
+        for kind in ("displacement", "anchor", *_FORCES):
             self._check_vectors(kind)
         for kind, bodies in (("motion", self.motion), ("load", self.load)):
             for body, components in bodies.items():
@@ -96,7 +98,7 @@ class Step:
 
     def driven(self) -> list[str]:
         """Names of all groups and bodies that are led or loaded, each once."""
-        loaded = [name for kind in (*_FORCES, "pressure") for name in getattr(self, kind)]
+        loaded = [name for kind in (*_FORCES, "pressure", "anchor") for name in getattr(self, kind)]
         return list(dict.fromkeys([*self.led(), *loaded, *self.rotation, *self.motion, *self.load]))
 
     def _check_vectors(self, kind: str) -> None:

@@ -1,0 +1,331 @@
+"""What bodies are attached to for a whole run: elastic supports and springs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact import registry
+from anisocontact._fenicsx import Mat, PETSc
+from anisocontact.contact import facet_quadrature
+from anisocontact.contact.transfer import Couplings
+from anisocontact.errors import InputError
+from anisocontact.mesh import Model
+from anisocontact.registry import Parameter
+from anisocontact.solver.loads import mean_shares
+from anisocontact.solver.pressure import outward
+from anisocontact.solver.steps import AXES, Step
+
+Floats = npt.NDArray[np.float64]
+
+#: Nodes of the groups of a spring: each moves all others, so that the matrix gets their square.
+MOST_NODES = 2000
+
+
+class Attached(Protocol):
+    """Something elastic that holds a body.
+
+    Attributes:
+        name: Name in reactions and messages.
+    """
+
+    name: str
+
+    def begin(self, step: Step) -> None:
+        """Take over a step."""
+        ...
+
+    def set_level(self, fraction: float) -> None:
+        """Go to a fraction of the step."""
+        ...
+
+    def add_force(self, u: Floats, out: Floats) -> None:
+        """Add the forces on the bodies at the displacement `u`, both (local nodes, 3)."""
+        ...
+
+    def add_tangent(self, matrix: Mat) -> None:
+        """Add the part of `-d force / d u` that lies in the pattern of the bodies."""
+        ...
+
+    def couplings(self) -> list[Couplings]:
+        """The other part of `-d force / d u`; see `FacetContact.couplings`."""
+        ...
+
+    def energy(self, u: Floats) -> float:
+        """Stored energy of the accepted state `u`, over all ranks, force times length."""
+        ...
+
+    def reaction(self, u: Floats) -> Floats:
+        """Force on the body in the accepted state `u`, over all ranks, (3,)."""
+        ...
+
+    def commit(self, u: Floats) -> float:
+        """Accept a state; the work of what moves its far end since the last one."""
+        ...
+
+
+@dataclass(frozen=True)
+class ElasticSupport:
+    """A bed of springs between a facet group and ground.
+
+    The force per reference area is `-(k_n n n + k_t (1 - n n)) u`, n the reference normal.
+
+    Attributes:
+        group: Facet group, "body.group".
+        normal: k_n, >= 0, stress/length.
+        tangential: k_t, >= 0, stress/length.
+
+    Raises:
+        InputError: A stiffness is negative, or both are zero.
+    """
+
+    group: str
+    normal: float
+    tangential: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("normal", "tangential"):
+            parameter = Parameter(name, "scalar", "stress/length", "", "non-negative")
+            registry.check(parameter, getattr(self, name), f"elastic_support.{self.group}.{name}")
+        if self.normal == self.tangential == 0.0:
+            raise InputError("both stiffnesses are 0", f"elastic_support.{self.group}")
+
+    def on(self, model: Model) -> Attached:
+        """The support on a model; raises InputError where the group is unknown."""
+        return _Bed(self, model)
+
+
+@dataclass(frozen=True)
+class Spring:
+    """A spring between a facet group and ground, or another facet group.
+
+    It sees the mean displacement of a group over its area, and its force is a uniform traction:
+    `f = -k (mean u - anchor)`, or with the mean of the other group in the place of the anchor.
+
+    Attributes:
+        name: Name of the spring.
+        group: Facet group, "body.group".
+        stiffness: k along x, y and z, >= 0, force/length.
+        to: The other facet group; ground if None.
+
+    Raises:
+        InputError: A stiffness is negative, or all are zero.
+    """
+
+    name: str
+    group: str
+    stiffness: tuple[float, float, float]
+    to: str | None = None
+
+    def __post_init__(self) -> None:
+        field = f"spring.{self.name}"
+        parameter = Parameter("stiffness", "vector", "force/length", "", "non-negative")
+        registry.check(parameter, self.stiffness, f"{field}.stiffness")
+        if not any(self.stiffness):
+            raise InputError("all components are 0", f"{field}.stiffness")
+        if self.to == self.group:
+            raise InputError(f"{self.to!r} given, the group itself", f"{field}.to")
+
+    def on(self, model: Model) -> Attached:
+        """The spring on a model; raises InputError where a group is unknown."""
+        return _Spring(self, model)
+
+
+class _Bed:
+    """An elastic support on a model."""
+
+    def __init__(self, spec: ElasticSupport, model: Model) -> None:
+        self.name = spec.group
+        self._comm = model.mesh.comm
+        facets = model.facets(spec.group, f"elastic_support.{spec.group}")
+        self._quadrature = facet_quadrature(model.space, facets, 2 * model.order)
+        n = outward(model, spec.group, self._quadrature)
+        along = n[:, :, None] * n[:, None, :]
+        stiffness = spec.normal * along + spec.tangential * (np.eye(3) - along)
+        self._stiffness: Floats = stiffness
+        self._blocks = self._quadrature.facet_matrices(stiffness)
+
+    def begin(self, step: Step) -> None:
+        pass
+
+    def set_level(self, fraction: float) -> None:
+        pass
+
+    def add_force(self, u: Floats, out: Floats) -> None:
+        self._quadrature.to_nodes(self._traction(u), out)
+
+    def add_tangent(self, matrix: Mat) -> None:
+        nodes = self._quadrature.nodes
+        matrix.setValuesBlockedLocalRCV(nodes, nodes, self._blocks, PETSc.InsertMode.ADD_VALUES)
+
+    def couplings(self) -> list[Couplings]:
+        return []
+
+    def energy(self, u: Floats) -> float:
+        moved = self._quadrature.at_points(u)
+        density = -0.5 * np.einsum("ni,ni->n", self._traction(u), moved)
+        return float(self._comm.allreduce(self._quadrature.areas @ density))
+
+    def reaction(self, u: Floats) -> Floats:
+        local = self._quadrature.areas @ self._traction(u)
+        return np.asarray(self._comm.allreduce(local))
+
+    def commit(self, u: Floats) -> float:
+        return 0.0
+
+    def _traction(self, u: Floats) -> Floats:
+        moved = self._quadrature.at_points(u)
+        return np.asarray(-np.einsum("nij,nj->ni", self._stiffness, moved))
+
+
+class _Spring:
+    """A spring on a model; its anchor is moved by the steps."""
+
+    def __init__(self, spec: Spring, model: Model) -> None:
+        self.name = spec.name
+        field = f"spring.{spec.name}"
+        weights = mean_shares(model, spec.group, f"{field}.group")
+        if spec.to is not None:
+            weights = weights - mean_shares(model, spec.to, f"{field}.to")
+        if model.mesh.comm.size > 1:
+            raise InputError("springs of facet groups need one process", field)
+        self._nodes = np.flatnonzero(weights).astype(np.int32)
+        if len(self._nodes) > MOST_NODES:
+            text = f"{len(self._nodes)} nodes in its groups, at most {MOST_NODES} allowed"
+            raise InputError(text, field)
+        self._weights = weights[self._nodes]
+        self._stiffness = np.asarray(spec.stiffness, dtype=float)
+        self._start, self._end, self._anchor = np.zeros((3, 3))
+        self.accepted: Floats = np.zeros((2, 3))
+
+    def begin(self, step: Step) -> None:
+        self._start = self._end.copy()
+        values: Mapping[str, float] = step.anchor.get(self.name, {})
+        for axis, value in values.items():
+            self._end[AXES.index(axis)] = value
+
+    def set_level(self, fraction: float) -> None:
+        self._anchor = (1.0 - fraction) * self._start + fraction * self._end
+
+    def add_force(self, u: Floats, out: Floats) -> None:
+        out[self._nodes] += self._weights[:, None] * self._force(u, self._anchor)
+
+    def add_tangent(self, matrix: Mat) -> None:
+        pass
+
+    def couplings(self) -> list[Couplings]:
+        pairs = np.einsum("a,ij,b->aibj", self._weights, np.diag(self._stiffness), self._weights)
+        size = 3 * len(self._nodes)
+        nodes = self._nodes[None]
+        return [(nodes, nodes, pairs.reshape(1, size, size))]
+
+    def energy(self, u: Floats) -> float:
+        anchor, _ = self.accepted
+        return -0.5 * float(self._force(u, anchor) @ self._stretch(u, anchor))
+
+    def reaction(self, u: Floats) -> Floats:
+        return self._force(u, self.accepted[0])
+
+    def commit(self, u: Floats) -> float:
+        before, force = self.accepted
+        self.accepted = np.stack([self._anchor, self._force(u, self._anchor)])
+        return float(0.5 * (force + self.accepted[1]) @ (self._anchor - before))
+
+    def _force(self, u: Floats, anchor: Floats) -> Floats:
+        return np.asarray(-self._stiffness * self._stretch(u, anchor))
+
+    def _stretch(self, u: Floats, anchor: Floats) -> Floats:
+        return np.asarray(self._weights @ u[self._nodes] - anchor)
+
+
+class Attachments:
+    """The elastic supports and springs of a problem, as one.
+
+    Args:
+        specs: What there is.
+        model: Mesh with named facets.
+
+    Attributes:
+        coupling: Whether there are springs, which couple nodes that share no cell.
+
+    Raises:
+        InputError: An unknown facet group, or two of one name.
+    """
+
+    def __init__(self, specs: Sequence[ElasticSupport | Spring], model: Model) -> None:
+        self._all = [spec.on(model) for spec in specs]
+        springs = [spec for spec in specs if isinstance(spec, Spring)]
+        self._anchored = [spring.name for spring in springs if spring.to is None]
+        self.coupling = bool(springs)
+        #: Their names.
+        self.names = [one.name for one in self._all]
+        for name in self.names:
+            if self.names.count(name) > 1:
+                raise InputError(f"two elastic supports or springs have the name {name!r}")
+
+    def check(self, step: Step) -> None:
+        """Refuse the anchor of a spring that is not there.
+
+        Raises:
+            InputError: Names the springs there are.
+        """
+        for name in step.anchor:
+            if name not in self._anchored:
+                known = ", ".join(self._anchored) or "none"
+                text = f"no spring {name!r} to ground; there are: {known}"
+                raise InputError(text, f"step {step.name!r}.anchor")
+
+    def begin(self, step: Step) -> None:
+        """Take over a step."""
+        for one in self._all:
+            one.begin(step)
+
+    def set_level(self, fraction: float) -> None:
+        """Go to a fraction of the step."""
+        for one in self._all:
+            one.set_level(fraction)
+
+    def add_force(self, u: Floats, out: Floats) -> None:
+        """Add the forces on the bodies at the displacement `u`, both (local nodes, 3)."""
+        for one in self._all:
+            one.add_force(u, out)
+
+    def add_tangent(self, matrix: Mat) -> None:
+        """Add the part of `-d force / d u` that lies in the pattern of the bodies."""
+        for one in self._all:
+            one.add_tangent(matrix)
+
+    def couplings(self) -> list[Couplings]:
+        """The other part of `-d force / d u`."""
+        return [found for one in self._all for found in one.couplings()]
+
+    def energy(self, u: Floats) -> float:
+        """Stored energy, over all ranks, force times length."""
+        return sum(one.energy(u) for one in self._all)
+
+    def reactions(self, u: Floats) -> dict[str, Floats]:
+        """Force of each on the bodies, by facet group of a support or name of a spring, (3,)."""
+        return {one.name: one.reaction(u) for one in self._all}
+
+    def commit(self, u: Floats) -> float:
+        """Accept a state; the work at the anchors since the last one (trapezoidal rule)."""
+        return sum(one.commit(u) for one in self._all)
+
+    def persistent(self) -> Floats:
+        """Anchor and force of every spring in the accepted state, (springs, 2, 3)."""
+        return np.array([spring.accepted for spring in self._springs()]).reshape(-1, 2, 3)
+
+    def restore(self, kept: Floats) -> None:
+        """Go on from what `persistent` gave."""
+        for spring, accepted in zip(self._springs(), kept, strict=True):
+            spring.accepted = accepted.copy()
+
+    def __bool__(self) -> bool:
+        return bool(self._all)
+
+    def _springs(self) -> list[_Spring]:
+        return [one for one in self._all if isinstance(one, _Spring)]

@@ -1,0 +1,234 @@
+"""Symmetry planes: no displacement across a plane of any direction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+
+from anisocontact._fenicsx import MPI, Mat, PETSc, fem
+from anisocontact.contact import facet_quadrature
+from anisocontact.errors import InputError
+from anisocontact.mesh import Model
+from anisocontact.solver.pressure import outward
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+#: Largest difference of normals of a plane; roundings of mesh files are well below.
+FLAT = 1e-6
+#: Share of a normal that counts as none of it along an axis.
+NO_SHARE = 1e-9
+
+
+@dataclass(frozen=True)
+class _Kind:
+    """Nodes on the same planes with the same prescribed components.
+
+    Attributes:
+        nodes: The nodes.
+        slaves: Components that follow from the others.
+        follow: `u_slaves = follow u`, (slaves, 3); zero in the slaves themselves.
+        planes: Planes that hold these nodes; the others are held by prescribed values.
+        share: Force on the node -> normal forces of `planes`, (planes, 3).
+    """
+
+    nodes: Ints
+    slaves: Ints
+    follow: Floats
+    planes: Ints
+    share: Floats
+
+
+class SymmetryPlanes:
+    """Constraints `n . u = 0` at the nodes of flat facet groups, n the normal of the group.
+
+    At a node one component for each plane follows from the others, `u_s = c . u`. Its equation is
+    that constraint, and its force goes to the others with the factors c, so that the force across
+    the plane is in balance with the reaction: `r <- R r + s (u_s - c . u)`.
+
+    Args:
+        model: Mesh with named facets.
+        groups: Facet groups, each in a plane.
+        rows: Number of unknowns of this rank in the whole system.
+
+    Raises:
+        InputError: An unknown facet group, or one that is not flat.
+    """
+
+    def __init__(self, model: Model, groups: Sequence[str], rows: int) -> None:
+        self._model = model
+        #: The facet groups.
+        self.groups = list(groups)
+        self._rows = rows
+        self._normals = np.array([_normal(model, group) for group in groups]).reshape(-1, 3)
+        owned = model.space.dofmap.index_map.size_local
+        on = np.zeros((owned, len(self.groups)), dtype=bool)
+        for i, group in enumerate(groups):
+            nodes = fem.locate_dofs_topological(model.space, 2, model.facets(group))
+            on[nodes[nodes < owned], i] = True
+        self._on = on
+        self._kinds: list[_Kind] = []
+        self._gather = self._constrain = scipy.sparse.csr_array((rows, rows))
+        #: Unknowns that follow from others, local numbers.
+        self.slaves: Ints = np.zeros(0, dtype=np.int64)
+
+    def __bool__(self) -> bool:
+        return bool(self.groups)
+
+    def begin(self, prescribed: Ints, values: Floats, step: str) -> None:
+        """Take over the prescribed unknowns of a step.
+
+        Args:
+            prescribed: Their local numbers.
+            values: Their values at the end of the step, length.
+            step: Name of the step, for messages.
+
+        Raises:
+            InputError: A prescribed value leads a node out of its plane.
+        """
+        held = np.zeros(self._on.shape[0] * 3, dtype=bool)
+        led = np.zeros(len(held))
+        held[prescribed], led[prescribed] = True, values
+        nodes = np.flatnonzero(self._on.any(axis=1))
+        keys = np.hstack([self._on[nodes], held.reshape(-1, 3)[nodes]])
+        kinds, which = np.unique(keys, axis=0, return_inverse=True)
+        self._kinds = []
+        for i, key in enumerate(kinds):
+            planes = np.flatnonzero(key[:-3])
+            kind = _kind(nodes[which.reshape(-1) == i], planes, self._normals, key[-3:])
+            self._kinds.append(kind)
+            loose = np.setdiff1d(planes, kind.planes)
+            across = np.abs(led.reshape(-1, 3)[kind.nodes] @ self._normals[loose].T)
+            if np.any(across > NO_SHARE * np.abs(led).max(initial=0.0)):
+                group = self.groups[loose[int(np.argmax(across.max(axis=0)))]]
+                text = f"leads nodes out of the symmetry plane {group!r}, by {across.max():.3g}"
+                raise InputError(text, f"step {step!r}.displacement")
+        self._build()
+
+    def reduce(self, residual: Floats, u: Floats, scale: float) -> Floats:
+        """Residual with the constraints, of the unknowns of the mesh that this rank owns."""
+        n = len(residual)
+        gathered = self._gather[:n, :n] @ residual
+        return np.asarray(gathered + scale * (self._constrain[:n, :n] @ u))
+
+    def transform(self, matrix: Mat, scale: float) -> None:
+        """The same for the tangent, in place."""
+        gather = _petsc(self._gather, matrix)
+        constrain = _petsc(self._constrain, matrix)
+        product = gather.matMult(matrix)
+        matrix.zeroEntries()
+        for part, factor in ((product, 1.0), (constrain, scale)):
+            matrix.axpy(factor, part, structure=PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
+            part.destroy()
+        gather.destroy()
+
+    def forces(self, supporting: Floats) -> tuple[dict[str, Floats], Floats]:
+        """Forces of the planes on the bodies.
+
+        Args:
+            supporting: Force of all supports on the unknowns this rank owns.
+
+        Returns:
+            Facet group -> force, (3,), over all ranks; and what is left for prescribed unknowns.
+        """
+        rest = supporting.copy()
+        nodal = rest.reshape(-1, 3)
+        sums = np.zeros((len(self.groups), 3))
+        for kind in self._kinds:
+            across = nodal[kind.nodes] @ kind.share.T
+            for column, plane in enumerate(kind.planes):
+                force = across[:, column, None] * self._normals[plane]
+                sums[plane] += force.sum(axis=0)
+                nodal[kind.nodes] -= force
+        total = self._model.mesh.comm.allreduce(sums)
+        return dict(zip(self.groups, total, strict=True)), rest
+
+    def _build(self) -> None:
+        to, of, factor = [np.zeros(0, int)], [np.zeros(0, int)], [np.zeros(0)]
+        for kind in self._kinds:
+            for slave, follow in zip(kind.slaves, kind.follow, strict=True):
+                for component in np.flatnonzero(follow):
+                    to.append(3 * kind.nodes + component)
+                    of.append(3 * kind.nodes + slave)
+                    factor.append(np.full(len(kind.nodes), follow[component]))
+        masters, slaves, factors = map(np.concatenate, (to, of, factor))
+        self.slaves = np.sort(
+            np.concatenate(
+                [
+                    np.zeros(0, int),
+                    *((3 * k.nodes[:, None] + k.slaves).ravel() for k in self._kinds),
+                ]
+            )
+        )
+        free = np.ones(self._rows)
+        free[self.slaves] = 0.0
+        shape = (self._rows, self._rows)
+        handed = scipy.sparse.csr_array((factors, (masters, slaves)), shape=shape)
+        own = scipy.sparse.diags_array(free, format="csr")
+        self._gather = scipy.sparse.csr_array(own + handed)
+        only = scipy.sparse.diags_array(1.0 - free, format="csr")
+        constrain = scipy.sparse.csr_array(only - handed.T)
+        constrain.eliminate_zeros()
+        self._constrain = constrain
+
+
+def _normal(model: Model, group: str) -> Floats:
+    """Unit normal of a flat facet group."""
+    quadrature = facet_quadrature(model.space, model.facets(group, "symmetry"), 2 * model.order)
+    normals = outward(model, group, quadrature)
+    comm = model.mesh.comm
+    total = np.asarray(comm.allreduce(quadrature.areas @ normals))
+    normal = total / np.linalg.norm(total)
+    off = comm.allreduce(float(np.abs(normals - normal).max(initial=0.0)), MPI.MAX)
+    if not off < FLAT:
+        text = f"{group!r} given, its normals differ by {off:.2g}; a symmetry plane must be flat"
+        raise InputError(text, "symmetry")
+    normal[np.abs(normal) < NO_SHARE] = 0.0
+    return np.asarray(normal / np.linalg.norm(normal))
+
+
+def _kind(nodes: Ints, planes: Ints, normals: Floats, held: npt.NDArray[np.bool_]) -> _Kind:
+    """Which components follow from which: Gauss-Jordan elimination with the largest pivot."""
+    rows = normals[planes].copy()
+    used: list[int] = []
+    slaves: list[int] = []
+    open_rows = list(range(len(planes)))
+    allowed = ~held
+    while open_rows:
+        share = np.abs(rows[open_rows]) * allowed
+        row, slave = np.unravel_index(int(np.argmax(share)), share.shape)
+        if share[row, slave] < NO_SHARE:
+            break
+        pivot = open_rows.pop(int(row))
+        rows[pivot] /= rows[pivot, slave]
+        for other in range(len(planes)):
+            if other != pivot:
+                rows[other] -= rows[other, slave] * rows[pivot]
+        allowed[slave] = False
+        used.append(pivot)
+        slaves.append(int(slave))
+    follow = -rows[used]
+    follow[:, slaves] = 0.0
+    directions = np.vstack([normals[planes[used]], np.eye(3)[held]])
+    share = np.linalg.pinv(directions.T)[: len(used)]
+    return _Kind(nodes, np.array(slaves, dtype=np.int64), follow, planes[used], share)
+
+
+def _petsc(local: scipy.sparse.csr_array, like: Mat) -> Mat:
+    """A matrix of entries between unknowns of one rank."""
+    first, _ = like.getOwnershipRange()
+    matrix = PETSc.Mat().createAIJ(
+        like.getSizes(),
+        csr=(
+            local.indptr.astype(PETSc.IntType),
+            (local.indices + first).astype(PETSc.IntType),
+            local.data,
+        ),
+        comm=like.getComm(),
+    )
+    matrix.assemble()
+    return matrix
