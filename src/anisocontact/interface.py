@@ -126,6 +126,14 @@ class PairLaw:
             mirrored,
         )
 
+    def stiffened(self, factor: float, tangential: bool) -> PairLaw:
+        """The laws with penalties `factor` times as large, that of adhesion if it is one."""
+        return PairLaw(*_stiffened(self, factor, tangential))
+
+    def penalties(self) -> tuple[float, float]:
+        """Normal penalty and least stiffness of adhesion, stress/length."""
+        return _penalties(self)
+
 
 class Interface:
     """A surface with the laws of its contact.
@@ -190,6 +198,19 @@ class Interface:
             evolution,
         )
 
+    def stiffened(self, factor: float, tangential: bool) -> Interface:
+        """The interface with penalties `factor` times as large, that of adhesion if it is one."""
+        return Interface(
+            self.surface,
+            *_stiffened(self, factor, tangential),
+            evolution=self.evolution,
+            threads=self.threads,
+        )
+
+    def penalties(self) -> tuple[float, float]:
+        """Normal penalty and least stiffness of adhesion, stress/length."""
+        return _penalties(self)
+
     def initial_state(self, x: npt.ArrayLike) -> State:
         """State before the first step: projected and free of force.
 
@@ -234,6 +255,18 @@ class Interface:
             directions_friction=r["friction_axes"],
             failure=r["failure"],
         )
+
+
+def _stiffened(
+    of: PairLaw | Interface, factor: float, tangential: bool
+) -> tuple[NormalLaw, Adhesion, Friction]:
+    adhesion = of.adhesion.stiffened(factor) if tangential else of.adhesion
+    return of.normal.stiffened(factor), adhesion, of.friction
+
+
+def _penalties(of: PairLaw | Interface) -> tuple[float, float]:
+    normal, tangential = of.normal.named[1]["penalty"], of.adhesion.named[1].get("stiffness", [1.0])
+    return normal[0], min(tangential)
 
 
 def _made[T](kind: Callable[..., T], *arguments: object) -> T:

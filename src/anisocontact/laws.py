@@ -50,6 +50,10 @@ class NormalLaw:
     def __init__(self, model: str = "penalty", **parameters: object) -> None:
         self.named = _named(registry.normal_laws, model, parameters, "normal.model")
 
+    def stiffened(self, factor: float) -> NormalLaw:
+        """The law "penalty" with a penalty `factor` times as large."""
+        return NormalLaw(penalty=factor * self.named[1]["penalty"][0])
+
 
 class Adhesion:
     """Tangential law inside the yield ellipse.
@@ -80,6 +84,11 @@ class Adhesion:
         self.named = _named(registry.adhesion_models, model, parameters, "adhesion.model")
         _need_directions("adhesion", directions, self.named, parameters)
         self.directions = directions
+
+    def stiffened(self, factor: float) -> Adhesion:
+        """The model "elastic" with stiffnesses `factor` times as large."""
+        first, second = self.named[1]["stiffness"]
+        return Adhesion(stiffness=(factor * first, factor * second), directions=self.directions)
 
 
 class Friction:

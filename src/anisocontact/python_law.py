@@ -152,6 +152,17 @@ class PythonInterface:
             }
         )
 
+    def stiffened(self, factor: float, tangential: bool) -> PythonInterface:
+        """The interface with a normal penalty `factor` times as large."""
+        normal = self.normal.stiffened(factor)
+        return PythonInterface(
+            self.surface, normal, self.law, directions=self.directions, threads=self.threads
+        )
+
+    def penalties(self) -> tuple[float, float]:
+        """Normal penalty, stress/length; the tangential law has none: 1."""
+        return self.normal.named[1]["penalty"][0], 1.0
+
     def initial_state(self, x: npt.ArrayLike) -> State:
         """State before the first step: projected, free of force, own variables zero.
 

@@ -4,23 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from anisocontact._fenicsx import PETSc
-from anisocontact.bulk import Material
 from anisocontact.case import objects
-from anisocontact.case.model import Case, ContactSection
+from anisocontact.case.contacts import contact
+from anisocontact.case.model import Case
 from anisocontact.case.quantity import FREE
 from anisocontact.case.read import CaseFile
-from anisocontact.contact import (
-    AnyContact,
-    Contact,
-    FacetContact,
-    MeshedContact,
-    SelfContact,
-    TwoHalfPass,
-    auto_penalty,
-)
 from anisocontact.errors import InputError
 from anisocontact.limits import Limits
 from anisocontact.mesh import GmshFile, Model
@@ -75,7 +64,7 @@ def build(file: CaseFile) -> Built:
     }
     bodies = _rigid_bodies(case)
     contacts = [
-        _contact(case, section, model, materials, bodies, f"contact[{i}]")
+        contact(case, section, model, materials, bodies, f"contact[{i}]")
         for i, section in enumerate(case.contact)
     ]
     steps = _steps(case, model)
@@ -166,90 +155,6 @@ def _rigid_bodies(case: Case) -> dict[str, RigidBody]:
             )
         bodies.update(dict.fromkeys(section.carries(name), body))
     return bodies
-
-
-def _contact(
-    case: Case,
-    section: ContactSection,
-    model: Model,
-    materials: dict[str, Material],
-    bodies: dict[str, RigidBody],
-    place: str,
-) -> AnyContact:
-    sides = [("slave", section.slave)] + [("master", section.master)] * section.meshed
-    made_of = [materials[model.body_of(group, f"{place}.{side}")] for side, group in sides]
-    auto = min(
-        auto_penalty(model, group, body) for (_, group), body in zip(sides, made_of, strict=True)
-    )
-    finite = not all(body.linear for body in made_of)
-    if section.meshed:
-        return _meshed(section, model, auto, finite, place)
-    body = bodies.get(section.master)
-    return _rigid(case, section, model, body, auto, finite, place)
-
-
-def _meshed(
-    section: ContactSection, model: Model, auto: float, finite: bool, place: str
-) -> MeshedContact:
-    law = objects.pair_law(section, place, auto)
-    if section.self_contact:
-        with objects.within(place):
-            return SelfContact(
-                model,
-                section.slave,
-                law=law,
-                degree=section.degree,
-                apart=section.apart,
-                current_area=finite,
-                name=f"{section.slave} on itself",
-            )
-    kind = TwoHalfPass if section.half_passes else FacetContact
-    name = f"{section.slave} on {section.master}"
-    with objects.within(place):
-        return kind(
-            model,
-            section.slave,
-            section.master,
-            law=law,
-            degree=section.degree,
-            current_area=finite,
-            name=name,
-        )
-
-
-def _rigid(
-    case: Case,
-    section: ContactSection,
-    model: Model,
-    body: RigidBody | None,
-    auto: float,
-    finite: bool,
-    place: str,
-) -> Contact:
-    master = objects.surface(case.surface[section.master], f"surface.{section.master}")
-    interface = objects.interface(section, master, place, auto)
-    name = f"{section.slave} on {section.master}"
-    with objects.within(place):
-        contact = Contact(
-            model,
-            section.slave,
-            interface,
-            degree=section.degree,
-            current_area=finite,
-            name=name,
-            body=body,
-        )
-    for law in ("adhesion", "friction"):
-        field = getattr(interface, law).directions
-        if field is not None:
-            _, regular = field.axes(master, master.project(contact.points).xi)
-            if not np.any(regular):
-                raise InputError(
-                    "no direction on the surface: the field is singular or parallel to its normal "
-                    "at every slave point",
-                    field=f"{place}.{law}.directions",
-                )
-    return contact
 
 
 def _steps(case: Case, model: Model) -> list[Step]:

@@ -6,7 +6,14 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from anisocontact.case import objects
-from anisocontact.case.model import SINGLE, TWO_HALF, Case, ContactSection
+from anisocontact.case.model import (
+    AUGMENTED,
+    PENALTY,
+    SINGLE,
+    TWO_HALF,
+    Case,
+    ContactSection,
+)
 from anisocontact.case.rigid_checks import check_rigid
 from anisocontact.case.section import near
 from anisocontact.errors import InputError
@@ -83,6 +90,7 @@ def _contact(
     case: Case, contact: ContactSection, place: str, surfaces: dict[str, Surface | None]
 ) -> Iterator[InputError]:
     yield from _group(case, contact.slave, f"{place}.slave")
+    yield from _method(contact, place)
     if contact.apart is not None and not contact.self_contact:
         text = "given without self_contact = true, which it belongs to"
         yield InputError(text, field=f"{place}.apart")
@@ -102,6 +110,23 @@ def _contact(
         yield InputError(text, field=f"{place}.master")
     elif master is not None:
         yield from _tried(objects.interface, contact, master, place)[1]
+
+
+def _method(contact: ContactSection, place: str) -> Iterator[InputError]:
+    if contact.adjust_gap > 0.0 and not contact.adjust:
+        yield InputError("given without adjust = true", field=f"{place}.adjust_gap")
+    if contact.adjust and contact.self_contact:
+        yield InputError("given with self_contact, which has no adjust", field=f"{place}.adjust")
+    if contact.method == PENALTY:
+        if contact.tolerance is not None:
+            text = f'given with method "{PENALTY}", needs "{AUGMENTED}"'
+            yield InputError(text, field=f"{place}.tolerance")
+    elif contact.half_passes:
+        text = f'"{TWO_HALF}" given, "{SINGLE}" needed with method "{AUGMENTED}"'
+        yield InputError(text, field=f"{place}.pass")
+    elif contact.self_contact:
+        text = f'"{AUGMENTED}" given, "{PENALTY}" needed with self_contact = true'
+        yield InputError(text, field=f"{place}.method")
 
 
 def _meshed(case: Case, contact: ContactSection, place: str) -> Iterator[InputError]:

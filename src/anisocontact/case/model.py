@@ -13,6 +13,7 @@ from typing import Annotated, Any
 from pydantic import Field, create_model
 
 from anisocontact import registry
+from anisocontact.augmentation import Augmentation
 from anisocontact.case.bodies import Mesh, mesh_type
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
 from anisocontact.case.quantity import number as _number
@@ -42,6 +43,7 @@ _DIRECTIONS = "direction field of the axes; needed where the two values of a pai
 _DIRECTIONS_SECOND = "directions of the second surface, for a friction model of two surfaces"
 
 
+PENALTY, AUGMENTED = "penalty", "augmented"
 SINGLE, TWO_HALF = "single", "two-half"
 _PASSES = "whether the slave alone is integrated over or, between bodies, both with half the weight"
 
@@ -134,6 +136,33 @@ class ContactSection(Section):
             "positive",
         ),
     ] = None
+    method: Annotated[
+        str,
+        _word(
+            "whether penetration and elastic slip are those of the penalties or are brought below "
+            "the tolerance by an augmented Lagrangian; the stiffness of adhesion counts as a "
+            'penalty where it is "auto"',
+            PENALTY,
+            AUGMENTED,
+        ),
+    ] = PENALTY
+    tolerance: Annotated[
+        float | None,
+        _number(
+            "scalar",
+            "1",
+            f'largest penetration and elastic slip of "{AUGMENTED}", share of the facet size, '
+            f"{Augmentation.tolerance:g} if left out",
+            "positive",
+        ),
+    ] = None
+    adjust: Annotated[
+        bool, _number("flag", "1", "whether slave points that overlap at the start just touch")
+    ] = False
+    adjust_gap: Annotated[
+        float,
+        _number("scalar", "length", "gaps up to this one are closed by adjust", "non-negative"),
+    ] = 0.0
     normal: Any
     adhesion: Any
     friction: Any

@@ -1,7 +1,10 @@
 """Which facets meet what: forces and tangent of contact, history of the slave points."""
 
+from anisocontact.augmentation import Augmentation
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.facet_contact import FacetContact
+from anisocontact.contact.initial import Overlap, check_start, initial_overlap
+from anisocontact.contact.multipliers import NotHeldError
 from anisocontact.contact.penalty import PENALTY_FACTOR, auto_penalty, facet_size
 from anisocontact.contact.quadrature import FacetQuadrature, facet_quadrature
 from anisocontact.contact.self_contact import SelfContact
@@ -15,13 +18,18 @@ type AnyContact = Contact | MeshedContact
 __all__ = [
     "PENALTY_FACTOR",
     "AnyContact",
+    "Augmentation",
     "Contact",
     "FacetContact",
     "FacetQuadrature",
     "MeshedContact",
+    "NotHeldError",
+    "Overlap",
     "SelfContact",
     "TwoHalfPass",
     "auto_penalty",
+    "check_start",
     "facet_quadrature",
     "facet_size",
+    "initial_overlap",
 ]

@@ -8,11 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc
+from anisocontact.augmentation import Augmentation
+from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
+from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.quadrature import Surfaced, default_degree, facet_quadrature
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.errors import InputError
-from anisocontact.interface import Interface, Response
+from anisocontact.interface import Interface, Response, State
+from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
 from anisocontact.python_law import PythonInterface
 from anisocontact.rigid import MovingInterface, RigidBody
@@ -31,9 +35,12 @@ class Contact(ContactRecord):
         model: Mesh with the facet group.
         slave: Facet group "body.group".
         interface: Surface and laws, also laws written in Python.
-        degree: Degree of the quadrature on the facets, >= 1; twice the order of the displacement
-            if not given.
+        degree: Degree of the quadrature on the facets, >= 1; if not given twice the order of the
+            displacement, with an augmentation the order.
         current_area: Whether tractions act on the area of now (finite strain) or of the reference.
+        augmentation: How exactly the contact is to hold; by its penalties alone if not given.
+        adjust: Gaps up to this one are closed and overlaps taken out before the first step, see
+            `adjusted`, length; nothing if not given.
         name: Name in output; the slave if not given.
         body: Rigid body that carries the surface and its directions; the surface rests if not
             given.
@@ -54,13 +61,16 @@ class Contact(ContactRecord):
         *,
         degree: int | None = None,
         current_area: bool = False,
+        augmentation: Augmentation | None = None,
+        adjust: float | None = None,
         name: str = "",
         body: RigidBody | None = None,
     ) -> None:
         facets = model.facets(slave, "slave")
         if model.count_facets(slave) == 0:
             raise InputError(f"facet group {slave!r} has no facets", "slave")
-        degree = default_degree(model.order) if degree is None else degree
+        if degree is None:
+            degree = default_degree(model.order, augmentation is not None)
         if degree < 1:
             raise InputError(f"{degree!r} given, must be >= 1", "degree")
         self.interface = interface
@@ -70,7 +80,8 @@ class Contact(ContactRecord):
         self.quadrature = facet_quadrature(model.space, facets, degree)
         self._moved: Surfaced | None = None
         points = self.quadrature.reference
-        state = interface.initial_state(points)
+        self._facets = facets
+        state = adjusted(interface.initial_state(points), adjust)
         start = self._master.update(state, points, 1.0)
         facets_here, per_facet = self.quadrature.weights.shape
         super().__init__(
@@ -81,6 +92,7 @@ class Contact(ContactRecord):
             Snapshot(points, self.quadrature.areas, start),
             np.repeat(np.arange(facets_here), per_facet),
         )
+        self._augment(augmentation, facet_size(model, slave), interface)
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
@@ -93,7 +105,7 @@ class Contact(ContactRecord):
             The response; the committed history is unchanged.
         """
         x = self.quadrature.reference + self.quadrature.at_points(u)
-        response = self._master.update(self.state, x, dt)
+        response = self._master.update(self._start, x, dt)
         self._moved = self.quadrature.moved(u) if self.current_area else None
         areas = self.quadrature.areas if self._moved is None else self._moved.areas
         self._trial = Snapshot(x, areas, response)
@@ -105,8 +117,7 @@ class Contact(ContactRecord):
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
-        jet = self.interface.surface.jet(self.state["xi"])
-        slip: Floats = np.einsum("ni,nij->nj", self.state["elastic"], jet.d1)
+        slip: Floats = np.einsum("ni,nij->nj", self.state["elastic"], self._tangents(self.state))
         return slip if self.body is None else self.body.to_space(slip)
 
     def add_force(self, out: Floats) -> None:
@@ -131,6 +142,21 @@ class Contact(ContactRecord):
             raise ValueError("the surface is that of no rigid body")
         return body_blocks(self.quadrature, self._moved, self.body, self.current)
 
+    def located(self, state: State) -> npt.NDArray[np.bool_]:
+        """Whether each point of a state has a surface below it, (n,): all have."""
+        return np.ones(len(state), dtype=bool)
+
+    def outward(self) -> Floats:
+        """Outward normals of the slave at its points in the reference configuration, (n, 3)."""
+        return self.quadrature.outward(self.space, self._facets)
+
+    def probe(
+        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
+    ) -> npt.NDArray[np.int8]:
+        """Why other laws would fail in the reference configuration, codes of `FAILURE`, (n,)."""
+        interface = Interface(self.interface.surface, *laws)
+        return interface.update(state, self.quadrature.reference, tangent=False).failure
+
     def lever(self) -> float:
         """Forces that would move every point of the trial to the origin, norm over this rank.
 
@@ -143,3 +169,13 @@ class Contact(ContactRecord):
         if self.body is not None:
             distance += np.linalg.norm(self.body.position)
         return float(np.linalg.norm(stiffness * distance))
+
+    def _stiffen(self, factor: float) -> None:
+        """Multiply the penalties of the law with a factor."""
+        tangential = self._multipliers is not None and self._multipliers.tangential
+        stiff = self.interface.stiffened(factor, tangential)
+        self._master = stiff if self.body is None else MovingInterface(stiff, self.body)
+
+    def _tangents(self, state: State) -> Floats:
+        """Tangents of the master as given at the coordinates of a state, (n, 2, 3), length."""
+        return self.interface.surface.jet(state["xi"]).d1

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.augmentation import Augmentation
+from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.facet_mesh import (
     SlavePoints,
     facet_mesh,
@@ -22,6 +24,7 @@ from anisocontact.contact.transfer import Couplings, Transfer
 from anisocontact.errors import InputError
 from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSets, FacetSurface
 from anisocontact.interface import STATE, PairLaw, Response, State, as_state, raw_state
+from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
 from anisocontact.surfaces import default_threads
 
@@ -45,10 +48,14 @@ class FacetContact(ContactRecord):
         master: Facet group "body.group" that is the surface.
         law: Laws of the interface; directions are given in the reference configuration and
             carried by the master.
-        degree: Degree of the quadrature; twice the order of the displacement if not given.
+        degree: Degree of the quadrature; if not given twice the order of the
+            displacement, with an augmentation the order.
         reach: Distance within which the master is searched, length; twice the size of the slave's
             facets if not given.
         current_area: Whether tractions act on the area of now (finite strain) or of the reference.
+        augmentation: How exactly the contact is to hold; by its penalties alone if not given.
+        adjust: Gaps up to this one are closed and overlaps taken out before the first step, see
+            `adjusted`, length; nothing if not given.
         weight: Share of the work of this pass: 0.5 for each of two half passes.
         mirrored: Whether angles of directions count about the normal of the slave, not of the
             master: the other way round.
@@ -73,6 +80,8 @@ class FacetContact(ContactRecord):
         degree: int | None = None,
         reach: float | None = None,
         current_area: bool = True,
+        augmentation: Augmentation | None = None,
+        adjust: float | None = None,
         weight: float = 1.0,
         mirrored: bool = False,
         overlaps: bool = False,
@@ -83,11 +92,14 @@ class FacetContact(ContactRecord):
         self.master = master
         self.interface = law
         self.current_area = current_area
+        self._mirrored = mirrored
         self._law = law.pairs(mirrored)
         self._reference = node_positions(model.space)
         self._master = facet_mesh(model.space, model.facets(master))
         own = facet_mesh(model.space, model.facets(slave))
-        rule = facet_rule(own.topology, default_degree(model.order) if degree is None else degree)
+        if degree is None:
+            degree = default_degree(model.order, augmentation is not None)
+        rule = facet_rule(own.topology, degree)
         self._points = SlavePoints(own, rule, self._reference, current_area, weight)
         self._surface = FacetSurface(
             self._reference, self._master.nodes, self._master.topology, self._master.flip
@@ -109,7 +121,7 @@ class FacetContact(ContactRecord):
             Transfer(own, rule, self._master, self._surface, self.reach, near) if overlaps else None
         )
         self._handed: Mask = np.zeros(len(self._points.nodes), dtype=bool)
-        state = self._initial()
+        state = adjusted(self._initial(), adjust)
         start = self._respond(state, self._reference, 1.0, tangent=False)
         self._committed = (self._now, self._hint)
         super().__init__(
@@ -122,6 +134,7 @@ class FacetContact(ContactRecord):
         )
         if self._transfer is not None:
             self._transfer.place(self._reference)
+        self._augment(augmentation, self._points.size, law)
 
     @property
     def passes(self) -> tuple[FacetContact, ...]:
@@ -139,7 +152,7 @@ class FacetContact(ContactRecord):
             The response; the committed history is unchanged.
         """
         self._now = self._reference + u
-        self._trial = self._respond(self.state, self._now, dt, tangent=True)
+        self._trial = self._respond(self._start, self._now, dt, tangent=True)
         if self._transfer is not None:
             self._hand_over(self._transfer)
         return self._trial.response
@@ -180,12 +193,9 @@ class FacetContact(ContactRecord):
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
-        slip = np.zeros((len(self.state), 3))
-        touching = np.flatnonzero(self.state["facet"] >= 0)
-        at = self.state[touching]
-        jet = self._surface.jet(at["facet"], at["xi"])
-        slip[touching] = np.einsum("ni,nij->nj", at["elastic"], jet.d1)
-        return slip
+        return np.asarray(
+            np.einsum("ni,nij->nj", self.state["elastic"], self._tangents(self.state))
+        )
 
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial on both bodies to the local nodes, (nodes, 3), force."""
@@ -216,6 +226,24 @@ class FacetContact(ContactRecord):
             (rows[handed, :k], nodes[handed], tangent[handed, : 3 * k]),
             *self._transfer.couplings(nodes, force, handed),
         ]
+
+    def located(self, state: State) -> Mask:
+        """Whether each point of a state has a facet below it, (n,)."""
+        return np.asarray(state["facet"] >= 0)
+
+    def outward(self) -> Floats:
+        """Outward normals of the slave at its points in the reference configuration, (n, 3)."""
+        return self._points.outward
+
+    def probe(
+        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
+    ) -> npt.NDArray[np.int8]:
+        """Why other laws would fail in the reference configuration, codes of `FAILURE`, (n,)."""
+        kept = self._law, self._answer
+        self._law = PairLaw(*laws).pairs(self._mirrored)
+        answer = self._respond(state, self._reference, 1.0, tangent=False).response
+        self._law, self._answer = kept
+        return answer.failure
 
     def lever(self) -> float:
         """Forces that would move every point of the trial to the origin, norm over this rank."""
@@ -265,6 +293,18 @@ class FacetContact(ContactRecord):
         force = now.areas[:, None] * now.response.traction
         self._handed = transfer.update(self._now, force, now.response.status != 0)
         answer["residual"][self._handed, 3 * self._points.nodes.shape[1] :] = 0.0
+
+    def _stiffen(self, factor: float) -> None:
+        """Multiply the penalties of the law with a factor."""
+        tangential = self._multipliers is not None and self._multipliers.tangential
+        self._law = self.interface.stiffened(factor, tangential).pairs(self._mirrored)
+
+    def _tangents(self, state: State) -> Floats:
+        """Tangents of the master of now, (n, 2, 3), length; any where a point has no facet."""
+        tangents = np.tile(np.eye(3)[:2], (len(state), 1, 1))
+        there = np.flatnonzero(state["facet"] >= 0)
+        tangents[there] = self._surface.jet(state["facet"][there], state["xi"][there]).d1
+        return tangents
 
     def _project(self, now: Floats, x: Floats) -> FacetProjections:
         self._surface.update(now)

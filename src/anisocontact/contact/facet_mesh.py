@@ -202,6 +202,7 @@ class SlavePoints:
         gradient: Derivatives of these, (n, k, 2).
         weight: Weight of each point: its area, or where the area is that of now what the area of
             the tangents is multiplied by, (n,).
+        outward: Outward normals in the reference configuration, (n, 3).
         size: Length of a facet: square root of the mean area.
     """
 
@@ -223,6 +224,9 @@ class SlavePoints:
         stretch = np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
         weights = np.tile(rule.weights, count)
         self.weight = share * (weights if current_area else weights * stretch)
+        sign = np.where(np.repeat(facets.flip, q), -1.0, 1.0)
+        cross = np.cross(tangents[:, 0], tangents[:, 1])
+        self.outward = (sign / stretch)[:, None] * cross
         self.size = float(np.sqrt((weights * stretch).sum() / max(count, 1)))
 
     def positions(self, now: Floats) -> Floats:

@@ -56,6 +56,22 @@ class FacetQuadrature:
         entries = (self.basis.reshape(-1), columns.reshape(-1).astype(np.int64), starts)
         return scipy.sparse.csr_array(entries, shape=shape)
 
+    def outward(self, space: Any, facets: Ints) -> Floats:
+        """Outward normals at the points in the reference configuration, (m q, 3).
+
+        Args:
+            space: Space of the nodes.
+            facets: The facets the quadrature was made for.
+        """
+        cells, _ = facet_sides(space.mesh, np.sort(facets))
+        _, nodes, positions = geometry(space.mesh)
+        middle = positions[nodes[cells]].mean(axis=1)
+        m, q, _ = self.basis.shape
+        normal = np.cross(self.tangents[:, :, 0], self.tangents[:, :, 1])
+        away = self.reference.reshape(m, q, 3) - middle[:, None]
+        sign = np.sign(np.einsum("mqi,mqi->mq", normal, away))
+        return np.asarray((sign / _norm(normal))[..., None] * normal).reshape(-1, 3)
+
     def at_points(self, nodal: Floats) -> Floats:
         """Nodal vectors interpolated to the points: (local nodes, 3) -> (m q, 3)."""
         return np.asarray(self.interpolation @ nodal[: self.interpolation.shape[1]])
@@ -178,9 +194,13 @@ def _norm(vectors: Floats) -> Floats:
     return np.asarray(np.linalg.norm(vectors, axis=-1))
 
 
-def default_degree(order: int) -> int:
-    """Degree that integrates the product of two basis functions: twice the order."""
-    return 2 * order
+def default_degree(order: int, augmented: bool = False) -> int:
+    """Degree that integrates the product of two basis functions: twice the order.
+
+    Where every point carries a multiplier, the order: with more points than nodes the surfaces
+    would be held together where they cannot follow each other.
+    """
+    return order if augmented else 2 * order
 
 
 def facet_quadrature(space: Any, facets: Ints, degree: int) -> FacetQuadrature:

@@ -9,6 +9,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.augmentation import Augmentation
+from anisocontact.contact.multipliers import (
+    AugmentedLaw,
+    Frames,
+    Multipliers,
+    check,
+)
 from anisocontact.interface import STATUS, Response, State
 
 Floats = npt.NDArray[np.float64]
@@ -82,6 +89,8 @@ class ContactRecord:
         self.ran_off: Floats = np.zeros((0, 3))
         self._accepted = start
         self._trial: Snapshot | None = None
+        self._start = state
+        self._multipliers: Multipliers | None = None
 
     @property
     def points(self) -> Floats:
@@ -120,10 +129,77 @@ class ContactRecord:
             self._accepted = self._trial
             self.state = self.last.state
             self._trial = None
+        if self._multipliers is not None:
+            self._multipliers.commit()
+        self._begin()
 
     def roll_back(self) -> None:
         """Forget the trial."""
         self._trial = None
+        self._begin()
+
+    def improve(self) -> bool:
+        """Take better multipliers from the trial, which is in equilibrium.
+
+        Returns:
+            Whether they changed, so that equilibrium has to be found again; False for a contact
+            without augmentation.
+
+        Raises:
+            NotHeldError: They do not converge.
+        """
+        if self._multipliers is None:
+            return False
+        now, before = self.current, self._start
+        better = self._multipliers.improve(
+            before,
+            now.response,
+            now.areas,
+            Frames.of(self._tangents(now.response.state)),
+            Frames.of(self._tangents(before)),
+        )
+        if better is None:
+            return False
+        self._start = better
+        self._stiffen(self._multipliers.factor)
+        return True
+
+    def soften(self) -> bool:
+        """Take softer penalties after a solution that failed.
+
+        Returns:
+            Whether to try again; False for a contact without augmentation.
+        """
+        if self._multipliers is None or not self._multipliers.soften():
+            return False
+        self._stiffen(self._multipliers.factor)
+        return True
+
+    def _augment(self, augmentation: Augmentation | None, size: float, law: AugmentedLaw) -> None:
+        if augmentation is None:
+            return
+        check(augmentation, law)
+        self._multipliers = Multipliers(augmentation, size, law.penalties(), self._comm)
+        self._begin()
+
+    def _begin(self) -> None:
+        """Let trials start from the committed state."""
+        self._start = self.state
+        if self._multipliers is not None:
+            self._start = self._multipliers.begin(self.state, self.located(self.state))
+            self._stiffen(self._multipliers.level)
+
+    def located(self, state: State) -> npt.NDArray[np.bool_]:
+        """Whether each point of a state has a surface below it, (n,)."""
+        raise NotImplementedError
+
+    def _stiffen(self, factor: float) -> None:
+        """Multiply the penalties of the law with a factor."""
+        raise NotImplementedError
+
+    def _tangents(self, state: State) -> Floats:
+        """Tangents of the master of now at the coordinates of a state, (n, 2, 3), length."""
+        raise NotImplementedError
 
     @property
     def parts(self) -> tuple[ContactRecord, ...]:
@@ -131,10 +207,20 @@ class ContactRecord:
         return (self,)
 
     def persistent(self) -> dict[str, npt.NDArray[Any]]:
-        """All that the next increments and the output depend on, an entry for each point."""
+        """All that the next increments and the output depend on, an entry for each point.
+
+        Multipliers are the pressure and the elastic force in the state; "level" is what their
+        penalties are multiplied with.
+        """
         now = self._accepted
         fields = {name: getattr(now.response, name) for name in _KEPT}
-        own = {"state": self.state, "points": now.points, "areas": now.areas}
+        level = 1.0 if self._multipliers is None else self._multipliers.level
+        own = {
+            "state": self.state,
+            "points": now.points,
+            "areas": now.areas,
+            "level": np.full(len(now.areas), level),
+        }
         return {name: values.copy() for name, values in (own | fields).items()}
 
     def restore(self, kept: Mapping[str, npt.NDArray[Any]], u: Floats) -> None:
@@ -152,6 +238,9 @@ class ContactRecord:
         )
         self._accepted = Snapshot(np.array(kept["points"]), np.array(kept["areas"]), response)
         self._trial = None
+        if self._multipliers is not None:
+            self._multipliers.level = self.extreme(kept["level"])
+        self._begin()
 
     def rejoin(self) -> None:
         """Take over what its parts have restored."""

@@ -31,6 +31,8 @@ class TwoHalfPass(ContactRecord):
         reach: Distance within which each searches the other, length; twice the size of the facets
             that search if not given.
         current_area: Whether tractions act on the area of now (finite strain) or of the reference.
+        adjust: Gaps up to this one are closed and overlaps taken out before the first step, see
+            `adjusted`, length; nothing if not given.
         name: Name in output; the slave if not given.
 
     Attributes:
@@ -51,6 +53,7 @@ class TwoHalfPass(ContactRecord):
         degree: int | None = None,
         reach: float | None = None,
         current_area: bool = True,
+        adjust: float | None = None,
         name: str = "",
     ) -> None:
         self.master = master
@@ -64,6 +67,7 @@ class TwoHalfPass(ContactRecord):
                 degree=degree,
                 reach=reach,
                 current_area=current_area,
+                adjust=adjust,
                 weight=0.5,
                 mirrored=mirrored,
                 overlaps=True,
@@ -133,7 +137,7 @@ class TwoHalfPass(ContactRecord):
         """Points of both passes as seen from the slave."""
         a, b = (half.current for half in self.passes)
         r, s = a.response, b.response
-        feet = b.points - s.gap[:, None] * s.normal
+        feet = b.points - (s.gap + s.state["offset"])[:, None] * s.normal
         response = Response(
             traction=np.concatenate([r.traction, -s.traction]),
             tangent=np.empty((0, 3, 3)),

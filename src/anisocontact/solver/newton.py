@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import SNES, Mat, PETSc, Vec
+from anisocontact.contact import NotHeldError
 
 OptionValue = str | int | float | bool | None
 
@@ -70,14 +71,27 @@ class System(Protocol):
         """
         ...
 
+    def improve(self, x: Vec) -> bool:
+        """Take what the equilibrium `x` says of multipliers; whether it has to be found again.
+
+        Raises:
+            NotHeldError: They do not converge.
+        """
+        ...
+
+    def soften(self) -> bool:
+        """After a solution that failed: take penalties that are easier; whether to try again."""
+        ...
+
 
 @dataclass(frozen=True)
 class NewtonResult:
     """Outcome of an increment.
 
     Attributes:
-        iterations: Number of corrections.
-        residuals: Residual over the forces at work, of the start and after each correction.
+        iterations: Number of corrections, those for all multipliers.
+        residuals: Residual over the forces at work, of the start and after each correction with
+            the last multipliers.
         reason: Empty if it converged, else why it did not.
     """
 
@@ -150,10 +164,28 @@ class Newton:
         Returns:
             What came of it.
         """
-        self._residuals = []
         self._damping = damping
         search = self.snes.getLineSearch()
         search.setType("basic" if full_steps else self._line_search)
+        spent = 0
+        last = x.copy()
+        while True:
+            result = self._equilibrium(x)
+            spent += result.iterations
+            try:
+                again = self._problem.soften() if result.reason else self._problem.improve(x)
+            except NotHeldError as error:
+                result, again = replace(result, reason=str(error)), False
+            if not again:
+                return replace(result, iterations=spent)
+            if result.reason:
+                last.copy(x)
+            else:
+                x.copy(last)
+
+    def _equilibrium(self, x: Vec) -> NewtonResult:
+        """Newton's method with the multipliers as they are."""
+        self._residuals = []
         try:
             self.snes.solve(None, x)
         except PETSc.Error as error:

@@ -253,6 +253,20 @@ class Problem:
         first, _ = out.getOwnershipRange()
         out.zeroRows((first + rows).astype(PETSc.IntType), self._support_scale)
 
+    def improve(self, x: Vec) -> bool:
+        """Better multipliers of the contacts from equilibrium; whether any changed.
+
+        Raises:
+            NotHeldError: They do not converge.
+        """
+        if self._evaluated is None or not np.array_equal(self._evaluated, x.array_r):
+            self.evaluate(x)
+        return any([contact.improve() for contact in self.contacts])
+
+    def soften(self) -> bool:
+        """After a solution that failed: softer penalties of augmented contacts; whether any."""
+        return any([contact.soften() for contact in self.contacts])
+
     def commit(self, x: Vec) -> None:
         """Accept a state: the history of the contacts advances and energies are summed."""
         self.evaluate(x)

@@ -184,6 +184,20 @@ class ContactProblem:
             self._coupled.assemble(out, [k for c in meshed for k in c.couplings()])
         out.zeroRowsLocal(prescribed_rows(self.bcs), self._support_scale)
 
+    def improve(self, x: Vec) -> bool:
+        """Better multipliers of the contacts from equilibrium; whether any changed.
+
+        Raises:
+            NotHeldError: They do not converge.
+        """
+        if not np.array_equal(self.u.x.array[: self._owned], x.array_r):
+            self.evaluate(x)
+        return any([contact.improve() for contact in self.contacts])
+
+    def soften(self) -> bool:
+        """After a solution that failed: softer penalties of augmented contacts; whether any."""
+        return any([contact.soften() for contact in self.contacts])
+
     def _contact_force(self) -> Floats:
         with self._ghosted.localForm() as form:
             nodal = np.zeros(len(form.array_r))

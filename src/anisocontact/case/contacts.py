@@ -1,0 +1,144 @@
+"""From the `[[contact]]` tables of a case to the contacts of the finite-element level."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from anisocontact.augmentation import Augmentation
+from anisocontact.bulk import Material
+from anisocontact.case import objects
+from anisocontact.case.model import AUGMENTED, Case, ContactSection
+from anisocontact.case.quantity import AUTO
+from anisocontact.contact import (
+    AnyContact,
+    Contact,
+    FacetContact,
+    SelfContact,
+    TwoHalfPass,
+    auto_penalty,
+    check_start,
+    facet_size,
+)
+from anisocontact.mesh import Model
+from anisocontact.rigid import RigidBody
+
+__all__ = ["contact"]
+
+
+def contact(
+    case: Case,
+    section: ContactSection,
+    model: Model,
+    materials: Mapping[str, Material],
+    rigid: Mapping[str, RigidBody],
+    place: str,
+) -> AnyContact:
+    """The contact of a table.
+
+    Args:
+        case: The whole case.
+        section: The table.
+        model: Mesh of the bodies.
+        materials: Material of each body.
+        rigid: Rigid body that carries a surface, by name of the surface.
+        place: Path of the table, for messages.
+
+    Returns:
+        The contact, before the first step.
+
+    Raises:
+        InputError: A group is missing, a value does not fit, or the contact cannot be meant as it
+            is: see `check_start`.
+    """
+    sides = [("slave", section.slave)] + [("master", section.master)] * section.meshed
+    bodies = [materials[model.body_of(group, f"{place}.{side}")] for side, group in sides]
+    auto = min(
+        auto_penalty(model, group, body) for (_, group), body in zip(sides, bodies, strict=True)
+    )
+    finite = not all(body.linear for body in bodies)
+    if section.meshed:
+        made = _meshed(section, model, auto, finite, place)
+    else:
+        made = _rigid(case, section, model, rigid.get(section.master), auto, finite, place)
+    with objects.within(place):
+        check_start(made, facet_size(model, section.slave))
+    return made
+
+
+def _meshed(
+    section: ContactSection, model: Model, auto: float, finite: bool, place: str
+) -> AnyContact:
+    law = objects.pair_law(section, place, auto)
+    name = f"{section.slave} on {section.master}"
+    with objects.within(place):
+        if section.self_contact:
+            return SelfContact(
+                model,
+                section.slave,
+                law=law,
+                degree=section.degree,
+                apart=section.apart,
+                current_area=finite,
+                name=f"{section.slave} on itself",
+            )
+        if section.half_passes:
+            return TwoHalfPass(
+                model,
+                section.slave,
+                section.master,
+                law=law,
+                degree=section.degree,
+                current_area=finite,
+                adjust=_adjust(section),
+                name=name,
+            )
+        return FacetContact(
+            model,
+            section.slave,
+            section.master,
+            law=law,
+            degree=section.degree,
+            current_area=finite,
+            augmentation=_augmentation(section),
+            adjust=_adjust(section),
+            name=name,
+        )
+
+
+def _rigid(
+    case: Case,
+    section: ContactSection,
+    model: Model,
+    body: RigidBody | None,
+    auto: float,
+    finite: bool,
+    place: str,
+) -> AnyContact:
+    master = objects.surface(case.surface[section.master], f"surface.{section.master}")
+    interface = objects.interface(section, master, place, auto)
+    with objects.within(place):
+        return Contact(
+            model,
+            section.slave,
+            interface,
+            degree=section.degree,
+            current_area=finite,
+            augmentation=_augmentation(section),
+            adjust=_adjust(section),
+            name=f"{section.slave} on {section.master}",
+            body=body,
+        )
+
+
+def _augmentation(section: ContactSection) -> Augmentation | None:
+    """What the table asks for; a stiffness of adhesion that the user gave is physical."""
+    if section.method != AUGMENTED:
+        return None
+    tangential = section.adhesion.parameters().get("stiffness") == AUTO
+    if section.tolerance is None:
+        return Augmentation(tangential=tangential)
+    return Augmentation(section.tolerance, tangential)
+
+
+def _adjust(section: ContactSection) -> float | None:
+    return section.adjust_gap if section.adjust else None

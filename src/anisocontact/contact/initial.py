@@ -1,0 +1,170 @@
+"""Contacts as they are before the first step: overlaps, sides, singular directions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.anisotropy import DirectionField
+from anisocontact.contact.contact import Contact
+from anisocontact.contact.facet_contact import FacetContact
+from anisocontact.contact.two_half_pass import TwoHalfPass
+from anisocontact.errors import InputError
+from anisocontact.interface import FAILURE, Interface, PairLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.python_law import PythonInterface
+
+Floats = npt.NDArray[np.float64]
+
+#: Cosine of the angle of the normals of slave and master above which they point the same way.
+SAME_WAY = 0.5
+#: Depth over the facet size above which surfaces count as overlapping: more than the rounding of a
+#: mesh file.
+OVERLAP = 1e-6
+#: Distance over the facet size within which a point can be in contact at once.
+NEAR = 1.0
+
+
+@dataclass(frozen=True)
+class Overlap:
+    """Slave points below the surface of the master.
+
+    Attributes:
+        depth: Largest depth, length.
+        point: Where it is, (3,), length.
+        count: Number of such points over all ranks.
+    """
+
+    depth: float
+    point: Floats
+    count: int
+
+
+def initial_overlap(contact: Contact | FacetContact | TwoHalfPass, size: float) -> Overlap | None:
+    """Overlap of the accepted state.
+
+    Args:
+        contact: The contact.
+        size: Facet size, length.
+
+    Returns:
+        The overlap, None if there is none worth a word.
+    """
+    depth = -contact.state["gap"]
+    deepest = int(np.argmax(depth)) if len(depth) else -1
+    local = (
+        float(depth[deepest]) if len(depth) else -np.inf,
+        contact.points[deepest].tolist() if len(depth) else [],
+        int((depth > OVERLAP * size).sum()),
+    )
+    everywhere = contact.space.mesh.comm.allgather(local)
+    worst = max(everywhere)
+    count = sum(one[2] for one in everywhere)
+    return Overlap(worst[0], np.array(worst[1]), count) if count else None
+
+
+def check_start(contact: Contact | FacetContact | TwoHalfPass, size: float) -> None:
+    """Refuse what cannot be meant.
+
+    Args:
+        contact: The contact, before the first step.
+        size: Facet size, length.
+
+    Raises:
+        InputError: Slave and master face the same way, or a direction field has no direction at a
+            point that can be in contact at once.
+    """
+    if isinstance(contact, TwoHalfPass):
+        for half in contact.passes:
+            check_start(half, size)
+        return
+    _check_sides(contact, size)
+    for place, field in _fields(contact.interface):
+        gaps = np.abs(contact.state["gap"])
+        near = contact.located(contact.state) & (gaps <= NEAR * size)
+        bad = _singular(contact, field, size)
+        if contact.space.mesh.comm.allreduce(int((~bad).sum())) > 0:
+            bad &= near
+        _refuse(
+            contact,
+            bad,
+            "no direction at {count} slave points that can be in contact, the first at {point}: "
+            "the field is singular there, out of its table or parallel to its normal",
+            place,
+        )
+
+
+def _check_sides(contact: Contact | FacetContact, size: float) -> None:
+    """The nearest points of two bodies that do not overlap have normals that face each other."""
+    located = contact.located(contact.state)
+    gaps = np.abs(contact.state["gap"])
+    comm = contact.space.mesh.comm
+    least = min(comm.allgather(float(gaps[located].min(initial=np.inf))))
+    nearest = located & (gaps <= least + OVERLAP * size)
+    outward = contact.outward()
+    cosine = np.einsum("nd,nd->n", outward, contact.last.normal)
+    wrong = nearest & (cosine > SAME_WAY)
+    if 2 * comm.allreduce(int(wrong.sum())) <= comm.allreduce(int(nearest.sum())):
+        return
+    _refuse(
+        contact,
+        wrong,
+        f"{contact.slave!r} faces the same way as its master: at {{point}} the normals of slave "
+        f"and master are {{outward}} and {{normal}}; turn the surface over, or name the facets on "
+        "the other side",
+        "master",
+    )
+
+
+def _fields(law: Interface | PairLaw | PythonInterface) -> list[tuple[str, DirectionField]]:
+    if isinstance(law, PythonInterface):
+        named = [("directions", law.directions)]
+    else:
+        named = [
+            ("adhesion.directions", law.adhesion.directions),
+            ("friction.directions", law.friction.directions),
+            ("friction.directions_second", law.friction.directions_second),
+        ]
+    return [(place, field) for place, field in named if field is not None]
+
+
+def _singular(
+    contact: Contact | FacetContact, field: DirectionField, size: float
+) -> npt.NDArray[np.bool_]:
+    """Points at which a field has no direction: asked by pressing every point a little."""
+    law = (
+        NormalLaw(penalty=1.0),
+        Adhesion(stiffness=(1.0, 1.0)),
+        Friction(coefficients=(1.0, 1.0), directions=field),
+    )
+    state = contact.state.copy()
+    state["offset"] += state["gap"] + size
+    return np.asarray(contact.probe(law, state) == _DIRECTION)
+
+
+_DIRECTION = next(code for code, text in enumerate(FAILURE) if "direction field" in text)
+
+
+def _refuse(
+    contact: Contact | FacetContact, bad: npt.NDArray[np.bool_], text: str, field: str
+) -> None:
+    found = np.flatnonzero(bad)
+    local: Any = None
+    if found.size:
+        first = found[0]
+        vectors = (contact.points[first], contact.outward()[first], contact.last.normal[first])
+        local = [_shown(vector) for vector in vectors]
+    comm = contact.space.mesh.comm
+    everywhere = [one for one in comm.allgather(local) if one is not None]
+    count = comm.allreduce(int(found.size))
+    if everywhere:
+        point, outward, normal = everywhere[0]
+        message = text.format(count=count, point=point, outward=outward, normal=normal)
+        raise InputError(message, field)
+
+
+def _shown(vector: Floats) -> str:
+    return "(" + ", ".join(f"{v + 0.0:.4g}" for v in vector) + ")"
