@@ -242,3 +242,41 @@ def test_a_ball_without_friction_may_spin(fe):
                 load={"ball": {"z": 6.0, "rz": 0.1}},
             ),
         )
+
+
+@pytest.mark.parametrize("stop", range(1, 8))
+def test_restart(fe, stop):
+    """A run that goes on from the state of any increment ends as one without a break, bitwise.
+
+    Requirement: history, poses, loads and supports of rigid bodies are part of what is kept.
+    Source: the same numbers go the same way.
+    """
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import Solver, Step, Turn
+
+    def make():
+        ball = RigidBody("ball", (0.4, 0.7, -0.9), free=True, springs={"x": 20.0, "rz": 6.0})
+        block = fe.block(on_sphere(), body=ball, cells=(3, 3, 1))
+        steps = [
+            Step("touch", 2, clamped(), motion={"ball": {"z": 0.03}}),
+            Step("load", 3, motion={"ball": {"x": None, "rz": None}}, load={"ball": {"x": 0.5}}),
+            Step("turn", 2, rotation={"ball": Turn((0, 1, 0), 0.05, (0.5, 0.5, -1.0))}),
+            Step("go", 2, motion={"ball": {"x": None, "rx": 0.02}}, load={"ball": {"x": 0.1}}),
+        ]
+        return ball, block, Solver(block.problem, steps)
+
+    ball, block, solver = make()
+    for done, _ in enumerate(solver.run(), 1):
+        if done == stop:
+            kept = solver.persistent()
+    again, other, rest = make()
+    rest.restore(kept)
+    assert len(list(rest.run())) == 9 - stop
+    assert np.array_equal(again.accepted.values, ball.accepted.values)
+    assert np.array_equal(again.accepted.rotation, ball.accepted.rotation)
+    assert np.array_equal(other.contact.last.traction, block.contact.last.traction)
+    assert other.problem.energies() == block.problem.energies()
+    found = [
+        problem.rigid.support(b) for problem, b in ((block.problem, ball), (other.problem, again))
+    ]
+    assert np.array_equal(*found)
