@@ -62,6 +62,10 @@ def test_run(rigid_text, tmp_path, capsys):
     assert summary["energy"]["springs"] > 0.0
     history = Results(tmp_path / "out").history
     assert history["rigid.plate.translation.x"][-1] == plate["translation"][0]
+    patch = Results(tmp_path / "out").surfaces()
+    assert patch.bounds[4:] == pytest.approx([0.01, 0.01])
+    marks = patch.point_data["direction_friction_1"]
+    assert np.allclose(marks, [np.cos(plate["turn"][2]), np.sin(plate["turn"][2]), 0.0])
     report = (tmp_path / "out" / "report.html").read_text()
     assert "Rigid bodies at the end" in report
     assert "picture" not in (tmp_path / "out" / "run.log").read_text()

@@ -32,6 +32,8 @@ OWN = (
     "fields",
     "contact.pvd",
     "contact",
+    "surfaces.pvd",
+    "surfaces",
     "pictures",
     "report.html",
     "case.toml",

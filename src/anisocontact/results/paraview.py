@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import errno
-import os
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,8 +23,6 @@ __all__ = ["Bodies", "Collection", "slave_points"]
 
 Floats = npt.NDArray[np.float64]
 
-#: Last line of a file of VTK.
-_END = b"</VTKFile>"
 #: Rows and columns of the stress components, in the order VTK has them.
 _SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
 
@@ -63,8 +59,10 @@ class Collection:
         folder.mkdir(exist_ok=True)
         target = folder / f"{len(self._entries):04d}{self._suffix}"
         with replacing(target) as draft:
-            data.save(str(draft), binary=True)
-            _check_whole(draft)
+            try:
+                draft.write_bytes(_encoded(data))
+            except OSError as error:
+                raise OSError(error.errno, error.strerror, str(target)) from None
         self._entries.append((time, f"{folder.name}/{target.name}"))
         self._write_list()
 
@@ -80,13 +78,21 @@ class Collection:
         )
 
 
-def _check_whole(path: Path) -> None:
-    """Raise OSError where VTK has lost the end of a file without a word."""
-    with path.open("rb") as file:
-        size = file.seek(0, os.SEEK_END)
-        file.seek(max(0, size - len(_END) - 1))
-        if _END not in file.read():
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(path))
+def _encoded(data: pyvista.DataSet) -> bytes:
+    """Content of the file of a data set.
+
+    VTK makes it in memory: where it writes itself, it loses the end of a file on a full disk
+    without a word, or ends the process.
+    """
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
+
+    grid = data.IsA("vtkUnstructuredGrid")
+    writer = vtkXMLUnstructuredGridWriter() if grid else vtkXMLPolyDataWriter()
+    writer.SetInputData(data)
+    writer.SetDataModeToBinary()
+    writer.SetWriteToOutputString(True)
+    writer.Write()
+    return str(writer.GetOutputString()).encode()
 
 
 class Bodies:

@@ -80,6 +80,18 @@ class Results:
         points: pyvista.PolyData = self._read("contact.pvd", index)
         return points
 
+    def surfaces(self, index: int = -1) -> pyvista.PolyData:
+        """Patches of the analytic masters.
+
+        Args:
+            index: Which of `times`, the last one if not given.
+
+        Returns:
+            Surfaces of pyvista, where they are at that time.
+        """
+        patches: pyvista.PolyData = self._read("surfaces.pvd", index)
+        return patches
+
     def fields_file(self, index: int = -1) -> Path:
         """File that `fields` reads."""
         return self._file("fields.pvd", index)

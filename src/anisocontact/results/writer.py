@@ -19,6 +19,7 @@ from anisocontact.results.history import History
 from anisocontact.results.paraview import Bodies, Collection, slave_points
 from anisocontact.results.report import write_report
 from anisocontact.results.snapshot import Observer, laws
+from anisocontact.results.surfaces import Surfaces
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
 from anisocontact.solver.persistent import Persistent
 
@@ -88,6 +89,8 @@ class Writer:
         self._bodies = Bodies(problem)
         self._fields = Collection(self.folder / "fields.pvd", ".vtu")
         self._points = Collection(self.folder / "contact.pvd", ".vtp")
+        self._masters = Surfaces(problem.contacts, problem.model.mesh.comm)
+        self._surfaces = Collection(self.folder / "surfaces.pvd", ".vtp")
         self.summary: dict[str, Any] = self._head(title)
         if resumed is None:
             self._take(self._observer.numbers())
@@ -121,6 +124,7 @@ class Writer:
         self._disk.write(lambda: self._history.resume(state["history"]))
         self._disk.write(lambda: self._fields.resume(state["fields"]))
         self._disk.write(lambda: self._points.resume(state["contact"]))
+        self._disk.write(lambda: self._surfaces.resume(state["surfaces"]))
         self.log(f"goes on after {self.summary['steps']} accepted increments")
 
     def state(self) -> dict[str, Any]:
@@ -133,6 +137,7 @@ class Writer:
             "history": self._history.state(),
             "fields": self._fields.state(),
             "contact": self._points.state(),
+            "surfaces": self._surfaces.state(),
         }
 
     def keep(self, kept: Persistent, facts: Mapping[str, Any]) -> None:
@@ -250,6 +255,9 @@ class Writer:
             self._disk.write(lambda: self._fields.add(at, grid))
         if points is not None:
             self._disk.write(lambda: self._points.add(at, points))
+        masters = self._masters.mesh()
+        if masters is not None:
+            self._disk.write(lambda: self._surfaces.add(at, masters))
         self._written = at
 
     def _write_summary(self) -> None:

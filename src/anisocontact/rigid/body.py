@@ -135,6 +135,10 @@ class RigidBody:
         """Points of space where the body has them in its first configuration, (n, 3)."""
         return np.asarray((points - self.position) @ self.trial.rotation + self.reference)
 
+    def out_of_body(self, points: Floats) -> Floats:
+        """Points of the first configuration where they are in space, (n, 3)."""
+        return np.asarray(self.to_space(points - self.reference) + self.position)
+
     def to_space(self, vectors: Floats) -> Floats:
         """Vectors of the first configuration as they are in space, (..., 3)."""
         return np.asarray(vectors @ self.trial.rotation.T)

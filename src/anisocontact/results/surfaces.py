@@ -1,0 +1,100 @@
+"""Analytic masters for ParaView: patches of surfaces where rigid bodies have brought them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.anisotropy import DirectionField
+from anisocontact.contact import AnyContact, Contact
+from anisocontact.python_law import PythonInterface
+
+if TYPE_CHECKING:
+    import pyvista
+
+__all__ = ["Surfaces"]
+
+Floats = npt.NDArray[np.float64]
+
+#: Points of a patch along each coordinate.
+POINTS = 33
+#: What an endless surface reaches beyond the slave points, over their extent.
+MARGIN = 0.5
+
+
+class Surfaces:
+    """Patches of the analytic masters of a problem.
+
+    A coordinate that ends or closes is shown whole, an endless one around the feet of the slave
+    points at the start.
+
+    Args:
+        contacts: All contacts; those with a meshed master have no patch.
+        comm: Communicator of the mesh.
+    """
+
+    def __init__(self, contacts: Iterable[AnyContact], comm: Any) -> None:
+        self._first = comm.rank == 0
+        self._patches = [
+            (number, contact, _patch(contact, comm))
+            for number, contact in enumerate(contacts)
+            if isinstance(contact, Contact)
+        ]
+
+    def mesh(self) -> pyvista.PolyData | None:
+        """The patches of the accepted state; None without one, and but on the first rank.
+
+        Point data: `contact` (its number) and `direction_friction_1`, the first axis of friction,
+        zero where there is none.
+        """
+        import pyvista
+
+        if not (self._first and self._patches):
+            return None
+        corners = np.arange(POINTS * POINTS).reshape(POINTS, POINTS)
+        ring = (corners[:-1, :-1], corners[1:, :-1], corners[1:, 1:], corners[:-1, 1:])
+        faces = np.stack([np.full((POINTS - 1, POINTS - 1), 4), *ring], axis=-1).reshape(-1, 5)
+        meshes = []
+        for number, contact, drawn in self._patches:
+            points, directions = _moved(contact, *drawn)
+            mesh = pyvista.PolyData(points, faces.reshape(-1))
+            mesh.point_data["contact"] = np.full(len(points), number, dtype=np.int32)
+            mesh.point_data["direction_friction_1"] = directions
+            meshes.append(mesh)
+        joined: pyvista.PolyData = pyvista.merge(meshes, merge_points=False)
+        return joined
+
+
+def _moved(contact: Contact, points: Floats, directions: Floats) -> tuple[Floats, Floats]:
+    """Points and vectors of a patch where the rigid body is that carries it."""
+    if contact.body is None:
+        return points, directions
+    return contact.body.out_of_body(points), contact.body.to_space(directions)
+
+
+def _patch(contact: Contact, comm: Any) -> tuple[Floats, Floats]:
+    """Points of the patch and first axes of friction there, where the surface was drawn."""
+    surface = contact.interface.surface
+    xi = surface.project(contact.quadrature.reference, derivatives=False).xi
+    low = np.min(comm.allgather(xi.min(axis=0, initial=np.inf)), axis=0)
+    high = np.max(comm.allgather(xi.max(axis=0, initial=-np.inf)), axis=0)
+    margin = MARGIN * (high - low)
+    start, end, _ = surface.domain
+    low = np.where(np.isfinite(start), start, np.maximum(low - margin, start))
+    high = np.where(np.isfinite(end), end, np.minimum(high + margin, end))
+    first, second = np.meshgrid(*np.linspace(low, high, POINTS).T, indexing="ij")
+    at = np.column_stack([first.reshape(-1), second.reshape(-1)])
+    directions = np.zeros((len(at), 3))
+    field = _friction_directions(contact)
+    if field is not None:
+        axes, regular = field.axes(surface, at)
+        directions[regular] = axes[regular, 0]
+    return surface.position(at), directions
+
+
+def _friction_directions(contact: Contact) -> DirectionField | None:
+    law = contact.interface
+    return law.directions if isinstance(law, PythonInterface) else law.friction.directions
