@@ -110,7 +110,7 @@ class SlidingRule:
 
 def state_layout() -> list[Any]: ...
 
-state_size: int = 168
+state_size: int = 184
 
 class Interface:
     def __init__(
@@ -124,6 +124,7 @@ class Interface:
         friction_directions_second: Field | None,
         rule: tuple[str, Mapping[str, Sequence[float]]],
         evolution: str,
+        on_slave: Sequence[bool] = [False, False, False],
     ) -> None: ...
     def initial_state(self, x: NDArray[numpy.float64]) -> dict[str, NDArray[Any]]: ...
     def update(
@@ -133,6 +134,9 @@ class Interface:
         dt: float,
         tangent: bool,
         threads: int,
+        own_reference: NDArray[numpy.float64],
+        own_reference_tangents: NDArray[numpy.float64],
+        own_tangents: NDArray[numpy.float64],
     ) -> dict[str, NDArray[Any]]: ...
 
 class FramedInterface:
@@ -217,6 +221,7 @@ class FacetPairs:
         friction_directions_second: Field | None,
         rule: tuple[str, Mapping[str, Sequence[float]]],
         mirrored: bool = False,
+        on_slave: Sequence[bool] = [False, False, False],
     ) -> None: ...
     def update(
         self,
@@ -236,6 +241,29 @@ class FacetPairs:
         xi: NDArray[numpy.float64],
         feature: NDArray[numpy.int8],
         edge: NDArray[numpy.float64],
+        near: NDArray[numpy.bool_],
+        tangent: bool,
+        threads: int,
+    ) -> dict[str, NDArray[Any]]: ...
+    def assemble(
+        self,
+        state: NDArray[numpy.uint8],
+        dt: float,
+        slave_nodes: NDArray[numpy.int32],
+        slave_shape: NDArray[numpy.float64],
+        slave_gradient: NDArray[numpy.float64],
+        weight: NDArray[numpy.float64],
+        current_area: bool,
+        now: NDArray[numpy.float64],
+        reference: NDArray[numpy.float64],
+        connectivity: NDArray[numpy.int32],
+        topology: NDArray[numpy.int8],
+        flip: NDArray[numpy.bool_],
+        facet: NDArray[numpy.int32],
+        xi: NDArray[numpy.float64],
+        feature: NDArray[numpy.int8],
+        edge: NDArray[numpy.float64],
+        near: NDArray[numpy.bool_],
         tangent: bool,
         threads: int,
     ) -> dict[str, NDArray[Any]]: ...

@@ -245,7 +245,8 @@ class Interface:
             Tractions, tangent and trial state.
         """
         x = points(x, 3)
-        r = self.core.update(raw_state(state), x, dt, tangent, self.threads)
+        none = np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 2, 3))
+        r = self.core.update(raw_state(state), x, dt, tangent, self.threads, *none)
         return Response(
             traction=r["traction"],
             tangent=r["tangent"],

@@ -8,7 +8,9 @@ with the projection solved anew; their error quarters as the step is halved.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -85,7 +87,15 @@ class Setting:
     state: np.ndarray
     at: np.ndarray
 
-    def update(self, now: np.ndarray, tangent: bool = True) -> dict[str, np.ndarray]:
+    def update(
+        self, now: np.ndarray, tangent: bool = True, repeat: int = 1, threads: int = 1
+    ) -> dict[str, np.ndarray]:
+        return self.ask(self.core.update, now, tangent, repeat, threads)
+
+    def ask(
+        self, ask: Callable[..., Any], now: np.ndarray, tangent: bool, repeat: int, threads: int
+    ) -> dict[str, Any]:
+        """What the core answers for the point, given several times."""
         ks, km = len(NODES[self.slave]), len(NODES[self.master])
         n, dn = (
             shape(self.slave, self.at),
@@ -93,25 +103,26 @@ class Setting:
         )
         xi = project(self.master, now[ks : ks + km], n @ now[:ks])
         connectivity = np.arange(ks, ks + 2 * km, dtype=np.int32).reshape(2, km)
-        return self.core.update(
-            raw_state(self.state),
+        return ask(
+            raw_state(np.repeat(self.state, repeat)),
             0.5,
-            np.arange(ks, dtype=np.int32)[None],
-            n[None].copy(),
-            dn[None].copy(),
-            np.array([0.7]),
+            np.tile(np.arange(ks, dtype=np.int32), (repeat, 1)),
+            np.tile(n, (repeat, 1)),
+            np.tile(dn, (repeat, 1, 1)),
+            np.full(repeat, 0.7),
             True,
             now,
             self.reference,
             connectivity,
             np.full(2, TOPOLOGIES.index(self.master), dtype=np.int8),
             np.zeros(2, dtype=np.bool_),
-            np.zeros(1, dtype=np.int32),
-            xi[None].copy(),
-            np.zeros(1, dtype=np.int8),
-            np.zeros((1, 2)),
+            np.zeros(repeat, dtype=np.int32),
+            np.tile(xi, (repeat, 1)),
+            np.zeros(repeat, dtype=np.int8),
+            np.zeros((repeat, 2)),
+            np.ones(repeat, dtype=np.bool_),
             tangent,
-            1,
+            threads,
         )
 
 
@@ -205,6 +216,56 @@ def test_open_point_has_no_force() -> None:
     assert as_state(r["state"])["status"][0] == STATUS["open"]
     assert not r["residual"].any()
     assert not r["tangent"].any()
+
+
+def _dense(blocks: tuple[Any, ...], nodes: int) -> np.ndarray:
+    """Blocks of pairs of nodes as one matrix."""
+    out = np.zeros((nodes, nodes, 3, 3))
+    for rows, columns, values in blocks:
+        for r, c, block in zip(rows, columns, values, strict=True):
+            np.add.at(out, (r[:, None], c[None, :]), block)
+    return out
+
+
+@pytest.mark.parametrize("committed", [0, 1])
+@pytest.mark.parametrize("master", ["tri3", "quad8", "quad9"])
+def test_blocks_of_facets(master: str, committed: int) -> None:
+    """Summed by facets: the forces and tangents of the points, 1e-13 of the largest, rounding."""
+    s = make("quad9", master, "maximum-dissipation", "slip")
+    s.state["facet"] = committed
+    one = s.update(s.now)
+    three = s.ask(s.core.assemble, s.now, True, 3, 1)
+    rows = 9 + len(NODES[master])
+    nodes = one["nodes"][0]
+    blocks = one["tangent"][0].reshape(rows, 3, -1, 3).swapaxes(1, 2)
+    exact = _dense([(nodes[None, :rows], nodes[None], blocks[None])], len(s.now))
+    assert len(three["blocks"][0][0]) == 1
+    assert np.abs(_dense(three["blocks"], len(s.now)) - 3 * exact).max() < 1e-13 * exact.max()
+    force = np.zeros(s.now.shape)
+    np.add.at(force, nodes[:rows], -3 * one["residual"][0].reshape(-1, 3))
+    assert np.abs(three["force"] - force).max() < 1e-13 * force.max()
+
+
+def test_threads_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Thousands of points in one, two and five threads: the same bits."""
+    s = make("quad4", "quad4", "maximum-dissipation", "slip")
+    # nodes that turn round from point to point, so that every point counts as on another facet
+    tile = np.tile
+
+    def turning(a: np.ndarray, times: tuple[int, ...]) -> np.ndarray:
+        out = tile(a, times)
+        if len(out) == 3000 and out.shape[1] == 4:
+            out[1::2] = out[1::2, ::-1]
+        return out
+
+    monkeypatch.setattr(np, "tile", turning)
+    a, *others = (s.ask(s.core.assemble, s.now, True, 3000, t) for t in (1, 2, 5))
+    assert len(a["blocks"][0][0]) == 3000
+    for b in others:
+        for name in ("state", "traction", "area", "force"):
+            assert np.array_equal(a[name], b[name])
+        for x, y in zip(a["blocks"], b["blocks"], strict=True):
+            assert np.array_equal(x[2], y[2])
 
 
 def test_action_is_reaction() -> None:

@@ -93,7 +93,8 @@ nb::dict friction_tensor(const FrictionHandle& f, const SurfaceHandle& s, const 
     const auto c = coordinates(xi, i);
     const auto g = geometry_at(s, c);
     const auto a = axes_or_any(first, g, c), b = axes_or_any(second, g, c);
-    const auto m = law::friction_tensor(f.any, g, a, b);
+    const auto m =
+        law::friction_tensor(f.any, g.a_contra, g.project_contra(a.e), g.project_contra(b.e));
     for (std::size_t k = 0; k < 4; ++k) contra.data[4 * i + k] = m(k / 2, k % 2);
     valid.data[i] = a.valid && b.valid;
   }

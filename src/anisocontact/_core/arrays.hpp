@@ -45,4 +45,8 @@ inline void put3(double* p, std::size_t i, const Vec3<double>& v) {
   for (std::size_t k = 0; k < 3; ++k) p[3 * i + k] = v[static_cast<Eigen::Index>(k)];
 }
 
+inline void put9(double* p, std::size_t i, const Eigen::Matrix3d& m) {
+  for (Eigen::Index k = 0; k < 9; ++k) p[9 * i + static_cast<std::size_t>(k)] = m(k / 3, k % 3);
+}
+
 }  // namespace anisocontact::bindings

@@ -119,9 +119,9 @@ void bind_framed(nb::module_& m) {
           "__init__",
           [](FramedHandle* self, const SurfaceHandle& surface, const Named& normal,
              const FieldHandle* directions) {
-            new (self) FramedHandle{surface.any,
-                                    law::NormalLaws::make(normal.first, Values(normal.second)),
-                                    unwrap(directions)};
+            new (self) FramedHandle{
+                surface.any, law::NormalLaws::make(normal.first, Values(normal.second)),
+                directions == nullptr ? std::nullopt : std::optional(directions->any)};
           },
           nb::arg("surface"), nb::arg("normal"), nb::arg("directions").none())
       .def("kinematics", &kinematics, nb::arg("state"), nb::arg("x"), nb::arg("dt"),

@@ -1,5 +1,6 @@
 // Batches of points through a whole interface.
 
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
@@ -51,32 +52,56 @@ nb::list state_layout() {
   return l;
 }
 
+using Tangents = nb::ndarray<const double, nb::shape<-1, 2, 3>, nb::c_contig, nb::device::cpu>;
+
+/// The slave where it has directions: positions in the reference configuration, tangents there and
+/// now. Without rows there are no such directions.
+struct OwnInput {
+  Points reference;
+  Tangents reference_tangents, tangents;
+
+  bool given() const { return reference.shape(0) > 0; }
+  kernel::Carrier at(std::size_t i) const {
+    kernel::Carrier c;
+    if (!given()) return c;
+    c.reference.position = row3(reference.data(), i);
+    for (std::size_t k = 0; k < 2; ++k) {
+      c.reference.d1[k] = row3(reference_tangents.data(), 2 * i + k);
+      c.now.d1[k] = row3(tangents.data(), 2 * i + k);
+    }
+    return c;
+  }
+};
+
 nb::dict update(const InterfaceHandle& h, const Bytes& state, const Points& x, double dt,
-                bool with_tangent, std::size_t threads) {
+                bool with_tangent, std::size_t threads, const Points& own_reference,
+                const Tangents& own_reference_tangents, const Tangents& own_tangents) {
   const std::size_t n = x.shape(0);
   check_states(state, n);
+  const OwnInput own{own_reference, own_reference_tangents, own_tangents};
+  const std::size_t m = with_tangent ? n : 0, own_rows = own.given() ? m : 0;
   Array<std::uint8_t> next({n, sizeof(PointState)});
-  Array<double> traction({n, 3}), tangent({with_tangent ? n : 0, 3, 3}), normal({n, 3}),
-      adhesion({n, 2, 3}), friction({n, 2, 3});
+  Array<double> traction({n, 3}), tangent({m, 3, 3}), own_tangent({own_rows, 2, 3, 3}),
+      normal({n, 3}), adhesion({n, 2, 3}), friction({n, 2, 3});
   Array<std::int8_t> failure({n});
   {
     nb::gil_scoped_release free;
     kernel::parallel_for(n, threads, [&](std::size_t i) {
       const PointState s = load(state.data(), i);
       const Vec3<double> p = row3(x.data(), i);
-      const auto r = with_tangent ? kernel::update<Dual<3>>(h.itf, s, p, dt)
-                                  : kernel::update<double>(h.itf, s, p, dt);
+      const kernel::Carrier carrier = own.at(i);
+      const auto* slave = own.given() ? &carrier : nullptr;
+      const auto r = with_tangent ? kernel::update<true>(h.itf, s, p, slave, dt)
+                                  : kernel::update<false>(h.itf, s, p, slave, dt);
       store(next.data, i, r.state);
       put3(traction.data, i, r.traction);
       put3(normal.data, i, r.normal);
       for (std::size_t k = 0; k < 2; ++k) {
         put3(adhesion.data, 2 * i + k, r.adhesion_axes[k]);
         put3(friction.data, 2 * i + k, r.friction_axes[k]);
+        if (own_rows > 0) put9(own_tangent.data, 2 * i + k, r.d_slave_tangents[k]);
       }
-      if (with_tangent)
-        for (std::size_t k = 0; k < 9; ++k)
-          tangent.data[9 * i + k] =
-              r.tangent(static_cast<Eigen::Index>(k / 3), static_cast<Eigen::Index>(k % 3));
+      if (with_tangent) put9(tangent.data, i, r.tangent);
       failure.data[i] = static_cast<std::int8_t>(r.failure);
     });
   }
@@ -84,6 +109,7 @@ nb::dict update(const InterfaceHandle& h, const Bytes& state, const Points& x, d
   d["state"] = next.array;
   d["traction"] = traction.array;
   d["tangent"] = tangent.array;
+  d["tangent_own"] = own_tangent.array;
   d["normal"] = normal.array;
   d["adhesion_axes"] = adhesion.array;
   d["friction_axes"] = friction.array;
@@ -102,16 +128,16 @@ void bind_kernel(nb::module_& m) {
           [](InterfaceHandle* self, const SurfaceHandle& surface, const Named& normal,
              const Named& adhesion, const FieldHandle* adhesion_directions, const Named& friction,
              const FieldHandle* friction_directions, const FieldHandle* friction_directions_second,
-             const Named& rule, const std::string& evolution) {
+             const Named& rule, const std::string& evolution, const OnSlave& on_slave) {
             new (self) InterfaceHandle{
                 {surface.any,
                  make_law(normal, adhesion, adhesion_directions, friction, friction_directions,
-                          friction_directions_second, rule, evolution)}};
+                          friction_directions_second, rule, evolution, on_slave)}};
           },
           nb::arg("surface"), nb::arg("normal"), nb::arg("adhesion"),
           nb::arg("adhesion_directions").none(), nb::arg("friction"),
           nb::arg("friction_directions").none(), nb::arg("friction_directions_second").none(),
-          nb::arg("rule"), nb::arg("evolution"))
+          nb::arg("rule"), nb::arg("evolution"), nb::arg("on_slave") = OnSlave{})
       .def(
           "initial_state",
           [](const InterfaceHandle& h, const Points& x) {
@@ -119,7 +145,8 @@ void bind_kernel(nb::module_& m) {
           },
           nb::arg("x"))
       .def("update", &update, nb::arg("state"), nb::arg("x"), nb::arg("dt"), nb::arg("tangent"),
-           nb::arg("threads"));
+           nb::arg("threads"), nb::arg("own_reference"), nb::arg("own_reference_tangents"),
+           nb::arg("own_tangents"));
 }
 
 }  // namespace anisocontact::bindings

@@ -1,6 +1,7 @@
 #pragma once
 // The handles that Python holds.
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,9 +25,14 @@ struct FieldHandle {
   anisotropy::AnyField any;
 };
 
-inline std::optional<anisotropy::AnyField> unwrap(const FieldHandle* f) {
-  return f == nullptr ? std::nullopt : std::optional(f->any);
+/// A field, and whether it lies on the slave.
+inline kernel::Directions directions(const FieldHandle* f, bool on_slave) {
+  return {f == nullptr ? std::nullopt : std::optional(f->any),
+          on_slave ? kernel::Side::slave : kernel::Side::master};
 }
+
+/// Whether the directions of adhesion, of friction and of the second surface lie on the slave.
+using OnSlave = std::array<bool, 3>;
 
 /// A registered entry by name, with its values.
 using Named = std::pair<std::string, ValueMap>;
@@ -35,13 +41,14 @@ inline kernel::InterfaceLaw make_law(const Named& normal, const Named& adhesion,
                                      const FieldHandle* adhesion_directions, const Named& friction,
                                      const FieldHandle* friction_directions,
                                      const FieldHandle* friction_directions_second,
-                                     const Named& rule, const std::string& evolution) {
+                                     const Named& rule, const std::string& evolution,
+                                     const OnSlave& on_slave) {
   return {law::NormalLaws::make(normal.first, Values(normal.second)),
           law::AdhesionModels::make(adhesion.first, Values(adhesion.second)),
-          unwrap(adhesion_directions),
+          directions(adhesion_directions, on_slave[0]),
           law::FrictionModels::make(friction.first, Values(friction.second)),
-          unwrap(friction_directions),
-          unwrap(friction_directions_second),
+          directions(friction_directions, on_slave[1]),
+          directions(friction_directions_second, on_slave[2]),
           law::SlidingRules::make(rule.first, Values(rule.second)),
           kernel::EvolutionForms::make(evolution, Values())};
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import Any
 
@@ -30,6 +30,8 @@ from anisocontact.surfaces import default_threads
 
 #: Code of the kernel for a point without a facet below it.
 OFF = 3
+#: Gap up to which a point may be in contact, as a share of the size of the facets: rounding.
+NEAR = 1e-6
 
 Mask = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
@@ -116,7 +118,7 @@ class FacetContact(ContactRecord):
         self._now = self._reference
         x = self._points.positions(self._now)
         self._hint = self._surface.project(x, max_distance=self.reach, exclude=self._excluded)
-        self._answer: dict[str, npt.NDArray[Any]] = {}
+        self._answer: dict[str, Any] = {}
         self._transfer = (
             Transfer(own, rule, self._master, self._surface, self.reach, near) if overlaps else None
         )
@@ -199,25 +201,30 @@ class FacetContact(ContactRecord):
 
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial on both bodies to the local nodes, (nodes, 3), force."""
+        if self._transfer is None:
+            out += self._answer["force"]
+            return
         forces = -self._answer["residual"]
         rows = self._answer["nodes"][:, : forces.shape[1] // 3]
         held = rows >= 0
         np.add.at(out, rows[held], forces.reshape(*rows.shape, 3)[held])
-        if self._transfer is not None:
-            self._transfer.add_force(out)
+        self._transfer.add_force(out)
 
-    def couplings(self) -> list[Couplings]:
+    def couplings(self) -> Sequence[Couplings]:
         """Where `-d force / d u` of the trial has entries, and the entries.
+
+        Points of one slave facet share a block where they meet the same facet of the master.
 
         Returns:
             Each with local nodes of the rows (p, r) and of the columns (p, c), -1 for none, and p
-            blocks, (p, 3 r, 3 c).
+            blocks, (p, r, c, 3, 3) or (p, 3 r, 3 c).
         """
+        if self._transfer is None:
+            blocks: Sequence[Couplings] = self._answer["blocks"]
+            return blocks
         touching = self.trial.status != 0
         nodes, tangent = self._answer["nodes"], self._answer["tangent"]
         rows = nodes[:, : tangent.shape[1] // 3]
-        if self._transfer is None:
-            return [(rows[touching], nodes[touching], tangent[touching])]
         k = self._points.nodes.shape[1]
         handed, kept = touching & self._handed, touching & ~self._handed
         force = -tangent.reshape(len(tangent), -1, 3, tangent.shape[2])[:, :k].sum(axis=1)
@@ -247,15 +254,16 @@ class FacetContact(ContactRecord):
 
     def lever(self) -> float:
         """Forces that would move every point of the trial to the origin, norm over this rank."""
-        now = self.current
-        stiff = np.linalg.norm(self._answer["tangent"], axis=(1, 2))
-        return float(np.linalg.norm(stiff * np.linalg.norm(now.points, axis=1)))
+        stiff = self._answer["stiffness"]
+        return float(np.linalg.norm(stiff * np.linalg.norm(self.current.points, axis=1)))
 
     def _respond(self, state: State, now: Floats, dt: float, *, tangent: bool) -> Snapshot:
         x = self._points.positions(now)
         hit = self._project(now, x)
         slave = self._points
-        self._answer = answer = self._law.update(
+        # one block a point where each of them hands over its own force, else summed by facets
+        ask = self._law.assemble if self._transfer is None else self._law.update
+        self._answer = answer = ask(
             raw_state(state),
             dt,
             slave.nodes,
@@ -272,6 +280,7 @@ class FacetContact(ContactRecord):
             np.nan_to_num(hit.xi),
             np.where(hit.status == FACET_STATUS.index("on"), hit.feature, np.int8(OFF)),
             hit.edge,
+            self._may_touch(state, hit),
             tangent,
             self._threads,
         )
@@ -286,6 +295,11 @@ class FacetContact(ContactRecord):
             failure=np.where(lost, np.int8(1), answer["failure"]),
         )
         return Snapshot(x, answer["area"], response)
+
+    def _may_touch(self, state: State, hit: FacetProjections) -> Mask:
+        """Points that may have a force, as far as rounding goes, (n,)."""
+        touches = hit.gap - state["offset"] <= NEAR * self._points.size
+        return np.asarray(touches | (state["multiplier"] > 0.0))
 
     def _hand_over(self, transfer: Transfer) -> None:
         """Let the forces on the master act where the overlaps have them."""

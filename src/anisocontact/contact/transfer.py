@@ -27,7 +27,8 @@ Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-#: Nodes of rows and columns, (p, r) and (p, c), and blocks (p, 3 r, 3 c).
+#: Nodes of rows and columns, (p, r) and (p, c), -1 for none, and blocks (p, 3 r, 3 c), or one 3 x 3
+#: matrix for each pair of nodes, (p, r, c, 3, 3).
 type Couplings = tuple[Ints, Ints, Floats]
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.sparse import csr_array
 
 from anisocontact._fenicsx import Mat, PETSc
 from anisocontact.contact.transfer import Couplings
@@ -51,6 +52,8 @@ class CoupledTangent:
         self._rows = np.repeat(np.arange(len(starts) - 1) + first, np.diff(starts))
         self._columns = columns
         self._keys: Keys = np.empty(0, dtype=np.int64)
+        self._given = self._keys
+        self._sum = csr_array((0, 0), dtype=np.float64)
 
     @property
     def pattern(self) -> Keys:
@@ -63,6 +66,7 @@ class CoupledTangent:
     @pattern.setter
     def pattern(self, keys: Keys) -> None:
         self._keys = keys.copy()
+        self._given = np.full(1, -1, dtype=np.int64)
 
     @property
     def bulk(self) -> Mat:
@@ -81,14 +85,22 @@ class CoupledTangent:
     def assemble(self, out: Mat, couplings: Sequence[Couplings]) -> None:
         """Write bulk plus couplings into a matrix of `new_matrix`."""
         keys, blocks = _pairs(couplings, len(self._global))
-        unknown = np.setdiff1d(keys, self._keys)
+        if not np.array_equal(keys, self._given):
+            self._locate(keys, out)
+        values = np.concatenate([self._bulk.getValuesCSR()[2], (self._sum @ blocks).reshape(-1)])
+        out.setValuesCOO(values, PETSc.InsertMode.INSERT_VALUES)
+
+    def _locate(self, keys: Keys, out: Mat) -> None:
+        """Places of the blocks of `keys`; the pattern grows by those that are new."""
+        there = np.flatnonzero(keys >= 0)
+        unknown = np.setdiff1d(keys[there], self._keys)
         if out.getComm().tompi4py().allreduce(unknown.size) > 0:
             self._keys = np.union1d(self._keys, unknown)
             self._preallocate(out)
-        sums = np.zeros((len(self._keys), 9))
-        np.add.at(sums, np.searchsorted(self._keys, keys), blocks.reshape(-1, 9))
-        values = np.concatenate([self._bulk.getValuesCSR()[2], sums.reshape(-1)])
-        out.setValuesCOO(values, PETSc.InsertMode.INSERT_VALUES)
+        places = np.searchsorted(self._keys, keys[there])
+        entries = (np.ones(len(there)), (places, there))
+        self._sum = csr_array(entries, shape=(len(self._keys), len(keys)))
+        self._given = keys
 
     def _preallocate(self, matrix: Mat) -> None:
         row, column = np.divmod(self._keys, len(self._global))
@@ -108,14 +120,15 @@ def _joined(bulk: Any, contact: Any) -> Any:
 
 
 def _pairs(couplings: Sequence[Couplings], nodes: int) -> tuple[Keys, Floats]:
-    """Pairs of nodes as one number each, and their 3 x 3 blocks."""
-    keys, blocks = [np.empty(0, dtype=np.int64)], [np.empty((0, 3, 3))]
+    """Pairs of nodes as one number each, -1 for none, and their 3 x 3 blocks as rows of nine."""
+    keys, blocks = [np.empty(0, dtype=np.int64)], [np.empty((0, 9))]
     for rows, columns, values in couplings:
-        points, r = rows.shape
-        c = columns.shape[1]
-        there = (rows[:, :, None] >= 0) & (columns[:, None, :] >= 0)
         pair = rows[:, :, None].astype(np.int64) * nodes + columns[:, None, :]
-        block = values.reshape(points, r, 3, c, 3).swapaxes(2, 3)
-        keys.append(pair[there])
-        blocks.append(block[there])
+        missing = (rows[:, :, None] < 0) | (columns[:, None, :] < 0)
+        keys.append(np.where(missing, -1, pair).reshape(-1))
+        by_pair = values
+        if values.ndim == 3:  # whole rows
+            shape = (len(rows), rows.shape[1], 3, columns.shape[1], 3)
+            by_pair = values.reshape(shape).swapaxes(2, 3)
+        blocks.append(by_pair.reshape(-1, 9))
     return np.concatenate(keys), np.concatenate(blocks)

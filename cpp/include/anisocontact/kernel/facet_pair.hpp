@@ -6,23 +6,9 @@
 // rho_2, which are linear in its nodes; so do the committed point of the master and the tangents of
 // the slave. The coordinates of the projection follow from these by the implicit function theorem.
 
-#include "anisocontact/kernel/interface.hpp"
+#include "anisocontact/kernel/forms.hpp"
 
 namespace anisocontact::kernel {
-
-/// What a traction depends on, in groups of three components: the slave point, the facet now, and
-/// the facet on which the history was committed.
-enum class Input : std::size_t {
-  slave = 0,
-  position = 1,
-  tangent_1 = 2,
-  tangent_2 = 3,
-  before_position = 4,
-  before_tangent_1 = 5,
-  before_tangent_2 = 6
-};
-inline constexpr std::size_t pair_inputs = 21;
-using PairDual = Dual<pair_inputs>;
 
 /// What the projection hit. On an edge the tangent plane is that of x - rho; its first direction is
 /// along the edge.
@@ -31,10 +17,9 @@ enum class Feature : std::int64_t { interior = 0, edge = 1, vertex = 2, off = 3 
 /// Where a slave point is: jets of the facets in plain numbers.
 struct PairPoint {
   Vec3<double> slave{Vec3<double>::Zero()};
-  surface::Jet<double> now{};        ///< of the facet at the projection
-  surface::Jet<double> before{};     ///< of the committed facet at the committed coordinates
-  surface::Jet<double> reference{};  ///< of the facet at the projection, reference configuration
-  std::array<double, 2> xi{};
+  Carrier master{};               ///< facet at the projection; coordinates xi
+  Carrier own{};                  ///< slave facet at the point: positions and tangents alone
+  surface::Jet<double> before{};  ///< of the committed facet at the committed coordinates
   std::int64_t facet{-1};
   Feature feature{Feature::off};
   std::array<double, 2> edge{};  ///< direction of the edge in coordinates
@@ -43,8 +28,8 @@ struct PairPoint {
 
 struct PairResult {
   Vec3<double> traction{Vec3<double>::Zero()};  ///< on the slave
-  Eigen::Matrix<double, 3, pair_inputs> d_traction{Eigen::Matrix<double, 3, pair_inputs>::Zero()};
-  Eigen::Matrix<double, 2, pair_inputs> d_xi{Eigen::Matrix<double, 2, pair_inputs>::Zero()};
+  std::array<Eigen::Matrix3d, inputs> d_traction;
+  std::array<Eigen::Matrix<double, 2, 3>, 4> d_xi;  ///< by the first four inputs
   Vec3<double> normal{Vec3<double>::Zero()};
   std::array<Vec3<double>, 2> adhesion_axes{Vec3<double>::Zero(), Vec3<double>::Zero()};
   std::array<Vec3<double>, 2> friction_axes{Vec3<double>::Zero(), Vec3<double>::Zero()};
@@ -52,171 +37,186 @@ struct PairResult {
   Failure failure{Failure::none};
 };
 
+/// The facet under a point: contact plane, and how the coordinates of the projection and the normal
+/// follow what moves.
+///   d xi^i = w^ij [(dx - drho) . rho_j + (x - rho) . drho_j]
+/// Inside a facet w = (a_ij - g h_ij)^-1, along an edge of direction e w = e (x) e / slope, at a
+/// vertex w = 0.
+class Footing {
+ public:
+  explicit Footing(const PairPoint& p) noexcept
+      : jet_(p.master.now),
+        facet_(surface::tangent_plane(jet_)),
+        interior_(p.feature == Feature::interior) {
+    plane.r = jet_.d1;
+    plane.apart = p.slave - jet_.position;
+    plane.n = facet_.normal;
+    if (!interior_) {
+      const double sign = plane.apart.dot(facet_.normal) < 0.0 ? -1.0 : 1.0;
+      turn_ = sign / plane.apart.norm();
+      plane.n = turn_ * plane.apart;
+    }
+  }
+
+  /// (x - rho) . n
+  double gap() const { return plane.apart.dot(plane.n); }
+  const surface::Geometry<double>& facet() const { return facet_; }
+
+  /// Axis along the first direction: of the facet, or of the edge. It makes the frame.
+  std::optional<PlaneAxis> start(const PairPoint& p) noexcept {
+    const Vector<double> c =
+        p.feature == Feature::edge ? Vector<double>{p.edge} : Vector<double>{{1.0, 0.0}};
+    const Vector<Dual<2>> fixed = constant<Dual<2>>(c);
+    const auto first = detail::plane_axis<Dual<2>>(jet_, plane.n, fixed);
+    if (first) plane.t = {first->e, plane.n.cross(first->e)};
+    return first;
+  }
+
+  void follow(const PairPoint& p) noexcept {
+    if (p.feature == Feature::interior) {
+      for (std::size_t i = 0; i < 2; ++i)
+        for (std::size_t j = 0; j < 2; ++j) h_(i, j) = jet_.second(i, j).dot(plane.n);
+      w_ = inverse(facet_.a_co - gap() * h_);
+    } else if (p.feature == Feature::edge) {
+      const auto& e = p.edge;
+      const Vec3<double> along = e[0] * plane.r[0] + e[1] * plane.r[1];
+      const Vec3<double> bend = e[0] * e[0] * jet_.second(0, 0) +
+                                2.0 * e[0] * e[1] * jet_.second(0, 1) +
+                                e[1] * e[1] * jet_.second(1, 1);
+      const double slope = along.squaredNorm() - plane.apart.dot(bend);
+      w_ = (1.0 / slope) * outer(Vector<double>{e}, Vector<double>{e});
+    }
+  }
+
+  /// Replaces what follows by what it follows from.
+  void expand(Form& f) const noexcept {
+    expand_turn(f);
+    const Flat k{w_(0, 0) * f.xi[0] + w_(1, 0) * f.xi[1], w_(0, 1) * f.xi[0] + w_(1, 1) * f.xi[1]};
+    const Vec3<double> q = k[0] * plane.r[0] + k[1] * plane.r[1];
+    f[Input::slave] += q;
+    f[Input::position] -= q;
+    for (std::size_t j = 0; j < 2; ++j) f.by[tangent_input(j)] += k[j] * plane.apart;
+  }
+
+  /// d xi by the first four inputs.
+  void shift(std::array<Eigen::Matrix<double, 2, 3>, 4>& d) const noexcept {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      const Vec3<double> q = w_(i, 0) * plane.r[0] + w_(i, 1) * plane.r[1];
+      d[0].row(row) = q;
+      d[1].row(row) = -q;
+      for (std::size_t j = 0; j < 2; ++j) d[2 + j].row(row) = w_(i, j) * plane.apart;
+    }
+  }
+
+  ContactPlane plane;
+
+ private:
+  /// nu_a = - (t_a . rho^j) (n . drho_j + h_jk d xi^k) inside a facet; where n is along x - rho,
+  /// nu_a = t_a . (dx - drho - rho_j d xi^j) / ((x - rho) . n).
+  void expand_turn(Form& f) const noexcept {
+    const Vec3<double> k = plane.spatial(f.turn);
+    if (interior_) {
+      for (std::size_t j = 0; j < 2; ++j) {
+        const double c = -k.dot(facet_.dual_basis(j));
+        f.by[tangent_input(j)] += c * plane.n;
+        for (std::size_t i = 0; i < 2; ++i) f.xi[i] += c * h_(j, i);
+      }
+      return;
+    }
+    f[Input::slave] += turn_ * k;
+    f[Input::position] -= turn_ * k;
+    for (std::size_t i = 0; i < 2; ++i) f.xi[i] -= turn_ * k.dot(plane.r[i]);
+  }
+
+  const surface::Jet<double>& jet_;
+  surface::Geometry<double> facet_;
+  bool interior_;
+  double turn_{0.0};
+  CoCo<double> h_{};
+  ContraContra<double> w_{};
+};
+
 namespace detail {
 
-inline Vec3<PairDual> seed(const Vec3<double>& v, Input group) {
-  const std::size_t first = 3 * static_cast<std::size_t>(group);
-  return {PairDual::variable(v[0], first), PairDual::variable(v[1], first + 1),
-          PairDual::variable(v[2], first + 2)};
-}
+/// Axes of fields at a point, with the reference planes of both bodies where they are needed.
+template <bool tangent>
+class PairAxes {
+ public:
+  PairAxes(const PairPoint& p, const Vec3<double>& n, const PlaneAxis& start) noexcept
+      : point_(p), n_(n), start_(start), turns_(p.mirrored ? -1.0 : 1.0) {}
 
-/// The facet with coordinates that follow the projection: rho_i and rho move with xi as well.
-inline surface::Jet<PairDual> moving(const surface::Jet<double>& j, const Vec3<PairDual>& r,
-                                     const std::array<Vec3<PairDual>, 2>& ri,
-                                     const std::array<PairDual, 2>& dxi) {
-  surface::Jet<PairDual> out;
-  out.position = r + dxi[0] * constant<PairDual>(j.d1[0]) + dxi[1] * constant<PairDual>(j.d1[1]);
-  for (std::size_t i = 0; i < 2; ++i)
-    out.d1[i] = ri[i] + dxi[0] * constant<PairDual>(j.second(i, 0)) +
-                dxi[1] * constant<PairDual>(j.second(i, 1));
-  for (std::size_t i = 0; i < 3; ++i) out.d2[i] = constant<PairDual>(j.d2[i]);
-  return out;
-}
-
-/// d xi of an interior projection: (a_ij - g h_ij) dxi^j = (dx - drho) . rho_i + g n . drho_i.
-inline std::array<PairDual, 2> interior_shift(const PairPoint& p, const Vec3<PairDual>& x,
-                                              const Vec3<PairDual>& r,
-                                              const std::array<Vec3<PairDual>, 2>& ri) {
-  const auto g = surface::geometry(p.now);
-  const Vec3<PairDual> apart = x - r;
-  const double gap = value(apart).dot(g.normal);
-  const ContraContra<double> inv = inverse(g.a_co - gap * g.h_co);
-  std::array<PairDual, 2> dxi;
-  // the value of apart . rho_i is zero up to the tolerance of the projection: derivatives alone
-  for (std::size_t i = 0; i < 2; ++i) {
-    const PairDual f0 = apart.dot(ri[0]), f1 = apart.dot(ri[1]);
-    dxi[i] =
-        PairDual(inv(i, 0)) * (f0 - PairDual(f0.v)) + PairDual(inv(i, 1)) * (f1 - PairDual(f1.v));
+  /// Without a field, along the first direction.
+  PlaneAxes operator()(const Directions& d) noexcept {
+    if (!d.field) return with_normal(start_, n_);
+    if (d.side == Side::master) {
+      if (!master_) master_.emplace(point_.master, turns_);
+      return carried(*d.field, *master_, n_, d.side);
+    }
+    if (!own_) own_.emplace(point_.own, turns_ * orientation(point_.own, n_));
+    return carried(*d.field, *own_, n_, d.side);
   }
-  return dxi;
-}
 
-/// d xi along an edge of direction e: one equation, (x - rho) . rho_,e = 0.
-inline std::array<PairDual, 2> edge_shift(const PairPoint& p, const Vec3<PairDual>& x,
-                                          const Vec3<PairDual>& r,
-                                          const std::array<Vec3<PairDual>, 2>& ri) {
-  const auto& e = p.edge;
-  const Vec3<PairDual> re = PairDual(e[0]) * ri[0] + PairDual(e[1]) * ri[1];
-  const Vec3<double> ree = e[0] * e[0] * p.now.second(0, 0) +
-                           2.0 * e[0] * e[1] * p.now.second(0, 1) +
-                           e[1] * e[1] * p.now.second(1, 1);
-  const Vec3<PairDual> apart = x - r;
-  const PairDual f = apart.dot(re);
-  const double slope = value(re).squaredNorm() - value(apart).dot(ree);
-  const PairDual s = PairDual(1.0 / slope) * (f - PairDual(f.v));
-  return {PairDual(e[0]) * s, PairDual(e[1]) * s};
-}
-
-/// Geometry where the projection is on an edge or a vertex: n along x - rho, the first direction
-/// along the edge.
-inline surface::Geometry<PairDual> ridge_geometry(const PairPoint& p,
-                                                  const surface::Jet<PairDual>& j,
-                                                  const Vec3<PairDual>& x) {
-  const Vec3<PairDual> apart = x - j.position;
-  const auto outward = surface::tangent_plane(p.now).normal;
-  const PairDual length = sqrt(apart.dot(apart));
-  const double sign = value(apart).dot(outward) < 0.0 ? -1.0 : 1.0;
-  const Vec3<PairDual> n = (PairDual(sign) / length) * apart;
-  const Vec3<PairDual> along =
-      p.feature == Feature::edge
-          ? Vec3<PairDual>(PairDual(p.edge[0]) * j.d1[0] + PairDual(p.edge[1]) * j.d1[1])
-          : j.d1[0];
-  const Vec3<PairDual> t = along - along.dot(n) * n;
-  surface::Jet<PairDual> ridge = j;
-  ridge.d1 = {t, n.cross(t)};
-  for (auto& second : ridge.d2) second = constant<PairDual>(Vec3<double>::Zero());
-  return surface::tangent_plane(ridge);
-}
-
-/// Axes of a field given in the reference configuration and carried by the material: components in
-/// the reference basis are kept, lengths normalised [Konyukhov Schweizerhof 2006, eq. (47)].
-inline anisotropy::Axes<PairDual> carried(const std::optional<anisotropy::AnyField>& field,
-                                          const PairPoint& p, const std::array<PairDual, 2>& dxi,
-                                          const surface::Jet<PairDual>& now,
-                                          const surface::Geometry<PairDual>& g) {
-  if (!field) return anisotropy::axes_from(g, g.jet.d1[0], anisotropy::Turn{});
-  const surface::Jet<double>& ref = p.reference;
-  auto reference = surface::tangent_plane(
-      moving(ref, constant<PairDual>(ref.position),
-             {constant<PairDual>(ref.d1[0]), constant<PairDual>(ref.d1[1])}, dxi));
-  if (p.mirrored) reference.normal = -reference.normal;
-  const Vector<PairDual> xi{{PairDual(p.xi[0]) + dxi[0], PairDual(p.xi[1]) + dxi[1]}};
-  auto axes = anisotropy::axes(*field, reference, xi);
-  if (!axes.valid) return axes;
-  for (auto& e : axes.e) {
-    const Vector<PairDual> c = reference.project_contra(e);
-    const Vec3<PairDual> pushed = c[0] * now.d1[0] + c[1] * now.d1[1];
-    const Vec3<PairDual> flat = pushed - pushed.dot(g.normal) * g.normal;
-    e = (PairDual(1.0) / sqrt(flat.dot(flat))) * flat;
-  }
-  return axes;
-}
+ private:
+  const PairPoint& point_;
+  const Vec3<double>& n_;
+  const PlaneAxis& start_;
+  double turns_;
+  std::optional<ReferencePlane<std::conditional_t<tangent, Dual<2>, double>>> master_;
+  std::optional<ReferencePlane<double>> own_;
+};
 
 }  // namespace detail
 
-/// Pure update of one slave point against a facet, with all derivatives.
-inline PairResult update_pair(const InterfaceLaw& law, const PointState& state, const PairPoint& p,
-                              double dt) noexcept {
-  using S = PairDual;
+/// Pure update of one slave point against a facet; with `tangent` all derivatives of a point that
+/// touches. Those of others are not written.
+template <bool tangent>
+PairResult update_pair(const InterfaceLaw& law, const PointState& state, const PairPoint& p,
+                       double dt) noexcept {
   PairResult out;
-  if (p.feature == Feature::off) {
-    out.state = lasting(state);
-    return out;
-  }
-  const Vec3<S> x = detail::seed(p.slave, Input::slave),
-                r = detail::seed(p.now.position, Input::position);
-  const std::array<Vec3<S>, 2> ri{detail::seed(p.now.d1[0], Input::tangent_1),
-                                  detail::seed(p.now.d1[1], Input::tangent_2)};
-  std::array<S, 2> dxi{};
-  if (p.feature == Feature::interior) dxi = detail::interior_shift(p, x, r, ri);
-  if (p.feature == Feature::edge) dxi = detail::edge_shift(p, x, r, ri);
-  const auto jet = detail::moving(p.now, r, ri, dxi);
-  Kinematics<S> k;
-  const auto facet = surface::tangent_plane(jet);
-  k.now = p.feature == Feature::interior ? facet : detail::ridge_geometry(p, jet, x);
-  k.xi = {{S(p.xi[0]) + dxi[0], S(p.xi[1]) + dxi[1]}};
-  k.gap = (x - k.now.jet.position).dot(k.now.normal) - S(state.offset);
-  k.dt = dt;
-  if (state.facet < 0) {
-    k.before = k.now;
-  } else {
-    surface::Jet<S> before;
-    before.position = detail::seed(p.before.position, Input::before_position);
-    before.d1 = {detail::seed(p.before.d1[0], Input::before_tangent_1),
-                 detail::seed(p.before.d1[1], Input::before_tangent_2)};
-    for (std::size_t i = 0; i < 3; ++i) before.d2[i] = constant<S>(p.before.d2[i]);
-    k.before = surface::tangent_plane(before);
-  }
-  const auto reaction = react(
-      law, state, k, [&](const auto& field) { return detail::carried(field, p, dxi, jet, k.now); });
-  out.failure = reaction.failure;
-  out.normal = value(k.now.normal);
-  out.state = reaction.failure == Failure::none ? reaction.state : state;
+  out.state = lasting(state);
+  if (p.feature == Feature::off) return out;
+  Footing foot(p);
+  const ContactPlane& plane = foot.plane;
+  out.normal = plane.n;
   out.state.facet = p.facet;
-  // the history is kept in the basis of the facet, also where the law saw that of a ridge
-  if (p.feature != Feature::interior && reaction.failure == Failure::none) {
-    const auto g = surface::value(k.now), f = surface::value(facet);
-    const auto lower = [&](std::array<double, 2>& c) {
-      c = f.project_co(g.spatial(Covector<double>{c})).c;
-    };
-    const auto upper = [&](std::array<double, 2>& c) {
-      c = f.project_contra(g.spatial(Vector<double>{c})).c;
-    };
-    lower(out.state.traction), lower(out.state.stored);
-    upper(out.state.elastic), upper(out.state.slip);
-  }
-  const Vec3<S> t = reaction.pressure * k.now.normal + k.now.spatial(reaction.traction);
-  out.traction = value(t);
-  for (std::size_t c = 0; c < pair_inputs; ++c) {
-    const auto column = static_cast<Eigen::Index>(c);
-    for (std::size_t i = 0; i < 3; ++i)
-      out.d_traction(static_cast<Eigen::Index>(i), column) = t[static_cast<Eigen::Index>(i)].d[c];
-    for (std::size_t i = 0; i < 2; ++i)
-      out.d_xi(static_cast<Eigen::Index>(i), column) = dxi[i].d[c];
-  }
-  for (std::size_t i = 0; i < 2; ++i) {
-    out.adhesion_axes[i] = value(reaction.adhesion_axes.e[i]);
-    out.friction_axes[i] = value(reaction.friction_axes.e[i]);
+  out.state.xi = out.state.origin = p.master.xi;
+  const double gap = foot.gap() - state.offset;
+  out.state.gap = gap;
+  const Dual<1> pressure = detail::pressure_of(law, state, gap, dt);
+  if (!(pressure.v > 0.0)) return out;
+  out.traction = pressure.v * plane.n;
+  const auto fail = [&](Failure why) {
+    out.failure = why;
+    out.state = state;
+    out.state.facet = p.facet;
+    return out;
+  };
+  const auto start = foot.start(p);
+  if (!start) return fail(Failure::direction);
+  detail::PairAxes<tangent> axes_at(p, plane.n, *start);
+  const LawAxes axes = law_axes(law, axes_at);
+  if (!axes.valid()) return fail(Failure::direction);
+  put_axes(axes, out.adhesion_axes, out.friction_axes);
+  const auto before = surface::tangent_plane(p.before);
+  std::optional<CommittedPoint> history;
+  if (state.facet >= 0) history.emplace(plane, before, p.master.now.position);
+  const CommittedPoint* committed = history ? &*history : nullptr;
+  const FrameInput in = frame_input(gap, dt, pressure, state, committed, axes, plane);
+  const FrameReaction r = react_in_frame<tangent>(law, state, in);
+  if (r.failure != Failure::none) return fail(r.failure);
+  out.state = in_basis(r, state, p.master.xi, plane, foot.facet());
+  out.state.facet = p.facet;
+  out.traction += plane.spatial(r.traction);
+  if constexpr (tangent) {
+    foot.follow(p);
+    auto forms = traction_forms(r, in, axes, plane, state, committed);
+    for (Form& f : forms) foot.expand(f);
+    for (std::size_t i = 0; i < inputs; ++i)
+      out.d_traction[i] = plane.t[0] * forms[0].by[i].transpose() +
+                          plane.t[1] * forms[1].by[i].transpose() +
+                          plane.n * forms[2].by[i].transpose();
+    foot.shift(out.d_xi);
   }
   return out;
 }

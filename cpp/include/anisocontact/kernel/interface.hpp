@@ -12,15 +12,23 @@
 
 namespace anisocontact::kernel {
 
-/// Normal law, adhesion and friction of an interface, with their directions. Without directions
-/// the tensors are isotropic, and any axes do.
+/// The body that carries a direction field, which it has since the reference configuration.
+enum class Side { master, slave };
+
+/// A direction field and whose it is; without a field tensors are isotropic, and any axes do.
+struct Directions {
+  std::optional<anisotropy::AnyField> field{};
+  Side side{Side::master};
+};
+
+/// Normal law, adhesion and friction of an interface, with their directions.
 struct InterfaceLaw {
   law::AnyNormalLaw normal;
   law::AnyAdhesion adhesion;
-  std::optional<anisotropy::AnyField> adhesion_directions;
+  Directions adhesion_directions;
   law::AnyFriction friction;
-  std::optional<anisotropy::AnyField> friction_directions;
-  std::optional<anisotropy::AnyField> friction_directions_second;  ///< of the second surface
+  Directions friction_directions;
+  Directions friction_directions_second;  ///< of the second surface
   law::AnyRule rule;
   AnyEvolution evolution{};
 };
@@ -89,40 +97,50 @@ law::SlideResult<S> tangential(const InterfaceLaw& l, const law::SlideProblem<S>
   return std::visit([&](const auto& rule) { return rule.slide(p); }, l.rule);
 }
 
-/// Trial state after the law has been solved.
-template <class S>
-PointState advanced(const InterfaceLaw& l, const PointState& old, const Kinematics<S>& k,
-                    const Transported<S>& t, const law::SlideResult<S>& r,
-                    const anisotropy::Axes<S>& axes, const S& pressure, Contact status) {
+/// The law solved at a point, in plain numbers and in any basis.
+struct Solved {
+  Covector<double> traction, stored;
+  Vector<double> elastic;  ///< elastic slip if the whole increment were elastic
+  Vector<double> increment, slip;
+  CoCo<double> a_co;  ///< metric of the basis
+  law::AxesComponents<double> adhesion_axes;
+  double gap, pressure, dt;
+  Contact status;
+};
+
+/// Trial state after the law has been solved, its components in the basis of `r`; the coordinates
+/// are the caller's.
+inline PointState advanced(const InterfaceLaw& l, const PointState& old, const Solved& r) {
   PointState s = lasting(old);
-  s.xi = {value(k.xi[0]), value(k.xi[1])};
-  const Covector<double> traction = value(r.traction);
-  const Vector<double> slip = value(r.slip);
-  const Vector<double> increment = value(t.increment);
-  const Vector<double> elastic = value(t.elastic) + increment - slip;
-  const bool begins = old.status == static_cast<std::int64_t>(Contact::open);
-  s.origin = begins ? (Vector<double>{s.xi} - increment).c : old.origin;
-  s.traction = traction.c;
-  s.stored = value(r.stored).c;
+  const Vector<double> elastic = r.elastic - r.slip;
+  s.traction = r.traction.c;
+  s.stored = r.stored.c;
   s.elastic = elastic.c;
-  s.slip = slip.c;
-  s.gap = value(k.gap);
-  s.pressure = value(pressure);
-  s.slip_accumulated += std::sqrt(dot(slip, value(k.now.a_co) * slip));
-  s.dissipation -= dot(traction, slip);
-  const auto tangential = law::energies(law::linear_model(l.adhesion), value(k.now),
-                                        {value(axes.e[0]), value(axes.e[1])}, value(r.stored),
-                                        elastic, increment - slip, k.dt);
+  s.slip = r.slip.c;
+  s.gap = r.gap;
+  s.pressure = r.pressure;
+  s.slip_accumulated += std::sqrt(dot(r.slip, r.a_co * r.slip));
+  s.dissipation -= dot(r.traction, r.slip);
+  const auto tangential = law::energies(law::linear_model(l.adhesion), r.adhesion_axes, r.stored,
+                                        elastic, r.increment - r.slip, r.dt);
   const auto normal = law::energies(law::normal_model(l.normal), s.gap,
-                                    s.gap - std::min(old.gap, 0.0), s.pressure, k.dt);
+                                    s.gap - std::min(old.gap, 0.0), s.pressure, r.dt);
   s.energy_adhesion = tangential.elastic;
   s.energy_normal = normal.elastic;
   s.dissipation_viscous += tangential.viscous + normal.viscous;
-  s.status = static_cast<std::int64_t>(status);
+  s.status = static_cast<std::int64_t>(r.status);
   return s;
 }
 
-/// The whole law at a point; `axes_at(field)` gives the axes of a direction field there.
+/// Where the contact began: now, or as the history says.
+inline std::array<double, 2> origin(const PointState& old, const std::array<double, 2>& xi,
+                                    const Vector<double>& increment) {
+  const bool begins = old.status == static_cast<std::int64_t>(Contact::open);
+  return begins ? (Vector<double>{xi} - increment).c : old.origin;
+}
+
+/// The whole law at a point in the basis of the surface; `axes_at(directions)` gives the axes of a
+/// direction field there.
 template <class S, class AxesAt>
 Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinematics<S>& k,
                   const AxesAt& axes_at) {
@@ -136,24 +154,21 @@ Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinemati
   r.adhesion_axes = axes_at(l.adhesion_directions);
   r.friction_axes = axes_at(l.friction_directions);
   const auto second =
-      l.friction_directions_second ? axes_at(l.friction_directions_second) : r.friction_axes;
+      l.friction_directions_second.field ? axes_at(l.friction_directions_second) : r.friction_axes;
   if (!r.adhesion_axes.valid || !r.friction_axes.valid || !second.valid) {
     r.failure = Failure::direction;
     return r;
   }
-  const auto tensors = law::pull_back(law::linear_model(l.adhesion), k.now, r.adhesion_axes);
+  const auto adhesion = law::AxesComponents<S>::of(k.now, r.adhesion_axes.e);
+  const auto tensors = law::pull_back(law::linear_model(l.adhesion), adhesion);
   const Transported<S> t = history(l.evolution, state, k, tensors.b);
   const auto trial = law::trial(tensors, t.connection, t.stored, t.elastic, t.increment, k.dt);
-  const auto friction = law::friction_tensor(l.friction, k.now, r.friction_axes, second);
+  const auto axes = k.now.project_contra(r.friction_axes.e);
+  const auto friction =
+      law::friction_tensor(l.friction, k.now.a_contra, axes, k.now.project_contra(second.e));
   const law::SlideProblem<S> p{
-      trial.stiffness,
-      friction,
-      k.now.a_co,
-      {k.now.project_contra(r.friction_axes.e[0]), k.now.project_contra(r.friction_axes.e[1])},
-      trial.traction,
-      t.elastic + t.increment,
-      t.increment,
-      r.pressure};
+      trial.stiffness,         friction,    k.now.a_co, axes, trial.traction,
+      t.elastic + t.increment, t.increment, r.pressure};
   Contact status{};
   const auto solved = tangential(l, p, status);
   if (!solved.converged) {
@@ -161,7 +176,20 @@ Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinemati
     return r;
   }
   r.traction = solved.traction;
-  r.state = advanced(l, state, k, t, solved, r.adhesion_axes, r.pressure, status);
+  r.state = advanced(l, state,
+                     {value(solved.traction),
+                      value(solved.stored),
+                      value(p.elastic),
+                      value(t.increment),
+                      value(solved.slip),
+                      value(k.now.a_co),
+                      {value(adhesion.lower), value(adhesion.upper)},
+                      value(k.gap),
+                      value(r.pressure),
+                      k.dt,
+                      status});
+  r.state.xi = value(k.xi).c;
+  r.state.origin = origin(state, r.state.xi, value(t.increment));
   return r;
 }
 

@@ -40,13 +40,12 @@ inline AxesMatrix at_rest(const LinearModel& m) {
 /// Energy 1/2 x.K x + 1/2 t_1.K_1^-1 t_1 of a spring K beside Maxwell elements K_1 = -B - K that
 /// carry t_1 = t + K x and lose t_1.K_1^-1 A t_1 per time; of Kelvin-Voigt (w = 0) 1/2 x.(-C) x
 /// and the loss v.(-B) v.
-inline Energies energies(const LinearModel& m, const surface::Geometry<double>& g,
-                         const std::array<Vec3<double>, 2>& e, const Covector<double>& stored,
-                         const Vector<double>& elastic, const Vector<double>& increment,
-                         double dt) {
+inline Energies energies(const LinearModel& m, const AxesComponents<double>& axes,
+                         const Covector<double>& stored, const Vector<double>& elastic,
+                         const Vector<double>& increment, double dt) {
   using namespace detail;
-  const std::array<Covector<double>, 2> lower{g.project_co(e[0]), g.project_co(e[1])};
-  const auto dual = reciprocal(lower, {g.a_contra * lower[0], g.a_contra * lower[1]});
+  const auto& lower = axes.lower;
+  const auto dual = reciprocal(lower, axes.upper);
   const Pair x{dot(lower[0], elastic), dot(lower[1], elastic)};
   if (m.w == 0.0) {
     const Pair v{dot(lower[0], increment) / dt, dot(lower[1], increment) / dt};

@@ -13,16 +13,19 @@
 
 namespace anisocontact::law {
 
-/// A friction model gives f^ij from the axes of its direction fields; `second` are those of the
-/// second surface, for a model that is built on two.
+/// Components e_a^i of two axes.
+template <class S>
+using UpperAxes = std::array<Vector<S>, 2>;
+
+/// A friction model gives f^ij from a^ij and the axes of its direction fields; `second` are those
+/// of the second surface, for a model that is built on two.
 template <class T>
-concept Friction =
-    requires(const T& f, const surface::Geometry<double>& g, const anisotropy::Axes<double>& e,
-             const surface::Geometry<Dual<3>>& h, const anisotropy::Axes<Dual<3>>& d) {
-      { f.tensor(g, e, e) } -> std::same_as<ContraContra<double>>;
-      { f.tensor(h, d, d) } -> std::same_as<ContraContra<Dual<3>>>;
-      { T::describe() } -> std::same_as<Descriptor>;
-    };
+concept Friction = requires(const T& f, const ContraContra<double>& a, const UpperAxes<double>& e,
+                            const ContraContra<Dual<3>>& b, const UpperAxes<Dual<3>>& d) {
+  { f.tensor(a, e, e) } -> std::same_as<ContraContra<double>>;
+  { f.tensor(b, d, d) } -> std::same_as<ContraContra<Dual<3>>>;
+  { T::describe() } -> std::same_as<Descriptor>;
+};
 
 /// F = e_1 (x) e_1 / mu_1^2 + e_2 (x) e_2 / mu_2^2 [Konyukhov Schweizerhof 2006, eq. (43), (57)].
 class Orthotropic {
@@ -42,9 +45,8 @@ class Orthotropic {
   }
 
   template <class S>
-  ContraContra<S> tensor(const surface::Geometry<S>& g, const anisotropy::Axes<S>& axes,
-                         const anisotropy::Axes<S>&) const {
-    return anisotropy::pull_back_contra(g, axes, lambda_);
+  ContraContra<S> tensor(const ContraContra<S>&, const UpperAxes<S>& e, const UpperAxes<S>&) const {
+    return S(lambda_[0]) * outer(e[0], e[0]) + S(lambda_[1]) * outer(e[1], e[1]);
   }
 
  private:
@@ -85,13 +87,13 @@ class HeCurnier {
   }
 
   template <class S>
-  ContraContra<S> tensor(const surface::Geometry<S>& g, const anisotropy::Axes<S>& axes,
-                         const anisotropy::Axes<S>& second) const {
-    const auto m = g.project_contra(axes.e[0]), k = g.project_contra(second.e[0]);
+  ContraContra<S> tensor(const ContraContra<S>& a, const UpperAxes<S>& first,
+                         const UpperAxes<S>& second) const {
+    const Vector<S>&m = first[0], &k = second[0];
     const ContraContra<S> c =
-        S(alpha_[0]) * g.a_contra + S(alpha_[1]) * outer(m, m) + S(alpha_[2]) * outer(k, k);
+        S(alpha_[0]) * a + S(alpha_[1]) * outer(m, m) + S(alpha_[2]) * outer(k, k);
     const CoCo<S> c_inv = inverse(c);  // covariant components of C^-1
-    return g.a_contra * c_inv * g.a_contra * c_inv * g.a_contra;
+    return a * c_inv * a * c_inv * a;
   }
 
  private:

@@ -24,7 +24,8 @@ struct LinearModel {
 /// The same tensors in the convective basis of the surface.
 template <class S>
 struct LinearTensors {
-  S w;
+  double w;
+  bool relaxes;  ///< whether A is not zero
   CoContra<S> a;
   CoCo<S> b, c;
 };
@@ -40,18 +41,31 @@ std::array<Vector<S>, 2> reciprocal(const std::array<Covector<S>, 2>& lower,
   return {inv * (g22 * upper[0] - g12 * upper[1]), inv * (g11 * upper[1] - g12 * upper[0])};
 }
 
+/// The axes of a model in the basis of the surface: e_a . rho_i and e_a . rho^i.
 template <class S>
-LinearTensors<S> pull_back(const LinearModel& m, const surface::Geometry<S>& g,
-                           const anisotropy::Axes<S>& axes) {
-  const std::array<Covector<S>, 2> lower{g.project_co(axes.e[0]), g.project_co(axes.e[1])};
-  const std::array<Vector<S>, 2> upper{g.a_contra * lower[0], g.a_contra * lower[1]};
-  const auto dual = reciprocal(lower, upper);
-  LinearTensors<S> t{S(m.w), {}, {}, {}};
+struct AxesComponents {
+  std::array<Covector<S>, 2> lower;
+  std::array<Vector<S>, 2> upper;
+
+  static AxesComponents of(const surface::Geometry<S>& g, const std::array<Vec3<S>, 2>& e) {
+    AxesComponents c{{g.project_co(e[0]), g.project_co(e[1])}, {}};
+    c.upper = {g.a_contra * c.lower[0], g.a_contra * c.lower[1]};
+    return c;
+  }
+};
+
+template <class S>
+LinearTensors<S> pull_back(const LinearModel& m, const AxesComponents<S>& axes) {
+  const bool relaxes = m.a != AxesMatrix{};
+  LinearTensors<S> t{m.w, relaxes, {}, {}, {}};
+  const auto& lower = axes.lower;
+  const auto dual =
+      relaxes ? reciprocal(lower, axes.upper) : std::array<Vector<S>, 2>{};  // of A alone
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) {
-      t.a = t.a + S(m.a[i][j]) * outer(lower[i], dual[j]);
-      t.b = t.b + S(m.b[i][j]) * outer(lower[i], lower[j]);
-      t.c = t.c + S(m.c[i][j]) * outer(lower[i], lower[j]);
+      if (m.a[i][j] != 0.0) t.a = t.a + S(m.a[i][j]) * outer(lower[i], dual[j]);
+      if (m.b[i][j] != 0.0) t.b = t.b + S(m.b[i][j]) * outer(lower[i], lower[j]);
+      if (m.c[i][j] != 0.0) t.c = t.c + S(m.c[i][j]) * outer(lower[i], lower[j]);
     }
   return t;
 }
@@ -60,19 +74,39 @@ LinearTensors<S> pull_back(const LinearModel& m, const surface::Geometry<S>& g,
 template <class S>
 struct Trial {
   Covector<S> traction;  ///< T_tr
-  CoCo<S> stiffness;     ///< T = T_tr + stiffness dxi_sl
+  CoCo<S> stiffness;     ///< T = T_tr + stiffness dxi_sl; dT_tr = -stiffness d(dxi)
+  CoContra<S> response;  ///< (w G + dt A)^-1: dT_tr = response (w dT_n + dt C dxi_el,n)
 };
+
+namespace detail {
+
+template <class S>
+Trial<S> trial(const LinearTensors<S>& m, const CoContra<S>& response, const Covector<S>& stored,
+               const Vector<S>& elastic, const Vector<S>& increment, double dt) {
+  const CoCo<S> dc = S(dt) * m.c, right = m.b + dc;
+  const Covector<S> rhs = S(m.w) * stored + right * increment + dc * elastic;
+  return {response * rhs, -(response * right), response};
+}
+
+}  // namespace detail
 
 /// Backward Euler: (w G + dt A) T = w T_n + (B + dt C)(dxi - dxi_sl) + dt C dxi_el,n, where G
 /// carries the connection of the covariant form and is the unit tensor in the transported form.
 template <class S>
 Trial<S> trial(const LinearTensors<S>& m, const CoContra<S>& g, const Covector<S>& stored,
                const Vector<S>& elastic, const Vector<S>& increment, double dt) {
-  const CoContra<S> left = m.w * g + S(dt) * m.a;
-  const CoContra<S> left_inv = (S(1.0) / det(left)) * (trace(left) * unit<S, Place::co>() - left);
-  const CoCo<S> right = m.b + S(dt) * m.c;
-  const Covector<S> rhs = m.w * stored + right * increment + S(dt) * (m.c * elastic);
-  return {left_inv * rhs, -(left_inv * right)};
+  const CoContra<S> left = S(m.w) * g + S(dt) * m.a;
+  const CoContra<S> inverse = (S(1.0) / det(left)) * (trace(left) * unit<S, Place::co>() - left);
+  return detail::trial(m, inverse, stored, elastic, increment, dt);
+}
+
+/// The same for G = 1; without relaxation nothing is to be inverted.
+template <class S>
+Trial<S> trial(const LinearTensors<S>& m, const Covector<S>& stored, const Vector<S>& elastic,
+               const Vector<S>& increment, double dt) {
+  const CoContra<S> one = unit<S, Place::co>();
+  if (m.relaxes) return trial(m, one, stored, elastic, increment, dt);
+  return detail::trial(m, S(1.0 / m.w) * one, stored, elastic, increment, dt);
 }
 
 }  // namespace anisocontact::law

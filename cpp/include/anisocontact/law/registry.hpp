@@ -30,10 +30,9 @@ using FrictionModels = Registry<Orthotropic, HeCurnier>;
 using AnyFriction = FrictionModels::Any;
 
 template <class S>
-ContraContra<S> friction_tensor(const AnyFriction& f, const surface::Geometry<S>& g,
-                                const anisotropy::Axes<S>& axes,
-                                const anisotropy::Axes<S>& second) {
-  return std::visit([&](const auto& m) { return m.tensor(g, axes, second); }, f);
+ContraContra<S> friction_tensor(const AnyFriction& f, const ContraContra<S>& a_contra,
+                                const UpperAxes<S>& axes, const UpperAxes<S>& second) {
+  return std::visit([&](const auto& m) { return m.tensor(a_contra, axes, second); }, f);
 }
 
 inline const LinearModel& linear_model(const AnyAdhesion& a) {

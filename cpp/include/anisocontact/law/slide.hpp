@@ -37,20 +37,34 @@ struct SlideTangent {
   Covector<double> d_pressure;  ///< dT_i / dN
 };
 
+/// Derivatives of T with the tensors and the axes, at fixed T_tr and N.
+template <std::size_t N>
+using TensorTangent = std::array<Covector<double>, N>;
+
+/// A rule also differentiates T by N variables of which the tensors and axes of a problem depend,
+/// given in dual numbers; T is a function of T_tr, N, tensors and axes alone.
 template <class T>
-concept SlidingRule = requires(const T& r, const SlideProblem<double>& p,
-                               const SlideProblem<Dual<3>>& d, const SlideResult<double>& s) {
-  { r.slide(p) } noexcept -> std::same_as<SlideResult<double>>;
-  { r.slide(d) } noexcept -> std::same_as<SlideResult<Dual<3>>>;
-  { r.tangent(p, s) } noexcept -> std::same_as<SlideTangent>;
-  { T::describe() } -> std::same_as<Descriptor>;
-};
+concept SlidingRule =
+    requires(const T& r, const SlideProblem<double>& p, const SlideProblem<Dual<3>>& d,
+             const SlideResult<double>& s, const SlideTangent& t) {
+      { r.slide(p) } noexcept -> std::same_as<SlideResult<double>>;
+      { r.slide(d) } noexcept -> std::same_as<SlideResult<Dual<3>>>;
+      { r.tangent(p, s) } noexcept -> std::same_as<SlideTangent>;
+      { r.tensor_tangent(p, s, t, d) } noexcept -> std::same_as<TensorTangent<3>>;
+      { T::describe() } -> std::same_as<Descriptor>;
+    };
 
 /// sqrt(T . F T), the norm of the yield function [Konyukhov Schweizerhof 2006, eq. (33)].
 template <class S>
 S friction_norm(const ContraContra<S>& friction, const Covector<S>& t) {
   using std::sqrt;
   return sqrt(dot(t, friction * t));
+}
+
+/// What a change of F in T.FT = N^2 amounts to: a change of N.
+inline double equivalent_pressure(const ContraContra<double>& d_friction, const Covector<double>& t,
+                                  double pressure) {
+  return -0.5 * dot(t, d_friction * t) / pressure;
 }
 
 /// Whether S has rank one: the strip, where one of the adhesion stiffnesses is zero.

@@ -73,6 +73,10 @@ struct Geometry {
   Covector<S> project_co(const Vec3<S>& v) const { return {{v.dot(jet.d1[0]), v.dot(jet.d1[1])}}; }
   /// Contravariant components v . rho^i of a spatial vector.
   Vector<S> project_contra(const Vec3<S>& v) const { return a_contra * project_co(v); }
+  /// Of two vectors.
+  std::array<Vector<S>, 2> project_contra(const std::array<Vec3<S>, 2>& v) const {
+    return {project_contra(v[0]), project_contra(v[1])};
+  }
   /// T_i rho^i.
   Vec3<S> spatial(const Covector<S>& t) const { return spatial(a_contra * t); }
   /// v^i rho_i.
@@ -97,13 +101,20 @@ Geometry<S> tangent_plane(const Jet<S>& jet) {
   return g;
 }
 
-/// Geometry from a jet [Konyukhov Schweizerhof 2006, eq. (3), (8)].
+/// Metric, area, normal and curvature from a jet; the connection stays zero.
 template <class S>
-Geometry<S> geometry(const Jet<S>& jet) {
+Geometry<S> curved_plane(const Jet<S>& jet) {
   Geometry<S> g = tangent_plane(jet);
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) g.h_co(i, j) = jet.second(i, j).dot(g.normal);
   g.h_mixed = g.a_contra * g.h_co;
+  return g;
+}
+
+/// Geometry from a jet [Konyukhov Schweizerhof 2006, eq. (3), (8)].
+template <class S>
+Geometry<S> geometry(const Jet<S>& jet) {
+  Geometry<S> g = curved_plane(jet);
   for (std::size_t k = 0; k < 2; ++k) {
     const Vec3<S> rho_k = g.dual_basis(k);
     for (std::size_t i = 0; i < 2; ++i)

@@ -8,6 +8,8 @@
 #include <cstddef>
 #include <type_traits>
 
+#include "anisocontact/tensor/inline.hpp"
+
 namespace anisocontact {
 
 /// A value `v` with its N partial derivatives `d`. Comparisons look at the value alone, so a branch
@@ -27,33 +29,33 @@ struct Dual {
     return x;
   }
 
-  constexpr Dual operator-() const { return chain(-v, -1.0); }
-  constexpr Dual& operator+=(const Dual& b) {
+  ANISOCONTACT_INLINE constexpr Dual operator-() const { return chain(-v, -1.0); }
+  ANISOCONTACT_INLINE constexpr Dual& operator+=(const Dual& b) {
     v += b.v;
     for (std::size_t i = 0; i < N; ++i) d[i] += b.d[i];
     return *this;
   }
-  constexpr Dual& operator-=(const Dual& b) {
+  ANISOCONTACT_INLINE constexpr Dual& operator-=(const Dual& b) {
     v -= b.v;
     for (std::size_t i = 0; i < N; ++i) d[i] -= b.d[i];
     return *this;
   }
-  constexpr Dual& operator*=(const Dual& b) {
+  ANISOCONTACT_INLINE constexpr Dual& operator*=(const Dual& b) {
     for (std::size_t i = 0; i < N; ++i) d[i] = d[i] * b.v + v * b.d[i];
     v *= b.v;
     return *this;
   }
-  constexpr Dual& operator/=(const Dual& b) {
+  ANISOCONTACT_INLINE constexpr Dual& operator/=(const Dual& b) {
     const double inv = 1.0 / b.v;
     v *= inv;
     for (std::size_t i = 0; i < N; ++i) d[i] = (d[i] - v * b.d[i]) * inv;
     return *this;
   }
 
-  friend constexpr Dual operator+(Dual a, const Dual& b) { return a += b; }
-  friend constexpr Dual operator-(Dual a, const Dual& b) { return a -= b; }
-  friend constexpr Dual operator*(Dual a, const Dual& b) { return a *= b; }
-  friend constexpr Dual operator/(Dual a, const Dual& b) { return a /= b; }
+  ANISOCONTACT_INLINE friend constexpr Dual operator+(Dual a, const Dual& b) { return a += b; }
+  ANISOCONTACT_INLINE friend constexpr Dual operator-(Dual a, const Dual& b) { return a -= b; }
+  ANISOCONTACT_INLINE friend constexpr Dual operator*(Dual a, const Dual& b) { return a *= b; }
+  ANISOCONTACT_INLINE friend constexpr Dual operator/(Dual a, const Dual& b) { return a /= b; }
   friend constexpr bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
   friend constexpr bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
   friend constexpr bool operator<=(const Dual& a, const Dual& b) { return a.v <= b.v; }
@@ -62,7 +64,7 @@ struct Dual {
   friend constexpr bool operator!=(const Dual& a, const Dual& b) { return a.v != b.v; }
 
   /// f(x) with value `f` and derivative `df` at x (chain rule).
-  constexpr Dual chain(double f, double df) const {
+  ANISOCONTACT_INLINE constexpr Dual chain(double f, double df) const {
     Dual r(f);
     for (std::size_t i = 0; i < N; ++i) r.d[i] = df * d[i];
     return r;

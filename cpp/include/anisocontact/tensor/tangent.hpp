@@ -7,6 +7,7 @@
 #include <cstddef>
 
 #include "anisocontact/tensor/dual.hpp"
+#include "anisocontact/tensor/inline.hpp"
 
 namespace anisocontact {
 
@@ -23,14 +24,16 @@ struct Tangent1 {
   S& operator[](std::size_t i) { return c[i]; }
   const S& operator[](std::size_t i) const { return c[i]; }
 
-  friend Tangent1 operator+(const Tangent1& a, const Tangent1& b) {
+  ANISOCONTACT_INLINE friend Tangent1 operator+(const Tangent1& a, const Tangent1& b) {
     return {{a.c[0] + b.c[0], a.c[1] + b.c[1]}};
   }
-  friend Tangent1 operator-(const Tangent1& a, const Tangent1& b) {
+  ANISOCONTACT_INLINE friend Tangent1 operator-(const Tangent1& a, const Tangent1& b) {
     return {{a.c[0] - b.c[0], a.c[1] - b.c[1]}};
   }
-  friend Tangent1 operator*(const S& s, const Tangent1& a) { return {{s * a.c[0], s * a.c[1]}}; }
-  Tangent1 operator-() const { return {{-c[0], -c[1]}}; }
+  ANISOCONTACT_INLINE friend Tangent1 operator*(const S& s, const Tangent1& a) {
+    return {{s * a.c[0], s * a.c[1]}};
+  }
+  ANISOCONTACT_INLINE Tangent1 operator-() const { return {{-c[0], -c[1]}}; }
 };
 
 /// Second-order tensor of the tangent plane.
@@ -41,15 +44,19 @@ struct Tangent2 {
   S& operator()(std::size_t i, std::size_t j) { return c[i][j]; }
   const S& operator()(std::size_t i, std::size_t j) const { return c[i][j]; }
 
-  friend Tangent2 operator+(const Tangent2& a, const Tangent2& b) {
+  ANISOCONTACT_INLINE friend Tangent2 operator+(const Tangent2& a, const Tangent2& b) {
     return {{{{a.c[0][0] + b.c[0][0], a.c[0][1] + b.c[0][1]},
               {a.c[1][0] + b.c[1][0], a.c[1][1] + b.c[1][1]}}}};
   }
-  friend Tangent2 operator-(const Tangent2& a, const Tangent2& b) { return a + (-b); }
-  friend Tangent2 operator*(const S& s, const Tangent2& a) {
+  ANISOCONTACT_INLINE friend Tangent2 operator-(const Tangent2& a, const Tangent2& b) {
+    return a + (-b);
+  }
+  ANISOCONTACT_INLINE friend Tangent2 operator*(const S& s, const Tangent2& a) {
     return {{{{s * a.c[0][0], s * a.c[0][1]}, {s * a.c[1][0], s * a.c[1][1]}}}};
   }
-  Tangent2 operator-() const { return {{{{-c[0][0], -c[0][1]}, {-c[1][0], -c[1][1]}}}}; }
+  ANISOCONTACT_INLINE Tangent2 operator-() const {
+    return {{{{-c[0][0], -c[0][1]}, {-c[1][0], -c[1][1]}}}};
+  }
 };
 
 /// Contravariant components, xi^i.
@@ -71,19 +78,21 @@ using ContraCo = Tangent2<S, Place::contra, Place::co>;
 
 /// u_i v^i.
 template <class S, Place P>
-S dot(const Tangent1<S, P>& u, const Tangent1<S, opposite(P)>& v) {
+ANISOCONTACT_INLINE S dot(const Tangent1<S, P>& u, const Tangent1<S, opposite(P)>& v) {
   return u.c[0] * v.c[0] + u.c[1] * v.c[1];
 }
 
 /// Contraction of the last index of `m` with `u`.
 template <class S, Place P, Place Q>
-Tangent1<S, P> operator*(const Tangent2<S, P, Q>& m, const Tangent1<S, opposite(Q)>& u) {
+ANISOCONTACT_INLINE Tangent1<S, P> operator*(const Tangent2<S, P, Q>& m,
+                                             const Tangent1<S, opposite(Q)>& u) {
   return {{m.c[0][0] * u.c[0] + m.c[0][1] * u.c[1], m.c[1][0] * u.c[0] + m.c[1][1] * u.c[1]}};
 }
 
 /// Contraction of the last index of `m` with the first index of `n`.
 template <class S, Place P, Place Q, Place R>
-Tangent2<S, P, R> operator*(const Tangent2<S, P, Q>& m, const Tangent2<S, opposite(Q), R>& n) {
+ANISOCONTACT_INLINE Tangent2<S, P, R> operator*(const Tangent2<S, P, Q>& m,
+                                                const Tangent2<S, opposite(Q), R>& n) {
   Tangent2<S, P, R> r;
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) r.c[i][j] = m.c[i][0] * n.c[0][j] + m.c[i][1] * n.c[1][j];
@@ -92,40 +101,40 @@ Tangent2<S, P, R> operator*(const Tangent2<S, P, Q>& m, const Tangent2<S, opposi
 
 /// u (x) v.
 template <class S, Place P, Place Q>
-Tangent2<S, P, Q> outer(const Tangent1<S, P>& u, const Tangent1<S, Q>& v) {
+ANISOCONTACT_INLINE Tangent2<S, P, Q> outer(const Tangent1<S, P>& u, const Tangent1<S, Q>& v) {
   return {{{{u.c[0] * v.c[0], u.c[0] * v.c[1]}, {u.c[1] * v.c[0], u.c[1] * v.c[1]}}}};
 }
 
 template <class S, Place P, Place Q>
-Tangent2<S, Q, P> transpose(const Tangent2<S, P, Q>& m) {
+ANISOCONTACT_INLINE Tangent2<S, Q, P> transpose(const Tangent2<S, P, Q>& m) {
   return {{{{m.c[0][0], m.c[1][0]}, {m.c[0][1], m.c[1][1]}}}};
 }
 
 template <class S, Place P, Place Q>
-S det(const Tangent2<S, P, Q>& m) {
+ANISOCONTACT_INLINE S det(const Tangent2<S, P, Q>& m) {
   return m.c[0][0] * m.c[1][1] - m.c[0][1] * m.c[1][0];
 }
 
 /// m_i^i, defined for mixed placement alone.
 template <class S, Place P>
-S trace(const Tangent2<S, P, opposite(P)>& m) {
+ANISOCONTACT_INLINE S trace(const Tangent2<S, P, opposite(P)>& m) {
   return m.c[0][0] + m.c[1][1];
 }
 
 /// det(m) m^-1; the placement is that of the inverse.
 template <class S, Place P, Place Q>
-Tangent2<S, opposite(Q), opposite(P)> adjugate(const Tangent2<S, P, Q>& m) {
+ANISOCONTACT_INLINE Tangent2<S, opposite(Q), opposite(P)> adjugate(const Tangent2<S, P, Q>& m) {
   return {{{{m.c[1][1], -m.c[0][1]}, {-m.c[1][0], m.c[0][0]}}}};
 }
 
 template <class S, Place P, Place Q>
-Tangent2<S, opposite(Q), opposite(P)> inverse(const Tangent2<S, P, Q>& m) {
+ANISOCONTACT_INLINE Tangent2<S, opposite(Q), opposite(P)> inverse(const Tangent2<S, P, Q>& m) {
   return (S(1.0) / det(m)) * adjugate(m);
 }
 
 /// The unit tensor delta_i^j.
 template <class S, Place P>
-Tangent2<S, P, opposite(P)> unit() {
+ANISOCONTACT_INLINE Tangent2<S, P, opposite(P)> unit() {
   return {{{{S(1.0), S(0.0)}, {S(0.0), S(1.0)}}}};
 }
 
@@ -145,6 +154,12 @@ Tangent2<S, P, opposite(P)> square_root(const Tangent2<S, P, opposite(P)>& m) {
   return (S(1.0) / sqrt(trace(m) + S(2.0) * s)) * (m + s * unit<S, P>());
 }
 
+/// Derivative k of a tensor in dual numbers.
+template <std::size_t N, Place P, Place Q>
+Tangent2<double, P, Q> derivative(const Tangent2<Dual<N>, P, Q>& m, std::size_t k) {
+  return {{{{m.c[0][0].d[k], m.c[0][1].d[k]}, {m.c[1][0].d[k], m.c[1][1].d[k]}}}};
+}
+
 /// Constants in the scalar type S.
 template <class S, Place P>
 Tangent1<S, P> constant(const Tangent1<double, P>& u) {
@@ -153,6 +168,10 @@ Tangent1<S, P> constant(const Tangent1<double, P>& u) {
 template <class S, Place P>
 Tangent1<double, P> value(const Tangent1<S, P>& u) {
   return {{value(u.c[0]), value(u.c[1])}};
+}
+template <class S, Place P>
+std::array<Tangent1<double, P>, 2> value(const std::array<Tangent1<S, P>, 2>& u) {
+  return {value(u[0]), value(u[1])};
 }
 template <class S, Place P, Place Q>
 Tangent2<double, P, Q> value(const Tangent2<S, P, Q>& m) {

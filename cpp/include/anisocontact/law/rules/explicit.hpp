@@ -58,6 +58,24 @@ class Explicit {
     return {(p.pressure / s) * (normalised * sf), e};
   }
 
+  /// Of T = N h/s by h, and by F in s.
+  template <std::size_t N>
+  TensorTangent<N> tensor_tangent(const SlideProblem<double>& p, const SlideResult<double>& r,
+                                  const SlideTangent& t,
+                                  const SlideProblem<Dual<N>>& d) const noexcept {
+    const Covector<double> h = transpose(p.stiffness) * (p.friction * p.trial);
+    const double scale = p.pressure / friction_norm(p.friction, h);
+    const CoContra<Dual<N>> sf = transpose(d.stiffness) * d.friction;
+    const Vector<double> fe = p.friction * t.d_pressure;
+    TensorTangent<N> out;
+    for (std::size_t k = 0; k < N; ++k) {
+      const Covector<double> dh = derivative(sf, k) * p.trial;
+      const double dn = equivalent_pressure(derivative(d.friction, k), r.traction, p.pressure);
+      out[k] = scale * (dh - dot(dh, fe) * t.d_pressure) + dn * t.d_pressure;
+    }
+    return out;
+  }
+
  private:
   /// Slip lambda dxi with |T_tr + lambda S dxi|_F = N, the smaller root of (111), whose larger one
   /// would create energy. False where there is none (N has dropped, or dxi leads back): the

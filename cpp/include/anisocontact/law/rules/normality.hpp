@@ -51,6 +51,25 @@ class Normality {
     return {a_inv - outer(d_pressure, transpose(a_inv) * n), d_pressure};
   }
 
+  /// d(S K) acts as a trial force -lambda d(S K) T, dF as a pressure; where lambda is infinite,
+  /// T = N m/|m|_F with m = adj(S K) T_tr.
+  template <std::size_t N>
+  TensorTangent<N> tensor_tangent(const SlideProblem<double>& p, const SlideResult<double>& r,
+                                  const SlideTangent& t,
+                                  const SlideProblem<Dual<N>>& d) const noexcept {
+    const CoContra<Dual<N>> sk = d.stiffness * self().conjugate(d);
+    const bool limit = std::isinf(r.multiplier);
+    TensorTangent<N> out;
+    for (std::size_t k = 0; k < N; ++k) {
+      const CoContra<double> d_sk = derivative(sk, k);
+      const ContraContra<double> df = derivative(d.friction, k);
+      out[k] = equivalent_pressure(df, r.traction, p.pressure) * t.d_pressure;
+      out[k] = out[k] + (limit ? of_limit(p, r.traction, value(sk), adjugate(d_sk) * p.trial)
+                               : t.d_trial * (-r.multiplier * (d_sk * r.traction)));
+    }
+    return out;
+  }
+
  private:
   const Derived& self() const { return static_cast<const Derived&>(*this); }
 
@@ -66,6 +85,14 @@ class Normality {
                                        const Vector<double>& n) {
     const double scale = p.pressure / friction_norm(p.friction, adjugate_sk * p.trial);
     return {scale * ((unit<double, Place::co>() - outer(t, n)) * adjugate_sk), t};
+  }
+
+  /// Of T = N m/|m|_F by m.
+  static Covector<double> of_limit(const SlideProblem<double>& p, const Covector<double>& traction,
+                                   const CoContra<double>& sk, const Covector<double>& dm) {
+    const double scale = p.pressure / friction_norm(p.friction, adjugate(sk) * p.trial);
+    const Covector<double> t = (1.0 / p.pressure) * traction;
+    return scale * (dm - dot(dm, p.friction * t) * t);
   }
 
   /// The secular equation in plain numbers.

@@ -30,6 +30,17 @@ class Radial {
     const Covector<double> e = (1.0 / r) * p.trial;
     return {p.pressure / r * (unit<double, Place::co>() - outer(e, n)), e};
   }
+
+  template <std::size_t N>
+  TensorTangent<N> tensor_tangent(const SlideProblem<double>& p, const SlideResult<double>& r,
+                                  const SlideTangent& t,
+                                  const SlideProblem<Dual<N>>& d) const noexcept {
+    TensorTangent<N> out;
+    for (std::size_t k = 0; k < N; ++k)
+      out[k] =
+          equivalent_pressure(derivative(d.friction, k), r.traction, p.pressure) * t.d_pressure;
+    return out;
+  }
 };
 
 }  // namespace anisocontact::law

@@ -1,0 +1,235 @@
+// The pair kernel against the same update in dual numbers: tractions, all derivatives and trial
+// states of random points on every kind of feature, with every rule, adhesion and friction model,
+// with directions on either body, in stick, in slip and at the beginning of contact.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "dual_pair.hpp"
+
+namespace anisocontact {
+namespace {
+
+using kernel::Directions;
+using kernel::Feature;
+using kernel::Side;
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double operator()(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine_);
+  }
+  bool coin() { return (*this)(0.0, 1.0) < 0.5; }
+  std::array<double, 2> pair(double size) { return {(*this)(-size, size), (*this)(-size, size)}; }
+  Vec3<double> vector(double size) {
+    return {(*this)(-size, size), (*this)(-size, size), (*this)(-size, size)};
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+Directions field(Random& r) {
+  const Side side = r.coin() ? Side::master : Side::slave;
+  const double angle = r(-1.0, 1.0);
+  if (r(0.0, 1.0) < 0.1) return {};
+  if (r.coin())
+    return {anisotropy::Fields::make(
+                "polar",
+                Values({{"axis", {-0.7, r(-0.6, -0.4), 0.0, 0.0, 0.1, 1.0}}, {"angle", {angle}}})),
+            side};
+  return {anisotropy::Fields::make(
+              "from-vectors", Values({{"first", {1.0, angle, 0.1}}, {"second", {-0.4, 1.0, 0.2}}})),
+          side};
+}
+
+law::AnyAdhesion adhesion(Random& r) {
+  const std::vector<double> k{60.0, 25.0}, time{0.7, 0.4};
+  switch (static_cast<int>(r(0.0, 5.0))) {
+    case 0:
+      return law::AdhesionModels::make("elastic", Values({{"stiffness", k}}));
+    case 1:
+      return law::AdhesionModels::make("maxwell",
+                                       Values({{"stiffness", k}, {"relaxation_time", time}}));
+    case 2:
+      return law::AdhesionModels::make("kelvin-voigt",
+                                       Values({{"stiffness", k}, {"viscosity", time}}));
+    case 3:
+      return law::AdhesionModels::make(
+          "standard-linear-solid",
+          Values({{"stiffness", k}, {"stiffness_maxwell", time}, {"relaxation_time", time}}));
+    default:
+      return law::AdhesionModels::make("general-linear",
+                                       Values({{"relaxation", {0.5, 0.1, -0.2, 0.4}},
+                                               {"stiffness_instant", {60.0, 5.0, -3.0, 25.0}},
+                                               {"stiffness_rate", {1.0, 0.2, 0.1, 2.0}}}));
+  }
+}
+
+kernel::InterfaceLaw law_of(Random& r, const law::AnyRule& rule, bool sticks) {
+  const double mu = sticks ? 50.0 : 0.3;
+  const bool two = r.coin();
+  return {
+      law::NormalLaws::make("kelvin-voigt",
+                            Values({{"stiffness", {100.0}}, {"viscosity", {r(0.0, 1.0)}}})),
+      adhesion(r),
+      field(r),
+      two ? law::FrictionModels::make("he-curnier",
+                                      Values({{"alpha", {0.7 * mu, 0.4 * mu, 0.2 * mu}}}))
+          : law::FrictionModels::make("orthotropic", Values({{"coefficients", {mu, 0.4 * mu}}})),
+      field(r),
+      two ? field(r) : Directions{},
+      rule};
+}
+
+/// A bent patch near z = 0, the same in another place when asked again.
+surface::Jet<double> patch(Random& r, const Vec3<double>& at) {
+  surface::Jet<double> j;
+  j.position = at + r.vector(0.01);
+  j.d1 = {Vec3<double>(1.0, 0.0, 0.0) + r.vector(0.2), Vec3<double>(0.0, 1.0, 0.0) + r.vector(0.2)};
+  j.d2 = {r.vector(0.3), r.vector(0.3), r.vector(0.3)};
+  return j;
+}
+
+/// A point 0.03 below the patch, in front of what the feature says.
+kernel::PairPoint point(Random& r, Feature feature) {
+  kernel::PairPoint p;
+  p.master.now = patch(r, {0.3, 0.4, 0.0});
+  p.master.reference = patch(r, {0.3, 0.4, 0.0});
+  p.before = patch(r, {0.31, 0.39, 0.0});
+  p.own.now = patch(r, {0.3, 0.4, 0.0});
+  p.own.reference = patch(r, {0.3, 0.4, 0.0});
+  if (r.coin()) std::swap(p.own.now.d1[0], p.own.now.d1[1]);
+  p.master.xi = {r(0.2, 0.8), r(0.2, 0.8)};
+  p.facet = 3;
+  p.feature = feature;
+  p.mirrored = r.coin();
+  const auto n = surface::tangent_plane(p.master.now).normal;
+  Vec3<double> away = n;
+  if (feature == Feature::edge) {
+    p.edge = {1.0, -1.0};
+    const Vec3<double> along = p.master.now.d1[0] - p.master.now.d1[1];
+    away = (n + 0.3 * n.cross(along)).normalized();
+  }
+  if (feature == Feature::vertex) away = (n + r.vector(0.2)).normalized();
+  p.slave = p.master.now.position - r(0.01, 0.04) * away;
+  return p;
+}
+
+kernel::PointState history(Random& r) {
+  kernel::PointState s;
+  s.facet = r(0.0, 1.0) < 0.1 ? -1 : 1;
+  s.status = s.facet < 0 || r(0.0, 1.0) < 0.2 ? 0 : 1;
+  s.xi = {r(0.2, 0.8), r(0.2, 0.8)};
+  s.gap = s.status == 0 ? r(0.0, 0.02) : -0.02;
+  if (s.status == 0) return s;
+  s.stored = s.traction = r.pair(0.3);
+  s.elastic = r.pair(0.01);
+  s.pressure = 2.0;
+  s.slip_accumulated = 1.0;
+  return s;
+}
+
+/// Largest difference of two lists, and the size of what was compared.
+struct Compared {
+  double most{0.0}, size{0.0};
+  void add(double a, double b) {
+    most = std::isnan(a - b) ? INFINITY : std::max(most, std::abs(a - b));
+    size = std::max({size, std::abs(a), std::abs(b)});
+  }
+  double relative() const { return size > 0.0 ? most / size : most; }
+};
+
+double difference(const kernel::PairResult& a, const oracle::Result& b) {
+  Compared traction, slopes, shift;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    traction.add(a.traction[i], b.traction[i].v);
+    for (std::size_t j = 0; j < oracle::variables; ++j)
+      slopes.add(a.d_traction[j / 3](i, static_cast<Eigen::Index>(j % 3)), b.traction[i].d[j]);
+  }
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < oracle::variables; ++j) {
+      const double mine =
+          j < 12 ? a.d_xi[j / 3](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j % 3))
+                 : 0.0;
+      shift.add(mine, b.xi[i].d[j]);
+    }
+  return std::max({traction.relative(), slopes.relative(), shift.relative()});
+}
+
+double difference(const kernel::PointState& a, const kernel::PointState& b) {
+  Compared pairs, numbers;
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (auto field :
+         {&kernel::PointState::xi, &kernel::PointState::origin, &kernel::PointState::traction,
+          &kernel::PointState::stored, &kernel::PointState::elastic, &kernel::PointState::slip})
+      pairs.add((a.*field)[i], (b.*field)[i]);
+  }
+  for (auto field : {&kernel::PointState::gap, &kernel::PointState::pressure,
+                     &kernel::PointState::slip_accumulated, &kernel::PointState::dissipation,
+                     &kernel::PointState::dissipation_viscous, &kernel::PointState::energy_adhesion,
+                     &kernel::PointState::energy_normal})
+    numbers.add(a.*field, b.*field);
+  const bool same = a.status == b.status && a.facet == b.facet;
+  return same ? std::max(pairs.relative(), numbers.relative()) : INFINITY;
+}
+
+struct Tally {
+  double most{0.0};
+  std::array<std::size_t, 3> status{};
+};
+
+void compare(Random& r, const law::AnyRule& rule, Feature feature, Tally& tally) {
+  const auto law = law_of(r, rule, r(0.0, 1.0) < 0.3);
+  const auto state = history(r);
+  const auto p = point(r, feature);
+  const auto fast = kernel::update_pair<true>(law, state, p, 0.5);
+  const auto slow = oracle::update(law, state, p, 0.5);
+  const auto plain = kernel::update_pair<false>(law, state, p, 0.5);
+  if (fast.failure != slow.failure) {
+    tally.most = INFINITY;
+    return;
+  }
+  if (slow.failure != kernel::Failure::none) return;
+  ++tally.status[static_cast<std::size_t>(fast.state.status)];
+  tally.most = std::max(tally.most, difference(fast.state, slow.state));
+  tally.most = std::max(tally.most, difference(plain.state, slow.state));
+  if (fast.state.status != 0) tally.most = std::max(tally.most, difference(fast, slow));
+}
+
+std::vector<law::AnyRule> rules() {
+  std::vector<law::AnyRule> all{law::MaximumDissipation{}, law::Radial{}, law::LinearRule{},
+                                law::Coaxial{}};
+  using History = law::Explicit::History;
+  for (const auto h : {History::centre, History::incremental, History::kuhn_tucker})
+    all.emplace_back(law::Explicit(h));
+  all.push_back(law::SlidingRules::make(
+      "slip-ellipse", Values({{"slip_axes", {2.0, 1.0}}, {"slip_angle", {0.3}}})));
+  return all;
+}
+
+}  // namespace
+}  // namespace anisocontact
+
+int main() {
+  using namespace anisocontact;
+  constexpr double allowed = 1e-12;
+  Random r(1);
+  bool good = true;
+  for (const auto feature : {Feature::interior, Feature::edge, Feature::vertex})
+    for (const auto& rule : rules()) {
+      Tally tally;
+      for (int i = 0; i < 400; ++i) compare(r, rule, feature, tally);
+      const bool fine = tally.most < allowed && tally.status[1] > 20 && tally.status[2] > 20;
+      good = good && fine;
+      std::printf("feature %d, rule %zu: %.1e relative, %zu open, %zu stick, %zu slip\n",
+                  static_cast<int>(feature), rule.index(), tally.most, tally.status[0],
+                  tally.status[1], tally.status[2]);
+    }
+  return good ? 0 : 1;
+}
