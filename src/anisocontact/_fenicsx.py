@@ -47,6 +47,7 @@ __all__ = [
     "body_shares",
     "cell_nodes",
     "cell_permutation",
+    "corner_weights",
     "create_mesh",
     "create_stiffness",
     "dolfinx",
@@ -177,6 +178,19 @@ def body_shares(space: Any, cells: Ints) -> Floats:
     dx = ufl.Measure("dx", domain=space.mesh, subdomain_data=[(1, np.sort(cells))])
     form = fem.form(ufl.TestFunction(space)[0] * dx(1))
     return np.array(fem.assemble_vector(form).array[::3])
+
+
+def corner_weights(space: Any) -> tuple[Nodes, Floats]:
+    """Local nodes of a cell of order 2 that are no corners, and weights of the corners there.
+
+    Returns:
+        Nodes (m,), and the values of the basis functions of order 1 at them, (m, corners).
+    """
+    element = scalar_element(space)
+    linear = _lagrange(element.cell_type.name, 1)
+    corners = linear.dim
+    weights = np.asarray(linear.tabulate(0, element.points)[0, corners:, :, 0])
+    return np.arange(corners, element.dim), np.rint(weights * 8.0) / 8.0
 
 
 def create_stiffness(form: Any) -> Mat:

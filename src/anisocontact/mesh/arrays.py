@@ -42,6 +42,7 @@ class MeshArrays:
         bodies: Body name -> cell numbers.
         facets: "body.group" -> node numbers, vertices first, (facets, nodes of a facet).
         order: Order of the displacement.
+        linear: Bodies whose displacement is of order 1 in a mesh of order 2.
     """
 
     cell: str
@@ -51,6 +52,7 @@ class MeshArrays:
     bodies: dict[str, Nodes]
     facets: dict[str, Nodes]
     order: int
+    linear: tuple[str, ...] = ()
 
     @property
     def vertices_per_facet(self) -> int:
@@ -133,25 +135,25 @@ def merge(parts: Sequence[MeshArrays]) -> MeshArrays:
     """One mesh of several parts that share no nodes.
 
     Where one part has curved cells, those of the others become cells of that degree with straight
-    edges.
+    edges; where one has order 2, the bodies of the others are noted as `linear`.
 
     Raises:
-        InputError: The parts differ in cell or order, or two bodies have one name.
+        InputError: The parts differ in their cells, or two bodies have one name.
     """
     first = parts[0]
     for part in parts[1:]:
-        if (part.cell, part.order) != (first.cell, first.order):
+        if part.cell != first.cell:
             raise InputError(
                 f"bodies {', '.join(first.bodies)} and {', '.join(part.bodies)}: "
-                "all bodies of a mesh need the same cell and order, "
-                f"not {first.cell} of order {first.order} and {part.cell} of order {part.order}",
+                f"all bodies of a mesh need the same cell, not {first.cell} and {part.cell}",
                 "mesh",
             )
     names = [name for part in parts for name in part.bodies]
     for name in names:
         if names.count(name) > 1:
             raise InputError(f"two bodies have the name {name!r}", "mesh")
-    degree = max(part.degree for part in parts)
+    degree, order = (max(getattr(p, which) for p in parts) for which in ("degree", "order"))
+    linear = [name for part in parts if part.order < order for name in part.bodies]
     parts = [lift(part) if part.degree < degree else part for part in parts]
     node = np.cumsum([0] + [len(p.points) for p in parts])
     cell = np.cumsum([0] + [len(p.cells) for p in parts])
@@ -166,7 +168,8 @@ def merge(parts: Sequence[MeshArrays]) -> MeshArrays:
         facets={
             k: v + n for p, n in zip(parts, node[:-1], strict=True) for k, v in p.facets.items()
         },
-        order=first.order,
+        order=order,
+        linear=tuple(linear),
     )
 
 

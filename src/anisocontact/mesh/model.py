@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -25,6 +25,8 @@ class Model:
         bodies: Body name -> local cells.
         facets: "body.group" -> local facets on the boundary of that body.
         order: Order of the displacement, 1 or 2.
+        linear: Bodies whose displacement is of order 1 in a space of order 2; `Problem` ties
+            their middle nodes to the corners.
 
     Raises:
         InputError: The order is not 1 or 2.
@@ -37,12 +39,18 @@ class Model:
     """
 
     def __init__(
-        self, mesh: Any, bodies: Mapping[str, Ints], facets: Mapping[str, Ints], order: int = 1
+        self,
+        mesh: Any,
+        bodies: Mapping[str, Ints],
+        facets: Mapping[str, Ints],
+        order: int = 1,
+        linear: Sequence[str] = (),
     ) -> None:
         if order not in (1, 2):
             raise InputError(f"order: got {order!r}, allowed: 1, 2", "order")
         self.mesh = mesh
         self.order = order
+        self.linear = tuple(linear)
         self._bodies = dict(bodies)
         self._facets = dict(facets)
 
@@ -60,7 +68,7 @@ class Model:
             name: _located(mesh, 2, nodes[own].astype(np.int64))
             for name, nodes in arrays.facets.items()
         }
-        return cls(mesh, bodies, facets, arrays.order)
+        return cls(mesh, bodies, facets, arrays.order, arrays.linear)
 
     @classmethod
     def of(cls, space: Any, facets: Mapping[str, Ints]) -> Model:

@@ -15,6 +15,7 @@ from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.attached import Attachments, ElasticSupport, Spring
 from anisocontact.solver.cells import DeformedCells
+from anisocontact.solver.constraint import Constraint
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.loads import Loads
 from anisocontact.solver.persistent import Persistent
@@ -22,6 +23,7 @@ from anisocontact.solver.rigid import RigidBodies
 from anisocontact.solver.steps import Step
 from anisocontact.solver.supports import Supports
 from anisocontact.solver.symmetry import SymmetryPlanes
+from anisocontact.solver.ties import tie, tied_nodes
 
 Floats = npt.NDArray[np.float64]
 
@@ -108,7 +110,8 @@ class Problem:
         self._evaluated: Floats | None = None
         self._of_mesh = self.bulk.stiffness.createVecRight()
         self._accepted = self.new_vector()
-        self._planes = SymmetryPlanes(model, symmetry, self._accepted.getLocalSize())
+        self._ties = tie(model, self._accepted)
+        self._planes = SymmetryPlanes(model, symmetry, self._accepted, tied_nodes(model))
         self._accepted_outside: Floats = np.zeros(self._owned)
         self._accepted_reaction: Floats = np.zeros(self._owned)
         self._external_work = 0.0
@@ -206,9 +209,11 @@ class Problem:
         load_norm = float(np.hypot(self._norm(self._load), rigid_load))
         u = self._of_mesh
         self._outside = self.bulk.force(u).array_r - contact_force
+        if self._ties is not None:
+            self._outside = self._gathered(self._ties, self._outside)
+            self._load = self._gathered(self._ties, self._load)
         residual = self._outside - self._load
-        if self._planes:
-            residual = self._planes.reduce(residual, u.array_r, self._support_scale)
+        residual = self._constrained(residual, x)
         rows = self.supports.unknowns
         held = np.concatenate([rows, self._planes.slaves])
         residual[rows] = self._support_scale * (u.array_r[rows] - self.supports.at(self._level))
@@ -246,8 +251,8 @@ class Problem:
             couplings += self.rigid.couplings(self._coupled.nodes)
             couplings += self.attached.couplings()
             self._coupled.assemble(out, couplings)
-        if self._planes:
-            self._planes.transform(out, self._support_scale)
+        for constraint in self._constraints():
+            constraint.transform(out, self._support_scale)
         held = np.flatnonzero(self.rigid.held()) if self._last_rank else np.zeros(0, dtype=np.int64)
         rows = np.concatenate([self.supports.unknowns, self._owned + held])
         first, _ = out.getOwnershipRange()
@@ -433,6 +438,23 @@ class Problem:
             rigid = np.asarray(self._comm.bcast(rigid, root=self._comm.size - 1))
         self.rigid.place(rigid)
         return rigid
+
+    def _constraints(self) -> list[Constraint]:
+        """In the order in which they are worked in."""
+        found = (self._ties, self._planes.constraint if self._planes else None)
+        return [constraint for constraint in found if constraint is not None]
+
+    def _gathered(self, constraint: Constraint, force: Floats) -> Floats:
+        """Forces on the mesh, those of slaves handed to their masters."""
+        vector = self.joined(force, np.zeros(self.rigid.size))
+        return np.array(constraint.gather(vector).array_r[: self._owned])
+
+    def _constrained(self, residual: Floats, x: Vec) -> Floats:
+        """Residual of the mesh with the constraints worked in."""
+        for constraint in self._constraints():
+            violation = constraint.violation(x).array_r[: self._owned]
+            residual = self._gathered(constraint, residual) + self._support_scale * violation
+        return residual
 
     def _assembled(self, local: Floats) -> Floats:
         """Owned entries of forces on local unknowns, with what other ranks add to them."""

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
 
-from anisocontact._fenicsx import MPI, Mat, PETSc, fem
+from anisocontact._fenicsx import MPI, Vec, fem
 from anisocontact.contact import facet_quadrature
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
+from anisocontact.solver.constraint import Constraint
 from anisocontact.solver.pressure import outward
 
 Floats = npt.NDArray[np.float64]
@@ -46,33 +46,36 @@ class _Kind:
 class SymmetryPlanes:
     """Constraints `n . u = 0` at the nodes of flat facet groups, n the normal of the group.
 
-    At a node one component for each plane follows from the others, `u_s = c . u`. Its equation is
-    that constraint, and its force goes to the others with the factors c, so that the force across
-    the plane is in balance with the reaction: `r <- R r + s (u_s - c . u)`.
+    At a node one component for each plane follows from the others, `u_s = c . u`, a `Constraint`.
 
     Args:
         model: Mesh with named facets.
         groups: Facet groups, each in a plane.
-        rows: Number of unknowns of this rank in the whole system.
+        like: A vector of the unknowns.
+        tied: Nodes that follow from others, which keep them in the planes.
+
+    Attributes:
+        constraint: The constraints of the step that has begun.
 
     Raises:
         InputError: An unknown facet group, or one that is not flat.
     """
 
-    def __init__(self, model: Model, groups: Sequence[str], rows: int) -> None:
+    def __init__(self, model: Model, groups: Sequence[str], like: Vec, tied: Ints) -> None:
         self._model = model
         #: The facet groups.
         self.groups = list(groups)
-        self._rows = rows
+        self._like = like
         self._normals = np.array([_normal(model, group) for group in groups]).reshape(-1, 3)
         owned = model.space.dofmap.index_map.size_local
         on = np.zeros((owned, len(self.groups)), dtype=bool)
         for i, group in enumerate(groups):
             nodes = fem.locate_dofs_topological(model.space, 2, model.facets(group))
             on[nodes[nodes < owned], i] = True
+        on[tied] = False
         self._on = on
         self._kinds: list[_Kind] = []
-        self._gather = self._constrain = scipy.sparse.csr_array((rows, rows))
+        self.constraint: Constraint | None = None
         #: Unknowns that follow from others, local numbers.
         self.slaves: Ints = np.zeros(0, dtype=np.int64)
 
@@ -109,23 +112,6 @@ class SymmetryPlanes:
                 raise InputError(text, f"step {step!r}.displacement")
         self._build()
 
-    def reduce(self, residual: Floats, u: Floats, scale: float) -> Floats:
-        """Residual with the constraints, of the unknowns of the mesh that this rank owns."""
-        n = len(residual)
-        gathered = self._gather[:n, :n] @ residual
-        return np.asarray(gathered + scale * (self._constrain[:n, :n] @ u))
-
-    def transform(self, matrix: Mat, scale: float) -> None:
-        """The same for the tangent, in place."""
-        gather = _petsc(self._gather, matrix)
-        constrain = _petsc(self._constrain, matrix)
-        product = gather.matMult(matrix)
-        matrix.zeroEntries()
-        for part, factor in ((product, 1.0), (constrain, scale)):
-            matrix.axpy(factor, part, structure=PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
-            part.destroy()
-        gather.destroy()
-
     def forces(self, supporting: Floats) -> tuple[dict[str, Floats], Floats]:
         """Forces of the planes on the bodies.
 
@@ -151,29 +137,23 @@ class SymmetryPlanes:
         to, of, factor = [np.zeros(0, int)], [np.zeros(0, int)], [np.zeros(0)]
         for kind in self._kinds:
             for slave, follow in zip(kind.slaves, kind.follow, strict=True):
-                for component in np.flatnonzero(follow):
+                for component in range(3):
                     to.append(3 * kind.nodes + component)
                     of.append(3 * kind.nodes + slave)
                     factor.append(np.full(len(kind.nodes), follow[component]))
         masters, slaves, factors = map(np.concatenate, (to, of, factor))
-        self.slaves = np.sort(
-            np.concatenate(
-                [
-                    np.zeros(0, int),
-                    *((3 * k.nodes[:, None] + k.slaves).ravel() for k in self._kinds),
-                ]
-            )
+        self.slaves = np.unique(slaves)
+        first, _ = self._like.getOwnershipRange()
+        kept = factors != 0.0
+        alone = np.setdiff1d(self.slaves, slaves[kept])
+        if self.constraint is not None:
+            self.constraint.close()
+        self.constraint = Constraint(
+            self._like,
+            first + np.concatenate([slaves[kept], alone]),
+            first + np.concatenate([masters[kept], alone]),
+            np.concatenate([factors[kept], np.zeros(len(alone))]),
         )
-        free = np.ones(self._rows)
-        free[self.slaves] = 0.0
-        shape = (self._rows, self._rows)
-        handed = scipy.sparse.csr_array((factors, (masters, slaves)), shape=shape)
-        own = scipy.sparse.diags_array(free, format="csr")
-        self._gather = scipy.sparse.csr_array(own + handed)
-        only = scipy.sparse.diags_array(1.0 - free, format="csr")
-        constrain = scipy.sparse.csr_array(only - handed.T)
-        constrain.eliminate_zeros()
-        self._constrain = constrain
 
 
 def _normal(model: Model, group: str) -> Floats:
@@ -216,19 +196,3 @@ def _kind(nodes: Ints, planes: Ints, normals: Floats, held: npt.NDArray[np.bool_
     directions = np.vstack([normals[planes[used]], np.eye(3)[held]])
     share = np.linalg.pinv(directions.T)[: len(used)]
     return _Kind(nodes, np.array(slaves, dtype=np.int64), follow, planes[used], share)
-
-
-def _petsc(local: scipy.sparse.csr_array, like: Mat) -> Mat:
-    """A matrix of entries between unknowns of one rank."""
-    first, _ = like.getOwnershipRange()
-    matrix = PETSc.Mat().createAIJ(
-        like.getSizes(),
-        csr=(
-            local.indptr.astype(PETSc.IntType),
-            (local.indices + first).astype(PETSc.IntType),
-            local.data,
-        ),
-        comm=like.getComm(),
-    )
-    matrix.assemble()
-    return matrix

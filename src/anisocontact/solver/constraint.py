@@ -1,0 +1,76 @@
+"""Linear constraints: unknowns that follow from others, and what becomes of the equations."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import Mat, PETSc, Vec
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+
+class Constraint:
+    """Unknowns `u_s = sum of c_sm u_m`, on top of a system `r(u) = 0`.
+
+    The equation of a slave is its constraint; its force goes to the masters, as virtual work says:
+    `r <- R r + s (u_s - c u)`, with R the unit matrix without the rows of slaves and with c^T, and
+    the same for the tangent.
+
+    Args:
+        like: A vector of the unknowns.
+        slaves: Slave of each coefficient, number over all ranks; it lives on this rank.
+        masters: Master of each coefficient, number over all ranks.
+        factors: The coefficients c.
+    """
+
+    def __init__(self, like: Vec, slaves: Ints, masters: Ints, factors: Floats) -> None:
+        first, last = like.getOwnershipRange()
+        followers = np.unique(slaves)
+        free = np.setdiff1d(np.arange(first, last), followers)
+        alone, own = np.ones(len(free)), np.ones(len(followers))
+        self._gather = _matrix(like, (free, free, alone), (masters, slaves, factors))
+        self._constrain = _matrix(like, (followers, followers, own), (slaves, masters, -factors))
+
+    def gather(self, force: Vec) -> Vec:
+        """Forces handed from slaves to masters, `R f`, a new vector."""
+        out = force.duplicate()
+        self._gather.mult(force, out)
+        return out
+
+    def violation(self, u: Vec) -> Vec:
+        """`u_s - c u` of the slaves, zero elsewhere, a new vector."""
+        out = u.duplicate()
+        self._constrain.mult(u, out)
+        return out
+
+    def transform(self, matrix: Mat, scale: float) -> None:
+        """Make the tangent of the system that of the constrained one, in place.
+
+        The pattern stays: masters are to be coupled with all that their slaves are.
+        """
+        product = self._gather.matMult(matrix)
+        matrix.zeroEntries()
+        subset = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
+        matrix.axpy(1.0, product, structure=subset)
+        matrix.axpy(scale, self._constrain, structure=subset)
+        product.destroy()
+
+    def close(self) -> None:
+        """Give back the matrices."""
+        self._gather.destroy()
+        self._constrain.destroy()
+
+
+type _Entries = tuple[Ints, Ints, Floats]
+
+
+def _matrix(like: Vec, diagonal: _Entries, others: _Entries) -> Mat:
+    matrix = PETSc.Mat().create(like.getComm())
+    matrix.setSizes((like.getSizes(), like.getSizes()))
+    matrix.setType(PETSc.Mat.Type.AIJ)
+    rows, columns, values = (np.concatenate(pair) for pair in zip(diagonal, others, strict=True))
+    matrix.setPreallocationCOO(rows.astype(PETSc.IntType), columns.astype(PETSc.IntType))
+    matrix.setValuesCOO(values, PETSc.InsertMode.INSERT_VALUES)
+    return matrix

@@ -1,0 +1,150 @@
+"""Bodies of order 1 and of order 2 in one mesh."""
+
+import numpy as np
+import pytest
+
+CELLS = ["hexahedron", "tetrahedron"]
+
+
+@pytest.fixture(autouse=True)
+def _needs_dolfinx(fe):
+    """All tests here need DOLFINx."""
+
+
+def block(name, order, cell, z=0.0, **more):
+    """A block, 1 x 1 x 0.5, 2 x 2 x 1 cells."""
+    from anisocontact.mesh import Body, BoxSpec, CylinderSpec, Placement
+
+    shape = BoxSpec((0, 0, z), (1, 1, 0.5), (2, 2, 1), cell, order)
+    if more.get("round"):
+        shape = CylinderSpec(1.0, 0.5, (8, 1, 1), cell, order)
+    return Body(name, shape, Placement(move=(more.get("x", 0.0), 0.0, 0.0)))
+
+
+def problem(bodies, contacts=(), material="neo-hookean", **held):
+    """Bodies of one material."""
+    from anisocontact.bulk import make_material
+    from anisocontact.mesh import build_mesh
+    from anisocontact.solver import Problem
+
+    model = build_mesh(bodies)
+    materials = {name: make_material(material, E=10.0, nu=0.3) for name in model.body_names()}
+    return Problem(model, materials, [make(model) for make in contacts], **held)
+
+
+def run(problem, *steps):
+    """The last accepted increment."""
+    from anisocontact.solver import Solver
+
+    return list(Solver(problem, steps, options={"snes_rtol": 1e-11}).run())[-1]
+
+
+def by_place(problem):
+    """Position of a node -> its displacement."""
+    places = problem.model.space.tabulate_dof_coordinates().round(9)
+    values = problem.u.x.array.reshape(-1, 3)
+    return {tuple(x): u for x, u in zip((places + 0.0).tolist(), values, strict=True)}
+
+
+@pytest.mark.parametrize("cell", CELLS)
+@pytest.mark.parametrize("round_body", [False, True], ids=["box", "curved"])
+def test_a_linear_body_is_what_it_is_alone(cell, round_body):
+    """Two bodies side by side, order 1 and order 2, each under loads that bend it.
+
+    Requirement: each has the displacement, reactions and energy it has alone in a mesh of its own
+    order, also beside curved cells. Source: the same problem in two meshes. Tolerance: 1e-8, Newton
+    to 1e-11 of the forces in all three. Hexahedra are of linear material here: the rational
+    functions of a neo-Hookean one are integrated by more points in a mesh of order 2.
+    """
+    from anisocontact.solver import Step
+
+    kinds = {"one": {"order": 1}, "two": {"order": 2, "x": 5.0, "round": round_body}}
+    bodies = {name: block(name, cell=cell, **kind) for name, kind in kinds.items()}
+
+    def step(names):
+        held = {f"{name}.bottom": {"x": 0.0, "y": 0.0, "z": 0.0} for name in names}
+        force = {f"{name}.top": {"x": 0.3, "z": -0.5} for name in names}
+        weight = {name: {"y": 0.2} for name in names}
+        return Step("bend", 2, held, force=force, body_force=weight)
+
+    material = {"hexahedron": "linear-elastic", "tetrahedron": "neo-hookean"}[cell]
+    both = problem(bodies.values(), material=material)
+    assert both.model.order == 2
+    assert both.model.linear == ("one",)
+    together = run(both, step(bodies))
+    found, energy = by_place(both), 0.0
+    for name, body in bodies.items():
+        alone = problem([body], material=material)
+        last = run(alone, step([name]))
+        energy += last.energies["elastic"]
+        size = np.abs(alone.u.x.array).max()
+        for place, u in by_place(alone).items():
+            assert np.abs(found[place] - u).max() < 1e-8 * size
+        group = f"{name}.bottom"
+        assert together.reactions[group] == pytest.approx(last.reactions[group], abs=1e-8)
+    assert together.energies["elastic"] == pytest.approx(energy, rel=1e-8)
+    external = together.energies["external"]
+    assert abs(together.energies["residual"]) < 0.02 * external
+
+
+@pytest.mark.parametrize("cell", CELLS)
+def test_tangent_with_ties_and_planes(cell):
+    """Halving the step quarters the error of the central difference against the tangent.
+
+    Requirement: exact tangent with middle nodes that are tied, on planes too. Source: Taylor.
+    Tolerance: the ratio is 4 (1 + O(h^2)); 0.15.
+    """
+    from anisocontact.solver import Step
+
+    planes = ["one.left", "two.front"]
+    made = problem([block("one", 1, cell), block("two", 2, cell, x=5.0)], symmetry=planes)
+    made.begin(Step("a", 1, {"one.bottom": {"z": 0.0}}, pressure={"one.top": 2.0}))
+    made.set_level(1.0, 1.0)
+    rng = np.random.default_rng(3)
+    x, direction = made.new_vector(), made.new_vector()
+    x.array[:] = 0.01 * rng.standard_normal(x.getSize())
+    direction.array[:] = rng.standard_normal(x.getSize())
+    matrix = made.new_tangent()
+    made.tangent(x, matrix)
+    exact = (matrix @ direction).array.copy()
+    errors = []
+    for h in (2e-4, 1e-4, 5e-5):
+        ends = [made.evaluate(x + sign * h * direction) for sign in (1.0, -1.0)]
+        errors.append(np.linalg.norm((ends[0] - ends[1]) / (2.0 * h) - exact))
+    errors = np.array(errors) / np.linalg.norm(exact)
+    assert np.all(np.abs(errors[:-1] / errors[1:] - 4.0) < 0.15)
+
+
+@pytest.mark.parametrize("slave", ["one.top", "two.bottom"])
+@pytest.mark.parametrize("cell", CELLS)
+def test_bodies_of_both_orders_in_contact(cell, slave):
+    """A quadratic block presses on a linear one, facets opposite to each other.
+
+    Requirement: uniform pressure, and forces in balance. Source: patch test; matching facets.
+    Tolerance: 1e-7 of the pressure, Newton.
+    """
+    from anisocontact.contact import FacetContact
+    from anisocontact.interface import PairLaw
+    from anisocontact.laws import Adhesion, Friction, NormalLaw
+    from anisocontact.solver import Step
+
+    law = PairLaw(
+        NormalLaw(penalty=1e3), Adhesion(stiffness=(5.0, 5.0)), Friction(coefficients=(0.3, 0.3))
+    )
+    master = {"one.top": "two.bottom", "two.bottom": "one.top"}[slave]
+    bodies = [block("one", 1, cell), block("two", 2, cell, z=0.5)]
+    made = problem(
+        bodies, [lambda m: FacetContact(m, slave, master, law=law)], material="linear-elastic"
+    )
+    sides = {
+        f"{name}.{side}": {axis: 0.0}
+        for name in ("one", "two")
+        for side, axis in (("left", "x"), ("right", "x"), ("front", "y"), ("back", "y"))
+    }
+    ends = {"one.bottom": {"z": 0.0}, "two.top": {"z": -0.01}}
+    last = run(made, Step("press", 2, sides | ends))
+    # Constrained modulus of each block over its height, the penalty between them, in series.
+    modulus = 10.0 * 0.7 / (1.3 * 0.4)
+    pressure = 0.01 / (1.0 / modulus + 1e-3)
+    assert made.contacts[0].last.pressure == pytest.approx(pressure, rel=1e-7)
+    assert last.reactions["two.top"][2] == pytest.approx(-pressure, rel=1e-7)
