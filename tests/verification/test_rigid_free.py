@@ -244,6 +244,39 @@ def test_a_ball_without_friction_may_spin(fe):
         )
 
 
+def test_augmented_contact_on_a_free_body(fe):
+    """Block in a stiff box on a die with a spring, without penetration: block and spring alone.
+
+    Requirement: force and motion of the closed form without penalty to 1e-5, and die and contact in
+    balance to 1e-8. Source: `F = d / (H/(M A) + 1/k)`; the augmentation goes on until the gaps are
+    1e-7 of a facet. Tolerance: that gap over the compression, some 3e-6.
+    """
+    from anisocontact.augmentation import Augmentation
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import Step
+
+    die = RigidBody("die", (0.5, 0.5, 0.0), free=True, springs={"z": 70.0})
+    law = fe.interface(penalty=500.0, coefficients=(50.0, 50.0))
+    block = fe.block(law, body=die, augmentation=Augmentation(tolerance=1e-7))
+    sides = {
+        "block.left": {"x": 0.0},
+        "block.right": {"x": 0.0},
+        "block.front": {"y": 0.0},
+        "block.back": {"y": 0.0},
+    }
+    touch = sides | {"block.top": {"z": -0.001}}
+    block.run(
+        Step("touch", 1, touch, motion={"die": {"z": None}}),
+        Step("press", 2, {"block.top": {"z": -0.01}}),
+        **TIGHT,
+    )
+    oedometric = 1000.0 * 0.7 / (1.3 * 0.4)
+    expected = 0.01 / (0.5 / oedometric + 1.0 / 70.0)
+    force, _ = block.contact.resultant()
+    assert force[2] == pytest.approx(expected, rel=1e-5)
+    assert die.accepted.translation[2] == pytest.approx(-force[2] / 70.0, rel=1e-8)
+
+
 @pytest.mark.parametrize("stop", range(1, 8))
 def test_restart(fe, stop):
     """A run that goes on from the state of any increment ends as one without a break, bitwise.
