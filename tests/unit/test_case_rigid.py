@@ -144,6 +144,6 @@ def test_a_body_that_nothing_holds(rigid_text, tmp_path, capsys):
     text = rigid_text.replace("springs = { x = 20, rz = 3 }\n", "").replace("z = 0.01", "z = -1")
     case = tmp_path / "case.toml"
     case.write_text(text)
-    text = "step 'drag', increment 1: nothing holds the rigid body 'plate' along x: bring it"
+    text = "step 'drag', increment 1: nothing holds the rigid body 'plate' along x: it touches"
     with pytest.raises(StoppedError, match=text):
         list(build(load(case)).solver.run())

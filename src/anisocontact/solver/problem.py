@@ -222,7 +222,7 @@ class Problem:
         self.force_scale = max(
             load_norm,
             *map(self._norm, at_work),
-            float(np.linalg.norm(self.rigid.forces_at_work())),
+            float(np.linalg.norm(self.rigid.spring_forces())),
             float(np.linalg.norm(of_bodies[self.rigid.held()])),
         )
         levers = np.array([contact.lever() for contact in self.contacts])

@@ -21,6 +21,11 @@ Floats = npt.NDArray[np.float64]
 
 #: Share of the stiffness of a body's contacts and springs below which a motion counts as free.
 _NOTHING = 1e-12
+_SLIDES = "what touches it slides; load it less, give it a spring, or hold it there"
+_APART = (
+    "it touches nothing; bring it into contact by a prescribed motion first, give it a spring, or "
+    "hold it there"
+)
 _NAMES = ("along x", "along y", "along z", "about x", "about y", "about z")
 
 
@@ -124,9 +129,13 @@ class RigidBodies:
         parts = [self._drives[b].load(self._level) / self._scales[b] for b in self.free]
         return np.concatenate([np.zeros(0), *parts])
 
-    def forces_at_work(self) -> Floats:
-        """Forces of contacts and springs as the rows have them, (size,), force."""
-        parts = [self._outside[self.bodies.index(b)] / self._scales[b] for b in self.free]
+    def spring_forces(self) -> Floats:
+        """Forces of the springs at the trial as the rows have them, (size,), force.
+
+        Forces of the contacts are those on the nodes; their moments about the reference point would
+        make a body that flies off look balanced.
+        """
+        parts = [b.springs * b.trial.values / self._scales[b] for b in self.free]
         return np.concatenate([np.zeros(0), *parts])
 
     def held(self) -> npt.NDArray[np.bool_]:
@@ -258,6 +267,10 @@ class RigidBodies:
             part = (loose**2).sum(axis=0)
             named = [_NAMES[i] for i, p in zip(np.flatnonzero(free), part, strict=True) if p > 0.01]
             raise SingularError(
-                f"nothing holds the rigid body {body.name!r} {', '.join(named)}: bring it into "
-                "contact by a prescribed motion first, give it a spring, or hold it there"
+                f"nothing holds the rigid body {body.name!r} {', '.join(named)}: "
+                + (_SLIDES if self._touched(body) else _APART)
             )
+
+    def _touched(self, body: RigidBody) -> bool:
+        local = sum(int(np.count_nonzero(c.trial.status)) for c in self.contacts[body])
+        return bool(self._comm.allreduce(local) > 0)
