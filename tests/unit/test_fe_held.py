@@ -174,3 +174,28 @@ def test_wrong_case(tmp_path, capsys, old, new, says):
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1
     assert says in lines[0]
+
+
+def test_a_run_reports_springs_and_planes(tmp_path, capsys):
+    """Requirement: reactions of all that holds a body in history and report; a spring has no
+    displacement of its own."""
+    path = tmp_path / "case.toml"
+    path.write_text(CASE)
+    assert main(["run", str(path), "-o", str(tmp_path / "out")]) == 0
+    capsys.readouterr()
+    header = (tmp_path / "out" / "history.csv").read_text().splitlines()[0].split(",")
+    assert {"reactions.pull.z", "reactions.bar.left.x", "energy.springs"} <= set(header)
+    assert "displacements.pull.z" not in header
+    assert "pull" in (tmp_path / "out" / "report.html").read_text()
+
+
+def test_motion_out_of_a_plane_is_found_before_anything_is_written(tmp_path, capsys):
+    """Requirement: a prescribed motion out of a plane is one line, nothing is written."""
+    path = tmp_path / "case.toml"
+    out = tmp_path / "out"
+    path.write_text(f'{CASE}displacement = {{ "bar.top" = {{ x = 0.1 }} }}\n')
+    assert main(["run", str(path), "-o", str(out)]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1
+    assert "leads nodes out of the symmetry plane 'bar.left', by 0.1" in lines[0]
+    assert not out.exists()

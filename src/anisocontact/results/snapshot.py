@@ -35,7 +35,7 @@ class Observer:
         self._supports = named_groups([problem.holding, *(step.led() for step in steps)])
         self._watched: dict[str, FacetQuadrature] = {
             group: facet_quadrature(model.space, model.facets(group), degree=2)
-            for group in named_groups(step.driven() for step in steps)
+            for group in named_groups([*(step.driven() for step in steps), problem.holding])
             if group in model.facet_names()
         }
 

@@ -14,6 +14,7 @@ from anisocontact.mesh import Model
 from anisocontact.solver.pressure import Pressures
 from anisocontact.solver.steps import AXES, Step
 from anisocontact.solver.supports import Supports
+from anisocontact.solver.symmetry import SymmetryPlanes
 
 Floats = npt.NDArray[np.float64]
 
@@ -126,15 +127,25 @@ class Loads:
         self._pressures.add_tangent(matrix)
 
 
-def check_steps(model: Model, materials: Mapping[str, Material], steps: Sequence[Step]) -> None:
+def check_steps(
+    model: Model,
+    materials: Mapping[str, Material],
+    steps: Sequence[Step],
+    planes: SymmetryPlanes | None = None,
+) -> None:
     """Go through the loads of all steps without solving.
 
     Raises:
-        InputError: See `Supports.begin` and `DeadLoads.begin`.
+        InputError: See `Supports.begin`, `DeadLoads.begin` and `SymmetryPlanes.begin`.
     """
     supports, loads = Supports(model), Loads(model, materials)
     index_map = model.space.dofmap.index_map
     nothing = np.zeros(3 * (index_map.size_local + index_map.num_ghosts))
+    turned = False
     for step in steps:
         supports.begin(step, nothing)
         loads.begin(step, nothing)
+        # Where a turn ends is not known before it has been.
+        turned = turned or bool(step.rotation)
+        if planes is not None and not turned:
+            planes.check(supports.unknowns, supports.end, step.name)

@@ -15,15 +15,13 @@ from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.attached import Attachments, ElasticSupport, Spring
 from anisocontact.solver.cells import DeformedCells
-from anisocontact.solver.constraint import Constraint
+from anisocontact.solver.constraints import Constraints
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.loads import Loads
 from anisocontact.solver.persistent import Persistent
 from anisocontact.solver.rigid import RigidBodies
 from anisocontact.solver.steps import Step
 from anisocontact.solver.supports import Supports
-from anisocontact.solver.symmetry import SymmetryPlanes
-from anisocontact.solver.ties import tie, tied_nodes
 
 Floats = npt.NDArray[np.float64]
 
@@ -110,8 +108,7 @@ class Problem:
         self._evaluated: Floats | None = None
         self._of_mesh = self.bulk.stiffness.createVecRight()
         self._accepted = self.new_vector()
-        self._ties = tie(model, self._accepted)
-        self._planes = SymmetryPlanes(model, symmetry, self._accepted, tied_nodes(model))
+        self.constraints = Constraints(model, symmetry, self._accepted)
         self._accepted_outside: Floats = np.zeros(self._owned)
         self._accepted_reaction: Floats = np.zeros(self._owned)
         self._external_work = 0.0
@@ -132,7 +129,7 @@ class Problem:
     @property
     def holding(self) -> list[str]:
         """Names in `reactions` of what holds the bodies for the whole run."""
-        return [*self._planes.groups, *self.attached.names]
+        return [*self.constraints.planes.groups, *self.attached.names]
 
     @property
     def _owned(self) -> int:
@@ -169,12 +166,12 @@ class Problem:
         self.supports.begin(step, self.u.x.array.copy())
         gone = np.setdiff1d(held, self.supports.unknowns)
         released = np.zeros(len(self.u.x.array))
-        _, reaction = self._planes.forces(self._accepted_reaction)
+        _, reaction = self.constraints.planes.forces(self._accepted_reaction)
         released[gone] = reaction[gone]
         self.loads.begin(step, released)
         self.rigid.begin(step)
         self.attached.begin(step)
-        self._planes.begin(self.supports.unknowns, self.supports.end, step.name)
+        self.constraints.planes.begin(self.supports.unknowns, self.supports.end, step.name)
 
     def set_level(self, fraction: float, dt: float) -> None:
         """Loads at a fraction of the step, time increment `dt` to there."""
@@ -208,14 +205,12 @@ class Problem:
         rigid_load = float(np.linalg.norm(self.rigid.loads()))
         load_norm = float(np.hypot(self._norm(self._load), rigid_load))
         u = self._of_mesh
-        self._outside = self.bulk.force(u).array_r - contact_force
-        if self._ties is not None:
-            self._outside = self._gathered(self._ties, self._outside)
-            self._load = self._gathered(self._ties, self._load)
+        self._outside = self.constraints.tied(self.bulk.force(u).array_r - contact_force)
+        self._load = self.constraints.tied(self._load)
         residual = self._outside - self._load
-        residual = self._constrained(residual, x)
+        residual = self.constraints.reduce(residual, x, self._support_scale)
         rows = self.supports.unknowns
-        held = np.concatenate([rows, self._planes.slaves])
+        held = np.concatenate([rows, self.constraints.planes.slaves])
         residual[rows] = self._support_scale * (u.array_r[rows] - self.supports.at(self._level))
         of_bodies = self.rigid.residual(moved_bodies, self._support_scale)
         at_work = (self._outside[held], contact_force, residual[rows])
@@ -251,8 +246,7 @@ class Problem:
             couplings += self.rigid.couplings(self._coupled.nodes)
             couplings += self.attached.couplings()
             self._coupled.assemble(out, couplings)
-        for constraint in self._constraints():
-            constraint.transform(out, self._support_scale)
+        self.constraints.transform(out, self._support_scale)
         held = np.flatnonzero(self.rigid.held()) if self._last_rank else np.zeros(0, dtype=np.int64)
         rows = np.concatenate([self.supports.unknowns, self._owned + held])
         first, _ = out.getOwnershipRange()
@@ -398,7 +392,7 @@ class Problem:
 
         Unknowns on an edge that several groups prescribe count for the first of them.
         """
-        across, rest = self._planes.forces(self._accepted_reaction)
+        across, rest = self.constraints.planes.forces(self._accepted_reaction)
         sums = self.supports.reactions(rest)
         attached = self.attached.reactions(self.u.x.array.reshape(-1, 3))
         for name, force in (*across.items(), *attached.items()):
@@ -438,23 +432,6 @@ class Problem:
             rigid = np.asarray(self._comm.bcast(rigid, root=self._comm.size - 1))
         self.rigid.place(rigid)
         return rigid
-
-    def _constraints(self) -> list[Constraint]:
-        """In the order in which they are worked in."""
-        found = (self._ties, self._planes.constraint if self._planes else None)
-        return [constraint for constraint in found if constraint is not None]
-
-    def _gathered(self, constraint: Constraint, force: Floats) -> Floats:
-        """Forces on the mesh, those of slaves handed to their masters."""
-        vector = self.joined(force, np.zeros(self.rigid.size))
-        return np.array(constraint.gather(vector).array_r[: self._owned])
-
-    def _constrained(self, residual: Floats, x: Vec) -> Floats:
-        """Residual of the mesh with the constraints worked in."""
-        for constraint in self._constraints():
-            violation = constraint.violation(x).array_r[: self._owned]
-            residual = self._gathered(constraint, residual) + self._support_scale * violation
-        return residual
 
     def _assembled(self, local: Floats) -> Floats:
         """Owned entries of forces on local unknowns, with what other ranks add to them."""

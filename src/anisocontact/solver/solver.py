@@ -72,7 +72,8 @@ class Solver:
         self.problem = problem
         self.steps = list(steps)
         self.limits = limits or Limits()
-        check_steps(problem.model, problem.materials, self.steps)
+        planes = problem.constraints.planes
+        check_steps(problem.model, problem.materials, self.steps, planes)
         for step in self.steps:
             problem.attached.check(step)
         problem.rigid.check(self.steps)

@@ -22,6 +22,8 @@ Ints = npt.NDArray[np.int64]
 FLAT = 1e-6
 #: Share of a normal that counts as none of it along an axis.
 NO_SHARE = 1e-9
+#: Prescribed displacement across a plane over the largest one that counts as none of it.
+OUT = 1e-6
 
 
 @dataclass(frozen=True)
@@ -93,24 +95,32 @@ class SymmetryPlanes:
         Raises:
             InputError: A prescribed value leads a node out of its plane.
         """
+        self._kinds = self._checked(prescribed, values, step)
+        self._build()
+
+    def check(self, prescribed: Ints, values: Floats, step: str) -> None:
+        """The check of `begin` alone."""
+        self._checked(prescribed, values, step)
+
+    def _checked(self, prescribed: Ints, values: Floats, step: str) -> list[_Kind]:
         held = np.zeros(self._on.shape[0] * 3, dtype=bool)
         led = np.zeros(len(held))
         held[prescribed], led[prescribed] = True, values
         nodes = np.flatnonzero(self._on.any(axis=1))
         keys = np.hstack([self._on[nodes], held.reshape(-1, 3)[nodes]])
-        kinds, which = np.unique(keys, axis=0, return_inverse=True)
-        self._kinds = []
-        for i, key in enumerate(kinds):
+        found, which = np.unique(keys, axis=0, return_inverse=True)
+        kinds = []
+        for i, key in enumerate(found):
             planes = np.flatnonzero(key[:-3])
             kind = _kind(nodes[which.reshape(-1) == i], planes, self._normals, key[-3:])
-            self._kinds.append(kind)
+            kinds.append(kind)
             loose = np.setdiff1d(planes, kind.planes)
             across = np.abs(led.reshape(-1, 3)[kind.nodes] @ self._normals[loose].T)
-            if np.any(across > NO_SHARE * np.abs(led).max(initial=0.0)):
+            if np.any(across > OUT * np.abs(led).max(initial=0.0)):
                 group = self.groups[loose[int(np.argmax(across.max(axis=0)))]]
                 text = f"leads nodes out of the symmetry plane {group!r}, by {across.max():.3g}"
                 raise InputError(text, f"step {step!r}.displacement")
-        self._build()
+        return kinds
 
     def forces(self, supporting: Floats) -> tuple[dict[str, Floats], Floats]:
         """Forces of the planes on the bodies.

@@ -131,13 +131,17 @@ def _contacts(summary: dict[str, Any]) -> list[dict[str, Any]]:
     return rows
 
 
+# Of what has no displacement of its own, such as a spring.
+_NONE = ("", "", "")
+
+
 def _reactions(summary: dict[str, Any]) -> list[dict[str, Any]]:
     moved = summary["displacements"]
     return [
         {
-            "facets": group,
+            "facets or spring": group,
             **_vector("force", force, "force"),
-            **_vector("displacement", moved[group], "length"),
+            **_vector("displacement", moved.get(group, _NONE), "length"),
         }
         for group, force in summary["reactions"].items()
     ]
@@ -156,7 +160,7 @@ def _rigid(summary: dict[str, Any]) -> list[dict[str, Any]]:
     ]
 
 
-def _vector(name: str, values: Iterable[float], unit: str) -> dict[str, float]:
+def _vector(name: str, values: Iterable[float | str], unit: str) -> dict[str, float | str]:
     return {f"{name} {axis} [{unit}]": value for axis, value in zip("xyz", values, strict=True)}
 
 

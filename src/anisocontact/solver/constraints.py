@@ -1,0 +1,68 @@
+"""All constraints of a problem: ties of middle nodes, then symmetry planes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import Mat, Vec
+from anisocontact.mesh import Model
+from anisocontact.solver.constraint import Constraint
+from anisocontact.solver.symmetry import SymmetryPlanes
+from anisocontact.solver.ties import tie, tied_nodes
+
+Floats = npt.NDArray[np.float64]
+
+
+class Constraints:
+    """Works the constraints into the equations, one after the other.
+
+    Args:
+        model: Mesh with named facets.
+        symmetry: Flat facet groups whose nodes stay in their plane.
+        like: A vector of the unknowns; those of the mesh come first.
+
+    Attributes:
+        planes: The symmetry planes.
+
+    Raises:
+        InputError: See `SymmetryPlanes`.
+    """
+
+    def __init__(self, model: Model, symmetry: Sequence[str], like: Vec) -> None:
+        self._like = like
+        self._ties = tie(model, like)
+        self.planes = SymmetryPlanes(model, symmetry, like, tied_nodes(model))
+
+    def tied(self, force: Floats) -> Floats:
+        """Forces on the mesh, those of tied nodes handed to the corners they follow."""
+        return force if self._ties is None else self._handed(self._ties, force)
+
+    def reduce(self, residual: Floats, x: Vec, scale: float) -> Floats:
+        """Residual of the mesh with the constraints worked in, of the unknowns of this rank.
+
+        Args:
+            residual: Without them, force.
+            x: All unknowns.
+            scale: Force for a violation of one unit of length.
+        """
+        for constraint in self._all():
+            violation = constraint.violation(x).array_r[: len(residual)]
+            residual = self._handed(constraint, residual) + scale * violation
+        return residual
+
+    def transform(self, matrix: Mat, scale: float) -> None:
+        """The same for the tangent, in place."""
+        for constraint in self._all():
+            constraint.transform(matrix, scale)
+
+    def _all(self) -> list[Constraint]:
+        found = (self._ties, self.planes.constraint if self.planes else None)
+        return [constraint for constraint in found if constraint is not None]
+
+    def _handed(self, constraint: Constraint, force: Floats) -> Floats:
+        vector = self._like.duplicate()
+        vector.array[: len(force)] = force
+        return np.array(constraint.gather(vector).array_r[: len(force)])
