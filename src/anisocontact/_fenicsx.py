@@ -50,6 +50,7 @@ __all__ = [
     "corner_weights",
     "create_mesh",
     "create_stiffness",
+    "curved_gradients",
     "dolfinx",
     "facet_nodes",
     "facet_sides",
@@ -120,6 +121,13 @@ def cell_nodes(cell: str, degree: int) -> Nodes:
 def facet_nodes(cell: str, degree: int) -> Nodes:
     """Local nodes of each facet of a Lagrange cell, vertices first, (facets, nodes)."""
     return np.array(_lagrange(cell, degree).entity_closure_dofs[2], dtype=np.int64)
+
+
+def curved_gradients(cell: str) -> Floats:
+    """Gradients of the basis of order 2 at the points of a rule of degree 4, (points, nodes, 3)."""
+    element = _lagrange(cell, 2)
+    points, _ = basix.make_quadrature(element.cell_type, 4)
+    return np.ascontiguousarray(np.moveaxis(element.tabulate(1, points)[1:, :, :, 0], 0, -1))
 
 
 def _lagrange(cell: str, degree: int) -> Any:

@@ -285,6 +285,13 @@ def test_unsound_cells_are_refused():
     mesh.cells[0] = mesh.cells[0, [1, 0, 2, 3]]
     with pytest.raises(InputError, match="body 'a': 1 of 2 cells are flat or inverted"):
         check_cells(mesh)
+    mesh = two_tetrahedra(2)
+    # The corners stay, the middle of an edge goes through the opposite one.
+    edge = next(n for n in mesh.cells[0, 4:] if n not in mesh.cells[1])
+    mesh.points[edge] = 3.0 * mesh.points[mesh.cells[0, :4]].mean(axis=0) - 2.0 * mesh.points[edge]
+    mesh.points[edge] += 2.0 * (mesh.points[edge] - mesh.points[0])
+    with pytest.raises(InputError, match="body 'a': 1 of 2 cells are flat or inverted"):
+        check_cells(mesh)
     mesh = two_tetrahedra(1)
     third = dataclasses.replace(mesh, cells=np.vstack([mesh.cells, mesh.cells[:1]]))
     with pytest.raises(InputError, match="1 facets belong to more than two cells"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import middle_nodes
+from anisocontact._fenicsx import curved_gradients, middle_nodes
 from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 
@@ -33,12 +33,15 @@ def check_cells(mesh: MeshArrays) -> None:
     """Refuse flat or inverted cells, facets of more than two cells, and edges with two middles.
 
     Args:
-        mesh: Mesh with straight or curved cells; the corners are looked at.
+        mesh: Mesh with straight or curved cells. The corners are looked at, and inside of curved
+            cells the points of a quadrature.
 
     Raises:
         InputError: Says what is wrong and how often.
     """
     volumes = _corner_volumes(mesh)
+    if mesh.degree == 2:
+        volumes = np.hstack([volumes, _inner_volumes(mesh)])
     for name, cells in mesh.bodies.items():
         own = volumes[cells]
         bad = int(np.sum(own.min(axis=1) <= FLAT * np.abs(own).max()))
@@ -56,6 +59,12 @@ def _corner_volumes(mesh: MeshArrays) -> npt.NDArray[np.float64]:
     points = mesh.points[mesh.cells[:, corners]]
     edges = points[:, :, 1:] - points[:, :, :1]
     return np.asarray(np.linalg.det(edges))
+
+
+def _inner_volumes(mesh: MeshArrays) -> npt.NDArray[np.float64]:
+    points = np.ascontiguousarray(mesh.points[mesh.cells].swapaxes(1, 2))
+    # One point after the other: all at once would be many times the mesh.
+    return np.column_stack([np.linalg.det(points @ g) for g in curved_gradients(mesh.cell)])
 
 
 def _facets_of_more_than_two(mesh: MeshArrays) -> int:
