@@ -1,0 +1,72 @@
+"""Hard cases run as a user runs them: a case file, default settings, to the end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pytest
+
+
+@dataclass
+class Run:
+    """A run that came to its end.
+
+    Attributes:
+        accepted: Every accepted part.
+        cuts: Every cut.
+        problem: The problem in its last state.
+    """
+
+    accepted: list[Any]
+    cuts: list[Any]
+    problem: Any
+
+    @property
+    def ends(self) -> dict[str, Any]:
+        """The last accepted part of each step."""
+        return {a.step: a for a in self.accepted}
+
+    def force(self, step: str, contact: int = 0) -> Any:
+        """Resultant on the slave at the end of a step."""
+        name = self.problem.contacts[contact].name
+        return self.ends[step].resultants[name][0]
+
+    def penetration(self) -> float:
+        """Largest penetration at the end, length."""
+        return max(float(np.max(-c.last.gap, initial=0.0)) for c in self.problem.contacts)
+
+
+@pytest.fixture
+def to_the_end(tmp_path) -> Callable[[str], Run]:
+    """Runs the text of a case file with default settings; every increment is met, in order."""
+    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    from anisocontact.case import load
+    from anisocontact.case.build import build
+
+    def run(text: str) -> Run:
+        assert "[solver]" not in text
+        path = tmp_path / "case.toml"
+        path.write_text(text)
+        built = build(load(path))
+        assert built.problem.unknowns < 2500
+        cuts: list[Any] = []
+        accepted = list(built.solver.run(on_cut=cuts.append))
+        met = [(a.step, a.increment) for a in accepted if a.done == 1.0]
+        assert met == [(s.name, i + 1) for s in built.steps for i in range(s.increments)]
+        times = [a.time for a in accepted]
+        assert times == sorted(times)
+        assert times[-1] == pytest.approx(sum(s.duration for s in built.steps), rel=1e-14)
+        print(
+            "STAT",
+            len(accepted),
+            sum(a.iterations for a in accepted),
+            len(cuts),
+            sorted({(c.reason[:40], c.culprits[0].kind if c.culprits else "") for c in cuts}),
+            accepted[-1].energies,
+        )
+        return Run(accepted, cuts, built.problem)
+
+    return run
