@@ -151,7 +151,7 @@ class Writer:
             WriteError: It cannot be written; the one before is still there.
         """
         joined = gathered(self._problem.model, kept)
-        content = {"writer": self.state(), **facts}
+        content = {"writer": _finite(self.state()), **facts}
         self._disk.write(lambda: save_checkpoint(self.folder, joined, content))
         self._disk.check()
 
@@ -194,7 +194,7 @@ class Writer:
         """Log a cut and keep it for the summary."""
         self.log(str(cut))
         self.log_culprits(cut.culprits, cut.count)
-        self.summary["cuts"].append(_finite(asdict(cut)))
+        self.summary["cuts"].append(asdict(cut))
 
     def log_culprits(self, culprits: Sequence[Culprit], count: int = 0) -> None:
         """Log the places that caused a failure, and how many there are if not all are given."""
@@ -262,7 +262,7 @@ class Writer:
 
     def _write_summary(self) -> None:
         self.summary["wall_time_s"] = round(time.perf_counter() - self._began, 3)
-        text = json.dumps(self.summary, indent=2, allow_nan=False)
+        text = json.dumps(_finite(self.summary), indent=2, allow_nan=False)
         self._disk.write(lambda: write_text(self.folder / "summary.json", text + "\n"))
 
     def _warnings(self) -> list[str]:

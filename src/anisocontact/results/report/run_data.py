@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
@@ -43,7 +44,7 @@ class RunData:
 
     def __init__(self, folder: Path) -> None:
         self.results = Results(folder)
-        self.summary: dict[str, Any] = self.results.summary
+        self.summary: dict[str, Any] = _numbers(self.results.summary)
         self.history = self.results.history
         self.rows = len(self.history.get("time", ()))
 
@@ -119,3 +120,12 @@ class RunData:
         """Length of the path of a vector up to each row, (rows,)."""
         moved = np.vstack([np.zeros(3), self.vectors(column)])
         return np.cumsum(np.linalg.norm(np.diff(moved, axis=0), axis=1))
+
+
+def _numbers(value: Any) -> Any:
+    """Nested values with not-a-number where JSON has null."""
+    if isinstance(value, dict):
+        return {key: _numbers(one) for key, one in value.items()}
+    if isinstance(value, list):
+        return [_numbers(one) for one in value]
+    return math.nan if value is None else value
