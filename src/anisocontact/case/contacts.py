@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from anisocontact.augmentation import Augmentation
 from anisocontact.bulk import Material
 from anisocontact.case import objects
@@ -19,6 +21,7 @@ from anisocontact.contact import (
     check_start,
     facet_size,
 )
+from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.rigid import RigidBody
 
@@ -117,7 +120,7 @@ def _rigid(
     master = objects.surface(case.surface[section.master], f"surface.{section.master}")
     interface = objects.interface(section, master, place, auto)
     with objects.within(place):
-        return Contact(
+        made = Contact(
             model,
             section.slave,
             interface,
@@ -128,6 +131,11 @@ def _rigid(
             name=f"{section.slave} on {section.master}",
             body=body,
         )
+    finite_gaps = bool(np.isfinite(made.last.gap).all())
+    if not all(model.mesh.comm.allgather(finite_gaps)):
+        text = "slave points have no finite distance to it: is it far too large or too small?"
+        raise InputError(text, field=f"surface.{section.master}")
+    return made
 
 
 def _augmentation(section: ContactSection) -> Augmentation | None:

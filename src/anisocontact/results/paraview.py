@@ -51,7 +51,10 @@ class Collection:
         for path in self._path.with_suffix("").glob(f"*{self._suffix}"):
             if path.name not in listed:
                 path.unlink()
-        self._write_list()
+        if self._entries:
+            self._write_list()
+        else:
+            self._path.unlink(missing_ok=True)
 
     def add(self, time: float, data: pyvista.DataSet) -> None:
         """Write a data set and then the list with it."""
