@@ -69,7 +69,14 @@ def build(file: CaseFile) -> Built:
     ]
     steps = _steps(case, model)
     _check_options(case.solver.options)
-    problem = Problem(model, materials, contacts, _attached(case), case.symmetry)
+    problem = Problem(
+        model,
+        materials,
+        contacts,
+        _attached(case),
+        case.symmetry,
+        stabilised=case.solver.stabilisation,
+    )
     with objects.within("solver"):
         given = case.solver
         limits = Limits(given.smallest_increment, given.largest_increment, given.cuts)

@@ -63,6 +63,7 @@ def contact(
         made = _meshed(section, model, auto, finite, place)
     else:
         made = _rigid(case, section, model, rigid.get(section.master), auto, finite, place)
+    made.physical_adhesion = not _auto_adhesion(section)
     with objects.within(place):
         check_start(made, facet_size(model, section.slave))
     return made
@@ -142,10 +143,15 @@ def _augmentation(section: ContactSection) -> Augmentation | None:
     """What the table asks for; a stiffness of adhesion that the user gave is physical."""
     if section.method != AUGMENTED:
         return None
-    tangential = section.adhesion.parameters().get("stiffness") == AUTO
+    tangential = _auto_adhesion(section)
     if section.tolerance is None:
         return Augmentation(tangential=tangential)
     return Augmentation(section.tolerance, tangential)
+
+
+def _auto_adhesion(section: ContactSection) -> bool:
+    """Whether the stiffness of adhesion is one that the run chooses."""
+    return bool(section.adhesion.parameters().get("stiffness") == AUTO)
 
 
 def _adjust(section: ContactSection) -> float | None:

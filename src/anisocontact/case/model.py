@@ -92,6 +92,14 @@ class Solver(Section):
         float,
         _number("scalar", "1", "largest part, a share of an increment", "positive", most=1.0),
     ] = Limits.largest
+    stabilisation: Annotated[
+        bool,
+        _number(
+            "flag",
+            "1",
+            "whether bodies that only contact can hold are kept in reach until it does",
+        ),
+    ] = True
     cuts: Annotated[
         int, _number("integer", "1", "most cuts within an increment", "non-negative")
     ] = Limits.cuts

@@ -65,6 +65,8 @@ class ContactRecord:
         facet_of_point: Number of each point's facet in the group, of those of this rank, (n,).
 
     Attributes:
+        physical_adhesion: Whether the stiffness of adhesion is physical, so that elastic slip is
+            none of its faults.
         state: Committed history, one record for each point.
         facet_of_point: As given.
         space: Vector space of the displacement.
@@ -83,6 +85,7 @@ class ContactRecord:
         self.slave = slave
         self.name = name
         self.state = state
+        self.physical_adhesion = True
         self.space = space
         self.facet_of_point = facet_of_point
         self._comm = space.mesh.comm

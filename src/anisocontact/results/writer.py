@@ -12,7 +12,6 @@ from typing import Any
 
 from anisocontact import __version__
 from anisocontact.contact import facet_size
-from anisocontact.interface import STATUS
 from anisocontact.results.checkpoint import gathered, save_checkpoint
 from anisocontact.results.files import Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
@@ -20,15 +19,11 @@ from anisocontact.results.paraview import Bodies, Collection, slave_points
 from anisocontact.results.report import write_report
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
+from anisocontact.results.warnings import at_end, at_start
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
 from anisocontact.solver.persistent import Persistent
 
 __all__ = ["Writer"]
-
-#: Share of the facet size beyond which a penetration is worth a warning.
-DEEP = 0.1
-#: The same before the first step: more than the rounding of a mesh file.
-OVERLAP = 1e-6
 
 
 class Writer:
@@ -94,7 +89,7 @@ class Writer:
         self.summary: dict[str, Any] = self._head(title)
         if resumed is None:
             self._take(self._observer.numbers())
-            self._at_start = self._overlaps()
+            self._at_start = at_start(problem.contacts, self.summary["contacts"])
             for warning in self._at_start:
                 self.log(f"warning: {warning}")
             self._write_fields(0.0)
@@ -169,6 +164,8 @@ class Writer:
         Raises:
             WriteError: Something cannot be written.
         """
+        for note in self._problem.stabilisation.told():
+            self.log(note)
         numbers = self._observer.numbers(accepted)
         row = {
             "step": accepted.step,
@@ -214,7 +211,8 @@ class Writer:
             self._write_fields(self.summary["time"])
         self.summary["status"] = status
         self.summary["message"] = message
-        self.summary["warnings"] = self._warnings()
+        found = at_end(self._problem.contacts, self.summary["contacts"], self.summary["energy"])
+        self.summary["warnings"] = [*self._at_start, *found]
         self._write_summary()
         self._disk.write(self._report)
 
@@ -265,32 +263,6 @@ class Writer:
         text = json.dumps(_finite(self.summary), indent=2, allow_nan=False)
         self._disk.write(lambda: write_text(self.folder / "summary.json", text + "\n"))
 
-    def _warnings(self) -> list[str]:
-        found = list(self._at_start)
-        for contact in self.summary["contacts"]:
-            pair = _pair(contact)
-            share = contact["max_penetration"] / contact["facet_size"]
-            if share > DEEP:
-                found.append(
-                    f"{pair}: the penetration is {share:.0%} of the facet size; "
-                    "a larger normal penalty makes it smaller"
-                )
-            if contact["points"]["open"] == sum(contact["points"][name] for name in STATUS):
-                found.append(f"{pair}: no point touches at the end")
-        return found
-
-    def _overlaps(self) -> list[str]:
-        """Contacts whose bodies overlap before the first step."""
-        found = []
-        for contact in self.summary["contacts"]:
-            depth, size = contact["max_penetration"], contact["facet_size"]
-            if depth > OVERLAP * size:
-                found.append(
-                    f"{_pair(contact)}: the bodies overlap by {depth:.3g} at the start, "
-                    f"{depth / size:.0%} of the facet size; the first increment pushes them apart"
-                )
-        return found
-
 
 def _finite(value: Any) -> Any:
     """Nested values as JSON can have them: a number that is none becomes null."""
@@ -299,7 +271,3 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_finite(one) for one in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
-
-
-def _pair(contact: dict[str, Any]) -> str:
-    return f"contact of {contact['slave']} with {contact['master']}"

@@ -94,6 +94,11 @@ class ElasticSupport:
         if self.normal == self.tangential == 0.0:
             raise InputError("both stiffnesses are 0", f"elastic_support.{self.group}")
 
+    @property
+    def groups(self) -> list[str]:
+        """Facet groups that are held."""
+        return [self.group]
+
     def on(self, model: Model) -> Attached:
         """The support on a model; raises InputError where the group is unknown."""
         return _Bed(self, model)
@@ -129,6 +134,11 @@ class Spring:
             raise InputError("all components are 0", f"{field}.stiffness")
         if self.to == self.group:
             raise InputError(f"{self.to!r} given, the group itself", f"{field}.to")
+
+    @property
+    def groups(self) -> list[str]:
+        """Facet groups that are held."""
+        return [self.group] if self.to is None else [self.group, self.to]
 
     def on(self, model: Model) -> Attached:
         """The spring on a model; raises InputError where a group is unknown."""

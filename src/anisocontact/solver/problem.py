@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.loads import Loads
 from anisocontact.solver.persistent import Persistent
 from anisocontact.solver.rigid import RigidBodies
+from anisocontact.solver.stabilisation import Stabilisation
 from anisocontact.solver.steps import Step
 from anisocontact.solver.supports import Supports
 
@@ -29,6 +31,21 @@ Floats = npt.NDArray[np.float64]
 ROUND_OFF = 16.0 * float(np.finfo(np.float64).eps)
 #: Share of the loads that may be left out of balance as round-off.
 LOAD_SHARE = 1e-6
+
+
+@dataclass(frozen=True)
+class _Way:
+    """The last state on the way from the accepted one.
+
+    Attributes:
+        place: Its displacements, length.
+        outside: What acts from outside there, force.
+        work: Work of it since the accepted state.
+    """
+
+    place: Floats
+    outside: Floats
+    work: float
 
 
 class Problem:
@@ -44,6 +61,8 @@ class Problem:
         contacts: Contacts on the same model.
         attached: Elastic supports and springs that hold the bodies for the whole run.
         symmetry: Flat facet groups whose nodes stay in their plane.
+        stabilised: Whether bodies that only contact can hold are kept in reach, see
+            `Stabilisation`.
 
     Attributes:
         u: Displacement, a DOLFINx function; holds the accepted state between increments.
@@ -73,6 +92,7 @@ class Problem:
         contacts: Sequence[AnyContact] = (),
         attached: Sequence[ElasticSupport | Spring] = (),
         symmetry: Sequence[str] = (),
+        stabilised: bool = True,
     ) -> None:
         _check(model, materials, contacts)
         self.model = model
@@ -112,9 +132,14 @@ class Problem:
         self._accepted_outside: Floats = np.zeros(self._owned)
         self._accepted_reaction: Floats = np.zeros(self._owned)
         self._external_work = 0.0
-        self._begun = self._at_hand()
+        self._way = _Way(np.zeros(self._owned), np.zeros(self._owned), 0.0)
         diagonal = self.bulk.diagonal
         self._support_scale = diagonal.sum() / diagonal.getSize()
+        holders = {model.body_of(group) for one in attached for group in one.groups}
+        self.stabilisation = Stabilisation(
+            model, self.contacts, self._support_scale, holders, stabilised
+        )
+        self._begun = self._at_hand()
 
     @property
     def unknowns(self) -> int:
@@ -172,6 +197,20 @@ class Problem:
         self.rigid.begin(step)
         self.attached.begin(step)
         self.constraints.planes.begin(self.supports.unknowns, self.supports.end, step.name)
+        self.stabilisation.begin([*self.supports.held(), *self.constraints.planes.held()], step.name)
+
+    def check_held(self, steps: Sequence[Step]) -> None:
+        """Find out whether supports or contacts can hold every body in every step.
+
+        Raises:
+            InputError: A body is free to move and in no contact.
+        """
+        supports, nothing = Supports(self.model), np.zeros(len(self.u.x.array))
+        for step in steps:
+            supports.begin(step, nothing)
+            held = [*supports.held(), *self.constraints.planes.held()]
+            self.stabilisation.begin(held, step.name, now=False)
+        self.stabilisation.clear()
 
     def set_level(self, fraction: float, dt: float) -> None:
         """Loads at a fraction of the step, time increment `dt` to there."""
@@ -181,6 +220,7 @@ class Problem:
         self.rigid.set_level(fraction)
         self.loads.set_level(fraction)
         self.attached.set_level(fraction)
+        self._stabilise()
 
     def evaluate(self, x: Vec) -> Floats:
         """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer.
@@ -205,7 +245,10 @@ class Problem:
         rigid_load = float(np.linalg.norm(self.rigid.loads()))
         load_norm = float(np.hypot(self._norm(self._load), rigid_load))
         u = self._of_mesh
-        self._outside = self.constraints.tied(self.bulk.force(u).array_r - contact_force)
+        outside = self.bulk.force(u).array_r - contact_force
+        if self.stabilisation:
+            outside -= self.stabilisation.force(nodal).reshape(-1)[: self._owned]
+        self._outside = self.constraints.tied(outside)
         self._load = self.constraints.tied(self._load)
         residual = self._outside - self._load
         residual = self.constraints.reduce(residual, x, self._support_scale)
@@ -240,6 +283,7 @@ class Problem:
             contact.add_tangent(bulk)
         self.loads.add_tangent(bulk)
         self.attached.add_tangent(bulk)
+        self.stabilisation.add_tangent(bulk)
         bulk.assemble()
         if self._coupled is not None:
             couplings = [k for c in self._meshed for k in c.couplings()]
@@ -253,32 +297,53 @@ class Problem:
         out.zeroRows((first + rows).astype(PETSc.IntType), self._support_scale)
 
     def improve(self, x: Vec) -> bool:
-        """Better multipliers of the contacts from equilibrium; whether any changed.
+        """Better multipliers of contacts, weaker springs of stabilisation; whether any changed.
 
         Raises:
             NotHeldError: They do not converge.
         """
         if self._evaluated is None or not np.array_equal(self._evaluated, x.array_r):
             self.evaluate(x)
-        return any([contact.improve() for contact in self.contacts])
+        moved = self.stabilisation.improve(self.u.x.array.reshape(-1, 3), self.force_scale)
+        if moved:
+            self._add_work(x)
+        return any([contact.improve() for contact in self.contacts]) or moved
 
     def soften(self) -> bool:
         """After a solution that failed: softer penalties of augmented contacts; whether any."""
         return any([contact.soften() for contact in self.contacts])
 
+    def _add_work(self, x: Vec) -> None:
+        """Work of all that acts from outside, from the last state on the way to this one.
+
+        Trapezoidal rule: the mean of both ends times the way between them.
+        """
+        place = np.array(x.array_r[: self._owned])
+        mean = 0.5 * (self._way.outside + self._outside)
+        work = self._way.work + self._comm.allreduce(float(mean @ (place - self._way.place)))
+        self._way = _Way(place, self._outside, work)
+
+    def _stabilise(self) -> None:
+        """Put the springs of stabilisation back to where they start from."""
+        start = np.array(self._accepted.array_r[: self._owned])
+        self._way = _Way(start, self._accepted_outside, 0.0)
+        if self.stabilisation:
+            nodal = self.u.x.array.reshape(-1, 3)
+            load = self._assembled(self.loads.force(nodal))
+            self.stabilisation.start(nodal, load.reshape(-1, 3))
+
     def commit(self, x: Vec) -> None:
         """Accept a state: the history of the contacts advances and energies are summed."""
         self.evaluate(x)
-        # Everything the bodies get from outside, over the mean of both ends (trapezoidal rule).
-        mean = 0.5 * (self._accepted_outside + self._outside)
-        moved = x.array_r[: self._owned] - self._accepted.array_r[: self._owned]
-        self._external_work += self._comm.allreduce(float(mean @ moved)) + self.rigid.commit()
+        self._add_work(x)
+        self._external_work += self._way.work + self.rigid.commit()
         self._external_work += self.attached.commit(self.u.x.array.reshape(-1, 3))
         self._accepted_outside = self._outside
         self._accepted_reaction = self._outside - self._load
         x.copy(self._accepted)
         for contact in self.contacts:
             contact.commit()
+        self.stabilisation.commit()
 
     def roll_back(self) -> None:
         """Return to the accepted state."""
@@ -287,6 +352,7 @@ class Problem:
         self.rigid.roll_back()
         for contact in self.contacts:
             contact.roll_back()
+        self._stabilise()
 
     def failed_points(self) -> Floats:
         """Positions at which a law had no answer in the last evaluation, over all ranks, (n, 3)."""
@@ -353,6 +419,7 @@ class Problem:
             "external_work": np.array([self._external_work]),
             "rigid": rigid,
             "springs": self.attached.persistent(),
+            "stabilisation": np.array([self.stabilisation.energy]),
         }
         return Persistent(nodal, [], common | self.rigid.persistent())
 
@@ -368,6 +435,7 @@ class Problem:
         self._accepted_outside = nodal["outside"].reshape(-1).copy()
         self._accepted_reaction = nodal["reaction"].reshape(-1).copy()
         self._external_work = float(common["external_work"][0])
+        self.stabilisation.energy = float(common["stabilisation"][0])
         self.rigid.restore(common)
         self.attached.restore(common["springs"])
         self._set_unknowns(self._accepted)
@@ -412,6 +480,7 @@ class Problem:
         self._of_mesh.array[:] = self._accepted.array_r[: self._owned]
         stored = {"elastic": self.bulk.energy(self._of_mesh)}
         stored |= dict.fromkeys(("adhesion", "normal", "friction", "viscous", "stabilisation"), 0.0)
+        stored["stabilisation"] = self.stabilisation.energy
         for contact in self.contacts:
             for name, value in contact.energies().items():
                 stored[name] += value

@@ -77,6 +77,7 @@ class Solver:
         for step in self.steps:
             problem.attached.check(step)
         problem.rigid.check(self.steps)
+        problem.check_held(self.steps)
         self.place = self._beginning(0, 0.0)
         self._prefix = options_prefix
         self._options = dict(options or {})

@@ -78,6 +78,11 @@ class Supports:
             if isinstance(goal := self._goals[key], Turn)
         ]
 
+    def held(self) -> list[tuple[Ints, Floats]]:
+        """Nodes that are held along each axis, and the axis."""
+        nodes, axes = np.divmod(self.unknowns, 3)
+        return [(nodes[axes == i], np.eye(3)[i]) for i in range(3)]
+
     def at(self, fraction: float) -> Floats:
         """Prescribed values at a fraction of the step."""
         values = (1.0 - fraction) * self.start + fraction * self.end

@@ -84,6 +84,10 @@ class SymmetryPlanes:
     def __bool__(self) -> bool:
         return bool(self.groups)
 
+    def held(self) -> list[tuple[Ints, Floats]]:
+        """Nodes this rank owns on each plane, and its normal."""
+        return [(np.flatnonzero(on), n) for on, n in zip(self._on.T, self._normals, strict=True)]
+
     def begin(self, prescribed: Ints, values: Floats, step: str) -> None:
         """Take over the prescribed unknowns of a step.
 

@@ -125,6 +125,7 @@ def _contacts(summary: dict[str, Any]) -> list[dict[str, Any]]:
             "largest pressure [stress]": contact["max_pressure"],
             "largest penetration [length]": contact["max_penetration"],
             "penetration over facet size": contact["max_penetration"] / contact["facet_size"],
+            "elastic slip over facet size": contact["max_elastic_slip"] / contact["facet_size"],
             **contact["points"],
         }
         rows.append(row)

@@ -1,0 +1,77 @@
+"""What the user of a run should look at, a line each."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from anisocontact.contact import AnyContact, initial_overlap
+from anisocontact.interface import STATUS
+
+__all__ = ["at_end", "at_start"]
+
+#: Share of the facet size beyond which a penetration or an elastic slip is worth a warning.
+DEEP = 0.05
+#: Share of the external work beyond which the energy of stabilisation is worth a warning.
+STABILISED = 0.05
+
+
+def at_start(contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]]) -> list[str]:
+    """Contacts whose bodies overlap before the first step.
+
+    Args:
+        contacts: The contacts.
+        shown: Their entries in the summary.
+    """
+    found = []
+    for contact, entry in zip(contacts, shown, strict=True):
+        overlap = initial_overlap(contact, entry["facet_size"])
+        if overlap is not None:
+            place = ", ".join(f"{v:.4g}" for v in overlap.point)
+            found.append(
+                f"{_pair(entry)}: the bodies overlap by {overlap.depth:.3g} at the start, "
+                f"{overlap.depth / entry['facet_size']:.0%} of the facet size, at {overlap.count} "
+                f"points, most at ({place}); the first increment pushes them apart, adjust = true "
+                "lets them just touch"
+            )
+    return found
+
+
+def at_end(
+    contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]], energy: dict[str, float]
+) -> list[str]:
+    """What is too soft, does not touch, or was held by stabilisation.
+
+    Args:
+        contacts: The contacts.
+        shown: Their entries in the summary.
+        energy: Energies of the run.
+    """
+    found = []
+    for contact, entry in zip(contacts, shown, strict=True):
+        soft = [("penetration", "max_penetration", "a larger normal penalty")]
+        if not contact.physical_adhesion:
+            soft.append(("elastic slip", "max_elastic_slip", "a larger stiffness of adhesion"))
+        for name, key, cure in soft:
+            share = entry[key] / entry["facet_size"]
+            if share > DEEP:
+                found.append(
+                    f"{_pair(entry)}: the {name} is {share:.0%} of the facet size; {cure} makes it "
+                    'smaller, method = "augmented" takes it away'
+                )
+        if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
+            found.append(f"{_pair(entry)}: no point touches at the end")
+    share = abs(energy["stabilisation"]) / max(abs(energy["external"]), _TINY)
+    if share > STABILISED:
+        found.append(
+            f"stabilisation took up {share:.0%} of the work from outside: bodies moved while "
+            "nothing held them; let them touch at the start, or support them"
+        )
+    return found
+
+
+_TINY = 1e-300
+
+
+def _pair(entry: dict[str, Any]) -> str:
+    return f"contact of {entry['slave']} with {entry['master']}"

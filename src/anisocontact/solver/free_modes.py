@@ -1,0 +1,116 @@
+"""Rigid motions of bodies that no support keeps from happening."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import fem
+from anisocontact.mesh import Model
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+#: Share of the largest eigenvalue below which a motion meets no support.
+FREE = 1e-9
+#: Cosine above which a direction counts as along an axis.
+ALONG = 1.0 - 1e-6
+
+#: Nodes this rank owns and the direction along which they are held, (3,) or (nodes, 3).
+type Held = tuple[Ints, Floats]
+
+
+@dataclass(frozen=True)
+class Body:
+    """Nodes of a body.
+
+    Attributes:
+        name: Its name.
+        nodes: Nodes this rank owns, (n,).
+        arms: Their places relative to the centre over the size of the body, (n, 3).
+        count: Number of nodes over all ranks.
+    """
+
+    name: str
+    nodes: Ints
+    arms: Floats
+    count: int
+
+
+def bodies(model: Model) -> list[Body]:
+    """All bodies of a model."""
+    space, comm = model.space, model.mesh.comm
+    owned = space.dofmap.index_map.size_local
+    places = np.asarray(space.tabulate_dof_coordinates())
+    found = []
+    for name in model.body_names():
+        nodes = fem.locate_dofs_topological(space, 3, model.cells(name))
+        nodes = nodes[nodes < owned].astype(np.int64)
+        x = places[nodes]
+        count = comm.allreduce(len(nodes))
+        arms = x - comm.allreduce(x.sum(axis=0)) / count
+        size = np.sqrt(comm.allreduce(float((arms**2).sum())) / count)
+        found.append(Body(name, nodes, arms / size, count))
+    return found
+
+
+def free_modes(body: Body, held: Iterable[Held], comm: Any) -> Floats:
+    """Rigid motions of a body that meet no support.
+
+    A support of node i along a holds `a . (t + w x r_i)`; the motions that do no work on any of
+    them are the kernel of the sum of the squares.
+
+    Args:
+        body: The body.
+        held: What is held; nodes of other bodies do not count.
+        comm: Communicator of the mesh.
+
+    Returns:
+        Translation t and rotation w (times the size of the body) of each, (k, 6).
+    """
+    sums = np.zeros((6, 6))
+    for nodes, direction in held:
+        here, _, at = np.intersect1d(nodes, body.nodes, return_indices=True)
+        along = np.broadcast_to(direction, (len(here), 3))
+        rows = np.hstack([along, np.cross(body.arms[at], along)])
+        sums += rows.T @ rows
+    values, vectors = np.linalg.eigh(comm.allreduce(sums))
+    return np.asarray(vectors.T[values <= FREE * max(values[-1], np.finfo(float).tiny)])
+
+
+def named(modes: Floats) -> str:
+    """Rigid motions in words.
+
+    Example:
+        >>> named(np.eye(6)[[0, 5]])
+        'translation along x, rotation about z'
+    """
+    rotation = modes[:, 3:]
+    u, sizes, about = np.linalg.svd(rotation, full_matrices=True)
+    rank = int((sizes > np.sqrt(FREE)).sum())
+    moves = u[:, rank:].T @ modes[:, :3]
+    parts = []
+    if len(moves):
+        parts.append(f"translation {_directions('along', moves)}")
+    if rank:
+        parts.append(f"rotation {_directions('about', about[:rank])}")
+    return ", ".join(parts)
+
+
+def _directions(word: str, vectors: Floats) -> str:
+    """Axes in the span of vectors, or the vectors where these are not all of it."""
+    basis = np.linalg.svd(vectors, full_matrices=False)[2]
+    axes = [axis for axis, e in zip("xyz", np.eye(3), strict=True) if _within(e, basis)]
+    if len(axes) == len(basis):
+        *rest, last = axes
+        return f"{word} {', '.join(rest)}{' and ' if rest else ''}{last}"
+    shown = ["(" + ", ".join(f"{v + 0.0:.3g}" for v in vector) + ")" for vector in basis]
+    return f"{word} {' and '.join(shown)}"
+
+
+def _within(e: Floats, basis: Floats) -> bool:
+    return bool(np.linalg.norm(basis @ e) > ALONG)

@@ -1,0 +1,205 @@
+"""Bodies that only contact can hold: kept in reach until it does.
+
+Springs of equal stiffness c at the nodes of such a body pull it to where it was. Every equilibrium
+becomes the anchor of the next one, and c fades as soon as the body is touched, until the springs
+carry next to nothing: the iteration of the proximal point [Rockafellar 1976]. So what is accepted
+is the equilibrium without springs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import Mat, PETSc
+from anisocontact.contact import AnyContact, Contact, NotHeldError, facet_size
+from anisocontact.errors import InputError
+from anisocontact.mesh import Model
+from anisocontact.solver.free_modes import Body, Held, bodies, free_modes, named
+
+Floats = npt.NDArray[np.float64]
+
+#: Force of the springs over the forces at work that an accepted state may have.
+SHARE = 1e-7
+#: What the stiffness is multiplied with from one equilibrium to the next, once touched.
+FADE = 0.1
+#: Stiffness without loads, and the least one, shares of the mean diagonal of the bulk.
+WITHOUT_LOADS, LEAST = 1e-6, 1e-11
+#: Equilibria after which a body counts as one that flies off.
+MOST = 60
+
+
+class _Free:
+    """Springs on one body.
+
+    Attributes:
+        body: The body.
+        modes: Its free motions in words.
+        contacts: Contacts that can hold it.
+        size: How far the springs let it move at once: a facet, length.
+    """
+
+    def __init__(self, body: Body, modes: str, contacts: Sequence[AnyContact], size: float) -> None:
+        self.body, self.modes, self.contacts, self.size = body, modes, contacts, size
+        self.stiffness = 0.0
+
+    def touched(self) -> bool:
+        """Whether one of its contacts is closed in the trial."""
+        return any(c.counts()["stick"] + c.counts()["slip"] > 0 for c in self.contacts)
+
+
+class Stabilisation:
+    """Springs on all bodies that a step leaves without support.
+
+    Args:
+        model: Mesh of the bodies.
+        contacts: The contacts.
+        scale: Mean diagonal of the stiffness of the bulk, force/length.
+        attached: Bodies that springs or elastic supports hold.
+        enabled: Whether bodies may be stabilised; if not they have to touch.
+
+    Attributes:
+        energy: What the springs have taken up and dissipated since the start, force times length.
+        notes: What is stabilised since the last `begin`, a line for each body.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        contacts: Sequence[AnyContact],
+        scale: float,
+        attached: Iterable[str] = (),
+        enabled: bool = True,
+    ) -> None:
+        self.enabled = enabled
+        self.energy = 0.0
+        self.notes: list[str] = []
+        self._model = model
+        self._contacts = list(contacts)
+        self._scale = scale
+        self._comm = model.mesh.comm
+        attached = set(attached)
+        self._bodies = [body for body in bodies(model) if body.name not in attached]
+        self._free: list[_Free] = []
+        self._anchor: Floats = np.zeros((0, 3))
+        self._spent = 0.0
+        self._count = 0
+
+    def __bool__(self) -> bool:
+        return bool(self._free)
+
+    def clear(self) -> None:
+        """Nothing is free."""
+        self._free, self.notes = [], []
+
+    def begin(self, held: Sequence[Held], step: str, now: bool = True) -> None:
+        """Find out what a step leaves free.
+
+        Args:
+            held: Nodes and directions that are held.
+            step: Name of the step.
+            now: Whether the step begins now: what touches is known.
+
+        Raises:
+            InputError: A body is free and nothing can hold it.
+        """
+        self.clear()
+        for body in self._bodies:
+            modes = free_modes(body, held, self._comm)
+            if len(modes):
+                self._add(body, named(modes), step, now)
+
+    def told(self) -> list[str]:
+        """`notes`, each of them once."""
+        notes, self.notes = self.notes, []
+        return notes
+
+    def start(self, u: Floats, load: Floats) -> None:
+        """Begin an attempt from the accepted state.
+
+        Args:
+            u: Accepted displacement of the local nodes, (nodes, 3), length.
+            load: Forces on the nodes this rank owns, (owned, 3).
+        """
+        self._anchor, self._spent, self._count = u.copy(), 0.0, 0
+        for free in self._free:
+            total = self._comm.allreduce(load[free.body.nodes].sum(axis=0))
+            needed = float(np.linalg.norm(total)) / (free.body.count * free.size)
+            free.stiffness = max(needed, WITHOUT_LOADS * self._scale)
+
+    def force(self, u: Floats) -> Floats:
+        """Force of the springs on the local nodes, (nodes, 3)."""
+        force = np.zeros_like(u)
+        for free in self._free:
+            nodes = free.body.nodes
+            force[nodes] = -free.stiffness * (u[nodes] - self._anchor[nodes])
+        return force
+
+    def add_tangent(self, matrix: Mat) -> None:
+        """Add the stiffness of the springs."""
+        for free in self._free:
+            nodes = free.body.nodes.astype(PETSc.IntType)[:, None]
+            blocks = np.tile(free.stiffness * np.eye(3), (len(nodes), 1, 1))
+            matrix.setValuesBlockedLocalRCV(nodes, nodes, blocks, PETSc.InsertMode.ADD_VALUES)
+
+    def improve(self, u: Floats, at_work: float) -> bool:
+        """Let the springs go on from an equilibrium.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+            at_work: Norm of the forces at work.
+
+        Returns:
+            Whether they still carried something, so that equilibrium has to be found again.
+
+        Raises:
+            NotHeldError: Nothing holds a body.
+        """
+        if not self._free:
+            return False
+        force = self.force(u)
+        # In the first equilibrium the loads have grown from those of the accepted state.
+        share = 0.5 if self._count == 0 else 1.0
+        self._spent -= share * self._comm.allreduce(float((force * (u - self._anchor)).sum()))
+        carried = np.sqrt(self._comm.allreduce(float((force**2).sum())))
+        if carried <= SHARE * at_work:
+            return False
+        self._count += 1
+        if self._count > MOST:
+            lost = [free for free in self._free if not free.touched()] or self._free
+            raise NotHeldError(
+                "; ".join(f"nothing holds body {f.body.name!r}: {f.modes}" for f in lost)
+            )
+        self._anchor = u.copy()
+        for free in self._free:
+            if free.touched():
+                free.stiffness = max(FADE * free.stiffness, LEAST * self._scale)
+        return True
+
+    def commit(self) -> None:
+        """Count what the springs took up on the way to the accepted state."""
+        self.energy += self._spent
+        self._spent = 0.0
+
+    def _add(self, body: Body, modes: str, step: str, now: bool) -> None:
+        contacts = [c for c in self._contacts if body.name in self._sides(c)]
+        field = f"step {step!r}"
+        text = f"body {body.name!r} is free to move: {modes}"
+        if not contacts:
+            raise InputError(f"{text}; it is in no contact and needs a support", field)
+        size = min(facet_size(self._model, c.slave) for c in contacts)
+        free = _Free(body, modes, contacts, size)
+        if not self.enabled:
+            if now and not free.touched():
+                raise InputError(f"{text}; nothing touches it and stabilisation is off", field)
+            return
+        self._free.append(free)
+        self.notes.append(f"{text}; stabilised until contact holds it")
+
+    def _sides(self, contact: AnyContact) -> set[str]:
+        groups = [contact.slave]
+        if not isinstance(contact, Contact):
+            groups.append(contact.master)
+        return {self._model.body_of(group) for group in groups}

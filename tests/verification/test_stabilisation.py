@@ -1,0 +1,146 @@
+"""Bodies that only contact can hold: they land, the springs leave nothing, motions are named."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from anisocontact.bulk import make_material
+from anisocontact.contact import Contact, FacetContact
+from anisocontact.errors import InputError
+from anisocontact.interface import Interface, PairLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver.free_modes import bodies, free_modes, named
+from anisocontact.surfaces import make_surface
+
+YOUNG, PENALTY = 1000.0, 4e4
+CLAMP = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
+
+
+def _laws() -> tuple[NormalLaw, Adhesion, Friction]:
+    return (
+        NormalLaw(penalty=PENALTY),
+        Adhesion(stiffness=(PENALTY, PENALTY)),
+        Friction(coefficients=(0.3, 0.3)),
+    )
+
+
+def _block(gap: float, unit: float = 1.0, stress: float = 1.0, **options: bool) -> Problem:
+    """A block above a plane with no support at all."""
+    boxes = {"block": BoxSpec((0, 0, gap * unit), (unit, unit, 0.5 * unit), (4, 4, 2))}
+    model = build_box(boxes)
+    laws = (
+        NormalLaw(penalty=PENALTY * stress / unit),
+        Adhesion(stiffness=(PENALTY * stress / unit,) * 2),
+        Friction(coefficients=(0.3, 0.3)),
+    )
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    contact = Contact(model, "block.bottom", Interface(plane, *laws))
+    elastic = make_material("linear-elastic", E=YOUNG * stress, nu=0.3)
+    return Problem(model, {"block": elastic}, [contact], **options)  # type: ignore[arg-type]
+
+
+def _loads(stress: float = 1.0) -> list[Step]:
+    return [
+        Step("press", 2, traction={"block.top": {"z": -10.0 * stress}}),
+        Step("shear", 2, traction={"block.top": {"x": 2.0 * stress}}),
+    ]
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.1, 1.0])
+def test_free_block_lands_and_carries_the_load(gap: float) -> None:
+    """Pressed through a gap of up to two heights and sheared below the limit of friction.
+
+    Requirement: first contact of an unsupported body. Source: equilibrium, the contact force is
+    the load on the top, 10 and 2 on an area of 1. Tolerance 1e-6: the springs that are left carry
+    1e-7 of the forces at work.
+    """
+    problem = _block(gap)
+    accepted = list(Solver(problem, _loads()).run())
+    force, _ = problem.contacts[0].resultant()
+    np.testing.assert_allclose(force, [-2.0, 0.0, 10.0], atol=1e-5)
+    assert len(accepted) == 4
+    assert accepted[-1].energies["stabilisation"] > 0.0
+
+
+def test_a_block_that_touches_needs_no_energy() -> None:
+    """Without a gap the springs take up less than 2 % of the work from outside."""
+    problem = _block(0.0)
+    last = list(Solver(problem, _loads()).run())[-1].energies
+    assert 0.0 < last["stabilisation"] < 0.02 * last["external"]
+
+
+def test_same_answer_in_any_units() -> None:
+    """In nm and GPa-like numbers the forces are those of m and N, 1e-7, gap and all."""
+    problem = _block(0.3)
+    for _ in Solver(problem, _loads()).run():
+        pass
+    other = _block(0.3, unit=1e6, stress=1e-3)
+    for _ in Solver(other, _loads(1e-3)).run():
+        pass
+    force, scaled = (p.contacts[0].resultant()[0] for p in (problem, other))
+    np.testing.assert_allclose(scaled, 1e9 * force, atol=1e2)
+
+
+def test_block_falls_on_a_body() -> None:
+    """The same on a meshed body: it meets the facets and sticks."""
+    model = build_box(
+        {
+            "block": BoxSpec((0, 0, 0.3), (1, 1, 0.5), (3, 3, 2)),
+            "base": BoxSpec((-0.5, -0.5, -0.5), (2, 2, 0.5), (5, 5, 1)),
+        }
+    )
+    contact = FacetContact(
+        model, "block.bottom", "base.top", law=PairLaw(*_laws()), current_area=False
+    )
+    elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
+    problem = Problem(model, {"block": elastic, "base": elastic}, [contact])
+    step = Step("press", 1, CLAMP, {"block.top": {"z": -10.0}})
+    for _ in Solver(problem, [step]).run():
+        pass
+    np.testing.assert_allclose(contact.resultant()[0], [0.0, 0.0, 10.0], atol=1e-5)
+    assert problem.stabilisation.notes[0].startswith("body 'block' is free to move: translation")
+
+
+def test_body_that_flies_off_is_named() -> None:
+    """Pulled away from the plane: one error that names the body and its motions."""
+    problem = _block(0.0)
+    with pytest.raises(RuntimeError, match=r"nothing holds body 'block': translation along x, y"):
+        list(Solver(problem, [Step("pull", 1, traction={"block.top": {"z": 1.0}})]).run())
+
+
+def test_body_in_no_contact_is_refused_before_the_run() -> None:
+    """Held across x alone and in no contact: the free motions are named by step."""
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    problem = Problem(model, {"block": make_material("linear-elastic", E=1.0, nu=0.3)}, [])
+    step = Step("push", 1, {"block.left": {"x": 0.0}})
+    said = r"step 'push': body 'block' is free to move: translation along y and z, rotation about x"
+    with pytest.raises(InputError, match=said):
+        Solver(problem, [step])
+
+
+def test_without_stabilisation_a_body_has_to_touch() -> None:
+    """Switched off, a body in the air is an error that names what is missing."""
+    problem = _block(0.1, stabilised=False)
+    with pytest.raises(InputError, match=r"nothing touches it and stabilisation is off"):
+        list(Solver(problem, _loads()).run())
+
+
+def test_names_of_free_motions() -> None:
+    """A point that is held leaves three rotations, a line one, a face none."""
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+    body = bodies(model)[0]
+    places = model.space.tabulate_dof_coordinates().round(9)
+    axes = list(np.eye(3))
+
+    def left(where: np.ndarray) -> str:
+        nodes = np.flatnonzero(where).astype(np.int64)
+        return named(free_modes(body, [(nodes, e) for e in axes], model.mesh.comm))
+
+    corner = (places == 0.0).all(axis=1)
+    edge = (places[:, :2] == 0.0).all(axis=1)
+    assert left(corner) == "rotation about x, y and z"
+    assert left(edge) == "rotation about z"
+    assert left(places[:, 2] == 0.0) == ""
