@@ -17,7 +17,7 @@ from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.results import Results
 from anisocontact.results.paraview import Bodies, von_mises
-from anisocontact.results.report import shape, write_report
+from anisocontact.results.report import maps, shape, write_report
 from anisocontact.results.report.run_data import RunData
 from anisocontact.results.writer import Writer
 
@@ -242,6 +242,22 @@ def test_without_graphics_matplotlib_draws(run, monkeypatch, tmp_path):
     assert [entry.name for entry in tmp_path.iterdir()] == ["deformed.png"]
     # The largest movement is 0.025 of a body whose diagonal is 1.5: a round magnification of 5.
     assert scale == 5.0
+
+
+def test_bodies_that_move_far_are_true_to_scale(run):
+    grid = run.results.fields()
+    grid.point_data["displacement"] = np.full((grid.n_points, 3), 10.0 * grid.length)
+    assert shape.magnification(grid) == 1.0
+
+
+def test_maps_of_a_slave_that_moves_far(run):
+    """Every panel shows its own place; with axes in common one of them would be out of sight."""
+    data = RunData(run.folder)
+    first, last = (data.view(moment.index, 0) for moment in data.ends())
+    last.position += 100.0
+    panels = maps.pressure(data, 0).axes
+    for view, axes in zip((first, last), panels, strict=False):
+        assert np.allclose(axes.get_xlim(), view.box[:, 0])
 
 
 def test_steps_and_moments_of_the_report(run):

@@ -20,6 +20,8 @@ __all__ = ["pressure", "status", "traction"]
 
 #: Panels side by side; of more steps the last ones are shown.
 MOST = 3
+#: Size of a map in which panels can share their axes, over that of the points.
+ROOM = 1.5
 
 
 def pressure(run: RunData, contact: int) -> Figure:
@@ -70,8 +72,17 @@ def _panels(
 ) -> tuple[Figure, list[tuple[Axes, ContactView, Moment]]]:
     views = [run.view(moment.index, contact) for moment in moments]
     figure = new_figure(3.9 * len(moments) + 1.0, 3.6 * views[0].aspect + 1.4)
-    row = figure.subplots(1, len(moments), sharex=True, sharey=True, squeeze=False)[0]
+    shared = _in_one_place(views)
+    row = figure.subplots(1, len(moments), sharex=shared, sharey=shared, squeeze=False)[0]
     return figure, list(zip(row, views, moments, strict=True))
+
+
+def _in_one_place(views: list[ContactView]) -> bool:
+    """Whether the points of all views fit in one map, not much larger than that of one of them."""
+    boxes = np.stack([view.box for view in views])
+    together = boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)
+    largest = (boxes[:, 1] - boxes[:, 0]).max(axis=0)
+    return bool(np.all(together < ROOM * largest))
 
 
 def _legend(figure: Figure, names: list[str]) -> None:

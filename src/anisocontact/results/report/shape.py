@@ -50,12 +50,12 @@ def draw(grid: pyvista.UnstructuredGrid, source: Path, picture: Path) -> float:
 
 
 def magnification(grid: pyvista.UnstructuredGrid) -> float:
-    """A round number that makes the displacement visible; 1 if it is so as it is."""
+    """A round number >= 1 that makes the displacement visible; 1 if it is so as it is."""
     largest = float(np.linalg.norm(grid.point_data["displacement"], axis=1).max())
     if largest == 0.0:
         return 1.0
     wanted = VISIBLE * float(grid.length) / largest
-    if 0.3 < wanted < 3.0:
+    if wanted < 3.0:
         return 1.0
     power = 10.0 ** math.floor(math.log10(wanted))
     return next(f * power for f in (5.0, 2.0, 1.0) if f * power <= wanted * (1.0 + 1e-12))
