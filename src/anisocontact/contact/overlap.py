@@ -97,18 +97,28 @@ def _facing(
     reach: float,
     excluded: FacetSets | None,
 ) -> tuple[Ints, Ints]:
-    """Pairs of facets within reach whose outward normals oppose."""
-    middle = x.mean(axis=1)
-    radius = float(np.linalg.norm(x - middle[:, None], axis=2).max(initial=0.0))
-    sets = surface.within(middle, radius + reach)
+    """Pairs of facets within reach that oppose each other and may overlap along the normal."""
+    middle, radius = _ball(x)
+    sets = surface.within(middle, float(radius.max(initial=0.0)) + reach)
     f = np.repeat(np.arange(len(x)), np.diff(sets.offsets))
     g = sets.facets.astype(np.int64)
-    opposed = np.sum(_normals(shapes, slave, now)[f] * _outward(master, now)[g], axis=1) < 0.0
+    normal, other = _normals(shapes, slave, now), _outward(master, now)
+    centre, size = _ball(now[master.nodes])
+    apart = centre[g] - middle[f]
+    along = np.sum(apart * normal[f], axis=1)[:, None] * normal[f]
+    near = np.linalg.norm(apart - along, axis=1) <= radius[f] + size[g]
+    kept = near & (np.sum(normal[f] * other[g], axis=1) < 0.0)
     if excluded is not None:
         n = len(master.nodes)
         who = np.repeat(np.arange(len(x)), np.diff(excluded.offsets))
-        opposed &= ~np.isin(f * n + g, who * n + excluded.facets)
-    return f[opposed], g[opposed]
+        kept &= ~np.isin(f * n + g, who * n + excluded.facets)
+    return f[kept], g[kept]
+
+
+def _ball(x: Floats) -> tuple[Floats, Floats]:
+    """Middles of facets and the distance of the farthest node, (facets, 3) and (facets,)."""
+    middle = x.mean(axis=1)
+    return middle, np.linalg.norm(x - middle[:, None], axis=2).max(axis=1)
 
 
 def _outward(mesh: FacetMesh, now: Floats) -> Floats:
@@ -116,10 +126,13 @@ def _outward(mesh: FacetMesh, now: Floats) -> Floats:
 
 
 def _normals(shapes: FacetShapes, mesh: FacetMesh, now: Floats) -> Floats:
-    """Outward normals at the middles of facets, not of unit length, (facets, 3)."""
+    """Outward unit normals at the middles of facets, (facets, 3)."""
     gradient = shapes.at(shapes.middle[None])[1][0]
     t = np.einsum("kd,mki->mdi", gradient, now[mesh.nodes])
-    return np.where(mesh.flip, -1.0, 1.0)[:, None] * np.cross(t[:, 0], t[:, 1])
+    normal = np.cross(t[:, 0], t[:, 1])
+    return np.asarray(
+        np.where(mesh.flip, -1.0, 1.0)[:, None] * normal / np.linalg.norm(normal, axis=1)[:, None]
+    )
 
 
 def _coordinates(shapes: FacetShapes, x: Floats, corners: Floats) -> Floats:
@@ -131,9 +144,16 @@ def _coordinates(shapes: FacetShapes, x: Floats, corners: Floats) -> Floats:
         value = value.reshape(pairs, count, k)
         t = np.einsum("pckd,pki->pcdi", gradient.reshape(pairs, count, k, 2), x)
         apart = corners - value @ x
-        metric = t @ t.swapaxes(2, 3)
-        eta = eta + np.linalg.solve(metric, t @ apart[..., None])[..., 0]
+        eta = eta + _solved(t @ t.swapaxes(2, 3), (t @ apart[..., None])[..., 0])
     return np.asarray(eta)
+
+
+def _solved(a: Floats, b: Floats) -> Floats:
+    """Solutions of systems of two equations; zero where a facet has no area at the point."""
+    det = a[..., 0, 0] * a[..., 1, 1] - a[..., 0, 1] * a[..., 1, 0]
+    x = a[..., 1, 1] * b[..., 0] - a[..., 0, 1] * b[..., 1]
+    y = a[..., 0, 0] * b[..., 1] - a[..., 1, 0] * b[..., 0]
+    return np.asarray(np.stack([x, y], axis=-1) / np.where(det > 0.0, det, np.inf)[..., None])
 
 
 def _clip(polygons: Floats, counts: Ints, normal: Floats, bound: float) -> tuple[Floats, Ints]:
