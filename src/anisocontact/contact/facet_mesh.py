@@ -106,9 +106,7 @@ class FacetShapes:
     Attributes:
         cell: Triangle or quadrilateral.
         order: Order of the shape functions.
-        area: Area of the reference facet.
         middle: Its middle, (2,).
-        half_planes: Normals a and bounds b of its sides: a . xi <= b inside.
         overlap_degree: Degree that integrates the functions of `moments` times a position on a
             part of the facet.
     """
@@ -117,11 +115,7 @@ class FacetShapes:
         triangle = topology.startswith("tri")
         self.cell = basix.CellType.triangle if triangle else basix.CellType.quadrilateral
         self.order = 2 if topology in {"tri6", "quad9"} else 1
-        self.area = 0.5 if triangle else 1.0
         self.middle = np.full(2, 1.0 / 3.0 if triangle else 0.5)
-        low = [(np.array([-1.0, 0.0]), 0.0), (np.array([0.0, -1.0]), 0.0)]
-        high = [(np.array([1.0, 0.0]), 1.0), (np.array([0.0, 1.0]), 1.0)]
-        self.half_planes = low + ([(np.array([1.0, 1.0]), 1.0)] if triangle else high)
         self.overlap_degree = (1 if triangle else 2) * self.order + 1
         self._element = basix.create_element(
             basix.ElementFamily.P, self.cell, self.order, basix.LagrangeVariant.equispaced

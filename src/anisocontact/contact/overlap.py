@@ -16,13 +16,13 @@ Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-#: Area of the overlaps over that of the reference facet: more missing than this is not covered.
+#: Share of a facet that may be missing from its overlaps: more is not covered.
 UNCOVERED = 1e-6
-#: Overlaps below this share of the reference facet are nothing but rounding.
+#: Overlaps below this share of a facet are nothing but rounding.
 SLIVER = 1e-14
-#: Corrections to the coordinates of a master corner on a slave facet: on a parallelogram one is
-#: exact, on others the overlaps move with it, not the sum of the weights.
-CORRECTIONS = 3
+#: Newton iterations to the coordinates of a point on a facet; one on a parallelogram.
+ITERATIONS = 8
+CONVERGED = 1e-13
 
 
 @dataclass(frozen=True)
@@ -54,8 +54,8 @@ def overlaps(
 ) -> Overlaps:
     """Cut slave facets along the borders of the master facets that face them.
 
-    The corners of the master go to the coordinates of a slave facet along its normal; sides are
-    taken as straight there, and clipped to the reference facet [Sutherland Hodgman 1974].
+    The corners of both go to the plane at the middle of the slave facet along its normal, where
+    the polygon of the master is clipped to that of the slave [Sutherland Hodgman 1974].
 
     Args:
         slave: Facets that are cut.
@@ -70,21 +70,55 @@ def overlaps(
     """
     shapes = FacetShapes(slave.topology)
     x = now[slave.nodes]
+    planes = _Planes.of(slave, shapes, now)
+    flat = planes.flat(np.arange(len(x)), x)
+    border = flat[:, facet_corners(slave.topology)]
     f, g = _facing(slave, shapes, x, surface, master, now, reach, excluded)
-    corners = now[master.nodes[g][:, facet_corners(master.topology)]]
-    polygons = _coordinates(shapes, x[f], corners)
-    edges = shapes.half_planes
+    polygons = planes.flat(f, now[master.nodes[g][:, facet_corners(master.topology)]])
     counts = np.full(len(f), polygons.shape[1])
-    for normal, bound in edges:
-        polygons, counts = _clip(polygons, counts, normal, bound)
-    at, weight, pair = _fan(polygons, counts, shapes)
+    for i in range(border.shape[1]):
+        start, side = border[:, i], np.roll(border, -1, axis=1)[:, i] - border[:, i]
+        outward = np.stack([side[:, 1], -side[:, 0]], axis=1)
+        bound = np.sum(outward * start, axis=1)
+        polygons, counts = _clip(polygons, counts, outward[f], bound[f])
+    area = _area(border)
+    points, weight, pair = _fan(polygons, counts, area[f] * SLIVER, shapes.overlap_degree)
     owner = f[pair]
     total = np.bincount(owner, weights=weight, minlength=len(x))
-    covered = np.abs(total - shapes.area) < UNCOVERED * shapes.area
+    covered = np.abs(total - area) < UNCOVERED * area
     kept = np.flatnonzero(covered[owner])
     kept = kept[np.argsort(owner[kept], kind="stable")]
-    facet = g[pair[kept]].astype(np.int32)
-    return Overlaps(owner[kept], at[kept], weight[kept], facet, covered)
+    owner = owner[kept]
+    at, stretch = _coordinates(shapes, flat, owner, points[kept])
+    return Overlaps(owner, at, weight[kept] / stretch, g[pair[kept]].astype(np.int32), covered)
+
+
+@dataclass(frozen=True)
+class _Planes:
+    """Planes at the middles of facets, with the normals of the facets there."""
+
+    middle: Floats  # (facets, 3)
+    axes: Floats  # (facets, 2, 3), orthonormal, such that the corners turn to the left
+
+    @classmethod
+    def of(cls, mesh: FacetMesh, shapes: FacetShapes, now: Floats) -> _Planes:
+        value, gradient = shapes.at(shapes.middle[None])
+        x = now[mesh.nodes]
+        t = np.einsum("kd,mki->mdi", gradient[0], x)
+        first = t[:, 0] / np.linalg.norm(t[:, 0], axis=1)[:, None]
+        second = t[:, 1] - np.sum(t[:, 1] * first, axis=1)[:, None] * first
+        second /= np.linalg.norm(second, axis=1)[:, None]
+        return cls(np.einsum("k,mki->mi", value[0], x), np.stack([first, second], axis=1))
+
+    def flat(self, which: Ints, x: Floats) -> Floats:
+        """Points (n, k, 3) in the planes of facets, (n, k, 2)."""
+        return np.asarray((x - self.middle[which][:, None]) @ self.axes[which].swapaxes(1, 2))
+
+
+def _area(polygons: Floats) -> Floats:
+    after = np.roll(polygons, -1, axis=1)
+    cross = polygons[..., 0] * after[..., 1] - polygons[..., 1] * after[..., 0]
+    return np.asarray(0.5 * cross.sum(axis=1))
 
 
 def _facing(
@@ -135,17 +169,23 @@ def _normals(shapes: FacetShapes, mesh: FacetMesh, now: Floats) -> Floats:
     )
 
 
-def _coordinates(shapes: FacetShapes, x: Floats, corners: Floats) -> Floats:
-    """Coordinates on slave facets of the feet of points, (pairs, corners, 2)."""
-    pairs, count, k = *corners.shape[:2], x.shape[1]
-    eta = np.tile(shapes.middle, (pairs, count, 1))
-    for _ in range(CORRECTIONS):
-        value, gradient = shapes.at(eta.reshape(-1, 2))
-        value = value.reshape(pairs, count, k)
-        t = np.einsum("pckd,pki->pcdi", gradient.reshape(pairs, count, k, 2), x)
-        apart = corners - value @ x
-        eta = eta + _solved(t @ t.swapaxes(2, 3), (t @ apart[..., None])[..., 0])
-    return np.asarray(eta)
+def _coordinates(
+    shapes: FacetShapes, flat: Floats, owner: Ints, points: Floats
+) -> tuple[Floats, Floats]:
+    """Coordinates on facets of points in their planes, (n, 2), and area over that of reference."""
+    eta = np.tile(shapes.middle, (len(owner), 1))
+    corners = flat[owner]
+    for _ in range(ITERATIONS):
+        value, gradient = shapes.at(eta)
+        tangents = corners.swapaxes(1, 2) @ gradient
+        apart = points - np.einsum("pk,pki->pi", value, corners)
+        step = _solved(tangents, apart)
+        eta = eta + step
+        if not np.abs(step).max(initial=0.0) > CONVERGED:
+            break
+    tangents = corners.swapaxes(1, 2) @ shapes.at(eta)[1]
+    stretch = np.abs(np.linalg.det(tangents))
+    return eta, np.where(stretch > 0.0, stretch, np.inf)
 
 
 def _solved(a: Floats, b: Floats) -> Floats:
@@ -153,17 +193,17 @@ def _solved(a: Floats, b: Floats) -> Floats:
     det = a[..., 0, 0] * a[..., 1, 1] - a[..., 0, 1] * a[..., 1, 0]
     x = a[..., 1, 1] * b[..., 0] - a[..., 0, 1] * b[..., 1]
     y = a[..., 0, 0] * b[..., 1] - a[..., 1, 0] * b[..., 0]
-    return np.asarray(np.stack([x, y], axis=-1) / np.where(det > 0.0, det, np.inf)[..., None])
+    return np.asarray(np.stack([x, y], axis=-1) / np.where(det != 0.0, det, np.inf)[..., None])
 
 
-def _clip(polygons: Floats, counts: Ints, normal: Floats, bound: float) -> tuple[Floats, Ints]:
+def _clip(polygons: Floats, counts: Ints, normal: Floats, bound: Floats) -> tuple[Floats, Ints]:
     """The parts of polygons with normal . p <= bound; only the first `counts` corners count."""
     n, most, _ = polygons.shape
     corner = np.arange(most)
     there = corner < counts[:, None]
     after = np.where(corner + 1 < counts[:, None], corner + 1, 0)
     follower = np.take_along_axis(polygons, after[..., None], axis=1)
-    d, e = polygons @ normal - bound, follower @ normal - bound
+    d, e = (np.einsum("nci,ni->nc", p, normal) - bound[:, None] for p in (polygons, follower))
     crossing = (d <= 0.0) != (e <= 0.0)
     share = d / np.where(crossing, d - e, 1.0)
     out = np.stack([polygons, polygons + share[..., None] * (follower - polygons)], axis=2)
@@ -174,17 +214,16 @@ def _clip(polygons: Floats, counts: Ints, normal: Floats, bound: float) -> tuple
     return np.take_along_axis(out.reshape(n, 2 * most, 2), order[..., None], axis=1), counts
 
 
-def _fan(polygons: Floats, counts: Ints, shapes: FacetShapes) -> tuple[Floats, Floats, Ints]:
-    """Quadrature over polygons cut into triangles: coordinates, weights, polygon of each point."""
+def _fan(polygons: Floats, counts: Ints, least: Floats, degree: int) -> tuple[Floats, Floats, Ints]:
+    """Quadrature over polygons cut into triangles: points, weights, polygon of each point."""
     second = np.arange(1, polygons.shape[1] - 1)
     edges = polygons[:, 1:] - polygons[:, :1]
     a, b = edges[:, second - 1], edges[:, second]
     area = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     area = np.where(second + 1 < counts[:, None], area, 0.0)
-    whole = area.sum(axis=1)
-    area *= np.sign(whole)[:, None]
-    pair, triangle = np.nonzero((np.abs(area) > SLIVER) & np.isfinite(whole)[:, None])
-    rule: Any = basix.make_quadrature(basix.CellType.triangle, shapes.overlap_degree)
+    area *= np.sign(area.sum(axis=1))[:, None]
+    pair, triangle = np.nonzero(np.abs(area) > least[:, None])
+    rule: Any = basix.make_quadrature(basix.CellType.triangle, degree)
     points, weights = np.asarray(rule[0]), np.asarray(rule[1])
     at = (
         polygons[pair, 0][:, None]
