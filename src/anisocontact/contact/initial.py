@@ -167,4 +167,6 @@ def _refuse(
 
 
 def _shown(vector: Floats) -> str:
-    return "(" + ", ".join(f"{v + 0.0:.4g}" for v in vector) + ")"
+    # What is nothing but round-off of the largest component is shown as zero.
+    least = 1e-9 * float(np.abs(vector).max())
+    return "(" + ", ".join(f"{v if abs(v) > least else 0.0:.4g}" for v in vector) + ")"

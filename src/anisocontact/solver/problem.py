@@ -197,7 +197,9 @@ class Problem:
         self.rigid.begin(step)
         self.attached.begin(step)
         self.constraints.planes.begin(self.supports.unknowns, self.supports.end, step.name)
-        self.stabilisation.begin([*self.supports.held(), *self.constraints.planes.held()], step.name)
+        self.stabilisation.begin(
+            [*self.supports.held(), *self.constraints.planes.held()], step.name
+        )
 
     def check_held(self, steps: Sequence[Step]) -> None:
         """Find out whether supports or contacts can hold every body in every step.

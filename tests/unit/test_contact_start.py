@@ -1,0 +1,145 @@
+"""Contacts before the first step: overlaps, adjusted points, sides, singular directions."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from anisocontact.anisotropy import DirectionField, make_directions
+from anisocontact.augmentation import Augmentation
+from anisocontact.contact import Contact, FacetContact, TwoHalfPass, check_start, initial_overlap
+from anisocontact.errors import InputError
+from anisocontact.interface import Interface, PairLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.solver.free_modes import bodies
+from anisocontact.surfaces import make_surface
+
+SIZE = 0.5
+
+
+def _blocks(gap: float) -> Model:
+    return build_box(
+        {
+            "block": BoxSpec((0, 0, gap), (1, 1, 0.5), (2, 2, 1)),
+            "base": BoxSpec((-0.5, -0.5, -0.5), (2, 2, 0.5), (3, 3, 1)),
+        }
+    )
+
+
+def _laws(
+    field: DirectionField | None = None, second: DirectionField | None = None
+) -> tuple[NormalLaw, Adhesion, Friction]:
+    if second is not None:
+        friction = Friction(
+            "he-curnier", alpha=(0.3, 0.1, 0.1), directions=field, directions_second=second
+        )
+    else:
+        friction = Friction(coefficients=(0.3, 0.3), directions=field)
+    return NormalLaw(penalty=1e3), Adhesion(stiffness=(1e3, 1e3)), friction
+
+
+def _plane(normal: float, height: float = 0.0) -> Any:
+    return make_surface("plane", point=(0, 0, height), normal=(0, 0, normal))
+
+
+def test_overlap_says_how_deep_where_and_how_many() -> None:
+    """A block 0.01 deep in a plane that is met by all of its 16 points."""
+    contact = Contact(_blocks(-0.01), "block.bottom", Interface(_plane(1.0), *_laws()))
+    found = initial_overlap(contact, SIZE)
+    assert found is not None
+    assert found.depth == pytest.approx(0.01)
+    assert found.count == 16
+    assert found.point[2] == pytest.approx(-0.01)
+
+
+@pytest.mark.parametrize("kind", ["plane", "single", "two-half"])
+@pytest.mark.parametrize("gap", [-0.01, 0.004])
+def test_adjusted_points_just_touch(kind: str, gap: float) -> None:
+    """Overlaps and gaps up to the reach are gone: no force at rest, at once one below.
+
+    The same displacement gives the pressure of a block that was drawn touching.
+    """
+    down = 1e-3
+    pressures = []
+    for lowest, adjust in ((gap, 0.005), (0.0, None)):
+        model = _blocks(lowest)
+        contact: Contact | FacetContact | TwoHalfPass
+        if kind == "plane":
+            interface = Interface(_plane(1.0), *_laws())
+            contact = Contact(model, "block.bottom", interface, adjust=adjust)
+        else:
+            made = FacetContact if kind == "single" else TwoHalfPass
+            contact = made(model, "block.bottom", "base.top", law=PairLaw(*_laws()), adjust=adjust)
+        assert initial_overlap(contact, SIZE) is None
+        u = np.zeros_like(model.space.tabulate_dof_coordinates())
+        assert np.abs(contact.update(u, 1.0).traction).max() < 1e-9
+        u[next(body.nodes for body in bodies(model) if body.name == "block"), 2] = -down
+        pressures.append(contact.update(u, 1.0).pressure.max())
+    assert pressures[0] == pytest.approx(1e3 * down, rel=1e-6)
+    assert pressures[0] == pytest.approx(pressures[1], rel=1e-6)
+
+
+def test_surface_that_points_the_wrong_way_is_named() -> None:
+    """The normal of the plane points down, as that of the bottom of the block above it."""
+    contact = Contact(_blocks(0.0), "block.bottom", Interface(_plane(-1.0), *_laws()))
+    said = r"'block.bottom' faces the same way .* are \(0, 0, -1\) and \(0, 0, -1\); turn"
+    with pytest.raises(InputError, match=said):
+        check_start(contact, SIZE)
+
+
+def test_group_on_the_wrong_side_is_named() -> None:
+    """The top of the block is named where its bottom meets the base."""
+    model = _blocks(0.0)
+    contact = FacetContact(model, "block.top", "base.top", law=PairLaw(*_laws()), reach=2.0)
+    with pytest.raises(InputError, match=r"'block.top' faces the same way"):
+        check_start(contact, SIZE)
+
+
+def test_bodies_that_face_each_other_pass() -> None:
+    """Nothing is said of a block above a plane or a base, near or far."""
+    for gap in (0.0, 0.3, -0.01):
+        model = _blocks(gap)
+        check_start(Contact(model, "block.bottom", Interface(_plane(1.0), *_laws())), SIZE)
+        check_start(FacetContact(model, "block.bottom", "base.top", law=PairLaw(*_laws())), SIZE)
+
+
+@pytest.mark.parametrize("meshed", [False, True])
+@pytest.mark.parametrize("which", ["directions", "directions_second"])
+def test_singular_directions_in_the_contact_are_found(meshed: bool, which: str) -> None:
+    """A polar field whose centre is one of the slave points has no direction there."""
+    model = _blocks(0.0)
+    plain = make_directions("constant", vector=(1, 0, 0))
+    probe = Contact(model, "block.bottom", Interface(_plane(1.0), *_laws()))
+    x, y, z = probe.points[5]
+    polar = make_directions("polar", axis=((x, y, z), (0, 0, 1)))
+    laws = _laws(polar) if which == "directions" else _laws(plain, polar)
+    contact: Contact | FacetContact
+    if meshed:
+        contact = FacetContact(model, "block.bottom", "base.top", law=PairLaw(*laws))
+    else:
+        contact = Contact(model, "block.bottom", Interface(_plane(1.0), *laws))
+    with pytest.raises(InputError, match="no direction at 1 slave points") as error:
+        check_start(contact, SIZE)
+    assert error.value.field == f"friction.{which}"
+    assert f"({x:.4g}, {y:.4g}" in str(error.value)
+
+
+def test_augmentation_needs_penalties() -> None:
+    """Laws with a time, and a tolerance that is none, are refused with the field."""
+    normal, adhesion, friction = _laws()
+    viscous = NormalLaw("maxwell", stiffness=1.0, relaxation_time=1.0)
+    law = Interface(_plane(1.0), viscous, adhesion, friction)
+    with pytest.raises(InputError, match=r"normal\.model: \"maxwell\" given"):
+        Contact(_blocks(0.0), "block.bottom", law, augmentation=Augmentation())
+    maxwell = Adhesion("maxwell", stiffness=(1.0, 1.0), relaxation_time=(1.0, 1.0))
+    law = Interface(_plane(1.0), normal, maxwell, friction)
+    with pytest.raises(InputError, match=r"adhesion\.model"):
+        Contact(_blocks(0.0), "block.bottom", law, augmentation=Augmentation())
+    Contact(_blocks(0.0), "block.bottom", law, augmentation=Augmentation(tangential=False))
+    for tolerance in (0.0, 1.0, math.nan):
+        with pytest.raises(InputError, match="tolerance"):
+            Augmentation(tolerance)
