@@ -173,6 +173,8 @@ class FacetContact(ContactRecord):
         if self._trial is not None:
             self._now, self._hint = self._committed
             self._surface.update(self._now)
+        if self._transfer is not None:
+            self._transfer.roll_back()
         super().roll_back()
 
     def persistent(self) -> dict[str, npt.NDArray[Any]]:

@@ -98,6 +98,12 @@ class Transfer:
         self._share = shares / sums[parts.owner]
         self._facet = parts.facet.copy()
 
+    def roll_back(self) -> None:
+        """Forget the trial: the next one starts from the overlaps, whatever was tried before."""
+        self._trial = None
+        if self._parts is not None:
+            self._facet = self._parts.facet.copy()
+
     def update(self, now: Floats, force: Floats, active: Mask) -> Mask:
         """Take the forces of a trial.
 
