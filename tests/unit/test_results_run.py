@@ -18,6 +18,7 @@ from anisocontact.case.build import build
 from anisocontact.results import Results
 from anisocontact.results.paraview import Bodies, von_mises
 from anisocontact.results.report import maps, shape, write_report
+from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import RunData
 from anisocontact.results.writer import Writer
 
@@ -258,6 +259,24 @@ def test_maps_of_a_slave_that_moves_far(run):
     panels = maps.pressure(data, 0).axes
     for view, axes in zip((first, last), panels, strict=False):
         assert np.allclose(axes.get_xlim(), view.box[:, 0])
+
+
+def test_a_view_of_a_closed_master():
+    """All around a bar along z: seen from the front, without the points behind."""
+    pyvista = pytest.importorskip("pyvista")
+    angle = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False) + 0.01
+    normal = np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
+    points = pyvista.PolyData(3.0 * normal)
+    points["normal"], points["contact"] = normal, np.zeros(40, dtype=int)
+    points["status"], points["area"] = np.ones(40, dtype=int), np.ones(40)
+    view = ContactView(points, 0)
+    assert view.closed
+    assert view.frame.names() == ("x", "z")
+    assert len(view.position) == 20
+    assert np.all(view.position[:, 1] < 0.0)
+    # Half of the way around there is a mean normal to look along.
+    half = points.extract_points(normal[:, 0] > 0.0)
+    assert not ContactView(half, 0).closed
 
 
 def test_steps_and_moments_of_the_report(run):

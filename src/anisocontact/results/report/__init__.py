@@ -92,7 +92,10 @@ def _pictures(run: RunData, folder: Path, failed: list[str]) -> list[Picture]:
     for number, contact in enumerate(run.summary["contacts"]):
         many = len(run.summary["contacts"]) > 1
         pair = f": {contact['slave']} on {contact['master']}" if many else ""
+        closed = run.view(run.moments[-1].index, number).closed
         for name, draw, title, caption in _OF_CONTACT:
+            if closed and name == "domain":
+                continue  # the resultants in one tangent plane mean nothing all around a master
 
             def drawn(path: Path, draw: Any = draw, number: int = number) -> str:
                 save(draw(run, number), path)

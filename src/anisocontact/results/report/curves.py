@@ -25,7 +25,8 @@ _DOMAIN = "adhesion domain at the end of each step"
 
 def force(run: RunData, contact: int) -> Figure:
     """Force on the slave over the distance moved: tangential components and normal force."""
-    frame = run.view(-1, contact).frame
+    view = run.view(-1, contact)
+    frame = view.frame
     forces = np.vstack([np.zeros(3), run.vectors(f"contacts.{contact}.force")])
     tangential = frame.of(forces)
     label, distance = run.path_length()
@@ -37,10 +38,12 @@ def force(run: RunData, contact: int) -> Figure:
     upper.plot(at, tangential[:, 1], "--", color="#c2410c", label=f"along {second}")
     size = np.linalg.norm(tangential, axis=1)
     upper.plot(at, size, "-", color="black", lw=1.0, label="size")
-    upper.set_ylabel("tangential force on the slave [force]")
+    kind = "" if view.closed else "tangential "
+    upper.set_ylabel(f"{kind}force on the slave [force]")
     upper.legend(loc="best")
     lower.plot(at, forces @ frame.normal, color="black")
-    lower.set_ylabel("normal force [force]")
+    along = f"force along {frame.normal_name}" if view.closed else "normal force"
+    lower.set_ylabel(f"{along} [force]")
     lower.set_ylim(bottom=min(0.0, float((forces @ frame.normal).min())))
     lower.set_xlabel(label)
     for axes in (upper, lower):

@@ -24,6 +24,8 @@ Floats = npt.NDArray[np.float64]
 
 #: One less the cosine of the angle up to which directions are drawn as the same: 2.6 degrees.
 ALIKE = 1e-3
+#: Length of the mean of the unit normals below which a master is closed.
+CLOSED = 0.1
 #: Pixels of a map along its longer side.
 PIXELS = 500
 
@@ -57,6 +59,11 @@ class Frame:
         first, second = (_axis_name(axis) for axis in self.axes)
         return first, second
 
+    @property
+    def normal_name(self) -> str:
+        """What the normal is called."""
+        return _axis_name(self.normal)
+
     def of(self, vectors: Floats) -> Floats:
         """Components of vectors along the axes, (..., 2)."""
         return np.asarray(vectors @ self.axes.T)
@@ -65,10 +72,17 @@ class Frame:
 class ContactView:
     """The slave points of one contact, seen against the normal of the master.
 
+    Where they go all around the master only those that face the viewer are kept.
+
     Args:
         points: All slave points of a run.
         number: Which contact.
+
+    Attributes:
+        closed: Whether the points go all around the master.
     """
+
+    closed: bool
 
     def __init__(self, points: pyvista.PolyData, number: int) -> None:
         chosen = np.asarray(points.point_data["contact"]) == number
@@ -76,8 +90,27 @@ class ContactView:
             name: np.asarray(points.point_data[name])[chosen] for name in points.point_data
         }
         self.position: Floats = np.asarray(points.points, dtype=float)[chosen]
-        self.frame = Frame.across(self.data["normal"].sum(axis=0))
+        self.frame = Frame.across(self._seen_against())
+        if self.closed:
+            facing = self.data["normal"] @ self.frame.normal > 0.0
+            self.data = {name: values[facing] for name, values in self.data.items()}
+            self.position = self.position[facing]
         self.touching = self.data["status"] > 0
+
+    def _seen_against(self) -> Floats:
+        """Mean normal, or an axis of space where the master is closed and the mean means nothing.
+
+        It is the axis that most normals are along, the last one of several.
+        """
+        normal = self.data["normal"]
+        total = np.asarray(normal.sum(axis=0))
+        # Points far from a meshed master have none.
+        self.closed = bool(np.linalg.norm(total) < CLOSED * np.linalg.norm(normal, axis=1).sum())
+        if not self.closed:
+            return total
+        share = np.mean(normal**2, axis=0)
+        axis = np.flatnonzero(share >= 0.99 * share.max())[-1]
+        return np.asarray(-np.eye(3)[axis] if axis == 1 else np.eye(3)[axis])
 
     @cached_property
     def flat(self) -> Floats:
