@@ -9,6 +9,7 @@ package and need none.
 from __future__ import annotations
 
 import contextlib
+import ctypes
 from collections.abc import Sequence
 from typing import Any
 
@@ -45,6 +46,7 @@ __all__ = [
     "assemble_into",
     "basix",
     "body_shares",
+    "call_petsc",
     "cell_nodes",
     "cell_permutation",
     "corner_weights",
@@ -56,6 +58,7 @@ __all__ = [
     "facet_sides",
     "fem",
     "geometry",
+    "has_petsc",
     "locate_entities",
     "middle_nodes",
     "prescribe",
@@ -235,3 +238,29 @@ def prescribed_rows(bcs: Sequence[Any]) -> Ints:
     """Owned unknowns that Dirichlet conditions prescribe, local numbers."""
     rows = [dofs[:owned] for dofs, owned in (bc.dof_indices() for bc in bcs)]
     return np.unique(np.concatenate([np.empty(0, dtype=np.int32), *rows])).astype(np.int32)
+
+
+def has_petsc(*functions: str) -> bool:
+    """Whether PETSc has these functions of its C interface."""
+    return all(hasattr(_petsc_library(), name) for name in functions)
+
+
+def call_petsc(function: str, *arguments: Any) -> None:
+    """Call a function of PETSc's C interface that petsc4py has no name for.
+
+    Args:
+        function: Its name.
+        arguments: PETSc objects, or what ctypes passes on.
+
+    Raises:
+        PETSc.Error: It failed.
+    """
+    passed = [ctypes.c_void_p(a.handle) if hasattr(a, "handle") else a for a in arguments]
+    code = getattr(_petsc_library(), function)(*passed)
+    if code != 0:
+        raise PETSc.Error(code)
+
+
+def _petsc_library() -> ctypes.CDLL:
+    """The library that petsc4py is linked to: a search in it goes on to what it needs."""
+    return ctypes.CDLL(_PETSc.__file__)

@@ -80,7 +80,9 @@ def build(file: CaseFile) -> Built:
     with objects.within("solver"):
         given = case.solver
         limits = Limits(given.smallest_increment, given.largest_increment, given.cuts)
-        solver = Solver(problem, steps, options=given.options, limits=limits)
+        solver = Solver(
+            problem, steps, options=given.options, limits=limits, strategy=given.strategy
+        )
     return Built(file, problem, steps, solver)
 
 

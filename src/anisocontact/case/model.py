@@ -25,6 +25,7 @@ from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.limits import Limits
 from anisocontact.registry import Entry
+from anisocontact.strategies import AUTO, STRATEGIES
 
 __all__ = [
     "Case",
@@ -74,6 +75,15 @@ class Output(Section):
 class Solver(Section):
     """How it is solved."""
 
+    strategy: Annotated[
+        str,
+        _word(
+            "one factorisation of the whole system in every Newton iteration (direct), one of the "
+            "linear bodies for the whole run and iterations on the contact (condensed), or what "
+            "suits the case (auto)",
+            *STRATEGIES,
+        ),
+    ] = AUTO
     options: dict[str, str | int | float | bool] = Field(
         default_factory=dict,
         description="PETSc options without the prefix `anisocontact_`, such as `snes_max_it = 50`",

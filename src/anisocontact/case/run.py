@@ -86,6 +86,7 @@ def run(
         writer = _writer(built, folder, text, checkpoint)
     except WriteError as error:
         return Outcome("stopped", str(error), Path(folder), goes_on=checkpoint is not None)
+    writer.strategy(built.solver.choice.name, built.solver.choice.reason)
     try:
         status, message = _solve(built, writer, listener, text)
     except KeyboardInterrupt:
@@ -132,7 +133,7 @@ def _solve(built: Built, writer: Writer, listener: Listener, text: str) -> tuple
     try:
         with _interrupt() as interrupted:
             keep()
-            for accepted in built.solver.run(on_iteration, on_cut):
+            for accepted in built.solver.run(on_iteration, on_cut, writer.log):
                 writer.accept(accepted)
                 keep()
                 listener.accepted(accepted, writer.summary)

@@ -14,6 +14,7 @@ from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.quadrature import Surfaced, default_degree, facet_quadrature
 from anisocontact.contact.record import ContactRecord, Snapshot
+from anisocontact.contact.transfer import Couplings
 from anisocontact.errors import InputError
 from anisocontact.interface import Interface, Response, State
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -21,6 +22,7 @@ from anisocontact.mesh import Model
 from anisocontact.python_law import PythonInterface
 from anisocontact.rigid import MovingInterface, RigidBody
 
+Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
 
@@ -124,13 +126,27 @@ class Contact(ContactRecord):
         """Add the forces of the trial on the slave to the local nodes, (nodes, 3), force."""
         self.quadrature.to_nodes(self.trial.traction, out, self.current.areas)
 
+    @property
+    def slave_nodes(self) -> Ints:
+        """Local nodes of the slave facets."""
+        return np.unique(self.quadrature.nodes).astype(np.int32)
+
     def add_tangent(self, matrix: Mat) -> None:
         """Add `-d force / d u` of the trial to the matrix of the system."""
+        ((nodes, _, blocks),) = self.couplings()
+        matrix.setValuesBlockedLocalRCV(nodes, nodes, blocks, PETSc.InsertMode.ADD_VALUES)
+
+    def couplings(self) -> list[Couplings]:
+        """Where `-d force / d u` of the trial has entries in rows of nodes, and the entries.
+
+        Returns:
+            Local nodes of the rows (m, k) and of the columns (m, k) of each facet, and its block,
+            (m, 3 k, 3 k).
+        """
         blocks = self.quadrature.facet_matrices(-self.trial.tangent, self.current.areas)
         if self._moved is not None:
             blocks -= self._moved.area_matrices(self.trial.traction)
-        nodes = self.quadrature.nodes
-        matrix.setValuesBlockedLocalRCV(nodes, nodes, blocks, PETSc.InsertMode.ADD_VALUES)
+        return [(self.quadrature.nodes, self.quadrature.nodes, blocks)]
 
     def body_blocks(self) -> BodyBlocks:
         """Rows and columns of the rigid body in the tangent of the trial.

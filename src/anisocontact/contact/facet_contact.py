@@ -34,6 +34,7 @@ OFF = 3
 NEAR = 1e-6
 
 Mask = npt.NDArray[np.bool_]
+Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
 
@@ -142,6 +143,27 @@ class FacetContact(ContactRecord):
     def passes(self) -> tuple[FacetContact, ...]:
         """The passes over slave points this contact is made of: itself."""
         return (self,)
+
+    @property
+    def slave_facets(self) -> Ints:
+        """Local nodes of the slave facet of each point, (n, k)."""
+        return self._points.nodes
+
+    @property
+    def master_facets(self) -> Ints:
+        """Local nodes of each master facet, (m, k)."""
+        return self._master.nodes
+
+    @property
+    def facet_size(self) -> float:
+        """Length of a slave facet: square root of the mean area."""
+        return self._points.size
+
+    def feet(self) -> Ints:
+        """Local nodes of the master facets that points of the trial have below them."""
+        assert self._hint is not None
+        on = self._hint.status == FACET_STATUS.index("on")
+        return np.unique(self._master.nodes[self._hint.facet[on]])
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.

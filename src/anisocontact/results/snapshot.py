@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact, FacetQuadrature, facet_quadrature
+from anisocontact.contact import AnyContact
 from anisocontact.interface import STATUS
 from anisocontact.python_law import PythonInterface
 from anisocontact.rigid import RigidBody, rotation_vector
 from anisocontact.solver import Accepted, Problem, Step
+from anisocontact.solver.loads import mean_shares
 
 __all__ = ["Observer", "laws", "named_groups"]
 
@@ -33,8 +34,8 @@ class Observer:
         model = problem.model
         steps = list(steps)
         self._supports = named_groups([problem.holding, *(step.led() for step in steps)])
-        self._watched: dict[str, FacetQuadrature] = {
-            group: facet_quadrature(model.space, model.facets(group), degree=2)
+        self._watched = {
+            group: mean_shares(model, group, group)
             for group in named_groups([*(step.driven() for step in steps), problem.holding])
             if group in model.facet_names()
         }
@@ -53,17 +54,13 @@ class Observer:
         return {
             "contacts": [self._contact(contact) for contact in self._problem.contacts],
             "reactions": {g: reactions.get(g, zero).tolist() for g in self._supports},
-            "displacements": {g: self._mean(q).tolist() for g, q in self._watched.items()},
+            "displacements": {
+                g: self._problem.mean_displacement(g, shares).tolist()
+                for g, shares in self._watched.items()
+            },
             "rigid": {body.name: self._rigid(body) for body in self._problem.rigid.bodies},
             "energy": accepted.energies if accepted else self._problem.energies(),
         }
-
-    def _mean(self, quadrature: FacetQuadrature) -> Floats:
-        """Mean displacement of a facet group, (3,)."""
-        u = self._problem.u.x.array.reshape(-1, 3)
-        local = np.append(quadrature.areas @ quadrature.at_points(u), quadrature.areas.sum())
-        total = self._comm.allreduce(local)
-        return np.asarray(total[:3] / total[3])
 
     def _rigid(self, body: RigidBody) -> dict[str, Any]:
         """Where a rigid body is and what acts on it; moments about its reference point of now."""

@@ -150,6 +150,13 @@ class Writer:
         self._disk.write(lambda: save_checkpoint(self.folder, joined, content))
         self._disk.check()
 
+    def strategy(self, name: str, reason: str) -> None:
+        """Say how the equations are solved, and why."""
+        self.summary["strategy"] = name
+        self.summary["strategy_reason"] = reason
+        self.log(f"strategy: {name} ({reason})")
+        self._write_summary()
+
     def log(self, text: str) -> None:
         """Add a line to `run.log`."""
         self._disk.write(lambda: self._append(text))

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 from anisocontact._fenicsx import Vec
 from anisocontact.solver.culprits import find_culprits
-from anisocontact.solver.newton import Newton, NewtonResult
+from anisocontact.solver.newton import NewtonResult
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Culprit
+from anisocontact.solver.strategy import AnyNewton
 from anisocontact.solver.watch import StatusWatch
 
 #: Share of a correction that is taken while the status of points alternates.
@@ -44,7 +45,7 @@ class Attempts:
         watch: Is told of every iteration.
     """
 
-    def __init__(self, problem: Problem, newton: Newton, watch: StatusWatch) -> None:
+    def __init__(self, problem: Problem, newton: AnyNewton, watch: StatusWatch) -> None:
         self._problem = problem
         self._newton = newton
         self._watch = watch

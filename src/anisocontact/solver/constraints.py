@@ -36,6 +36,10 @@ class Constraints:
         self._ties = tie(model, like)
         self.planes = SymmetryPlanes(model, symmetry, like, tied_nodes(model))
 
+    def __bool__(self) -> bool:
+        """Whether there are any."""
+        return bool(self._all())
+
     def tied(self, force: Floats) -> Floats:
         """Forces on the mesh, those of tied nodes handed to the corners they follow."""
         return force if self._ties is None else self._handed(self._ties, force)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -48,6 +48,30 @@ class _Way:
     work: float
 
 
+class Reduction(Protocol):
+    """Answers for the bulk while only some unknowns are kept up to date; see `Condensed`."""
+
+    def commit(self, x: Vec) -> float:
+        """Take over an accepted state and return the work from outside since the last one."""
+        ...
+
+    def recover(self) -> None:
+        """Bring the state of all unknowns up to date with `Problem.restore`."""
+        ...
+
+    def reactions(self) -> dict[str, Floats]:
+        """Force of the supports of each facet group on the bodies, (3,), force."""
+        ...
+
+    def elastic(self) -> float:
+        """Elastic energy of the accepted state."""
+        ...
+
+    def mean(self, group: str, weights: Floats) -> Floats:
+        """Sum of the displacements of all nodes times their weights, (3,), length."""
+        ...
+
+
 class Problem:
     """Equilibrium `K u - contact - loads = 0` with prescribed displacements.
 
@@ -65,9 +89,9 @@ class Problem:
             `Stabilisation`.
 
     Attributes:
-        u: Displacement, a DOLFINx function; holds the accepted state between increments.
         rigid: Rigid bodies of the contacts. The unknowns of free ones follow those of the mesh, on
             the last rank.
+        reduction: Who answers for the bulk; None where every state is one of all unknowns.
         force_scale: Norm of the forces at work in the last evaluation: of supports, contacts,
             loads or supports still to be moved, the largest.
         round_off: Residual that floating point leaves in the last evaluation, force; never more
@@ -117,10 +141,11 @@ class Problem:
         )
         self.supports = Supports(model)
         self.loads = Loads(model, materials)
-        self.u: Any = fem.Function(model.space, name="displacement")
+        self._u: Any = fem.Function(model.space, name="displacement")
+        self.reduction: Reduction | None = None
         self.force_scale = 0.0
         self.round_off = 0.0
-        self._ghosted = self.u.x.petsc_vec.duplicate()
+        self._ghosted = self._u.x.petsc_vec.duplicate()
         self._load: Floats = np.zeros(self._owned)
         self._level = 0.0
         self._dt = 0.0
@@ -140,6 +165,32 @@ class Problem:
             model, self.contacts, self._support_scale, holders, stabilised
         )
         self._begun = self._at_hand()
+
+    @property
+    def u(self) -> Any:
+        """Displacement, a DOLFINx function; holds the accepted state between increments."""
+        if self.reduction is not None:
+            self.reduction.recover()
+        return self._u
+
+    @property
+    def level(self) -> float:
+        """Fraction of the step at which the loads are."""
+        return self._level
+
+    @property
+    def dt(self) -> float:
+        """Time increment."""
+        return self._dt
+
+    def dead_load(self) -> Floats:
+        """Loads on the unknowns this rank owns where they do not depend on the state, force."""
+        return self._assembled(self.loads.force(self._u.x.array.reshape(-1, 3)))
+
+    @property
+    def outside(self) -> Floats:
+        """All forces but those of contact on the unknowns this rank owns, accepted state."""
+        return self._accepted_outside
 
     @property
     def unknowns(self) -> int:
@@ -186,11 +237,12 @@ class Problem:
         Raises:
             InputError: See `Supports.begin` and `DeadLoads.begin`.
         """
+        start = self.u.x.array.copy()
         self._begun = self._at_hand()
         held = self.supports.unknowns
-        self.supports.begin(step, self.u.x.array.copy())
+        self.supports.begin(step, start)
         gone = np.setdiff1d(held, self.supports.unknowns)
-        released = np.zeros(len(self.u.x.array))
+        released = np.zeros(len(self._u.x.array))
         _, reaction = self.constraints.planes.forces(self._accepted_reaction)
         released[gone] = reaction[gone]
         self.loads.begin(step, released)
@@ -201,18 +253,24 @@ class Problem:
             [*self.supports.held(), *self.constraints.planes.held()], step.name
         )
 
-    def check_held(self, steps: Sequence[Step]) -> None:
+    def check_held(self, steps: Sequence[Step]) -> bool:
         """Find out whether supports or contacts can hold every body in every step.
+
+        Returns:
+            Whether contact alone has to hold one of them.
 
         Raises:
             InputError: A body is free to move and in no contact.
         """
         supports, nothing = Supports(self.model), np.zeros(len(self.u.x.array))
+        found = False
         for step in steps:
             supports.begin(step, nothing)
             held = [*supports.held(), *self.constraints.planes.held()]
             self.stabilisation.begin(held, step.name, now=False)
+            found = found or bool(self.stabilisation)
         self.stabilisation.clear()
+        return found
 
     def set_level(self, fraction: float, dt: float) -> None:
         """Loads at a fraction of the step, time increment `dt` to there."""
@@ -234,13 +292,13 @@ class Problem:
             Residual, force.
         """
         moved_bodies = self._set_unknowns(x)
-        forces = np.zeros(len(self.u.x.array))
+        forces = np.zeros(len(self._u.x.array))
         failed = False
         for contact in self.contacts:
-            response = contact.update(self.u.x.array.reshape(-1, 3), self._dt)
+            response = contact.update(self._u.x.array.reshape(-1, 3), self._dt)
             failed = failed or bool(response.failed.any())
             contact.add_force(forces.reshape(-1, 3))
-        nodal = self.u.x.array.reshape(-1, 3)
+        nodal = self._u.x.array.reshape(-1, 3)
         self.attached.add_force(nodal, forces.reshape(-1, 3))
         contact_force = self._assembled(forces)
         self._load = self._assembled(self.loads.force(nodal))
@@ -306,7 +364,7 @@ class Problem:
         """
         if self._evaluated is None or not np.array_equal(self._evaluated, x.array_r):
             self.evaluate(x)
-        moved = self.stabilisation.improve(self.u.x.array.reshape(-1, 3), self.force_scale)
+        moved = self.stabilisation.improve(self._u.x.array.reshape(-1, 3), self.force_scale)
         if moved:
             self._add_work(x)
         return any([contact.improve() for contact in self.contacts]) or moved
@@ -336,16 +394,25 @@ class Problem:
 
     def commit(self, x: Vec) -> None:
         """Accept a state: the history of the contacts advances and energies are summed."""
-        self.evaluate(x)
-        self._add_work(x)
-        self._external_work += self._way.work + self.rigid.commit()
-        self._external_work += self.attached.commit(self.u.x.array.reshape(-1, 3))
-        self._accepted_outside = self._outside
-        self._accepted_reaction = self._outside - self._load
+        work = self.reduction.commit(x) if self.reduction is not None else self._commit_bulk(x)
+        self._external_work += work + self.rigid.commit()
         x.copy(self._accepted)
         for contact in self.contacts:
             contact.commit()
         self.stabilisation.commit()
+
+    def restore(self, u: Floats, contact_force: Floats, load: Floats) -> None:
+        """Bring the accepted state of all unknowns up to date.
+
+        Args:
+            u: Displacements this rank owns, length.
+            contact_force: Forces of contact on them, force.
+            load: Loads on them, force.
+        """
+        self._accepted.array[:] = u
+        self._set_unknowns(self._accepted)
+        self._accepted_outside = self.bulk.force(self._of_mesh).array_r - contact_force
+        self._accepted_reaction = self._accepted_outside - load
 
     def roll_back(self) -> None:
         """Return to the accepted state."""
@@ -364,6 +431,8 @@ class Problem:
 
     def persistent(self) -> Persistent:
         """All that the next increments depend on, of this rank."""
+        if self.reduction is not None:
+            self.reduction.recover()
         now, begun = self._at_hand(), self._begun
         common = now.common | {f"begun_{name}": values for name, values in begun.common.items()}
         if self._coupled is not None and self._comm.size == 1:
@@ -392,7 +461,7 @@ class Problem:
         points = iter(kept.points)
         for contact in self.contacts:
             for part in contact.parts:
-                part.restore(next(points), self.u.x.array.reshape(-1, 3))
+                part.restore(next(points), self._u.x.array.reshape(-1, 3))
             contact.rejoin()
 
     def split(self, x: Vec) -> tuple[Floats, Floats]:
@@ -451,7 +520,7 @@ class Problem:
         """
         if self._cells is None:
             return np.zeros((0, 3))
-        return self._cells.inverted(self.u.x.array.reshape(-1, 3))
+        return self._cells.inverted(self._u.x.array.reshape(-1, 3))
 
     def accepted(self) -> Vec:
         """Copy of the accepted displacements."""
@@ -462,12 +531,25 @@ class Problem:
 
         Unknowns on an edge that several groups prescribe count for the first of them.
         """
+        if self.reduction is not None:
+            return self.reduction.reactions()
         across, rest = self.constraints.planes.forces(self._accepted_reaction)
         sums = self.supports.reactions(rest)
-        attached = self.attached.reactions(self.u.x.array.reshape(-1, 3))
+        attached = self.attached.reactions(self._u.x.array.reshape(-1, 3))
         for name, force in (*across.items(), *attached.items()):
             sums[name] = sums.get(name, 0.0) + force
         return sums
+
+    def mean_displacement(self, group: str, weights: Floats) -> Floats:
+        """Mean displacement of a facet group in the accepted state, (3,), length.
+
+        Args:
+            group: Its name.
+            weights: Share of each local node in the mean, (nodes,).
+        """
+        if self.reduction is not None:
+            return self.reduction.mean(group, weights)
+        return np.asarray(self._comm.allreduce(weights @ self._u.x.array.reshape(-1, 3)))
 
     def energies(self) -> dict[str, float]:
         """Energies of the accepted state, force times length.
@@ -479,15 +561,18 @@ class Problem:
             any, of "springs" and elastic supports, and "residual", what is left of "external" less
             all others: first order in the size of the increments.
         """
-        self._of_mesh.array[:] = self._accepted.array_r[: self._owned]
-        stored = {"elastic": self.bulk.energy(self._of_mesh)}
+        if self.reduction is not None:
+            stored = {"elastic": self.reduction.elastic()}
+        else:
+            self._of_mesh.array[:] = self._accepted.array_r[: self._owned]
+            stored = {"elastic": self.bulk.energy(self._of_mesh)}
         stored |= dict.fromkeys(("adhesion", "normal", "friction", "viscous", "stabilisation"), 0.0)
         stored["stabilisation"] = self.stabilisation.energy
         for contact in self.contacts:
             for name, value in contact.energies().items():
                 stored[name] += value
         if self.attached or any(body.springs.any() for body in self.rigid.bodies):
-            now = self.u.x.array.reshape(-1, 3)
+            now = self._u.x.array.reshape(-1, 3)
             stored["springs"] = self.rigid.energy() + self.attached.energy(now)
         residual = self._external_work - sum(stored.values())
         return {"external": self._external_work} | stored | {"residual": residual}
@@ -496,13 +581,20 @@ class Problem:
         """Bring all bodies to a state; on every rank the unknowns of rigid bodies."""
         self._evaluated = np.array(x.array_r)
         self._of_mesh.array[:] = x.array_r[: self._owned]
-        self.u.x.array[: self._owned] = self._of_mesh.array_r
-        self.u.x.scatter_forward()
+        self._u.x.array[: self._owned] = self._of_mesh.array_r
+        self._u.x.scatter_forward()
         rigid = np.array(x.array_r[self._owned :])
         if self.rigid.size:
             rigid = np.asarray(self._comm.bcast(rigid, root=self._comm.size - 1))
         self.rigid.place(rigid)
         return rigid
+
+    def _commit_bulk(self, x: Vec) -> float:
+        self.evaluate(x)
+        self._add_work(x)
+        self._accepted_outside = self._outside
+        self._accepted_reaction = self._outside - self._load
+        return self._way.work + self.attached.commit(self._u.x.array.reshape(-1, 3))
 
     def _assembled(self, local: Floats) -> Floats:
         """Owned entries of forces on local unknowns, with what other ranks add to them."""

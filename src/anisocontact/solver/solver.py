@@ -12,12 +12,14 @@ from anisocontact.limits import Limits
 from anisocontact.solver.attempts import Attempts, Outcome
 from anisocontact.solver.culprits import NAMED
 from anisocontact.solver.loads import check_steps
-from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.newton import NewtonResult, OptionValue
 from anisocontact.solver.pace import Pace
 from anisocontact.solver.persistent import Persistent
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Accepted, Cut, Progress, Step, StoppedError
+from anisocontact.solver.strategy import choose, make_newton
 from anisocontact.solver.watch import StatusWatch
+from anisocontact.strategies import AUTO
 
 
 @dataclass
@@ -53,12 +55,15 @@ class Solver:
         options_prefix: Prefix of the PETSc options of the Newton solver.
         options: PETSc options without prefix, such as {"snes_rtol": 1e-10}.
         limits: Bounds of the increments.
+        strategy: How the equations are solved, one of `strategies.STRATEGIES`.
 
     Attributes:
+        choice: The strategy and why it was taken.
         place: How far the run has come.
 
     Raises:
-        InputError: A step names an unknown facet group, or shared nodes get two values.
+        InputError: A step names an unknown facet group, shared nodes get two values, or the
+            strategy cannot solve the problem.
     """
 
     def __init__(
@@ -68,6 +73,7 @@ class Solver:
         options_prefix: str = "anisocontact_",
         options: Mapping[str, OptionValue] | None = None,
         limits: Limits | None = None,
+        strategy: str = AUTO,
     ) -> None:
         self.problem = problem
         self.steps = list(steps)
@@ -81,6 +87,7 @@ class Solver:
         self.place = self._beginning(0, 0.0)
         self._prefix = options_prefix
         self._options = dict(options or {})
+        self.choice = choose(strategy, problem, self.steps, self._prefix, self._options)
         self._on_iteration: Callable[[Progress], None] | None = None
         self._on_cut: Callable[[Cut], None] | None = None
         self._watch = StatusWatch(problem.contacts)
@@ -89,12 +96,14 @@ class Solver:
         self,
         on_iteration: Callable[[Progress], None] | None = None,
         on_cut: Callable[[Cut], None] | None = None,
+        on_note: Callable[[str], None] | None = None,
     ) -> Iterator[Accepted]:
         """Solve increment by increment.
 
         Args:
             on_iteration: Called at the start of each attempt and after each Newton iteration.
             on_cut: Called when an increment failed and is cut.
+            on_note: Called with what is worth a line in a log.
 
         Yields:
             Every accepted increment, or part of one; the problem holds its state until the next.
@@ -103,7 +112,15 @@ class Solver:
             StoppedError: An increment did not converge; the problem holds the last accepted one.
         """
         self._on_iteration, self._on_cut = on_iteration, on_cut
-        newton = Newton(self.problem, self._prefix, self._options, self._report)
+        newton = make_newton(
+            self.choice,
+            self.problem,
+            self.steps,
+            self._prefix,
+            self._options,
+            self._report,
+            on_note or (lambda _: None),
+        )
         attempts = Attempts(self.problem, newton, self._watch)
         try:
             while self.place.step < len(self.steps):

@@ -83,6 +83,11 @@ class Supports:
         nodes, axes = np.divmod(self.unknowns, 3)
         return [(nodes[axes == i], np.eye(3)[i]) for i in range(3)]
 
+    @property
+    def owners(self) -> dict[Support, Ints]:
+        """Local unknowns that each support holds on this rank: none of them twice."""
+        return self._owner
+
     def at(self, fraction: float) -> Floats:
         """Prescribed values at a fraction of the step."""
         values = (1.0 - fraction) * self.start + fraction * self.end

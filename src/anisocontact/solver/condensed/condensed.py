@@ -1,0 +1,197 @@
+"""A problem whose linear bulk is condensed on the unknowns that can be touched."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+
+from anisocontact._fenicsx import Vec
+from anisocontact.solver.condensed.parts import Condensation, connected
+from anisocontact.solver.condensed.patterns import State
+from anisocontact.solver.condensed.reach import Reach
+from anisocontact.solver.condensed.system import ContactSystem
+from anisocontact.solver.problem import Problem
+from anisocontact.solver.steps import Step
+
+Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+
+class Condensed:
+    """Answers for the bulk of a `Problem` while Newton moves its contact unknowns only.
+
+    States of all unknowns stay with the problem, but after a commit they are up to date where
+    contacts need them only; `recover` brings the rest when somebody asks.
+
+    Args:
+        problem: The problem, on one process, with linear bulk.
+        steps: What will be done: tells what can be touched.
+        note: Told what is done, line by line.
+    """
+
+    def __init__(
+        self, problem: Problem, steps: Sequence[Step], note: Callable[[str], None]
+    ) -> None:
+        self._problem, self._note = problem, note
+        starts, columns, values = problem.bulk.stiffness.getValuesCSR()
+        n = len(starts) - 1
+        self._stiffness = scipy.sparse.csr_array((values, columns, starts), shape=(n, n))
+        self._part_of = np.repeat(connected(n // 3, problem.model.space.dofmap.list), 3)
+        self._reach = Reach(problem.model, problem.contacts, steps)
+        self._bulk: Condensation | None = None
+        self._system: ContactSystem | None = None
+        self._state: State | None = None
+        self._trial_load: Floats = np.zeros(n)
+        self._load: Floats = np.zeros(n)
+        self._forces: Floats = np.zeros(n)
+        self._stale = False
+        self._held: dict[tuple[str, int], int] = {}
+        self._means: dict[str, list[int]] = {}
+        problem.reduction = self
+
+    def accepted(self) -> Vec:
+        """Copy of the accepted state, true for what contacts need."""
+        return self._problem.accepted()
+
+    def prepare(self) -> ContactSystem:
+        """The system of the contact unknowns at the level of the problem.
+
+        What has been condensed is used again as long as the same unknowns are prescribed and no
+        body has moved beyond what was allowed for.
+
+        Raises:
+            SingularError: A body is not held.
+        """
+        fixed = np.zeros(self._stiffness.shape[0], dtype=np.bool_)
+        fixed[self._problem.supports.unknowns] = True
+        same = self._bulk is not None and np.array_equal(
+            self._bulk.prescribed, self._problem.supports.unknowns
+        )
+        if not same or not self._reach.valid(self._nodal()):
+            self._condense(fixed)
+        assert self._system is not None
+        problem = self._problem
+        self._trial_load = problem.dead_load()
+        problem.rigid.place(np.zeros(0))
+        supports = problem.supports.at(problem.level)
+        self._system.set_level(supports, self._trial_load, problem.dt)
+        return self._system
+
+    def grow(self) -> None:
+        """Condense anew with more in reach, from the accepted state."""
+        self.recover()
+        self._reach.widen()
+        self._note("a slave point left the part of its master that can be touched: widened")
+        fixed = np.zeros(self._stiffness.shape[0], dtype=np.bool_)
+        fixed[self._problem.supports.unknowns] = True
+        self._condense(fixed)
+
+    def commit(self, x: Vec) -> float:
+        """Accept a state of the contact unknowns.
+
+        Args:
+            x: State of all unknowns, true for contact and prescribed ones.
+
+        Returns:
+            Work from outside since the last one, force times length.
+        """
+        system, bulk = self.system, self.system.bulk
+        own = system.new_vector()
+        own.array[:] = x.array_r[bulk.contact]
+        system.evaluate(own)
+        before, after = self._state, system.state(own.array_r)
+        assert before is not None
+        work = system.patterns.work(before, after)
+        self._problem.rigid.residual(np.zeros(0), 1.0)
+        self._state, self._load, self._forces = after, self._trial_load, system.forces
+        self._stale = True
+        return work
+
+    def recover(self) -> None:
+        """Bring the state of the whole bulk up to date: one solution with the interior."""
+        if self._stale and self._state is not None:
+            self._stale = False
+            u = self.system.patterns.displacement(self._state)
+            self._problem.restore(u, self._forces, self._load)
+
+    def reactions(self) -> dict[str, Floats]:
+        """Force of the supports of each facet group on the bodies, (3,), force."""
+        assert self._state is not None
+        outside = self.system.patterns.outside(self._state)
+        sums: dict[str, Floats] = {}
+        for (group, axis), unknowns in self._problem.supports.held.items():
+            total = outside[self._held[group, axis]] - self._load[unknowns].sum()
+            sums.setdefault(group, np.zeros(3))[axis] = total
+        return sums
+
+    def elastic(self) -> float:
+        """Elastic energy of the accepted state, force times length."""
+        assert self._state is not None
+        return self.system.patterns.energy(self._state)
+
+    def mean(self, group: str, weights: Floats) -> Floats:
+        """Mean displacement of nodes of the accepted state, (3,), length.
+
+        Args:
+            group: Name under which the weights are known.
+            weights: Share of each node, (nodes,).
+        """
+        assert self._state is not None
+        patterns, fixed = self.system.patterns, self.system.bulk.prescribed
+        each = np.zeros((len(self._load), 3))
+        for axis in range(3):
+            each[axis::3, axis] = weights
+        supports = each[fixed]
+        if group not in self._means:
+            each[fixed] = 0.0
+            self._means[group] = patterns.add_forces(each)
+        free = patterns.works(self._state)[self._means[group]]
+        return np.asarray(free + supports.T @ self._problem.accepted().array_r[fixed])
+
+    @property
+    def system(self) -> ContactSystem:
+        """The system of the contact unknowns."""
+        assert self._system is not None, "`prepare` comes first"
+        return self._system
+
+    def close(self) -> None:
+        """Bring the problem up to date and give back the memory of the factors."""
+        self.recover()
+        if self._bulk is not None:
+            self._bulk.close()
+        self._bulk = self._system = None
+        self._problem.reduction = None
+
+    def _nodal(self) -> Floats:
+        """Accepted displacement of the nodes, true for those in reach, (nodes, 3), length."""
+        return np.asarray(self._problem.accepted().array_r).reshape(-1, 3)
+
+    def _condense(self, fixed: Flags) -> None:
+        """Eliminate what neither is prescribed nor can be touched from the accepted state on."""
+        self.recover()
+        u = self._nodal()
+        self._reach.select(u)
+        touched = np.repeat(self._reach.nodes, 3)
+        self._bulk = Condensation(
+            self._stiffness, self._part_of, touched, fixed, self._bulk, self._note
+        )
+        self._system = system = ContactSystem(
+            self._bulk, self._problem.contacts, self._reach.nodes, u
+        )
+        self._means = {}
+        self._held = {}
+        held = self._problem.supports.held
+        marks = np.zeros((len(self._bulk.prescribed), len(held)))
+        for column, unknowns in enumerate(held.values()):
+            marks[np.searchsorted(self._bulk.prescribed, unknowns), column] = 1.0
+        numbers = system.patterns.add_displacements(marks)
+        self._held = dict(zip(held, numbers, strict=True))
+        # in terms of the new unknowns: forces on what is no longer prescribed become loads
+        outside = self._problem.outside
+        supports = u.reshape(-1)[self._bulk.prescribed]
+        system.set_level(supports, outside, 0.0)
+        system.forces = self._stiffness @ u.reshape(-1) - outside
+        self._state = system.state(u.reshape(-1)[self._bulk.contact])

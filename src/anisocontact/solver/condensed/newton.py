@@ -1,0 +1,106 @@
+"""Newton's method on the contact unknowns, as the load steps see it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import PETSc, Vec
+from anisocontact.solver.condensed.condensed import Condensed
+from anisocontact.solver.condensed.system import ContactSystem
+from anisocontact.solver.newton import Newton, NewtonResult, OptionValue, SingularError
+
+#: How often an increment may begin anew because a slave point has left the reach.
+_MOST_GROWTHS = 6
+#: The linear system is solved by `ContactSystem.apply`.
+_LINEAR: dict[str, OptionValue] = {"ksp_type": "preonly", "pc_type": "python"}
+
+
+class CondensedNewton:
+    """What `Newton` is for a whole system, with vectors of all unknowns.
+
+    Args:
+        condensed: The condensed problem.
+        prefix: Prefix of the PETSc options.
+        options: PETSc options of SNES without prefix.
+        on_iteration: Called with the number of the iteration and the residual.
+    """
+
+    def __init__(
+        self,
+        condensed: Condensed,
+        prefix: str,
+        options: Mapping[str, OptionValue],
+        on_iteration: Callable[[int, float], None],
+    ) -> None:
+        self._condensed, self._prefix, self._options = condensed, prefix, dict(options)
+        self._on_iteration = on_iteration
+        self._system: ContactSystem | None = None
+        self._newton: Newton | None = None
+        self._size = 0
+
+    @property
+    def residual(self) -> npt.NDArray[np.float64]:
+        """Residual of all unknowns at the last iterate; the interior is in equilibrium."""
+        out = np.zeros(self._size)
+        if self._newton is not None and self._system is not None:
+            out[self._system.bulk.contact] = self._newton.residual
+        return out
+
+    def solve(
+        self, x: Vec, full_steps: bool = False, damping: Callable[[], float] | None = None
+    ) -> NewtonResult:
+        """Correct `x` until it is in equilibrium or no more can be done.
+
+        Args:
+            x: Start, overwritten by the last iterate where it is contact or prescribed, length.
+            full_steps: Whether to go without line search.
+            damping: Asked before every correction what share of it is to be taken, 0 to 1.
+
+        Returns:
+            What came of it.
+        """
+        self._size = x.getLocalSize()
+        result = NewtonResult(0, [], "")
+        for _ in range(_MOST_GROWTHS):
+            known = self._system
+            try:
+                newton, system = self._prepared()
+            except SingularError as error:
+                return NewtonResult(0, [], f"{error} (a body without support?)")
+            own = system.new_vector()
+            # what has come into reach just now has no extrapolation
+            start = x if system is known else self._condensed.accepted()
+            own.array[:] = start.array_r[system.bulk.contact]
+            result = newton.solve(own, full_steps, damping)
+            if not (result.reason and system.outgrown):
+                break
+            self._condensed.grow()
+        x.array[:] = system.nodal.reshape(-1)
+        x.array[system.bulk.contact] = own.array_r
+        return result
+
+    def close(self) -> None:
+        """Give back PETSc's objects and the factors; the problem is brought up to date."""
+        self._condensed.close()
+        self._drop()
+
+    def _prepared(self) -> tuple[Newton, ContactSystem]:
+        system = self._condensed.prepare()
+        if self._newton is None or system is not self._system:
+            self._drop()
+            self._system = system
+            options = self._options | _LINEAR
+            self._newton = Newton(system, self._prefix, options, self._on_iteration)
+            system.tolerance = self._newton.snes.getTolerances()[0]
+            pc = self._newton.snes.getKSP().getPC()
+            pc.setType(PETSc.PC.Type.PYTHON)
+            pc.setPythonContext(system)
+        return self._newton, system
+
+    def _drop(self) -> None:
+        if self._newton is not None:
+            self._newton.close()
+        self._newton = None

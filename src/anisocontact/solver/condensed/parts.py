@@ -1,0 +1,150 @@
+"""The bulk cut into contact, prescribed and interior unknowns, each connected part by itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+from scipy.sparse.csgraph import connected_components
+
+from anisocontact.solver.condensed.dense import blocks_times
+from anisocontact.solver.condensed.schur import PartialFactor, WholeBorder
+
+Ints = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Part:
+    """A connected part of the bulk with its interior eliminated.
+
+    Attributes:
+        free: Its unknowns that are not prescribed, increasing, (n,).
+        border: Those of them that stay, numbers in the whole system, (c,).
+        factor: Their Schur complement and solutions with the interior.
+    """
+
+    free: Ints
+    border: Ints
+    factor: PartialFactor | WholeBorder
+
+
+def connected(nodes: int, cells: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
+    """Number of the connected part each node belongs to.
+
+    Args:
+        nodes: Number of nodes.
+        cells: Nodes of each cell, (cells, k).
+
+    Returns:
+        Part of each node, (nodes,).
+
+    Example:
+        >>> connected(4, np.array([[0, 1], [2, 3]], dtype=np.int32)).tolist()
+        [0, 0, 1, 1]
+    """
+    first = np.repeat(cells[:, 0], cells.shape[1] - 1)
+    pairs = (np.ones(len(first), dtype=np.int8), (first, cells[:, 1:].ravel()))
+    graph = scipy.sparse.coo_array(pairs, shape=(nodes, nodes))
+    _, part = connected_components(graph, directed=False)
+    return np.asarray(part)
+
+
+class Condensation:
+    """Schur complement of the bulk on its contact unknowns.
+
+    With K cut into contact c, prescribed p and interior i, equilibrium of the interior leaves
+    `S u_c = g + contact forces` with `S = K_cc - K_ci K_ii^-1 K_ic`, one block for each connected
+    part. A part that nothing touches keeps one unknown. Parts whose unknowns are those of `before`
+    are taken over from there.
+
+    Args:
+        stiffness: K, symmetric, (n, n).
+        part_of: Connected part of each unknown, (n,).
+        touched: Whether an unknown may be touched, (n,).
+        prescribed: Whether it is prescribed, (n,); these are not contact unknowns.
+        before: An earlier condensation of the same stiffness, which is used up.
+        note: Told of every factorisation, in a line.
+
+    Attributes:
+        contact: Numbers of the contact unknowns, part by part, (c,).
+        prescribed: Numbers of the prescribed unknowns, increasing, (p,).
+        blocks: Places among the contact unknowns and the block of S of each part.
+
+    Raises:
+        SingularError: An interior cannot be solved.
+    """
+
+    def __init__(
+        self,
+        stiffness: scipy.sparse.csr_array,
+        part_of: npt.NDArray[np.int32],
+        touched: Flags,
+        prescribed: Flags,
+        before: Condensation | None = None,
+        note: Callable[[str], None] = lambda _: None,
+    ) -> None:
+        self.stiffness = stiffness
+        self.prescribed: Ints = np.flatnonzero(prescribed)
+        self._note = note
+        self._parts: dict[int, Part] = {}
+        old = {} if before is None else before._parts
+        for number in range(int(part_of.max()) + 1):
+            free = np.flatnonzero((part_of == number) & ~prescribed)
+            known = old.pop(number, None)
+            if len(free):
+                border = free[touched[free]]
+                self._parts[number] = self._part(known, free, border if len(border) else free[:1])
+            elif known is not None:
+                known.factor.close()
+        parts = self._parts.values()
+        self.contact: Ints = np.concatenate([np.zeros(0, np.int64), *(p.border for p in parts)])
+        ends = np.cumsum([0, *(len(p.border) for p in parts)])
+        self.blocks = [
+            (slice(a, b), p.factor.schur) for a, b, p in zip(ends, ends[1:], parts, strict=False)
+        ]
+
+    def interior(self, forces: Floats) -> Floats:
+        """Displacements of the interior under forces, all other unknowns held at zero.
+
+        Args:
+            forces: Forces on all unknowns, (n, k); those on other unknowns do not count.
+
+        Returns:
+            `K_ii^-1 f_i`, zero elsewhere, (n, k).
+        """
+        out = np.zeros(forces.shape)
+        for part in self._parts.values():
+            own = forces[part.free]
+            loaded = np.flatnonzero(own.any(axis=0))
+            if len(loaded):
+                out[np.ix_(part.free, loaded)] = part.factor.interior(own[:, loaded])
+        return out
+
+    def schur_times(self, u: Floats) -> Floats:
+        """`S u` for the contact unknowns, (c,)."""
+        return blocks_times(self.blocks, u)
+
+    def close(self) -> None:
+        """Give back the memory of the factors."""
+        for part in self._parts.values():
+            part.factor.close()
+        self._parts = {}
+
+    def _part(self, known: Part | None, free: Ints, border: Ints) -> Part:
+        if known is not None:
+            if np.array_equal(known.free, free) and np.array_equal(known.border, border):
+                return known
+            known.factor.close()
+        self._note(f"condensing {len(free)} unknowns of a body on {len(border)} contact unknowns")
+        matrix = self.stiffness[free][:, free].tocsr()
+        matrix.sort_indices()
+        inside = np.searchsorted(free, border)
+        if len(border) == len(free):
+            return Part(free, border, WholeBorder(matrix.toarray()))
+        factor = PartialFactor(matrix.indptr, matrix.indices, matrix.data, inside)
+        return Part(free, border, factor)

@@ -1,0 +1,200 @@
+"""Loads and supports seen from the contact unknowns, without work on the bulk."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.solver.condensed.parts import Condensation
+
+Floats = npt.NDArray[np.float64]
+
+#: Share of a load that may be missing from its combination of patterns: rounding.
+_ROUNDING = 1e-13
+
+
+class Span:
+    """Orthonormal vectors that span what has been asked for so far.
+
+    Args:
+        size: Length of the vectors.
+
+    Attributes:
+        vectors: The vectors, (size, k).
+
+    Example:
+        >>> span = Span(2)
+        >>> span.coefficients(np.array([3.0, 4.0])), span.coefficients(np.array([6.0, 8.0]))
+        (array([5.]), array([10.]))
+    """
+
+    def __init__(self, size: int) -> None:
+        self.vectors: Floats = np.zeros((size, 0))
+
+    def coefficients(self, v: Floats) -> Floats:
+        """Coefficients of `v`; a vector is added where the span does not hold it.
+
+        Args:
+            v: Vector, (size,).
+
+        Returns:
+            One coefficient for each vector, (k,).
+        """
+        norm = float(np.linalg.norm(v))
+        rest, found = v, np.zeros(self.vectors.shape[1])
+        for _ in range(2):  # twice is enough for vectors that are orthogonal to rounding
+            part = self.vectors.T @ rest
+            rest, found = rest - self.vectors @ part, found + part
+        left = float(np.linalg.norm(rest))
+        if left > _ROUNDING * norm:
+            self.vectors = np.column_stack([self.vectors, rest / left])
+            found = np.append(found, left)
+        return found
+
+
+@dataclass(frozen=True)
+class State:
+    """A state of equilibrium of the interior: `u = E u_c + e a + y b`.
+
+    Attributes:
+        u: Displacements of the contact unknowns, (c,), length.
+        a: Coefficients of the displacements of supports.
+        b: Coefficients of the forces.
+        at_supports: Contact forces on the prescribed unknowns, (p,).
+    """
+
+    u: Floats
+    a: Floats
+    b: Floats
+    at_supports: Floats
+
+
+class Patterns:
+    """Patterns of displacements of the supports and of forces, condensed.
+
+    Every pattern costs one solution with the interior when it is first met. After that its part in
+    forces on the contact unknowns, in energies and in reactions is small products. With
+    `e = (-K_ii^-1 K_ip d on i, d on p)` for the columns d of the supports and `y = K_ii^-1 f_i` for
+    the columns f of forces (zero on p), the state `u = E u_c + e a + y b` (E extends u_c into the
+    interior) has
+
+    * the load on the contact unknowns `g = (f_c - K_ci y) b - (K e)_c a`,
+    * the energy `2 W = u_c . S u_c + 2 u_c . (K e)_c a + a . (e . K e) a + b . (y . f) b`,
+    * the work of forces `f . u = (f_c - K_ci y) . u_c + (e . f) . a + (y . f) b`,
+    * the forces of supports along d, `d . (K u)_p = (K e)_c . u_c + (e . K e) a - (e . f) b`.
+
+    Args:
+        condensation: The bulk.
+    """
+
+    def __init__(self, condensation: Condensation) -> None:
+        self._bulk = condensation
+        n, c, p = (
+            condensation.stiffness.shape[0],
+            len(condensation.contact),
+            len(condensation.prescribed),
+        )
+        self._supports, self._loads = Span(p), Span(n)
+        self._support_columns: list[int] = []
+        self._load_columns: list[int] = []
+        self._lifts, self._forces, self._answers = (np.zeros((n, 0)) for _ in range(3))
+        self._lift_force, self._passed_on = np.zeros((c, 0)), np.zeros((c, 0))
+        self._lift_stiffness, self._lift_work = np.zeros((0, 0)), np.zeros((0, 0))
+        self._load_work = np.zeros((0, 0))
+
+    def supports(self, u: Floats) -> Floats:
+        """Coefficients a of displacements of the prescribed unknowns, (p,), length."""
+        known = self._supports.vectors.shape[1]
+        found = self._supports.coefficients(u)
+        if len(found) > known:
+            self._support_columns += self.add_displacements(self._supports.vectors[:, known:])
+        return _scattered(found, self._support_columns, self._lifts.shape[1])
+
+    def loads(self, force: Floats) -> Floats:
+        """Coefficients b of forces on all unknowns, (n,), zero where prescribed."""
+        known = self._loads.vectors.shape[1]
+        found = self._loads.coefficients(force)
+        if len(found) > known:
+            self._load_columns += self.add_forces(self._loads.vectors[:, known:])
+        return _scattered(found, self._load_columns, self._forces.shape[1])
+
+    def add_displacements(self, patterns: Floats) -> list[int]:
+        """Add displacements of the prescribed unknowns, (p, k); their numbers are returned."""
+        old, bulk = self._lifts.shape[1], self._bulk
+        lift = np.zeros((len(self._lifts), patterns.shape[1]))
+        lift[bulk.prescribed] = patterns
+        lift -= bulk.interior(bulk.stiffness @ lift)
+        force = bulk.stiffness @ lift
+        self._lifts = np.column_stack([self._lifts, lift])
+        self._lift_force = np.column_stack([self._lift_force, force[bulk.contact]])
+        products = self._lifts[bulk.prescribed].T @ force[bulk.prescribed]
+        self._lift_stiffness = np.block(
+            [[self._lift_stiffness, products[:old]], [products[:old].T, products[old:]]]
+        )
+        self._lift_work = self._lifts.T @ self._forces
+        return list(range(old, old + patterns.shape[1]))
+
+    def add_forces(self, patterns: Floats) -> list[int]:
+        """Add forces, (n, k), zero where prescribed; their numbers are returned."""
+        old, bulk = self._forces.shape[1], self._bulk
+        answer = bulk.interior(patterns)
+        on_contact = patterns[bulk.contact] - (bulk.stiffness @ answer)[bulk.contact]
+        self._forces = np.column_stack([self._forces, patterns])
+        self._answers = np.column_stack([self._answers, answer])
+        self._passed_on = np.column_stack([self._passed_on, on_contact])
+        self._lift_work = self._lifts.T @ self._forces
+        self._load_work = self._answers.T @ self._forces
+        return list(range(old, old + patterns.shape[1]))
+
+    def load(self, a: Floats, b: Floats) -> Floats:
+        """Load g on the contact unknowns, (c,), force."""
+        lift = self._lift_force[:, : len(a)] @ a
+        return np.asarray(self._passed_on[:, : len(b)] @ b - lift)
+
+    def works(self, state: State) -> Floats:
+        """Work `f . u` of each pattern of forces in a state, (number of forces,)."""
+        a, b = self._padded(state)
+        return np.asarray(self._passed_on.T @ state.u + self._lift_work.T @ a + self._load_work @ b)
+
+    def outside(self, state: State) -> Floats:
+        """Forces from outside along each pattern of displacements: all but those of contact."""
+        a, b = self._padded(state)
+        bulk = self._lift_force.T @ state.u + self._lift_stiffness @ a - self._lift_work @ b
+        return np.asarray(bulk - self._lifts[self._bulk.prescribed].T @ state.at_supports)
+
+    def energy(self, state: State) -> float:
+        """Elastic energy of a state, force times length."""
+        a, b = self._padded(state)
+        u = state.u
+        coupling = u @ self._lift_force @ a
+        own = a @ self._lift_stiffness @ a + b @ self._load_work @ b
+        return float(0.5 * (u @ self._bulk.schur_times(u) + own) + coupling)
+
+    def work(self, before: State, after: State) -> float:
+        """Work from outside between two states, trapezoidal rule, force times length."""
+        (a, b), (a_new, b_new) = self._padded(before), self._padded(after)
+        loads = 0.5 * (b + b_new) @ (self.works(after) - self.works(before))
+        supports = 0.5 * (self.outside(before) + self.outside(after)) @ (a_new - a)
+        return float(loads + supports)
+
+    def displacement(self, state: State) -> Floats:
+        """Displacement of all unknowns, (n,): the one solution with the interior of a state."""
+        a, b = self._padded(state)
+        bulk = self._bulk
+        u = np.zeros(len(self._lifts))
+        u[bulk.contact] = state.u
+        u -= bulk.interior((bulk.stiffness @ u)[:, None])[:, 0]
+        return np.asarray(u + self._lifts @ a + self._answers @ b)
+
+    def _padded(self, state: State) -> tuple[Floats, Floats]:
+        """Coefficients with zeros for patterns that have come since."""
+        missing = (self._lifts.shape[1] - len(state.a), self._forces.shape[1] - len(state.b))
+        return np.pad(state.a, (0, missing[0])), np.pad(state.b, (0, missing[1]))
+
+
+def _scattered(values: Floats, at: list[int], size: int) -> Floats:
+    out = np.zeros(size)
+    out[at] = values
+    return out

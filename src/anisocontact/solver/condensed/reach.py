@@ -1,0 +1,121 @@
+"""Which nodes can be touched: those of the slaves, and of master facets that points may get to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+from scipy.spatial import cKDTree
+
+from anisocontact.contact import AnyContact, Contact, FacetContact
+from anisocontact.mesh import Model
+from anisocontact.solver.problem import Problem
+from anisocontact.solver.steps import AXES, Step
+
+Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+#: Motion allowed beyond that of the supports, over the size of a slave facet.
+_SLACK = 0.1
+
+
+class Reach:
+    """Nodes in reach of contacts from one state on, until bodies have moved too far.
+
+    A master facet stays out as long as no slave point can have it as its closest: it is further
+    than the facet that is closest now by more than twice the motion that is allowed for.
+
+    Args:
+        model: Mesh.
+        contacts: Contacts.
+        steps: Loads: supports tell how far bodies will move past each other.
+    """
+
+    def __init__(self, model: Model, contacts: Sequence[AnyContact], steps: Sequence[Step]) -> None:
+        self._reference = np.asarray(model.space.tabulate_dof_coordinates())
+        self._contacts = contacts
+        self._ranges = {body: _prescribed_range(steps, body) for body in model.body_names()}
+        self._motions: dict[int, float] = {}
+        self._start: Floats = np.zeros_like(self._reference)
+        self._factor = 1.0
+        self.nodes: Flags = np.zeros(len(self._reference), dtype=np.bool_)
+
+    def select(self, u: Floats) -> None:
+        """Take the nodes in reach of a state of all nodes, (nodes, 3), length."""
+        self._start = u.copy()
+        self.nodes = np.zeros(len(u), dtype=np.bool_)
+        for contact in self._contacts:
+            if isinstance(contact, Contact):
+                self.nodes[contact.slave_nodes] = True
+            else:
+                for half in contact.passes:
+                    self._select_pass(half, self._reference + u)
+
+    def widen(self) -> None:
+        """Allow for twice the motion from the next selection on."""
+        self._factor *= 2.0
+
+    def valid(self, u: Floats) -> bool:
+        """Whether no body has moved by more than what was allowed for."""
+        for contact in self._contacts:
+            if isinstance(contact, Contact):
+                continue
+            for half in contact.passes:
+                sides = (half.slave_facets, half.master_facets)
+                if sum(self._moved(side, u) for side in sides) > self._motion(half):
+                    return False
+        return True
+
+    def _moved(self, facets: npt.NDArray[np.int32], u: Floats) -> float:
+        """Longest way of a node of the facets that are in reach."""
+        nodes = np.unique(facets[self.nodes[facets].all(axis=1)])
+        step = np.linalg.norm(u[nodes] - self._start[nodes], axis=1)
+        return float(step.max(initial=0.0))
+
+    def _motion(self, half: FacetContact) -> float:
+        """Motion of slave and master that is allowed for, length."""
+        bodies = [self._ranges[name.partition(".")[0]] for name in (half.slave, half.master)]
+        planned = sum(float(np.linalg.norm(extent)) for extent in bodies)
+        return self._factor * (planned + _SLACK * half.facet_size)
+
+    def _select_pass(self, half: FacetContact, x: Floats) -> None:
+        motion = self._motion(half)
+        facets, points = half.master_facets, half.points
+        corners = x[facets]
+        low, high = corners.min(axis=1), corners.max(axis=1)
+        tree = cKDTree(0.5 * (low + high))
+        radius = 0.5 * float(np.linalg.norm(high - low, axis=1).max())
+        nearest, _ = tree.query(points)
+        near = half.state["facet"] >= 0
+        nearest = np.where(near, np.minimum(nearest, np.abs(half.state["gap"])), nearest)
+        able = np.flatnonzero(nearest <= half.reach + motion + radius)
+        self.nodes[half.slave_facets[able]] = True
+        limit = nearest[able] + 2.0 * motion
+        lists = tree.query_ball_point(points[able], limit + radius)
+        facet = np.concatenate([np.zeros(0, dtype=np.int64), *map(np.asarray, lists)]).astype(int)
+        point = np.repeat(np.arange(len(able)), [len(found) for found in lists])
+        at = points[able][point]
+        away = np.maximum(0.0, np.maximum(low[facet] - at, at - high[facet]))
+        kept = facet[np.linalg.norm(away, axis=1) <= limit[point]]
+        self.nodes[facets[kept]] = True
+        self.nodes[facets[half.state["facet"][near]]] = True
+
+
+def contact_unknowns(problem: Problem, steps: Sequence[Step]) -> int:
+    """Number of unknowns that the steps of a problem can bring into contact."""
+    reach = Reach(problem.model, problem.contacts, steps)
+    reach.select(problem.u.x.array.reshape(-1, 3))
+    return 3 * int(reach.nodes.sum())
+
+
+def _prescribed_range(steps: Sequence[Step], body: str) -> Floats:
+    """Largest displacement that any support of a body is given, along each axis, length."""
+    extent = np.zeros(3)
+    for step in steps:
+        for group, values in step.displacement.items():
+            if group.partition(".")[0] == body:
+                for axis, value in values.items():
+                    i = AXES.index(axis)
+                    extent[i] = max(extent[i], abs(value or 0.0))
+    return extent

@@ -1,0 +1,180 @@
+"""Equilibrium of the contact unknowns alone, with the bulk condensed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import Mat, PETSc, Vec
+from anisocontact.contact import AnyContact, Contact
+from anisocontact.contact.transfer import Couplings
+from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor
+from anisocontact.solver.condensed.parts import Condensation
+from anisocontact.solver.condensed.patterns import Patterns, State
+from anisocontact.solver.newton import TOLERANCE
+from anisocontact.solver.problem import LOAD_SHARE, ROUND_OFF
+
+Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+#: Random patterns of signs that measure the norm of the forces at the supports.
+_SAMPLES = 8
+#: Residual of a correction over the right-hand side, far from the solution.
+_ROUGH = 1e-4
+_TINY = float(np.finfo(np.float64).tiny)
+
+
+class ContactSystem:
+    """Residual `S u_c - g - contact forces` and its tangent; a `System` for Newton.
+
+    Args:
+        bulk: The condensed bulk.
+        contacts: All contacts.
+        in_reach: Nodes whose unknowns are contact unknowns or prescribed, (nodes,).
+
+    Attributes:
+        patterns: Loads and supports, condensed.
+        nodal: Displacement of the nodes; true for nodes in reach, (nodes, 3), length.
+        force_scale: Norm of the forces at work in the last evaluation: loads, contacts or supports.
+        round_off: Residual that floating point leaves in the last evaluation, force.
+        tolerance: Residual over the forces at work at which Newton stops.
+        outgrown: Whether a slave point of the last evaluation met a facet out of reach.
+        solver: Solves for Newton corrections.
+    """
+
+    def __init__(
+        self, bulk: Condensation, contacts: Sequence[AnyContact], in_reach: Flags, nodal: Floats
+    ) -> None:
+        self.bulk, self.contacts, self._in_reach = bulk, contacts, in_reach
+        self.nodal = nodal.copy()
+        self.patterns = Patterns(bulk)
+        signs = np.random.default_rng(1).choice([-1.0, 1.0], (len(bulk.prescribed), _SAMPLES))
+        self._samples = self.patterns.add_displacements(signs.astype(np.float64))
+        number = np.full(nodal.size, -1, dtype=np.int64)
+        number[bulk.contact] = np.arange(len(bulk.contact))
+        self._tangent = ContactTangent(bulk.blocks, number, len(bulk.contact))
+        self._stiff = np.concatenate(
+            [np.zeros(0), *(np.diagonal(block) for _, block in bulk.blocks)]
+        )
+        self.solver = KeptFactor(self._tangent)
+        self.force_scale = self.round_off = 0.0
+        self.tolerance = TOLERANCE
+        self.outgrown = False
+        self._dt, self._load_norm = 0.0, 0.0
+        self._a, self._b, self._g = np.zeros(0), np.zeros(0), np.zeros(len(bulk.contact))
+        self._evaluated: Floats | None = None
+        self._residual: Floats = np.zeros(0)
+        self.forces: Floats = np.zeros(nodal.size)
+
+    def set_level(self, supports: Floats, load: Floats, dt: float) -> None:
+        """Take displacements of the supports, (p,), loads, (n,), and the time increment."""
+        free = load.copy()
+        free[self.bulk.prescribed] = 0.0
+        self._a = self.patterns.supports(supports)
+        self._b = self.patterns.loads(free)
+        self._g = self.patterns.load(self._a, self._b)
+        self._load_norm = float(np.linalg.norm(load))
+        self._dt = dt
+        self.nodal.reshape(-1)[self.bulk.prescribed] = supports
+        self._evaluated = None
+
+    def state(self, u: Floats) -> State:
+        """State with the contact unknowns `u` and the forces of the last evaluation."""
+        return State(u.copy(), self._a, self._b, self.forces[self.bulk.prescribed])
+
+    @property
+    def comm(self) -> Any:
+        """Communicator: one process."""
+        return PETSc.COMM_SELF
+
+    def new_vector(self) -> Vec:
+        """Vector of the contact unknowns, zero."""
+        vector = PETSc.Vec().createSeq(len(self.bulk.contact), comm=PETSc.COMM_SELF)
+        vector.zeroEntries()
+        return vector
+
+    def new_tangent(self) -> Mat:
+        """Matrix of which only products can be made."""
+        n = len(self.bulk.contact)
+        matrix = PETSc.Mat().createPython((n, n), self, comm=PETSc.COMM_SELF)
+        matrix.setUp()
+        return matrix
+
+    def evaluate(self, x: Vec) -> Floats:
+        """Residual; NaN where a law has no answer or a slave point has left the reach."""
+        u = np.array(x.array_r)
+        if self._evaluated is not None and np.array_equal(self._evaluated, u):
+            return self._residual.copy()
+        self._evaluated = u
+        self.nodal.reshape(-1)[self.bulk.contact] = u
+        self.forces = np.zeros(self.nodal.size)
+        failed = False
+        for contact in self.contacts:
+            failed |= bool(contact.update(self.nodal, self._dt).failed.any())
+            contact.add_force(self.forces.reshape(-1, 3))
+        self.outgrown = not self._in_reach[used(self.contacts, self.forces)].all()
+        residual = self.bulk.schur_times(u) - self._g - self.forces[self.bulk.contact]
+        self._measure(u)
+        if failed or self.outgrown:
+            residual[:] = np.nan
+        self._residual = residual
+        return residual.copy()
+
+    def tangent(self, x: Vec, out: Mat) -> None:
+        """Take the tangent at x; `out` multiplies with it."""
+        self.evaluate(x)
+        self._tangent.take([part for c in self.contacts for part in couplings(c)])
+        out.assemble()
+
+    def improve(self, x: Vec) -> bool:
+        """Better multipliers of the contacts from equilibrium; see `Problem.improve`."""
+        self.evaluate(x)
+        self._evaluated = None
+        return any([contact.improve() for contact in self.contacts])
+
+    def soften(self) -> bool:
+        """Softer penalties after a solution that failed; see `Problem.soften`."""
+        self._evaluated = None
+        return any([contact.soften() for contact in self.contacts])
+
+    def mult(self, _: Mat, x: Vec, y: Vec) -> None:
+        """Product with the tangent, for PETSc."""
+        y.array[:] = self._tangent.times(x.array_r)
+
+    def apply(self, pc: Any, b: Vec, x: Vec) -> None:
+        """Newton correction, for PETSc: a preconditioner that is the solution."""
+        relative = float(np.linalg.norm(b.array_r)) / max(self.force_scale, _TINY)
+        # Newton squares the residual: no correction has to be better than that or than asked for
+        rtol = max(min(_ROUGH, relative), 0.1 * self.tolerance / max(relative, _TINY))
+        found = self.solver.solve(b.array_r, min(rtol, 0.1))
+        if found is None:
+            pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
+            found = np.zeros(len(self.bulk.contact))
+        x.array[:] = found
+
+    def _measure(self, u: Floats) -> None:
+        """Forces at work and what rounding makes of them, as of `Problem.evaluate`."""
+        outside = self.patterns.outside(self.state(u))[self._samples]
+        supports = float(np.sqrt(np.mean(outside**2)))
+        self.force_scale = max(self._load_norm, float(np.linalg.norm(self.forces)), supports)
+        levers = [contact.lever() for contact in self.contacts]
+        stiff = float(np.linalg.norm(self._stiff * u)) + float(np.linalg.norm(levers))
+        self.round_off = ROUND_OFF * stiff
+        if self._load_norm > 0.0:
+            self.round_off = min(self.round_off, LOAD_SHARE * self._load_norm)
+
+
+def couplings(contact: AnyContact) -> list[Couplings]:
+    """Tangent of a contact as blocks of nodes."""
+    parts = (contact,) if isinstance(contact, Contact) else contact.passes
+    return [blocks for part in parts for blocks in part.couplings()]
+
+
+def used(contacts: Sequence[AnyContact], forces: Floats) -> npt.NDArray[np.int64]:
+    """Nodes whose displacement the trial depends on: below slave points, or under forces."""
+    found = [half.feet() for c in contacts if not isinstance(c, Contact) for half in c.passes]
+    loaded = np.flatnonzero(forces.reshape(-1, 3).any(axis=1))
+    return np.concatenate([loaded, *found])

@@ -1,0 +1,167 @@
+"""Which way the equations are solved, and why."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import PETSc, Vec
+from anisocontact.bulk import LinearBulk
+from anisocontact.errors import InputError
+from anisocontact.solver.condensed import Condensed, CondensedNewton, contact_unknowns, reachable
+from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.problem import Problem
+from anisocontact.solver.steps import Step
+from anisocontact.strategies import CONDENSED, DIRECT, STRATEGIES
+
+#: Contact unknowns beyond which their dense matrix costs more than it saves.
+MOST_CONTACT = 8000
+#: Share of the free memory that dense matrices may take.
+MEMORY_SHARE = 0.5
+
+
+class AnyNewton(Protocol):
+    """What the load steps ask of Newton's method."""
+
+    @property
+    def residual(self) -> npt.NDArray[np.float64]:
+        """Residual of the unknowns this rank owns at the last iterate."""
+        ...
+
+    def solve(
+        self, x: Vec, full_steps: bool = False, damping: Callable[[], float] | None = None
+    ) -> NewtonResult:
+        """Correct `x` until it is in equilibrium or no more can be done."""
+        ...
+
+    def close(self) -> None:
+        """Give back PETSc's objects."""
+        ...
+
+
+@dataclass(frozen=True)
+class Choice:
+    """How the equations are solved.
+
+    Attributes:
+        name: "direct" or "condensed".
+        reason: Why, in a line.
+    """
+
+    name: str
+    reason: str
+
+
+def choose(
+    strategy: str,
+    problem: Problem,
+    steps: Sequence[Step],
+    prefix: str,
+    options: Mapping[str, OptionValue],
+) -> Choice:
+    """Take the strategy asked for, or the one that suits the problem.
+
+    Args:
+        strategy: One of `strategies.STRATEGIES`.
+        problem: The problem.
+        steps: What will be done.
+        prefix: Prefix of the PETSc options.
+        options: PETSc options without prefix.
+
+    Raises:
+        InputError: There is no such strategy, or it cannot solve this problem.
+    """
+    if strategy not in STRATEGIES:
+        raise InputError(f"{strategy!r} given, one of {', '.join(STRATEGIES)} needed", "strategy")
+    if strategy == DIRECT:
+        return Choice(DIRECT, "asked for")
+    against = next(_obstacles(problem, prefix, options), "")
+    if strategy == CONDENSED:
+        if against:
+            raise InputError(f"'condensed' given, but {against}", "strategy")
+        return Choice(CONDENSED, "asked for")
+    against = against or next(_costs(problem, steps), "")
+    if against:
+        return Choice(DIRECT, against)
+    return Choice(CONDENSED, "the bodies are linear: only their contact unknowns change")
+
+
+def make_newton(
+    choice: Choice,
+    problem: Problem,
+    steps: Sequence[Step],
+    prefix: str,
+    options: Mapping[str, OptionValue],
+    on_iteration: Callable[[int, float], None],
+    note: Callable[[str], None],
+) -> AnyNewton:
+    """Newton's method for a choice.
+
+    Args:
+        choice: The choice.
+        problem: The problem.
+        steps: What will be done.
+        prefix: Prefix of the PETSc options.
+        options: PETSc options without prefix.
+        on_iteration: Called with the number of the iteration and the residual.
+        note: Told what is worth a line in the log.
+    """
+    if choice.name == CONDENSED:
+        condensed = Condensed(problem, steps, note)
+        return CondensedNewton(condensed, prefix, options, on_iteration)
+    return Newton(problem, prefix, options, on_iteration)
+
+
+def _obstacles(problem: Problem, prefix: str, options: Mapping[str, OptionValue]) -> Iterator[str]:
+    """What `condensed` cannot do."""
+    if problem.comm.size > 1:
+        yield f"it runs in one process, {problem.comm.size} given"
+    if not problem.contacts:
+        yield "there is no contact"
+    if not isinstance(problem.bulk, LinearBulk):
+        names = [name for name, law in problem.materials.items() if not law.linear]
+        yield f"material.{names[0]} is not linear"
+    if problem.rigid.free:
+        yield f"the rigid body {problem.rigid.free[0].name!r} is free"
+    if problem.holding:
+        yield f"{problem.holding[0]!r} holds the bodies by a spring or a plane of symmetry"
+    given = [*options, *(name for name in PETSc.Options(prefix).getAll())]
+    linear = [name for name in given if name.startswith(("ksp_", "pc_", "mat_"))]
+    if linear:
+        yield f"the option {linear[0]} asks for a solver of the whole system"
+    if not reachable():
+        yield "this PETSc has no MUMPS with a Schur complement"
+
+
+def _costs(problem: Problem, steps: Sequence[Step]) -> Iterator[str]:
+    """Why `condensed` would not pay, although it can."""
+    count = contact_unknowns(problem, steps)
+    if count > MOST_CONTACT:
+        yield f"{count} contact unknowns, more than {MOST_CONTACT}: their dense matrix does not pay"
+    # in double precision for the bodies, with MUMPS' workspace, and in single for the tangent
+    needed, free = (2 * 8 + 4) * count**2, free_memory()
+    if needed > MEMORY_SHARE * free:
+        yield (
+            f"dense matrices of {count} contact unknowns need {needed / 1e9:.1f} GB, "
+            f"{free / 1e9:.1f} GB are free"
+        )
+    if 2 * count > problem.unknowns:
+        yield f"{count} of {problem.unknowns} unknowns are contact unknowns"
+
+
+def free_memory() -> float:
+    """Memory that is free, bytes; no limit where the system does not say."""
+    try:
+        with open("/proc/meminfo", encoding="ascii") as file:
+            found = dict(line.split(":", 1) for line in file)
+        return 1024.0 * float(found["MemAvailable"].split()[0])
+    except (OSError, KeyError, ValueError):
+        try:
+            return float(os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+        except (ValueError, OSError):
+            return float("inf")

@@ -1,0 +1,5 @@
+"""Names of the ways to solve the equations; no finite elements are needed to check them."""
+
+AUTO, DIRECT, CONDENSED = "auto", "direct", "condensed"
+#: What may be asked for, the default first.
+STRATEGIES = (AUTO, DIRECT, CONDENSED)

@@ -1,0 +1,231 @@
+"""Condensed strategy: pieces, choice and refusals."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.sparse
+
+from anisocontact.errors import InputError
+from anisocontact.solver import Problem, Solver, Step, strategy
+from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor, gmres
+from anisocontact.solver.condensed.parts import Condensation
+from anisocontact.solver.condensed.patterns import Patterns, State
+from anisocontact.solver.condensed.schur import PartialFactor
+from anisocontact.solver.newton import SingularError
+
+PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+
+
+def _matrix(n: int, seed: int = 0) -> scipy.sparse.csr_array:
+    """Symmetric, positive definite, sparse."""
+    rng = np.random.default_rng(seed)
+    half = scipy.sparse.random_array((n, n), density=0.1, rng=rng)
+    return (half + half.T + 8.0 * scipy.sparse.eye_array(n)).tocsr()
+
+
+def _schur(a: np.ndarray, border: np.ndarray, inside: np.ndarray) -> np.ndarray:
+    coupling = a[np.ix_(inside, border)]
+    return a[np.ix_(border, border)] - coupling.T @ np.linalg.solve(
+        a[np.ix_(inside, inside)], coupling
+    )
+
+
+def test_partial_factor() -> None:
+    matrix, border = _matrix(40), np.array([3, 7, 8, 20, 33])
+    inside = np.setdiff1d(np.arange(40), border)
+    dense = matrix.toarray()
+    factor = PartialFactor(matrix.indptr, matrix.indices, matrix.data, border)
+    np.testing.assert_allclose(factor.schur, _schur(dense, border, inside), atol=1e-13)
+    b = np.random.default_rng(1).random((40, 3))
+    x = factor.interior(b)
+    np.testing.assert_allclose(dense[np.ix_(inside, inside)] @ x[inside], b[inside], atol=1e-13)
+    assert not x[border].any()
+    factor.close()
+
+
+def test_singular_interior() -> None:
+    """A spring between two unknowns that nothing else holds."""
+    matrix = scipy.sparse.csr_array(np.array([[1.0, 0.0, 0.0], [0.0, 1.0, -1.0], [0.0, -1.0, 1.0]]))
+    with pytest.raises(SingularError):
+        PartialFactor(matrix.indptr, matrix.indices, matrix.data, np.array([0]))
+
+
+def _condensation() -> Condensation:
+    """Two parts: one with contact, prescribed and interior unknowns, one all border."""
+    matrix = scipy.sparse.block_diag([_matrix(30), _matrix(2, 1)], format="csr")
+    touched, prescribed = np.zeros(32, dtype=bool), np.zeros(32, dtype=bool)
+    touched[[4, 9, 17, 30, 31]] = True
+    prescribed[[9, 20, 21]] = True
+    return Condensation(
+        scipy.sparse.csr_array(matrix), np.repeat([0, 1], [30, 2]), touched, prescribed
+    )
+
+
+def test_patterns_against_the_whole_system() -> None:
+    """Loads, energies, works and reactions of a random state, from all unknowns."""
+    rng = np.random.default_rng(3)
+    bulk = _condensation()
+    assert bulk.contact.tolist() == [4, 17, 30, 31]
+    k = bulk.stiffness.toarray()
+    patterns = Patterns(bulk)
+    load = rng.random(32)
+    load[bulk.prescribed] = 0.0
+    supports, contact = rng.random(3), rng.random(4)
+    a, b = patterns.supports(supports), patterns.loads(load)
+    state = State(contact, a, b, rng.random(3))
+    u = patterns.displacement(state)
+    fixed = np.union1d(bulk.contact, bulk.prescribed)
+    inside = np.setdiff1d(np.arange(32), fixed)
+    np.testing.assert_allclose(u[bulk.contact], contact, atol=1e-12)
+    np.testing.assert_allclose(u[bulk.prescribed], supports, atol=1e-12)
+    np.testing.assert_allclose((k @ u)[inside], load[inside], atol=1e-12)
+    residual = bulk.schur_times(contact) - patterns.load(a, b)
+    np.testing.assert_allclose(residual, (k @ u - load)[bulk.contact], atol=1e-12)
+    assert patterns.energy(state) == pytest.approx(0.5 * u @ k @ u, rel=1e-12)
+    assert b @ patterns.works(state) == pytest.approx(load @ u, rel=1e-12)
+    outside = (k @ u)[bulk.prescribed] - state.at_supports
+    assert a @ patterns.outside(state) == pytest.approx(supports @ outside, rel=1e-12)
+    bulk.close()
+
+
+def test_known_patterns_cost_no_solution(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A load or displacement that is a combination of earlier ones is no work on the bulk."""
+    bulk = _condensation()
+    patterns = Patterns(bulk)
+    first, second = np.ones(3), np.arange(3.0)
+    patterns.supports(first)
+    patterns.supports(second)
+    monkeypatch.setattr(bulk, "interior", None)
+    patterns.supports(0.3 * first - 7.0 * second)
+    with pytest.raises(TypeError):
+        patterns.supports(np.array([1.0, 0.0, 0.0]))
+    bulk.close()
+
+
+def test_contact_tangent_and_its_factor() -> None:
+    """Products and solutions with blocks of nodes, some of them without unknown."""
+    bulk = _condensation()
+    number = np.full(32 + 1, -1)
+    number[bulk.contact] = np.arange(4)
+    tangent = ContactTangent(bulk.blocks, number, 4)
+    rng = np.random.default_rng(5)
+    rows = np.array([[1, 5], [10, -1]], dtype=np.int32)
+    columns = np.array([[1, 10], [5, 3]], dtype=np.int32)
+    values = rng.random((2, 6, 6))
+    tangent.take([(rows, columns, values)])
+    whole = np.zeros((36, 36))
+    for r, c, v in zip(rows, columns, values, strict=True):
+        at = [(3 * n[:, None] + np.arange(3)).ravel() % 36 for n in (r, c)]
+        whole[np.ix_(*at)] += v
+    dense = whole[np.ix_(bulk.contact, bulk.contact)]
+    for place, block in bulk.blocks:
+        dense[place, place] += block
+    x = rng.random(4)
+    np.testing.assert_allclose(tangent.times(x), dense @ x, atol=1e-12)
+    np.testing.assert_allclose(tangent.factor()(dense @ x), x, atol=1e-5)
+    kept = KeptFactor(tangent)
+    np.testing.assert_allclose(kept.solve(dense @ x, 1e-12), x, atol=1e-10)
+    assert kept.factors == 1
+    bulk.close()
+
+
+def test_gmres() -> None:
+    a = _matrix(20).toarray() + 3.0 * np.triu(np.ones((20, 20)), 1)
+    b = np.arange(20.0)
+    x, left, used = gmres(lambda v: a @ v, lambda v: v / 8.0, b, 1e-10, 20)
+    assert left < 1e-10
+    assert used <= 20
+    np.testing.assert_allclose(a @ x, b, atol=1e-8)
+
+
+def _choice(problem: Problem, how: str = "auto", **options: Any) -> strategy.Choice:
+    return Solver(problem, [PRESS], options=options, strategy=how).choice
+
+
+def test_auto_takes_condensed_for_linear_bodies(fe: Any) -> None:
+    choice = _choice(fe.block(fe.interface()).problem)
+    assert choice.name == "condensed"
+    assert "linear" in choice.reason
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda m: m.setattr(strategy, "MOST_CONTACT", 10), "48 contact unknowns, more than 10"),
+        (lambda m: m.setattr(strategy, "free_memory", lambda: 1e4), "GB are free"),
+    ],
+)
+def test_auto_says_why_it_takes_direct(
+    fe: Any,
+    monkeypatch: pytest.MonkeyPatch,
+    change: Callable[[pytest.MonkeyPatch], None],
+    reason: str,
+) -> None:
+    change(monkeypatch)
+    choice = _choice(fe.block(fe.interface()).problem)
+    assert choice.name == "direct"
+    assert reason in choice.reason
+
+
+def _rubber(fe: Any) -> Problem:
+    from anisocontact.bulk import make_material
+
+    block = fe.block(fe.interface())
+    rubber = make_material("neo-hookean", E=1.0, nu=0.3)
+    return Problem(block.model, {"block": rubber}, [block.contact])
+
+
+def _no_contact(fe: Any) -> Problem:
+    block = fe.block(fe.interface())
+    return Problem(block.model, {"block": block.material}, [])
+
+
+@pytest.mark.parametrize(
+    ("make", "options", "message"),
+    [
+        (_rubber, {}, r"strategy: 'condensed' given, but material.block is not linear"),
+        (_no_contact, {}, r"strategy: 'condensed' given, but there is no contact"),
+        (
+            lambda fe: fe.block(fe.interface()).problem,
+            {"ksp_type": "gmres"},
+            r"but the option ksp_type asks for a solver of the whole system",
+        ),
+    ],
+)
+def test_condensed_refuses(
+    fe: Any, make: Callable[[Any], Problem], options: dict[str, str], message: str
+) -> None:
+    problem = make(fe)
+    with pytest.raises(InputError, match=message):
+        _choice(problem, "condensed", **options)
+    assert _choice(problem, "auto", **options).name == "direct"
+
+
+def test_unknown_strategy(fe: Any) -> None:
+    with pytest.raises(InputError, match="one of auto, direct, condensed needed"):
+        _choice(fe.block(fe.interface()).problem, "fast")
+
+
+def test_bulk_is_recovered_only_when_asked_for(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reactions, energies and means need no solution with the interior; the displacement does."""
+    from anisocontact.solver.condensed.parts import Condensation as Bulk
+
+    calls = []
+    interior = Bulk.interior
+    monkeypatch.setattr(Bulk, "interior", lambda *a: calls.append(1) or interior(*a))
+    problem = fe.block(fe.interface()).problem
+    weights = np.ones(len(problem.u.x.array) // 3)
+    counts = []
+    steps = [Step("press", 4, PRESS.displacement)]
+    for accepted in Solver(problem, steps, strategy="condensed").run():
+        assert accepted.energies["elastic"] > 0.0
+        problem.mean_displacement("all", weights)
+        counts.append(len(calls))
+    assert counts[1] == counts[2] == counts[3]
+    before = len(calls)
+    assert problem.u.x.array.any()
+    assert len(calls) <= before + 1

@@ -1,0 +1,209 @@
+"""Condensed strategy: the same answers as one factorisation of the whole system.
+
+Requirement: with a tight Newton tolerance both strategies solve the same equations, so that every
+number agrees to 1e-7 of its size: what is left of Newton's method (1e-11) times how much the
+solution answers to it. Source: `direct`, an independent way to solve the same equations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import pytest
+
+from anisocontact.anisotropy import make_directions
+from anisocontact.bulk import make_material
+from anisocontact.contact import AnyContact, Contact, FacetContact, TwoHalfPass
+from anisocontact.interface import Interface, PairLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.python_law import LawKinematics, LawResult, LawState, PythonInterface
+from anisocontact.solver import Accepted, Problem, Solver, Step
+from anisocontact.solver.condensed import reach
+from anisocontact.surfaces import make_surface
+
+MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
+LAWS = (
+    NormalLaw(penalty=1e5),
+    Adhesion(stiffness=(1e5, 5e4), directions=MARKS),
+    Friction(coefficients=(0.3, 0.15), directions=MARKS),
+)
+CLAMP = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
+PRESS = Step("press", 2, {**CLAMP, "block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+DRAG = Step("drag", 3, {"block.top": {"x": 0.02}})
+
+
+class Creeping:
+    """Force that is proportional to the slip velocity and no more than a share of the pressure."""
+
+    internal = 0
+
+    def update(self, state: LawState, kinematics: LawKinematics) -> LawResult:
+        n, dt = len(kinematics.pressure), kinematics.dt
+        velocity = kinematics.increment / dt
+        limit = 0.3 * kinematics.pressure
+        size = np.sqrt((velocity**2).sum(axis=1) + 1e-6)
+        unit = velocity / size[:, None]
+        d_unit = (np.eye(2) - unit[:, :, None] * unit[:, None, :]) / size[:, None, None]
+        traction = -limit[:, None] * unit
+        return LawResult(
+            traction=traction,
+            slip=kinematics.increment,
+            d_increment=-limit[:, None, None] * d_unit / dt,
+            d_pressure=-0.3 * unit,
+            d_traction=np.zeros((n, 2, 2)),
+            d_elastic=np.zeros((n, 2, 2)),
+            internal=np.zeros((n, 0)),
+            dissipation=-np.einsum("ni,ni->n", traction, kinematics.increment),
+            energy=np.zeros(n),
+        )
+
+
+def _model(cell: str = "hexahedron", order: int = 1, n: int = 4, length: float = 2.0) -> Model:
+    shape: dict[str, Any] = {"cell": cell, "order": order}
+    m = 3 * n // 2
+    base = BoxSpec((-0.5, -0.5, -0.5), (length, 2, 0.5), (int(m * length / 2), m, 2), **shape)
+    return build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (n, n, 2), **shape), "base": base})
+
+
+def _pair(model: Model, kind: type = FacetContact, **options: Any) -> Problem:
+    law = PairLaw(*LAWS)
+    contact = kind(model, "block.bottom", "base.top", law=law, current_area=False, **options)
+    elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
+    return Problem(model, {"block": elastic, "base": elastic}, [contact])
+
+
+def _on_surface(surface: str = "plane", **parameters: Any) -> Problem:
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (4, 4, 2))})
+    parameters = parameters or {"point": (0, 0, 0), "normal": (0, 0, 1)}
+    interface = Interface(make_surface(surface, **parameters), *LAWS)
+    elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
+    contacts: list[AnyContact] = [Contact(model, "block.bottom", interface)]
+    return Problem(model, {"block": elastic}, contacts)
+
+
+def _run(
+    problem: Problem, steps: Sequence[Step], strategy: str, notes: list[str] | None = None
+) -> tuple[list[Accepted], list[Any], np.ndarray]:
+    """What was accepted, means over the loaded groups, and all displacements at the end."""
+    solver = Solver(problem, steps, options={"snes_rtol": 1e-11}, strategy=strategy)
+    weights = np.random.default_rng(2).random(len(problem.u.x.array) // 3)
+    accepted, means = [], []
+    for one in solver.run(on_note=None if notes is None else notes.append):
+        accepted.append(one)
+        means.append(problem.mean_displacement("any", weights))
+    return accepted, means, problem.u.x.array.copy()
+
+
+def _close(a: Any, b: Any, scale: float) -> None:
+    np.testing.assert_allclose(a, b, rtol=0.0, atol=1e-7 * scale)
+
+
+def _same(make: Callable[[], Problem], steps: Sequence[Step]) -> list[str]:
+    """Run both ways, compare everything that is reported, return the notes of `condensed`."""
+    notes: list[str] = []
+    ours, our_means, our_u = _run(make(), steps, "condensed", notes)
+    theirs, their_means, their_u = _run(make(), steps, "direct")
+    force = max(float(np.abs(r).max()) for a in theirs for r in a.reactions.values())
+    energy = max(abs(value) for a in theirs for value in a.energies.values())
+    size = float(np.abs(their_u).max())
+    _close(our_u, their_u, size)
+    _close(our_means, their_means, float(np.abs(their_means).max()))
+    assert len(ours) == len(theirs)
+    for a, b in zip(ours, theirs, strict=True):
+        assert a.contacts == b.contacts
+        for group, reaction in b.reactions.items():
+            _close(a.reactions[group], reaction, force)
+        for name, (resultant, moment) in b.resultants.items():
+            _close(a.resultants[name][0], resultant, force)
+            _close(a.resultants[name][1], moment, force)
+        for name, value in b.energies.items():
+            _close(a.energies[name], value, energy)
+    return notes
+
+
+@pytest.mark.parametrize(
+    "surface",
+    [{}, {"surface": "sphere", "centre": (0.5, 0.5, -2.0), "radius": 2.0}],
+    ids=["plane", "sphere"],
+)
+def test_block_on_surface(surface: dict[str, Any]) -> None:
+    """Pressed and dragged on a rigid surface, askew to the grain."""
+    steps = [Step("press", 2, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.02}}), DRAG]
+    _same(lambda: _on_surface(**surface), steps)
+
+
+@pytest.mark.parametrize("kind", [FacetContact, TwoHalfPass])
+def test_block_on_block(kind: type) -> None:
+    """Meshed bodies, each condensed by itself."""
+    notes = _same(lambda: _pair(_model(), kind), [PRESS, DRAG])
+    assert sum("condensing" in note for note in notes) == 2
+
+
+@pytest.mark.parametrize(("cell", "order"), [("tetrahedron", 1), ("hexahedron", 2)])
+def test_other_cells(cell: str, order: int) -> None:
+    """Tetrahedra and quadratic hexahedra."""
+    _same(lambda: _pair(_model(cell, order, n=2)), [PRESS, DRAG])
+
+
+def test_loads_and_supports_that_come_and_go() -> None:
+    """Tractions, supports on several faces, some that hold contact nodes, added and released.
+
+    A body is condensed anew when other unknowns of it are prescribed, not when their values change.
+    """
+    side = {"block.left": {"y": 0.0}}
+    steps = [
+        PRESS,
+        Step("pull", 2, {"block.top": {"z": -0.012}}, {"block.right": {"x": 3.0, "z": -1.0}}),
+        Step("hold a side", 2, {**side, "block.top": {"x": 0.01}}),
+        Step("let go", 3, {"block.left": {"y": None}, "block.top": {"x": None, "z": -0.01}}),
+        Step("unload", 2, {"block.top": {"z": -0.008}}, {"block.right": {"x": 0.0}}),
+    ]
+    notes = _same(lambda: _pair(_model()), steps)
+    assert sum("condensing" in note for note in notes) == 4
+
+
+def test_lifted_and_pressed_again() -> None:
+    """No contact at all for a while: equilibrium of the bulk alone."""
+    steps = [
+        PRESS,
+        Step("lift", 2, {"block.top": {"z": 0.005}}),
+        Step("press again", 2, {"block.top": {"z": -0.01}}),
+    ]
+    _same(lambda: _pair(_model()), steps)
+
+
+def test_slides_out_of_reach(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the loads do not tell how far bodies slide, what is in reach moves along.
+
+    Seven facets of the master, none of which is announced.
+    """
+    monkeypatch.setattr(reach, "_prescribed_range", lambda *_: np.zeros(3))
+    away = Step("away", 6, {"block.top": {"x": 0.9}})
+    model = _model(length=3.0)
+    notes = _same(lambda: _pair(model, reach=0.2), [PRESS, away])
+    assert sum("condensing" in note for note in notes) > 4
+
+
+def test_large_increments_leave_the_reach_within_newton(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A point that meets a facet out of reach during iterations: the increment begins anew."""
+    monkeypatch.setattr(reach, "_prescribed_range", lambda *_: np.zeros(3))
+    away = Step("away", 1, {"block.top": {"x": 0.9}})
+    model = _model(length=3.0)
+    notes = _same(lambda: _pair(model, reach=0.2), [PRESS, away])
+    assert any("widened" in note for note in notes)
+
+
+def test_law_in_python() -> None:
+    """A law written in Python: regularised Coulomb friction."""
+
+    def make() -> Problem:
+        model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (3, 3, 2))})
+        plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        interface = PythonInterface(plane, NormalLaw(penalty=1e5), Creeping())
+        elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
+        return Problem(model, {"block": elastic}, [Contact(model, "block.bottom", interface)])
+
+    _same(make, [Step("press", 2, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}), DRAG])
