@@ -56,7 +56,7 @@ class Reduction(Protocol):
         ...
 
     def recover(self) -> None:
-        """Bring the state of all unknowns up to date with `Problem.restore`."""
+        """Bring the state of all unknowns up to date with `Problem.complete`."""
         ...
 
     def reactions(self) -> dict[str, Floats]:
@@ -401,7 +401,7 @@ class Problem:
             contact.commit()
         self.stabilisation.commit()
 
-    def restore(self, u: Floats, contact_force: Floats, load: Floats) -> None:
+    def complete(self, u: Floats, contact_force: Floats, load: Floats) -> None:
         """Bring the accepted state of all unknowns up to date.
 
         Args:

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import PETSc, Vec
 from anisocontact.bulk import LinearBulk
+from anisocontact.contact import SelfContact
 from anisocontact.errors import InputError
 from anisocontact.solver.condensed import Condensed, CondensedNewton, contact_unknowns, reachable
 from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
@@ -128,6 +129,9 @@ def _obstacles(problem: Problem, prefix: str, options: Mapping[str, OptionValue]
         yield f"material.{names[0]} is not linear"
     if problem.rigid.free:
         yield f"the rigid body {problem.rigid.free[0].name!r} is free"
+    for contact in problem.contacts:
+        if isinstance(contact, SelfContact):
+            yield f"{contact.slave!r} touches itself"
     if problem.holding:
         yield f"{problem.holding[0]!r} holds the bodies by a spring or a plane of symmetry"
     given = [*options, *(name for name in PETSc.Options(prefix).getAll())]

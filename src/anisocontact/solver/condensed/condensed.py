@@ -115,7 +115,7 @@ class Condensed:
         if self._stale and self._state is not None:
             self._stale = False
             u = self.system.patterns.displacement(self._state)
-            self._problem.restore(u, self._forces, self._load)
+            self._problem.complete(u, self._forces, self._load)
 
     def reactions(self) -> dict[str, Floats]:
         """Force of the supports of each facet group on the bodies, (3,), force."""

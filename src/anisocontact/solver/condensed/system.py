@@ -132,8 +132,10 @@ class ContactSystem:
     def improve(self, x: Vec) -> bool:
         """Better multipliers of the contacts from equilibrium; see `Problem.improve`."""
         self.evaluate(x)
-        self._evaluated = None
-        return any([contact.improve() for contact in self.contacts])
+        changed = any([contact.improve() for contact in self.contacts])
+        if changed:
+            self._evaluated = None
+        return changed
 
     def soften(self) -> bool:
         """Softer penalties after a solution that failed; see `Problem.soften`."""
