@@ -34,7 +34,8 @@ def no_report(monkeypatch):
 @pytest.fixture
 def case(tmp_path, case_text):
     path = tmp_path / "case.toml"
-    path.write_text(case_text)
+    # the same numbers to the last bit: what `condensed` has factorised is not kept
+    path.write_text(case_text + '\n[solver]\nstrategy = "direct"\n')
     return path
 
 
@@ -72,6 +73,21 @@ def stop_after(monkeypatch, count):
     monkeypatch.setattr(Writer, "keep", interrupted)
 
 
+def test_condensed_goes_on_to_the_tolerance_of_newton(monkeypatch, case):
+    """What has been factorised is made anew: the same numbers to 1e-7, not to the last bit."""
+    case.write_text(case.read_text().replace('"direct"', '"condensed"'))
+    whole, out = case.parent / "whole", case.parent / "out"
+    assert main(["run", str(case), "-o", str(whole)]) == 0
+    with monkeypatch.context() as patch:
+        stop_after(patch, 3)
+        assert main(["run", str(case), "-o", str(out)]) == 3
+    assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
+    force, again = (
+        json.loads((f / "summary.json").read_text())["contacts"][0]["force"] for f in (whole, out)
+    )
+    np.testing.assert_allclose(again, force, rtol=0.0, atol=1e-7 * max(map(abs, force)))
+
+
 @pytest.mark.parametrize("count", [1, 2, 4])
 def test_ctrl_c_says_how_to_go_on_and_it_does(monkeypatch, capsys, case, whole, count):
     """Requirement: Ctrl-C finishes the increment, keeps all and says the exact command."""
@@ -88,11 +104,10 @@ def test_ctrl_c_says_how_to_go_on_and_it_does(monkeypatch, capsys, case, whole, 
     assert same(whole, out)
 
 
-def test_a_run_that_is_done_goes_on_with_further_steps(capsys, case, case_text, whole):
+def test_a_run_that_is_done_goes_on_with_further_steps(capsys, case, whole):
     """A further step may be added; the result is that of both steps in one run."""
     more = '\n[[step]]\nname = "back"\nincrements = 2\ndisplacement = { "block.top" = { x = 0 } }\n'
-    text = case_text.replace("\n[output]", f"{more}\n[output]")
-    case.write_text(text)
+    case.write_text(case.read_text().replace("\n[output]", f"{more}\n[output]"))
     assert main(["run", str(case), "-o", str(whole), "--restart"]) == 0
     at_once = case.parent / "at once"
     assert main(["run", str(case), "-o", str(at_once)]) == 0

@@ -48,7 +48,7 @@ class ContactTangent:
     def take(self, couplings: Sequence[Couplings]) -> None:
         """Replace the tangent of the contacts."""
         self._couplings = [
-            (self._unknowns(rows), self._unknowns(columns), values)
+            (self._unknowns(rows), self._unknowns(columns), _whole(values))
             for rows, columns, values in couplings
         ]
 
@@ -95,6 +95,14 @@ class ContactTangent:
         at = 3 * nodes[:, :, None].astype(np.int64) + np.arange(3)
         at[nodes < 0] = len(self._number) - 1
         return np.asarray(self._number[at].reshape(len(nodes), 3 * nodes.shape[1]))
+
+
+def _whole(values: Floats) -> Floats:
+    """Blocks of pairs of nodes, (p, r, c, 3, 3), as matrices, (p, 3 r, 3 c)."""
+    if values.ndim == 3:
+        return values
+    p, r, c = values.shape[:3]
+    return np.ascontiguousarray(values.swapaxes(2, 3)).reshape(p, 3 * r, 3 * c)
 
 
 class KeptFactor:
