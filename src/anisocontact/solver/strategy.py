@@ -134,7 +134,7 @@ def _obstacles(problem: Problem, prefix: str, options: Mapping[str, OptionValue]
             yield f"{contact.slave!r} touches itself"
     if problem.holding:
         yield f"{problem.holding[0]!r} holds the bodies by a spring or a plane of symmetry"
-    if problem.constrained:
+    if problem.constraints:
         yield "nodes are tied to others"
     given = [*options, *(name for name in PETSc.Options(prefix).getAll())]
     linear = [name for name in given if name.startswith(("ksp_", "pc_", "mat_"))]
