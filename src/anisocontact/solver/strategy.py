@@ -81,7 +81,7 @@ def choose(
         raise InputError(f"{strategy!r} given, one of {', '.join(STRATEGIES)} needed", "strategy")
     if strategy == DIRECT:
         return Choice(DIRECT, "asked for")
-    against = next(_obstacles(problem, prefix, options), "")
+    against = next(_obstacles(problem, steps, prefix, options), "")
     if strategy == CONDENSED:
         if against:
             raise InputError(f"'condensed' given, but {against}", "strategy")
@@ -118,7 +118,9 @@ def make_newton(
     return Newton(problem, prefix, options, on_iteration)
 
 
-def _obstacles(problem: Problem, prefix: str, options: Mapping[str, OptionValue]) -> Iterator[str]:
+def _obstacles(
+    problem: Problem, steps: Sequence[Step], prefix: str, options: Mapping[str, OptionValue]
+) -> Iterator[str]:
     """What `condensed` cannot do."""
     if problem.comm.size > 1:
         yield f"it runs in one process, {problem.comm.size} given"
@@ -134,6 +136,8 @@ def _obstacles(problem: Problem, prefix: str, options: Mapping[str, OptionValue]
             yield f"{contact.slave!r} touches itself"
     if problem.holding:
         yield f"{problem.holding[0]!r} holds the bodies by a spring or a plane of symmetry"
+    if problem.check_held(steps):
+        yield "a body is held by contact alone"
     if problem.constraints:
         yield "nodes are tied to others"
     given = [*options, *(name for name in PETSc.Options(prefix).getAll())]

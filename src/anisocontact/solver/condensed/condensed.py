@@ -122,7 +122,7 @@ class Condensed:
         assert self._state is not None
         outside = self.system.patterns.outside(self._state)
         sums: dict[str, Floats] = {}
-        for (group, axis), unknowns in self._problem.supports.held.items():
+        for (group, axis), unknowns in self._problem.supports.owners.items():
             total = outside[self._held[group, axis]] - self._load[unknowns].sum()
             sums.setdefault(group, np.zeros(3))[axis] = total
         return sums
@@ -183,7 +183,7 @@ class Condensed:
         )
         self._means = {}
         self._held = {}
-        held = self._problem.supports.held
+        held = self._problem.supports.owners
         marks = np.zeros((len(self._bulk.prescribed), len(held)))
         for column, unknowns in enumerate(held.values()):
             marks[np.searchsorted(self._bulk.prescribed, unknowns), column] = 1.0
