@@ -158,7 +158,15 @@ def test_loads_and_supports_that_come_and_go() -> None:
         PRESS,
         Step("pull", 2, {"block.top": {"z": -0.012}}, {"block.right": {"x": 3.0, "z": -1.0}}),
         Step("hold a side", 2, {**side, "block.top": {"x": 0.01}}),
-        Step("let go", 3, {"block.left": {"y": None}, "block.top": {"x": None, "z": -0.01}}),
+        Step(
+            "let go",
+            3,
+            {
+                "block.left": {"y": None},
+                "block.top": {"y": None, "z": -0.01},
+                "block.right": {"y": 0.0},
+            },
+        ),
         Step("unload", 2, {"block.top": {"z": -0.008}}, {"block.right": {"x": 0.0}}),
     ]
     notes = _same(lambda: _pair(_model()), steps)
