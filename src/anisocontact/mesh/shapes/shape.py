@@ -20,8 +20,6 @@ class Shape(Protocol):
     Attributes:
         entry: Name, one line of text, parameters; they are attributes of the same names.
         curved: Whether it has curved sides, so that cells of order 2 are curved.
-        cell: "hexahedron" or "tetrahedron" (six to each hexahedron).
-        order: Order of the displacement, 1 or 2.
     """
 
     entry: ClassVar[Entry]
@@ -29,12 +27,12 @@ class Shape(Protocol):
 
     @property
     def cell(self) -> str:
-        """Shape of the cells."""
+        """Cells: "hexahedron" or "tetrahedron" (six to each hexahedron)."""
         ...
 
     @property
     def order(self) -> int:
-        """Order of the displacement."""
+        """Order of the displacement, 1 or 2."""
         ...
 
     def blocks(self) -> list[Block]:
