@@ -48,7 +48,7 @@ def _hairpin(half: bool) -> Model:
         [
             number[i, j, k].reshape(-1)
             for k in (near, far)
-            for j in (near, far)
+            for j in (far, near)
             for i in (near, far)
         ],
         axis=1,
