@@ -17,6 +17,10 @@ Pair = Sequence[float]
 PLACEMENTS = ("co", "contra", "mixed", "spatial")
 
 
+#: Fields that are given by the coordinates of a surface: facets of a mesh have none of their own.
+BY_COORDINATES = frozenset({"coordinate-lines", "tabulated-grid"})
+
+
 class DirectionField:
     """A direction field; make one with `make_directions`, `from_callable`, ...
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core, registry
 from anisocontact.errors import InputError
-from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw, carried
 from anisocontact.surfaces import Floats, Surface, default_threads, points
 
 #: Names of the codes of a point's status.
@@ -42,6 +42,34 @@ State = npt.NDArray[np.void]
 
 
 @dataclass(frozen=True)
+class SlaveSurface:
+    """The slave at n points, for directions that it carries.
+
+    Args:
+        reference: Positions in the reference configuration, (n, 3) [length].
+        reference_tangents: Two tangents there, (n, 2, 3) [length].
+        tangents: The same material tangents now, (n, 2, 3) [length].
+    """
+
+    reference: Floats
+    reference_tangents: Floats
+    tangents: Floats
+
+    @property
+    def arrays(self) -> tuple[Floats, Floats, Floats]:
+        """All of it as the core takes it."""
+        a, b, c = (
+            np.ascontiguousarray(v)
+            for v in (self.reference, self.reference_tangents, self.tangents)
+        )
+        return a, b, c
+
+
+#: No surface of the slave.
+_POINTS_ALONE = SlaveSurface(np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 2, 3)))
+
+
+@dataclass(frozen=True)
 class Response:
     """What an interface answers to positions of n slave points.
 
@@ -54,6 +82,8 @@ class Response:
         directions_adhesion: Axes of the adhesion tensor, (n, 2, 3); zero at open points.
         directions_friction: Axes of the friction tensor, (n, 2, 3); zero at open points.
         failure: Why a point could not be updated, a code of `FAILURE`, (n,).
+        tangent_slave: Change of t with the two tangents of the slave, (n, 2, 3, 3) [stress/length];
+            empty where the slave carries no directions.
     """
 
     traction: Floats
@@ -63,6 +93,7 @@ class Response:
     directions_adhesion: Floats
     directions_friction: Floats
     failure: npt.NDArray[np.int8]
+    tangent_slave: Floats = field(default_factory=lambda: np.empty((0, 2, 3, 3)))
 
     @property
     def pressure(self) -> Floats:
@@ -102,16 +133,27 @@ class PairLaw:
         normal: Law of the pressure.
         adhesion: Tangential law inside the yield ellipse.
         friction: Yield ellipse and sliding rule.
+
+    Attributes:
+        carried: Direction fields and the bodies that carry them.
+
+    Raises:
+        InputError: A direction field that goes by coordinates of a surface.
     """
 
     def __init__(self, normal: NormalLaw, adhesion: Adhesion, friction: Friction) -> None:
         self.normal, self.adhesion, self.friction = normal, adhesion, friction
+        self.carried = carried(adhesion, friction)
+        for one in self.carried:
+            one.check_meshed("master")
+            one.check_meshed("slave")
 
     def pairs(self, mirrored: bool = False) -> _core.FacetPairs:
         """The law as the core takes it for slave points and facets.
 
         Args:
-            mirrored: Whether angles of directions count about the normal of the slave.
+            mirrored: Whether slave and master have swapped their parts: the master of the core
+                carries what is the slave's, and angles count about the normal of the core's slave.
         """
         second = self.friction.directions_second
         return _made(
@@ -124,6 +166,7 @@ class PairLaw:
             second.core if second else None,
             self.friction.rule,
             mirrored,
+            [one.on_slave != (mirrored and one.field is not None) for one in self.carried],
         )
 
     def stiffened(self, factor: float, tangential: bool) -> PairLaw:
@@ -185,6 +228,14 @@ class Interface:
             friction,
         )
         self.threads = threads or default_threads()
+        self.carried: tuple[Carried, ...] = carried(adhesion, friction)
+        if evolution != "transport" and self.needs_slave:
+            raise InputError(
+                f"'slave' given, the evolution {evolution!r} takes directions of the master only",
+                self.needs_slave,
+            )
+        if evolution != "transport":
+            self.carried = tuple(replace(c, on="master") for c in self.carried)
         self.core = _made(
             _core.Interface,
             surface.core,
@@ -196,6 +247,7 @@ class Interface:
             friction.directions_second.core if friction.directions_second else None,
             friction.rule,
             evolution,
+            [one.on_slave for one in self.carried],
         )
 
     def stiffened(self, factor: float, tangential: bool) -> Interface:
@@ -210,6 +262,21 @@ class Interface:
     def penalties(self) -> tuple[float, float]:
         """Normal penalty and least stiffness of adhesion, stress/length."""
         return _penalties(self)
+
+    @property
+    def needs_slave(self) -> str:
+        """Key that puts directions on the slave, which slave points alone do not have, or ""."""
+        return next((f"{c.place}_on" for c in self.carried[:2] if c.on_slave), "")
+
+    def takes_slave(self) -> bool:
+        """Whether a surface of the slave would carry directions.
+
+        Raises:
+            InputError: It would, and one of them goes by coordinates of a surface.
+        """
+        for one in self.carried:
+            one.check_meshed("slave")
+        return any(c.on_slave for c in self.carried)
 
     def initial_state(self, x: npt.ArrayLike) -> State:
         """State before the first step: projected and free of force.
@@ -231,7 +298,13 @@ class Interface:
         return as_state(r["state"])
 
     def update(
-        self, state: State, x: npt.ArrayLike, dt: float = 1.0, *, tangent: bool = True
+        self,
+        state: State,
+        x: npt.ArrayLike,
+        dt: float = 1.0,
+        *,
+        tangent: bool = True,
+        slave: SlaveSurface | None = None,
     ) -> Response:
         """Tractions at new positions; the committed state is not changed.
 
@@ -240,13 +313,19 @@ class Interface:
             x: Slave points, (n, 3) [length].
             dt: Time step [time]; without meaning for rate-independent laws.
             tangent: Whether dt/dx is wanted.
+            slave: The slave's surface, which carries the directions that lie on it.
 
         Returns:
             Tractions, tangent and trial state.
+
+        Raises:
+            InputError: Directions lie on the slave, and it has points alone.
         """
         x = points(x, 3)
-        none = np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 2, 3))
-        r = self.core.update(raw_state(state), x, dt, tangent, self.threads, *none)
+        if slave is None and self.needs_slave:
+            raise InputError("'slave' given, but slave points alone carry none", self.needs_slave)
+        own = (slave or _POINTS_ALONE).arrays
+        r = self.core.update(raw_state(state), x, dt, tangent, self.threads, *own)
         return Response(
             traction=r["traction"],
             tangent=r["tangent"],
@@ -255,6 +334,7 @@ class Interface:
             directions_adhesion=r["adhesion_axes"],
             directions_friction=r["friction_axes"],
             failure=r["failure"],
+            tangent_slave=r["tangent_own"],
         )
 
 

@@ -9,7 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core, registry
-from anisocontact.anisotropy import DirectionField, components, require_regular
+from anisocontact.anisotropy import (
+    BY_COORDINATES,
+    DirectionField,
+    components,
+    require_regular,
+)
 from anisocontact.errors import InputError
 from anisocontact.registry import Entry
 from anisocontact.surfaces import Floats, Surface, default_threads, points
@@ -55,6 +60,16 @@ class NormalLaw:
         return NormalLaw(penalty=factor * self.named[1]["penalty"][0])
 
 
+#: Bodies that may carry a direction field.
+SIDES = ("master", "slave")
+
+
+def _side(given: str, field: str) -> str:
+    if given not in SIDES:
+        raise InputError(f"{given!r} given, allowed: {', '.join(SIDES)}", field)
+    return given
+
+
 class Adhesion:
     """Tangential law inside the yield ellipse.
 
@@ -62,6 +77,7 @@ class Adhesion:
         model: Name in `registry.adhesion_models()`.
         directions: Axes of the tensors; may be left out where both values of every pair are
             equal.
+        directions_on: "master" or "slave": the body that carries the directions.
         **parameters: The model's parameters, such as `stiffness`, the eigenvalues of -B
             [stress/length].
 
@@ -79,16 +95,22 @@ class Adhesion:
         model: str = "elastic",
         *,
         directions: DirectionField | None = None,
+        directions_on: str = "master",
         **parameters: object,
     ) -> None:
         self.named = _named(registry.adhesion_models, model, parameters, "adhesion.model")
         _need_directions("adhesion", directions, self.named, parameters)
         self.directions = directions
+        self.directions_on = _side(directions_on, "adhesion.directions_on")
 
     def stiffened(self, factor: float) -> Adhesion:
         """The model "elastic" with stiffnesses `factor` times as large."""
         first, second = self.named[1]["stiffness"]
-        return Adhesion(stiffness=(factor * first, factor * second), directions=self.directions)
+        return Adhesion(
+            stiffness=(factor * first, factor * second),
+            directions=self.directions,
+            directions_on=self.directions_on,
+        )
 
 
 class Friction:
@@ -99,6 +121,9 @@ class Friction:
         directions: Axes of the friction tensor; may be left out where both values of every pair
             are equal.
         directions_second: Axes of the second surface, for a model of two surfaces.
+        directions_on: "master" or "slave": the body that carries the directions.
+        directions_second_on: The body that carries those of the second surface. Slave points alone,
+            without a surface, have none: all of them then count on the master.
         sliding_rule: Name in `registry.sliding_rules()`.
         **parameters: Parameters of the model, such as `coefficients`, and of the sliding rule,
             such as `history`.
@@ -118,6 +143,8 @@ class Friction:
         *,
         directions: DirectionField | None = None,
         directions_second: DirectionField | None = None,
+        directions_on: str = "master",
+        directions_second_on: str = "slave",
         sliding_rule: str = "maximum-dissipation",
         **parameters: object,
     ) -> None:
@@ -133,6 +160,8 @@ class Friction:
         _need_directions("friction", directions, self.rule, parameters)
         _need_both(model, directions, directions_second)
         self.directions, self.directions_second = directions, directions_second
+        self.directions_on = _side(directions_on, "friction.directions_on")
+        self.directions_second_on = _side(directions_second_on, "friction.directions_second_on")
         try:
             self.core = _core.FrictionModel(*self.named)
         except ValueError as error:
@@ -198,6 +227,55 @@ def _need_directions(
                 "and no directions; give directions, or equal values",
                 field=f"{what}.directions",
             )
+
+
+@dataclass(frozen=True)
+class Carried:
+    """A direction field of the laws of a contact and the body that carries it.
+
+    Args:
+        place: Where it is given, "adhesion.directions" and the like.
+        field: The field, if there is one.
+        on: "master" or "slave".
+    """
+
+    place: str
+    field: DirectionField | None
+    on: str
+
+    @property
+    def on_slave(self) -> bool:
+        """Whether there is a field and the slave carries it."""
+        return self.field is not None and self.on == "slave"
+
+    def check_meshed(self, body: str) -> None:
+        """Check that a meshed body can carry the field.
+
+        Args:
+            body: "master" or "slave".
+
+        Raises:
+            InputError: The field is given by coordinates of a surface.
+        """
+        if self.field is not None and self.on == body and self.field.name in BY_COORDINATES:
+            raise InputError(
+                f"{self.field.name!r} goes by the coordinates of a surface, and the {body} that "
+                "carries it is a mesh; give the directions in space",
+                self.place,
+            )
+
+
+def carried(adhesion: Adhesion, friction: Friction) -> tuple[Carried, Carried, Carried]:
+    """The direction fields of adhesion, friction and the second surface."""
+    return (
+        Carried("adhesion.directions", adhesion.directions, adhesion.directions_on),
+        Carried("friction.directions", friction.directions, friction.directions_on),
+        Carried(
+            "friction.directions_second",
+            friction.directions_second,
+            friction.directions_second_on,
+        ),
+    )
 
 
 @dataclass(frozen=True)

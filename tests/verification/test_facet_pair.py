@@ -17,7 +17,7 @@ import pytest
 
 from anisocontact import _core, registry
 from anisocontact.anisotropy import make_directions
-from anisocontact.interface import STATE, as_state, raw_state
+from anisocontact.interface import STATE, PairLaw, as_state, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 
 TOPOLOGIES = ("tri3", "tri6", "quad4", "quad8", "quad9")
@@ -131,7 +131,15 @@ def _bumpy(nodes: list[tuple[float, float]]) -> np.ndarray:
     return np.array([(u, v, 0.1 * np.sin(2 * u) - 0.08 * v * v + 0.05 * u * v) for u, v in nodes])
 
 
-def make(slave: str, master: str, rule: str, status: str, seed: int = 0) -> Setting:
+def make(
+    slave: str,
+    master: str,
+    rule: str,
+    status: str,
+    seed: int = 0,
+    on: tuple[str, str, str] = ("master", "master", "slave"),
+    second: bool = False,
+) -> Setting:
     """A random setting in which the point has the status asked for."""
     rng = np.random.default_rng(seed)
     upper, lower = (_bumpy(NODES[t]) for t in (slave, master))
@@ -147,17 +155,19 @@ def make(slave: str, master: str, rule: str, status: str, seed: int = 0) -> Sett
     marks = make_directions("polar", axis=((-0.7, -0.4, 0), (0, 0.1, 1)))
     other = make_directions("constant", vector=(1, 0.3, 0), angle=0.5)
     mu = {"stick": 50.0}.get(status, 0.3)
-    core = _core.FacetPairs(
-        NormalLaw(penalty=100.0).named,
-        Adhesion(stiffness=(60.0, 25.0), directions=marks).named,
-        marks.core,
-        Friction(coefficients=(mu, 0.4 * mu), directions=other).named,
-        other.core,
-        None,
-        Friction(
-            coefficients=(mu, mu), directions=other, sliding_rule=rule, **_required(rule)
-        ).rule,
+    model = {"coefficients": (mu, 0.4 * mu)} if not second else {"alpha": (mu, 0.5 * mu, 0.3 * mu)}
+    friction = Friction(
+        "he-curnier" if second else "orthotropic",
+        directions=other,
+        directions_second=marks if second else None,
+        directions_on=on[1],
+        directions_second_on=on[2],
+        sliding_rule=rule,
+        **model,
+        **_required(rule),
     )
+    adhesion = Adhesion(stiffness=(60.0, 25.0), directions=marks, directions_on=on[0])
+    core = PairLaw(NormalLaw(penalty=100.0), adhesion, friction).pairs()
     state = np.zeros(1, dtype=STATE)
     state["facet"], state["status"], state["xi"] = 1, 1, (0.31, 0.27)
     state["stored"] = state["traction"] = rng.normal(0, 0.3, 2)
@@ -205,6 +215,26 @@ def test_tangent_of_every_rule(rule: str) -> None:
     """The same for every sliding rule in slip."""
     s = make("quad4", "quad9", rule, "slip")
     assert as_state(s.update(s.now)["state"])["status"][0] == STATUS["slip"]
+    e = _errors(s, (4e-4, 2e-4))
+    assert 3.6 < e[0] / e[1] < 4.4
+
+
+@pytest.mark.parametrize("status", ["stick", "slip"])
+@pytest.mark.parametrize(
+    ("on", "second"),
+    [
+        (("slave", "master", "slave"), False),
+        (("master", "slave", "slave"), False),
+        (("master", "master", "slave"), True),
+        (("slave", "slave", "master"), True),
+    ],
+)
+def test_tangent_with_directions_on_the_slave(
+    on: tuple[str, str, str], second: bool, status: str
+) -> None:
+    """The same where the slave carries directions, so that its tangents count, too."""
+    s = make("quad9", "quad4", "maximum-dissipation", status, 0, on, second)
+    assert as_state(s.update(s.now)["state"])["status"][0] == STATUS[status]
     e = _errors(s, (4e-4, 2e-4))
     assert 3.6 < e[0] / e[1] < 4.4
 

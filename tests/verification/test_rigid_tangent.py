@@ -11,7 +11,7 @@ SURFACES = {
 }
 
 
-def interface(surface, coefficients, seed):
+def interface(surface, coefficients, seed, on="master"):
     """Anisotropic adhesion and friction on a surface, axes at random angles."""
     from anisocontact.anisotropy import make_directions
     from anisocontact.interface import Interface
@@ -23,19 +23,19 @@ def interface(surface, coefficients, seed):
     return Interface(
         make_surface(surface, **SURFACES[surface]),
         NormalLaw(penalty=1e3),
-        Adhesion(stiffness=(900.0, 300.0), directions=fields[0]),
-        Friction(coefficients=coefficients, directions=fields[1]),
+        Adhesion(stiffness=(900.0, 300.0), directions=fields[0], directions_on=on),
+        Friction(coefficients=coefficients, directions=fields[1], directions_on=on),
     )
 
 
-def state(fe, seed, surface, coefficients, lift, free, current_area):
+def state(fe, seed, surface, coefficients, lift, free, current_area, on="master"):
     """Block on a free body, both displaced at random over a random history."""
     from anisocontact.rigid import RigidBody
     from anisocontact.solver import Step
 
     rng = np.random.default_rng(seed)
     body = RigidBody("die", (0.3, 0.6, -0.8), free=True, springs=SPRINGS)
-    law = interface(surface, coefficients, seed)
+    law = interface(surface, coefficients, seed, on)
     block = fe.block(law, cells=(2, 2, 1), young=10.0, body=body, current_area=current_area)
     motion = {"die": dict.fromkeys(free)}
     block.problem.begin(Step("random", 1, {"block.top": {"x": 0.1}}, motion=motion))
@@ -143,3 +143,25 @@ def test_prescribed_components(fe):
     else:
         pytest.fail("no such state found")
     assert np.all(np.abs(found[:-1] / found[1:] - 4.0) < 0.15)
+
+
+@pytest.mark.parametrize("current_area", [False, True], ids=["reference", "current"])
+def test_directions_on_the_slave(fe, current_area):
+    """Tangent where the block carries the directions, on a body that moves and turns.
+
+    Requirement, source and tolerance as of the first test; the traction then depends on the
+    tangents of the slave, too, as they lie on the body.
+    """
+    steps = [2e-5 * 0.5**k for k in range(3)]
+    free = ("x", "y", "z", "rx", "ry", "rz")
+    for seed in range(60):
+        block, x, direction = state(
+            fe, seed, "sphere", (0.4, 0.15), 0.0, free, current_area, "slave"
+        )
+        found, same, seen = errors(block, x, direction, steps)
+        if same and seen == {0, 1, 2}:
+            break
+    else:
+        pytest.fail("no such state found")
+    assert np.all(np.abs(found[:-1] / found[1:] - 4.0) < 0.15)
+    assert found[0] < 1e-2

@@ -22,7 +22,7 @@ from anisocontact.case.registered import Key, OneOf, Registered, default_of
 from anisocontact.case.rigid import Load, Motion, Rigid
 from anisocontact.case.section import Section
 from anisocontact.interface import Interface
-from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.laws import SIDES, Adhesion, Friction, NormalLaw
 from anisocontact.limits import Limits
 from anisocontact.registry import Entry
 from anisocontact.strategies import AUTO, STRATEGIES
@@ -119,6 +119,7 @@ class Directed(Registered):
     """A law whose axes follow a direction field."""
 
     directions: Any = None
+    directions_on: str = SIDES[0]
 
 
 class ContactSection(Section):
@@ -301,16 +302,25 @@ def case_type(known: Registries) -> type[Case]:
     )
 
 
+def _on(default: str) -> tuple[Any, str]:
+    """A key for the body that carries a direction field."""
+    return Annotated[str, _word("body that carries these directions", *SIDES)], default
+
+
 def laws(known: Registries) -> dict[str, Any]:
     """Fields of a contact that come from the registries."""
     field = Annotated[Any, OneOf("Directions", Key("kind", known.direction_fields))]
     directed = create_model(
-        "Directed", __base__=Directed, directions=(field, Field(None, description=_DIRECTIONS))
+        "Directed",
+        __base__=Directed,
+        directions=(field, Field(None, description=_DIRECTIONS)),
+        directions_on=_on("master"),
     )
     twice_directed = create_model(
         "TwiceDirected",
         __base__=directed,
         directions_second=(field, Field(None, description=_DIRECTIONS_SECOND)),
+        directions_second_on=_on("slave"),
     )
     normal = OneOf("Normal", Key("model", known.normal_laws, default_of(NormalLaw, "model")))
     adhesion = OneOf(

@@ -177,6 +177,7 @@ def _laws(section: Laws, auto: float) -> tuple[NormalLaw, Adhesion, Friction]:
         **section.adhesion.chosen,
         **_numbers(section.adhesion, auto),
         directions=_directions(section.adhesion.directions, "adhesion.directions"),
+        directions_on=section.adhesion.directions_on,
     )
     friction = Friction(
         **section.friction.chosen,
@@ -185,6 +186,8 @@ def _laws(section: Laws, auto: float) -> tuple[NormalLaw, Adhesion, Friction]:
         directions_second=_directions(
             section.friction.directions_second, "friction.directions_second"
         ),
+        directions_on=section.friction.directions_on,
+        directions_second_on=section.friction.directions_second_on,
     )
     return normal, adhesion, friction
 

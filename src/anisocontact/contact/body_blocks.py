@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from anisocontact.contact.quadrature import FacetQuadrature, Surfaced
 from anisocontact.contact.record import Snapshot
+from anisocontact.interface import SlaveSurface
 from anisocontact.rigid import RigidBody, motion_derivative, skew
 
 Ints = npt.NDArray[np.int32]
@@ -39,7 +40,11 @@ class BodyBlocks:
 
 
 def body_blocks(
-    quadrature: FacetQuadrature, moved: Surfaced | None, body: RigidBody, now: Snapshot
+    quadrature: FacetQuadrature,
+    moved: Surfaced | None,
+    body: RigidBody,
+    now: Snapshot,
+    slave: SlaveSurface | None = None,
 ) -> BodyBlocks:
     """The blocks of a contact whose surface belongs to a body.
 
@@ -48,13 +53,14 @@ def body_blocks(
         moved: The facets of now where the area is theirs.
         body: The body at its trial.
         now: What the points answer there.
+        slave: The slave's surface, where it carries directions.
 
     Returns:
         The blocks.
     """
     m, q, k = quadrature.basis.shape
     traction = now.response.traction
-    by_motion = now.areas[:, None, None] * motion_derivative(body, now.points, now.response)
+    by_motion = now.areas[:, None, None] * motion_derivative(body, now.points, now.response, slave)
     arms = skew(now.points - body.position)
     weighted = now.areas[:, None, None] * now.response.tangent
     pulls = skew(now.areas[:, None] * traction)
@@ -64,6 +70,10 @@ def body_blocks(
     own[:, 3:, :3] += pulls
     node_body = np.einsum("mqa,mqij->maij", quadrature.basis, -by_motion.reshape(m, q, 3, 6))
     body_node = np.einsum("mqb,mqij->mibj", quadrature.basis, by_position.reshape(m, q, 6, 3))
+    if slave is not None:
+        pull = now.areas[:, None, None, None] * now.response.tangent_slave
+        both = np.concatenate([pull, arms[:, None] @ pull], axis=2).reshape(m, q, 2, 6, 3)
+        body_node += np.einsum("mqdij,mqbd->mibj", both, quadrature.gradient)
     if moved is not None:
         wrench = np.concatenate([traction, np.einsum("nij,nj->ni", arms, traction)], axis=1)
         body_node += np.einsum("mqi,mqbj->mibj", wrench.reshape(m, q, 6), moved.area_changes)

@@ -16,7 +16,7 @@ from anisocontact.contact.quadrature import Surfaced, default_degree, facet_quad
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.contact.transfer import Couplings
 from anisocontact.errors import InputError
-from anisocontact.interface import Interface, Response, State
+from anisocontact.interface import Interface, Response, SlaveSurface, State
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
 from anisocontact.python_law import PythonInterface
@@ -83,8 +83,10 @@ class Contact(ContactRecord):
         self._moved: Surfaced | None = None
         points = self.quadrature.reference
         self._facets = facets
+        self._carries = isinstance(interface, Interface) and interface.takes_slave()
+        self._slave = self._surface(self.quadrature.tangents)
         state = adjusted(interface.initial_state(points), adjust)
-        start = self._master.update(state, points, 1.0)
+        start = self._respond(state, points, 1.0)
         facets_here, per_facet = self.quadrature.weights.shape
         super().__init__(
             model.space,
@@ -107,8 +109,11 @@ class Contact(ContactRecord):
             The response; the committed history is unchanged.
         """
         x = self.quadrature.reference + self.quadrature.at_points(u)
-        response = self._master.update(self._start, x, dt)
-        self._moved = self.quadrature.moved(u) if self.current_area else None
+        moved = self.quadrature.moved(u) if self.current_area or self._carries else None
+        if moved is not None:
+            self._slave = self._surface(moved.tangents)
+        response = self._respond(self._start, x, dt)
+        self._moved = moved if self.current_area else None
         areas = self.quadrature.areas if self._moved is None else self._moved.areas
         self._trial = Snapshot(x, areas, response)
         return response
@@ -146,6 +151,8 @@ class Contact(ContactRecord):
         blocks = self.quadrature.facet_matrices(-self.trial.tangent, self.current.areas)
         if self._moved is not None:
             blocks -= self._moved.area_matrices(self.trial.traction)
+        if self._carries:
+            blocks -= self.quadrature.tangent_matrices(self.trial.tangent_slave, self.current.areas)
         return [(self.quadrature.nodes, self.quadrature.nodes, blocks)]
 
     def body_blocks(self) -> BodyBlocks:
@@ -156,7 +163,7 @@ class Contact(ContactRecord):
         """
         if self.body is None:
             raise ValueError("the surface is that of no rigid body")
-        return body_blocks(self.quadrature, self._moved, self.body, self.current)
+        return body_blocks(self.quadrature, self._moved, self.body, self.current, self._slave)
 
     def located(self, state: State) -> npt.NDArray[np.bool_]:
         """Whether each point of a state has a surface below it, (n,): all have."""
@@ -171,7 +178,10 @@ class Contact(ContactRecord):
     ) -> npt.NDArray[np.int8]:
         """Why other laws would fail in the reference configuration, codes of `FAILURE`, (n,)."""
         interface = Interface(self.interface.surface, *laws)
-        return interface.update(state, self.quadrature.reference, tangent=False).failure
+        tangents = self.quadrature.tangents
+        slave = self._surface(tangents) if interface.takes_slave() else None
+        points = self.quadrature.reference
+        return interface.update(state, points, tangent=False, slave=slave).failure
 
     def lever(self) -> float:
         """Forces that would move every point of the trial to the origin, norm over this rank.
@@ -195,3 +205,19 @@ class Contact(ContactRecord):
     def _tangents(self, state: State) -> Floats:
         """Tangents of the master as given at the coordinates of a state, (n, 2, 3), length."""
         return self.interface.surface.jet(state["xi"]).d1
+
+    def _surface(self, tangents: Floats) -> SlaveSurface | None:
+        """The slave with its tangents, (m, q, 2, 3), where it carries directions."""
+        if not self._carries:
+            return None
+        quadrature = self.quadrature
+        return SlaveSurface(
+            quadrature.reference,
+            quadrature.tangents.reshape(-1, 2, 3),
+            tangents.reshape(-1, 2, 3),
+        )
+
+    def _respond(self, state: State, x: Floats, dt: float) -> Response:
+        if self._slave is None or isinstance(self._master, PythonInterface):
+            return self._master.update(state, x, dt)
+        return self._master.update(state, x, dt, slave=self._slave)

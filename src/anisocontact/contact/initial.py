@@ -8,13 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.anisotropy import DirectionField
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.two_half_pass import TwoHalfPass
 from anisocontact.errors import InputError
 from anisocontact.interface import FAILURE, Interface, PairLaw
-from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw
 from anisocontact.python_law import PythonInterface
 
 Floats = npt.NDArray[np.float64]
@@ -82,10 +81,10 @@ def check_start(contact: Contact | FacetContact | TwoHalfPass, size: float) -> N
             check_start(half, size)
         return
     _check_sides(contact, size)
-    for place, field in _fields(contact.interface):
+    for one in _fields(contact.interface):
         gaps = np.abs(contact.state["gap"])
         near = contact.located(contact.state) & (gaps <= NEAR * size)
-        bad = _singular(contact, field, size)
+        bad = _singular(contact, one, size)
         if contact.space.mesh.comm.allreduce(int((~bad).sum())) > 0:
             bad &= near
         _refuse(
@@ -93,7 +92,7 @@ def check_start(contact: Contact | FacetContact | TwoHalfPass, size: float) -> N
             bad,
             "no direction at {count} slave points that can be in contact, the first at {point}: "
             "the field is singular there, out of its table or parallel to its normal",
-            place,
+            one.place,
         )
 
 
@@ -119,26 +118,18 @@ def _check_sides(contact: Contact | FacetContact, size: float) -> None:
     )
 
 
-def _fields(law: Interface | PairLaw | PythonInterface) -> list[tuple[str, DirectionField]]:
+def _fields(law: Interface | PairLaw | PythonInterface) -> list[Carried]:
     if isinstance(law, PythonInterface):
-        named = [("directions", law.directions)]
-    else:
-        named = [
-            ("adhesion.directions", law.adhesion.directions),
-            ("friction.directions", law.friction.directions),
-            ("friction.directions_second", law.friction.directions_second),
-        ]
-    return [(place, field) for place, field in named if field is not None]
+        return [Carried("directions", law.directions, "master")] if law.directions else []
+    return [one for one in law.carried if one.field is not None]
 
 
-def _singular(
-    contact: Contact | FacetContact, field: DirectionField, size: float
-) -> npt.NDArray[np.bool_]:
+def _singular(contact: Contact | FacetContact, one: Carried, size: float) -> npt.NDArray[np.bool_]:
     """Points at which a field has no direction: asked by pressing every point a little."""
     law = (
         NormalLaw(penalty=1.0),
         Adhesion(stiffness=(1.0, 1.0)),
-        Friction(coefficients=(1.0, 1.0), directions=field),
+        Friction(coefficients=(1.0, 1.0), directions=one.field, directions_on=one.on),
     )
     state = contact.state.copy()
     state["offset"] += state["gap"] + size

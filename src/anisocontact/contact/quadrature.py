@@ -112,6 +112,23 @@ class FacetQuadrature:
         blocks = product.reshape(m, k, k, 3, 3).swapaxes(2, 3)
         return blocks.reshape(m, 3 * k, 3 * k)
 
+    def tangent_matrices(self, by_tangent: Floats, areas: Floats) -> Floats:
+        """`integral of basis_a D_i gradient_b,i` on each facet.
+
+        Args:
+            by_tangent: D_i at each point, derivatives by the tangents, (m q, 2, 3, 3).
+            areas: Area of each point, (m q,), length^2.
+
+        Returns:
+            One matrix for each facet, rows and columns node by node, (m, 3 k, 3 k).
+        """
+        m, q, k = self.basis.shape
+        weighted = (areas[:, None, None, None] * by_tangent).reshape(m, q, 2, 3, 3)
+        blocks = np.einsum(
+            "mqa,mqdij,mqbd->maibj", self.basis, weighted, self.gradient, optimize=True
+        )
+        return np.asarray(blocks.reshape(m, 3 * k, 3 * k))
+
 
 @dataclass(frozen=True)
 class Surfaced:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.interface import Interface, Response, State
+from anisocontact.interface import Interface, Response, SlaveSurface, State
 from anisocontact.python_law import PythonInterface
 from anisocontact.rigid.body import RigidBody
 from anisocontact.rigid.rotation import skew
@@ -32,43 +32,57 @@ class MovingInterface:
         self._interface = interface
         self._body = body
 
-    def update(self, state: State, x: Floats, dt: float) -> Response:
+    def update(
+        self, state: State, x: Floats, dt: float, slave: SlaveSurface | None = None
+    ) -> Response:
         """Tractions at positions in space, with the body at its trial.
 
         Args:
             state: Committed state, (n,).
             x: Slave points in space, (n, 3), length.
             dt: Time increment.
+            slave: The slave's surface, where it carries directions.
 
         Returns:
             Tractions, tangent and axes in space, trial state.
         """
         body, turn = self._body, self._body.trial.rotation
-        answer = self._interface.update(state, body.to_body(x), dt)
+        y = body.to_body(x)
+        if slave is None or isinstance(self._interface, PythonInterface):
+            answer = self._interface.update(state, y, dt)
+        else:
+            seen = replace(slave, tangents=slave.tangents @ turn)
+            answer = self._interface.update(state, y, dt, slave=seen)
         return replace(
             answer,
             traction=body.to_space(answer.traction),
             tangent=turn @ answer.tangent @ turn.T,
+            tangent_slave=turn @ answer.tangent_slave @ turn.T,
             normal=body.to_space(answer.normal),
             directions_adhesion=body.to_space(answer.directions_adhesion),
             directions_friction=body.to_space(answer.directions_friction),
         )
 
 
-def motion_derivative(body: RigidBody, x: Floats, response: Response) -> Floats:
+def motion_derivative(
+    body: RigidBody, x: Floats, response: Response, slave: SlaveSurface | None = None
+) -> Floats:
     """Change of the tractions with translation and turn of the body.
 
-    `dt = D (dx - dd - w x r) + w x t` with `D = dt/dx`, `r` from the reference point and
-    `w = J d(turn)`.
+    `dt = D (dx - dd - w x r) + D_i (ds_i - w x s_i) + w x t` with `D = dt/dx`, `D_i` those by the
+    tangents `s_i` of the slave, `r` from the reference point and `w = J d(turn)`.
 
     Args:
         body: The body at its trial.
         x: Slave points, (n, 3), length.
         response: What a `MovingInterface` of the body answers there.
+        slave: The slave's surface, where it carries directions.
 
     Returns:
         dt/d(translation, turn), (n, 3, 6), stress/length and stress.
     """
     arms = skew(x - body.position)
     by_spin = response.tangent @ arms - skew(response.traction)
+    if slave is not None and len(response.tangent_slave):
+        by_spin += np.einsum("naij,najk->nik", response.tangent_slave, skew(slave.tangents))
     return np.concatenate([-response.tangent, by_spin @ body.trial.spin], axis=2)
