@@ -219,6 +219,36 @@ def test_a_terminal_shows_a_bar_and_loses_nothing(case):
     assert [f"drag {i}  " in log for i in (1, 2, 3, 4)] == [True] * 4
 
 
+def test_report_is_made_again_from_the_folder(capsys, case, monkeypatch):
+    """Also after a run that was killed: it needs nothing but the folder."""
+    out = case.parent / "out"
+    with monkeypatch.context() as patch:
+        patch.setattr("anisocontact.results.writer.write_report", lambda folder: [])
+        assert main(["run", str(case), "-o", str(out)]) == 0
+    assert not (out / "report.html").exists()
+    capsys.readouterr()
+    assert main(["report", str(out)]) == 0
+    assert capsys.readouterr().out == f"report    {out / 'report.html'}\n"
+    assert "Small block on a turned plate" in (out / "report.html").read_text()
+    assert (out / "pictures" / "pressure.png").is_file()
+
+
+@pytest.mark.parametrize("kind", ["none", "empty", "damaged", "trace"])
+def test_report_of_no_results_is_one_line(capsys, tmp_path, kind):
+    folder = tmp_path / "out"
+    if kind != "none":
+        folder.mkdir()
+    if kind == "damaged":
+        (folder / "summary.json").write_text("{")
+    if kind == "trace":
+        (folder / "trace.csv").write_text("")
+    assert main(["report", str(folder)]) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ")
+    assert str(folder) in error
+    assert len(error.splitlines()) == 1
+
+
 def test_no_finite_elements_installed(tmp_path, case_text):
     """Without DOLFINx schema and info still work, and a run says what to install."""
     case = tmp_path / "case.toml"

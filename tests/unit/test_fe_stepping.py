@@ -191,3 +191,55 @@ def test_alternating_points_are_found():
     assert not watch.unsettled()
     watch.clear()
     assert not watch.alternating()[0].any()
+
+
+def sticky(interface, most=10.0, width=1e-5):
+    """The interface with a traction `-most tanh(gap / width)` along z more, and its tangent.
+
+    Far stiffer near a gap of zero than away from it: corrections from there leap over it.
+    """
+    update = interface.update
+
+    def more(state, x, dt=1.0, *, tangent=True):
+        response = update(state, x, dt, tangent=tangent)
+        traction, slope = response.traction.copy(), response.tangent.copy()
+        level = np.tanh(response.gap / width)
+        traction[:, 2] -= most * level
+        if tangent:
+            slope[:, 2, 2] -= most / width * (1.0 - level**2)
+        return dataclasses.replace(response, traction=traction, tangent=slope)
+
+    interface.update = more
+    return interface
+
+
+def test_chattering_is_named_and_damped(fe, monkeypatch):
+    """Points that leap to and fro over a gap of zero from one iteration to the next.
+
+    Requirement: chattering is detected, named and treated. With full steps it goes on for ever;
+    with a share of them the increment converges without a cut. Without the treatment it is cut, and
+    the reason names the points.
+    """
+    from anisocontact.solver.attempts import Attempts
+
+    step = Step("hold", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": 0.0}})
+    basic = {"snes_linesearch_type": "basic"}
+
+    def run(cuts, smallest):
+        interface = sticky(fe.interface(point=(0.0, 0.0, -0.003)))
+        problem = fe.block(interface, cells=(2, 2, 1)).problem
+        solver = Solver(problem, [step], options=basic, limits=Limits(smallest=smallest))
+        return list(solver.run(on_cut=cuts.append))
+
+    cuts: list = []
+    accepted = run(cuts, 0.1)
+    assert cuts == []
+    assert accepted[-1].iterations > 2 * 25
+    monkeypatch.setattr(Attempts, "_damping", lambda self: 1.0)
+    with pytest.raises(StoppedError):
+        run(cuts, 0.1)
+    assert "slave points alternates (chattering)" in cuts[0].reason
+    culprit = cuts[0].culprits[0]
+    assert culprit.kind == "flipping"
+    assert set(culprit.statuses) > {"open"}
+    assert "the status alternates between" in str(culprit)

@@ -59,8 +59,8 @@ def same(a, b):
     )
 
 
-def stop_after(monkeypatch, count):
-    """Let runs stop like after Ctrl-C behind so many accepted increments."""
+def stop_after(monkeypatch, count, number=signal.SIGINT):
+    """Let runs get a signal, that of Ctrl-C, behind so many accepted increments."""
     from anisocontact.results.writer import Writer
 
     keep = Writer.keep
@@ -68,7 +68,7 @@ def stop_after(monkeypatch, count):
     def interrupted(self, *arguments):
         keep(self, *arguments)
         if self.summary["steps"] == count > 0:
-            os.kill(os.getpid(), signal.SIGINT)
+            os.kill(os.getpid(), number)
 
     monkeypatch.setattr(Writer, "keep", interrupted)
 
@@ -101,6 +101,17 @@ def test_ctrl_c_says_how_to_go_on_and_it_does(monkeypatch, capsys, case, whole, 
     assert json.loads((out / "summary.json").read_text())["steps"] == count
     assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
     assert f"restart   after {count} accepted increments" in capsys.readouterr().out
+    assert same(whole, out)
+
+
+def test_term_is_like_ctrl_c(monkeypatch, capsys, case, whole):
+    """Batch systems send TERM before they kill."""
+    out = case.parent / "out"
+    with monkeypatch.context() as patch:
+        stop_after(patch, 3, signal.SIGTERM)
+        assert main(["run", str(case), "-o", str(out)]) == 3
+    assert "interrupted after step 'drag', increment 1" in capsys.readouterr().err
+    assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
     assert same(whole, out)
 
 

@@ -13,8 +13,8 @@ from anisocontact.solver.steps import Culprit
 from anisocontact.solver.strategy import AnyNewton
 from anisocontact.solver.watch import StatusWatch
 
-#: Share of a correction that is taken while the status of points alternates.
-DAMPING = 0.5
+#: Smallest share of a correction that is taken while the status of points alternates.
+LEAST_SHARE = 1.0 / 64.0
 #: Kinds of culprits, the gravest first.
 GRAVITY = ("law", "inverted", "flipping", "residual")
 
@@ -37,7 +37,8 @@ class Attempts:
 
     The first attempt starts from the extrapolated state with a line search, the second from the
     accepted state with full steps: a line search stops in front of a jump of the law. Where the
-    status of points alternated, a third one takes half of each correction as long as it does.
+    status of points alternated, a third one takes a share of each correction: half as much as
+    before where it still alternates, twice as much where it does not.
 
     Args:
         problem: The problem.
@@ -49,6 +50,7 @@ class Attempts:
         self._problem = problem
         self._newton = newton
         self._watch = watch
+        self._share = 1.0
 
     def solve(self, first: Vec, last: Vec) -> Outcome:
         """Solve and commit, or roll back.
@@ -82,6 +84,7 @@ class Attempts:
     ) -> tuple[NewtonResult, list[Culprit]]:
         problem = self._problem
         self._watch.clear()
+        self._share = 1.0
         try:
             result = self._newton.solve(x, full_steps, damping)
             if not result.reason and problem.comm.allreduce(len(problem.inverted_cells())):
@@ -95,7 +98,9 @@ class Attempts:
 
     def _damping(self) -> float:
         unsettled = self._problem.comm.allreduce(self._watch.unsettled())
-        return DAMPING if unsettled else 1.0
+        self._share = max(0.5 * self._share, LEAST_SHARE) if unsettled else 2.0 * self._share
+        self._share = min(self._share, 1.0)
+        return self._share
 
 
 def _graver(before: list[Culprit], now: list[Culprit]) -> list[Culprit]:
