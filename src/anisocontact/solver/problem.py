@@ -231,8 +231,12 @@ class Problem:
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         return matrix
 
-    def begin(self, step: Step) -> None:
+    def begin(self, step: Step, again: bool = False) -> None:
         """Take over the loads of a step from the accepted state.
+
+        Args:
+            step: The step.
+            again: Whether it had begun before, in a run that now goes on.
 
         Raises:
             InputError: See `Supports.begin` and `DeadLoads.begin`.
@@ -249,9 +253,8 @@ class Problem:
         self.rigid.begin(step)
         self.attached.begin(step)
         self.constraints.planes.begin(self.supports.unknowns, self.supports.end, step.name)
-        self.stabilisation.begin(
-            [*self.supports.held(), *self.constraints.planes.held()], step.name
-        )
+        directions = [*self.supports.held(), *self.constraints.planes.held()]
+        self.stabilisation.begin(directions, step.name, now=not again)
 
     def check_held(self, steps: Sequence[Step]) -> bool:
         """Find out whether supports or contacts can hold every body in every step.
@@ -451,10 +454,11 @@ class Problem:
             steps: Steps that had been begun, the last one not necessarily done.
         """
         for step in steps[:-1]:
-            self.begin(step)  # what a step prescribes at its end does not depend on where it began
+            # What a step prescribes at its end does not depend on where it began.
+            self.begin(step, again=True)
         self._put(kept, "begun_")
         for step in steps[-1:]:
-            self.begin(step)
+            self.begin(step, again=True)
         self._put(kept, "")
         if self._coupled is not None and "couplings" in kept.common:
             self._coupled.pattern = kept.common["couplings"]
