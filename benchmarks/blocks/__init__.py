@@ -1,0 +1,1 @@
+"""Block on plane and block on block, in this code and in others."""

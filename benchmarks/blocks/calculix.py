@@ -1,0 +1,102 @@
+"""CalculiX: surface-to-surface penalty contact; Debian has it as `calculix-ccx`."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+from blocks.problem import (
+    ALONG,
+    DOWN,
+    DRAGS,
+    FRICTION,
+    KINDS,
+    PENALTY,
+    POISSON,
+    PRESSES,
+    YOUNG,
+    grid,
+    lower,
+    upper,
+)
+
+
+def command(kind: str, n: int, folder: Path) -> list[str]:
+    """Write the input and say how to run it."""
+    (folder / "case.inp").write_text("\n".join(_lines(kind, n)) + "\n")
+    return ["ccx", "case"]
+
+
+def available() -> str:
+    """Version, empty if it is not installed."""
+    if shutil.which("ccx") is None:
+        return ""
+    found = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False)
+    version = re.search(r"Version\s+(\S+)", found.stdout)
+    return f"CalculiX {version.group(1)}" if version else "CalculiX"
+
+
+def forces(folder: Path) -> list[tuple[float, float]]:
+    """Tangential force and normal force on the top after each increment."""
+    found = []
+    for line in (folder / "case.dat").read_text().splitlines():
+        numbers = line.split()
+        if len(numbers) == 3 and all(re.fullmatch(r"-?\d\.\d+E[+-]\d+", v) for v in numbers):
+            found.append((float(numbers[0]), -float(numbers[2])))
+    return found
+
+
+def _lines(kind: str, n: int) -> Iterable[str]:
+    block = grid((0, 0, 0), (1, 1, 0.5), upper(n))
+    # the rigid plane is one cell whose nodes are all held
+    cells = lower(n) if kind == KINDS[1] else (1, 1, 1)
+    base = grid((-0.5, -0.5, -0.5), (2, 2, 0.5), cells)
+    first_node, first_cell = len(block.points), len(block.cells)
+    yield "*NODE"
+    for i, x in enumerate(np.concatenate([block.points, base.points]), 1):
+        yield f"{i}, {x[0]:.12g}, {x[1]:.12g}, {x[2]:.12g}"
+    for name, mesh, node, cell in (
+        ("BLOCK", block, 0, 0),
+        ("BASE", base, first_node, first_cell),
+    ):
+        yield f"*ELEMENT, TYPE=C3D8, ELSET={name}"
+        for i, nodes in enumerate(mesh.cells + node + 1, cell + 1):
+            yield ", ".join(map(str, [i, *nodes]))
+    held = base.bottom if kind == KINDS[1] else np.arange(len(base.points))
+    yield from _set("TOP", block.top)
+    yield from _set("HELD", held + first_node)
+    per_layer = cells[0] * cells[1]
+    yield "*SURFACE, NAME=SLAVE, TYPE=ELEMENT"
+    yield from (f"{i + 1}, S1" for i in range(n * n))
+    yield "*SURFACE, NAME=MASTER, TYPE=ELEMENT"
+    last = first_cell + len(base.cells) - per_layer
+    yield from (f"{last + i + 1}, S2" for i in range(per_layer))
+    yield from _model()
+    yield from _step(PRESSES, 0.0)
+    yield from _step(DRAGS, ALONG)
+
+
+def _set(name: str, nodes: np.ndarray) -> Iterable[str]:
+    yield f"*NSET, NSET={name}"
+    yield from (f"{node + 1}," for node in nodes)
+
+
+def _model() -> Iterable[str]:
+    yield f"*MATERIAL, NAME=SOLID\n*ELASTIC\n{YOUNG}, {POISSON}"
+    yield from (f"*SOLID SECTION, ELSET={name}, MATERIAL=SOLID" for name in ("BLOCK", "BASE"))
+    yield "*SURFACE INTERACTION, NAME=PAIR"
+    yield f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{PENALTY}, 1.e-3, 0.01"
+    yield f"*FRICTION\n{FRICTION}, {PENALTY}"
+    yield "*CONTACT PAIR, INTERACTION=PAIR, TYPE=SURFACE TO SURFACE\nSLAVE, MASTER"
+    yield "*BOUNDARY\nHELD, 1, 3, 0."
+
+
+def _step(increments: int, along: float) -> Iterable[str]:
+    yield f"*STEP, INC=100\n*STATIC, DIRECT\n{1.0 / increments}, 1."
+    yield f"*BOUNDARY\nTOP, 1, 1, {along}\nTOP, 2, 2, 0.\nTOP, 3, 3, {-DOWN}"
+    yield "*NODE PRINT, NSET=TOP, TOTALS=ONLY\nRF\n*END STEP"

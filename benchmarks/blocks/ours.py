@@ -1,0 +1,84 @@
+"""This code: a case file for `anisocontact run`."""
+
+from __future__ import annotations
+
+import csv
+import subprocess
+import sys
+from pathlib import Path
+
+from blocks.problem import (
+    ALONG,
+    DOWN,
+    DRAGS,
+    FRICTION,
+    KINDS,
+    PENALTY,
+    POISSON,
+    PRESSES,
+    YOUNG,
+    lower,
+    upper,
+)
+
+
+def case_text(kind: str, n: int, strategy: str = "auto") -> str:
+    """The case file."""
+    boxes = [("block", (0, 0, 0), (1, 1, 0.5), upper(n))]
+    if kind == KINDS[1]:
+        boxes.append(("base", (-0.5, -0.5, -0.5), (2, 2, 0.5), lower(n)))
+    bodies = "".join(
+        f"[mesh.box.{name}]\norigin = {list(at)}\nsize = {list(size)}\ncells = {list(cells)}\n"
+        f'[material.{name}]\nmodel = "linear-elastic"\nE = {YOUNG}\nnu = {POISSON}\n'
+        for name, at, size, cells in boxes
+    )
+    plane = '[surface.plane]\nshape = "plane"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n'
+    clamp = ', "base.bottom" = { x = 0, y = 0, z = 0 }' if kind == KINDS[1] else ""
+    return f"""{bodies}{plane if kind == KINDS[0] else ""}
+[[contact]]
+slave = "block.bottom"
+master = "{"plane" if kind == KINDS[0] else "base.top"}"
+normal = {{ penalty = {PENALTY} }}
+adhesion = {{ stiffness = [{PENALTY}, {PENALTY}] }}
+friction = {{ coefficients = [{FRICTION}, {FRICTION}] }}
+
+[[step]]
+name = "press"
+increments = {PRESSES}
+displacement = {{ "block.top" = {{ x = 0, y = 0, z = {-DOWN} }}{clamp} }}
+
+[[step]]
+name = "drag"
+increments = {DRAGS}
+displacement = {{ "block.top" = {{ x = {ALONG} }} }}
+
+[output]
+every = {PRESSES + DRAGS}
+
+[solver]
+strategy = "{strategy}"
+"""
+
+
+def command(kind: str, n: int, folder: Path) -> list[str]:
+    """Write the input and say how to run it."""
+    (folder / "case.toml").write_text(case_text(kind, n))
+    return [sys.executable, "-m", "anisocontact", "run", "case.toml", "-o", "out", "--overwrite"]
+
+
+def forces(folder: Path) -> list[tuple[float, float]]:
+    """Tangential and normal force of the contact after each increment."""
+    with (folder / "out" / "history.csv").open() as file:
+        rows = list(csv.DictReader(file))
+    return [(-float(r["contacts.0.force.x"]), float(r["contacts.0.force.z"])) for r in rows]
+
+
+def available() -> str:
+    """Version."""
+    found = subprocess.run(
+        [sys.executable, "-m", "anisocontact", "--version"],
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    return found.stdout.strip()
