@@ -88,6 +88,27 @@ def test_condensed_goes_on_to_the_tolerance_of_newton(monkeypatch, case):
     np.testing.assert_allclose(again, force, rtol=0.0, atol=1e-7 * max(map(abs, force)))
 
 
+def test_augmented_contact_of_a_free_body_goes_on(monkeypatch, case):
+    """Multipliers, the level of their penalties and stabilisation go on bit by bit."""
+    text = case.read_text().replace("normal = { penalty = 1e4 }", 'method = "augmented"')
+    text = text.replace("stiffness = [4e3, 1e3]", 'stiffness = "auto"')
+    text = text.replace(
+        'displacement = { "block.top" = { x = 0, y = 0, z = -0.01 } }',
+        'traction = { "block.top" = { z = -20 } }',
+    ).replace(
+        'displacement = { "block.top" = { x = 0.02, y = 0.01 } }',
+        'traction = { "block.top" = { x = 1.5, y = 0.5 } }',
+    )
+    case.write_text(text)
+    whole, out = case.parent / "whole", case.parent / "out"
+    assert main(["run", str(case), "-o", str(whole)]) == 0
+    with monkeypatch.context() as patch:
+        stop_after(patch, 3)
+        assert main(["run", str(case), "-o", str(out)]) == 3
+    assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
+    assert same(whole, out)
+
+
 @pytest.mark.parametrize("count", [1, 2, 4])
 def test_ctrl_c_says_how_to_go_on_and_it_does(monkeypatch, capsys, case, whole, count):
     """Requirement: Ctrl-C finishes the increment, keeps all and says the exact command."""

@@ -368,7 +368,7 @@ class Problem:
         if self._evaluated is None or not np.array_equal(self._evaluated, x.array_r):
             self.evaluate(x)
         moved = self.stabilisation.improve(self._u.x.array.reshape(-1, 3), self.force_scale)
-        if moved:
+        if moved and self.stabilisation.untouched():
             self._add_work(x)
         return any([contact.improve() for contact in self.contacts]) or moved
 

@@ -178,6 +178,10 @@ class Stabilisation:
                 free.stiffness = max(FADE * free.stiffness, LEAST * self._scale)
         return True
 
+    def untouched(self) -> bool:
+        """Whether a free body is touched by nothing in the trial."""
+        return not all([free.touched() for free in self._free])
+
     def commit(self) -> None:
         """Count what the springs took up on the way to the accepted state."""
         self.energy += self._spent
