@@ -1,7 +1,7 @@
 # `make run` and `make test` need nothing but make, a C++20 compiler and a Python >= 3.12.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help setup run test verify lint format docs clean distclean
+.PHONY: help setup run test verify sanitize lint format docs clean distclean
 
 IN_VENV := tools/venv-run
 EXAMPLE := milled_block
@@ -28,6 +28,15 @@ test: lint ## lint and all tests but the slow ones
 
 verify: lint ## lint and all tests
 	@$(IN_VENV) pytest -m ""
+
+sanitize: setup ## the programs of tests/cpp under address and undefined-behaviour sanitizers
+	@echo 'int main() {}' | $${CXX:-c++} -x c++ -fsanitize=address,undefined -o /dev/null - 2>/dev/null || \
+	  { echo "error: $${CXX:-c++} has no sanitizers: install its libasan and libubsan" >&2; exit 1; }
+	@$(IN_VENV) cmake -S . -B build/sanitize -G Ninja -DANISOCONTACT_PYTHON=OFF -DANISOCONTACT_CPP_TESTS=ON \
+	  -DCMAKE_BUILD_TYPE=RelWithDebInfo -DANISOCONTACT_SANITIZE=address,undefined \
+	  -DPython_EXECUTABLE="$(CURDIR)/.venv/bin/python" --log-level=WARNING
+	@$(IN_VENV) cmake --build build/sanitize
+	@UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(IN_VENV) ctest --test-dir build/sanitize --output-on-failure -E no_allocation
 
 format: setup ## format Python and C++
 	@$(IN_VENV) ruff check --fix --select I --quiet .
