@@ -1,10 +1,11 @@
 # `make run` and `make test` need nothing but make, a C++20 compiler and a Python >= 3.12.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help setup run test verify sanitize lint format docs clean distclean
+.PHONY: help setup run test verify sanitize lint format bench docs clean distclean
 
 IN_VENV := tools/venv-run
 EXAMPLE := milled_block
+N := 12
 CPP := $(shell find cpp src tests -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
 
 help: ## list the targets
@@ -42,6 +43,9 @@ format: setup ## format Python and C++
 	@$(IN_VENV) ruff check --fix --select I --quiet .
 	@$(IN_VENV) ruff format --quiet .
 	@[ -z "$(CPP)" ] || $(IN_VENV) clang-format -i $(CPP)
+
+bench: setup ## block on plane and block on block in this code and in others, N="12 24"
+	@$(IN_VENV) python benchmarks/run.py $(N) --docs
 
 docs: setup ## build the documentation in docs/_build/html
 	@$(IN_VENV) sphinx-build -W --keep-going -q -b html docs docs/_build/html

@@ -21,10 +21,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
 
-from blocks import calculix, felupe, ours
+from blocks import calculix, ours, with_felupe
 from blocks.problem import KINDS, PRESSES
 
-CODES: dict[str, ModuleType] = {"anisocontact": ours, "CalculiX": calculix, "FElupe": felupe}
+CODES: dict[str, ModuleType] = {"anisocontact": ours, "CalculiX": calculix, "FElupe": with_felupe}
 ROOT = Path(__file__).parent.parent
 THREADS = "2"
 
@@ -38,6 +38,7 @@ class Row:
         kind: Which problem.
         n: Cells along the edge of the block.
         wall: Wall time, s.
+        processor: Processor time of all threads, s: less moved by other work on the machine.
         memory: Peak resident memory, MB.
         normal: Normal force after pressing.
         tangential: Tangential force at the end.
@@ -48,6 +49,7 @@ class Row:
     kind: str
     n: int
     wall: float
+    processor: float
     memory: float
     normal: float
     tangential: float
@@ -75,7 +77,8 @@ def measure(name: str, kind: str, n: int) -> Row | None:
             return None
         forces = code.forces(folder)
     normal, tangential = forces[PRESSES - 1][1], forces[-1][0]
-    return Row(name, kind, n, wall, used.ru_maxrss / 1024.0, normal, tangential, load)
+    processor, memory = used.ru_utime + used.ru_stime, used.ru_maxrss / 1024.0
+    return Row(name, kind, n, wall, processor, memory, normal, tangential, load)
 
 
 def machine() -> str:
@@ -99,14 +102,15 @@ def table(rows: list[Row]) -> str:
     """The rows as Markdown, with the time over ours."""
     own = {(r.kind, r.n): r.wall for r in rows if r.code == "anisocontact"}
     lines = [
-        "| problem | n | code | wall s | over ours | MB | normal force pressed | tangential force "
-        "at the end | load before |",
-        "|---|---|---|---|---|---|---|---|---|",
+        "| problem | n | code | wall s | over ours | processor s | MB | normal force pressed | "
+        "tangential force at the end | load before |",
+        "|---|---|---|---|---|---|---|---|---|---|",
     ]
     for r in rows:
         ratio = r.wall / own[r.kind, r.n] if (r.kind, r.n) in own else float("nan")
         lines.append(
             f"| block on {r.kind} | {r.n} | {r.code} | {r.wall:.1f} | {ratio:.1f} | "
+            f"{r.processor:.1f} | "
             f"{r.memory:.0f} | {r.normal:.4f} | {abs(r.tangential):.4f} | {r.load:.1f} |"
         )
     return "\n".join(lines)
