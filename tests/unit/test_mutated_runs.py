@@ -340,3 +340,10 @@ def test_mutated_meshes_run_or_are_refused(mesh_text, tmp_path_factory, capsys, 
 @given(changes=damage())
 def test_many_mutated_meshes(mesh_text, tmp_path_factory, capsys, changes):
     run_mesh(damaged(mesh_text, changes), tmp_path_factory, capsys)
+
+
+def test_a_displacement_beyond_all_bounds(tmp_path_factory, capsys):
+    """What overflows on the way is a run that stops, not a warning of NumPy."""
+    data = tomllib.loads(CASE)
+    data["step"][1]["displacement"]["upper.top"]["x"] = 4e80
+    assert run_table(data, tmp_path_factory, capsys) == 3

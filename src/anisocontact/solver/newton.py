@@ -198,10 +198,13 @@ class Newton:
         return NewtonResult(self.snes.getIterationNumber(), self._residuals, text)
 
     def _function(self, _: SNES, x: Vec, f: Vec) -> None:
-        f.array[:] = self._problem.evaluate(x)
+        # An iterate far off overflows; it is judged by its residual, which is then no number.
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            f.array[:] = self._problem.evaluate(x)
 
     def _jacobian(self, _: SNES, x: Vec, matrix: Mat, __: Mat) -> None:
-        self._problem.tangent(x, matrix)
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+            self._problem.tangent(x, matrix)
 
     def _damp(self, _: Vec, direction: Vec) -> bool:
         share = 1.0 if self._damping is None else self._damping()
