@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,12 +13,16 @@ from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
 from anisocontact.contact import AnyContact, Contact
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
+from anisocontact.solver.accepted import AcceptedState
 from anisocontact.solver.attached import Attachments, ElasticSupport, Spring
 from anisocontact.solver.cells import DeformedCells
 from anisocontact.solver.constraints import Constraints
 from anisocontact.solver.coupled import CoupledTangent
+from anisocontact.solver.layout import Layout
 from anisocontact.solver.loads import Loads
+from anisocontact.solver.memory import BEGUN, Memory
 from anisocontact.solver.persistent import Persistent
+from anisocontact.solver.reduction import Reduction
 from anisocontact.solver.rigid import RigidBodies
 from anisocontact.solver.stabilisation import Stabilisation
 from anisocontact.solver.steps import Step
@@ -31,45 +34,6 @@ Floats = npt.NDArray[np.float64]
 ROUND_OFF = 16.0 * float(np.finfo(np.float64).eps)
 #: Share of the loads that may be left out of balance as round-off.
 LOAD_SHARE = 1e-6
-
-
-@dataclass(frozen=True)
-class _Way:
-    """The last state on the way from the accepted one.
-
-    Attributes:
-        place: Its displacements, length.
-        outside: What acts from outside there, force.
-        work: Work of it since the accepted state.
-    """
-
-    place: Floats
-    outside: Floats
-    work: float
-
-
-class Reduction(Protocol):
-    """Answers for the bulk while only some unknowns are kept up to date; see `Condensed`."""
-
-    def commit(self, x: Vec) -> float:
-        """Take over an accepted state and return the work from outside since the last one."""
-        ...
-
-    def recover(self) -> None:
-        """Bring the state of all unknowns up to date with `Problem.complete`."""
-        ...
-
-    def reactions(self) -> dict[str, Floats]:
-        """Force of the supports of each facet group on the bodies, (3,), force."""
-        ...
-
-    def elastic(self) -> float:
-        """Elastic energy of the accepted state."""
-        ...
-
-    def mean(self, group: str, weights: Floats) -> Floats:
-        """Sum of the displacements of all nodes times their weights, (3,), length."""
-        ...
 
 
 class Problem:
@@ -91,6 +55,7 @@ class Problem:
     Attributes:
         rigid: Rigid bodies of the contacts. The unknowns of free ones follow those of the mesh, on
             the last rank.
+        layout: Where the unknowns are.
         reduction: Who answers for the bulk; None where every state is one of all unknowns.
         force_scale: Norm of the forces at work in the last evaluation: of supports, contacts,
             loads or supports still to be moved, the largest.
@@ -130,6 +95,7 @@ class Problem:
         self._cells = DeformedCells(model, finite) if finite else None
         self._comm = model.mesh.comm
         self.rigid = RigidBodies(self.contacts, self._comm)
+        self.layout = Layout(model.space, self.rigid.size)
         self._analytic = [c for c in self.contacts if isinstance(c, Contact)]
         self._meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
         self.attached = Attachments(attached, model)
@@ -145,26 +111,21 @@ class Problem:
         self.reduction: Reduction | None = None
         self.force_scale = 0.0
         self.round_off = 0.0
-        self._ghosted = self._u.x.petsc_vec.duplicate()
         self._load: Floats = np.zeros(self._owned)
         self._level = 0.0
         self._dt = 0.0
         self._outside: Floats = np.zeros(self._owned)
         self._evaluated: Floats | None = None
         self._of_mesh = self.bulk.stiffness.createVecRight()
-        self._accepted = self.new_vector()
-        self.constraints = Constraints(model, symmetry, self._accepted)
-        self._accepted_outside: Floats = np.zeros(self._owned)
-        self._accepted_reaction: Floats = np.zeros(self._owned)
-        self._external_work = 0.0
-        self._way = _Way(np.zeros(self._owned), np.zeros(self._owned), 0.0)
+        self._accepted = AcceptedState(self.layout)
+        self.constraints = Constraints(model, symmetry, self._accepted.x)
         diagonal = self.bulk.diagonal
         self._support_scale = diagonal.sum() / diagonal.getSize()
         holders = {model.body_of(group) for one in attached for group in one.groups}
         self.stabilisation = Stabilisation(
             model, self.contacts, self._support_scale, holders, stabilised
         )
-        self._begun = self._at_hand()
+        self._memory = Memory(self._accepted, self.rigid, self.attached, self.stabilisation)
 
     @property
     def u(self) -> Any:
@@ -185,17 +146,17 @@ class Problem:
 
     def dead_load(self) -> Floats:
         """Loads on the unknowns this rank owns where they do not depend on the state, force."""
-        return self._assembled(self.loads.force(self._u.x.array.reshape(-1, 3)))
+        return self.layout.assembled(self.loads.force(self._u.x.array.reshape(-1, 3)))
 
     @property
     def outside(self) -> Floats:
         """All forces but those of contact on the unknowns this rank owns, accepted state."""
-        return self._accepted_outside
+        return self._accepted.outside
 
     @property
     def unknowns(self) -> int:
         """Number of unknowns over all ranks."""
-        return int(self._accepted.getSize())
+        return int(self._accepted.x.getSize())
 
     @property
     def comm(self) -> Any:
@@ -209,19 +170,11 @@ class Problem:
 
     @property
     def _owned(self) -> int:
-        return int(3 * self.model.space.dofmap.index_map.size_local)
-
-    @property
-    def _last_rank(self) -> bool:
-        return bool(self._comm.rank == self._comm.size - 1)
+        return self.layout.owned
 
     def new_vector(self) -> Vec:
         """Vector of the unknowns, zero."""
-        vector = PETSc.Vec().create(self._comm)
-        own = self._owned + self.rigid.size * self._last_rank
-        vector.setSizes((own, None), bsize=3)
-        vector.setType(PETSc.Vec.Type.STANDARD)
-        return vector
+        return self.layout.new_vector()
 
     def new_tangent(self) -> Mat:
         """Matrix for `tangent`."""
@@ -242,12 +195,12 @@ class Problem:
             InputError: See `Supports.begin` and `DeadLoads.begin`.
         """
         start = self.u.x.array.copy()
-        self._begun = self._at_hand()
+        self._memory.begin()
         held = self.supports.unknowns
         self.supports.begin(step, start)
         gone = np.setdiff1d(held, self.supports.unknowns)
         released = np.zeros(len(self._u.x.array))
-        _, reaction = self.constraints.planes.forces(self._accepted_reaction)
+        _, reaction = self.constraints.planes.forces(self._accepted.reaction)
         released[gone] = reaction[gone]
         self.loads.begin(step, released)
         self.rigid.begin(step)
@@ -303,10 +256,10 @@ class Problem:
             contact.add_force(forces.reshape(-1, 3))
         nodal = self._u.x.array.reshape(-1, 3)
         self.attached.add_force(nodal, forces.reshape(-1, 3))
-        contact_force = self._assembled(forces)
-        self._load = self._assembled(self.loads.force(nodal))
+        contact_force = self.layout.assembled(forces)
+        self._load = self.layout.assembled(self.loads.force(nodal))
         rigid_load = float(np.linalg.norm(self.rigid.loads()))
-        load_norm = float(np.hypot(self._norm(self._load), rigid_load))
+        load_norm = float(np.hypot(self.layout.norm(self._load), rigid_load))
         u = self._of_mesh
         outside = self.bulk.force(u).array_r - contact_force
         if self.stabilisation:
@@ -322,19 +275,19 @@ class Problem:
         at_work = (self._outside[held], contact_force, residual[rows])
         self.force_scale = max(
             load_norm,
-            *map(self._norm, at_work),
+            *map(self.layout.norm, at_work),
             float(np.linalg.norm(self.rigid.spring_forces())),
             float(np.linalg.norm(of_bodies[self.rigid.held()])),
         )
         levers = np.array([contact.lever() for contact in self.contacts])
         moved = np.abs(u.array_r) + self.bulk.rest_length
-        stiff = self._norm(self.bulk.diagonal.array_r * moved) + self._norm(levers)
+        stiff = self.layout.norm(self.bulk.diagonal.array_r * moved) + self.layout.norm(levers)
         self.round_off = ROUND_OFF * stiff
         if load_norm > 0.0:
             self.round_off = min(self.round_off, LOAD_SHARE * load_norm)
         if self._comm.allreduce(failed):
             residual[:] = np.nan
-        return np.append(residual, of_bodies) if self._last_rank else residual
+        return np.append(residual, of_bodies) if self.layout.last_rank else residual
 
     def tangent(self, x: Vec, out: Mat) -> None:
         """Write d residual / d x into a matrix of `new_tangent`."""
@@ -354,7 +307,11 @@ class Problem:
             couplings += self.attached.couplings()
             self._coupled.assemble(out, couplings)
         self.constraints.transform(out, self._support_scale)
-        held = np.flatnonzero(self.rigid.held()) if self._last_rank else np.zeros(0, dtype=np.int64)
+        held = (
+            np.flatnonzero(self.rigid.held())
+            if self.layout.last_rank
+            else np.zeros(0, dtype=np.int64)
+        )
         rows = np.concatenate([self.supports.unknowns, self._owned + held])
         first, _ = out.getOwnershipRange()
         out.zeroRows((first + rows).astype(PETSc.IntType), self._support_scale)
@@ -369,37 +326,26 @@ class Problem:
             self.evaluate(x)
         moved = self.stabilisation.improve(self._u.x.array.reshape(-1, 3), self.force_scale)
         if moved and self.stabilisation.untouched():
-            self._add_work(x)
+            self._accepted.go_on(x, self._outside)
         return any([contact.improve() for contact in self.contacts]) or moved
 
     def soften(self) -> bool:
         """After a solution that failed: softer penalties of augmented contacts; whether any."""
         return any([contact.soften() for contact in self.contacts])
 
-    def _add_work(self, x: Vec) -> None:
-        """Work of all that acts from outside, from the last state on the way to this one.
-
-        Trapezoidal rule: the mean of both ends times the way between them.
-        """
-        place = np.array(x.array_r[: self._owned])
-        mean = 0.5 * (self._way.outside + self._outside)
-        work = self._way.work + self._comm.allreduce(float(mean @ (place - self._way.place)))
-        self._way = _Way(place, self._outside, work)
-
     def _stabilise(self) -> None:
         """Put the springs of stabilisation back to where they start from."""
-        start = np.array(self._accepted.array_r[: self._owned])
-        self._way = _Way(start, self._accepted_outside, 0.0)
+        self._accepted.begin_way()
         if self.stabilisation:
             nodal = self.u.x.array.reshape(-1, 3)
-            load = self._assembled(self.loads.force(nodal))
+            load = self.layout.assembled(self.loads.force(nodal))
             self.stabilisation.start(nodal, load.reshape(-1, 3))
 
     def commit(self, x: Vec) -> None:
         """Accept a state: the history of the contacts advances and energies are summed."""
         work = self.reduction.commit(x) if self.reduction is not None else self._commit_bulk(x)
-        self._external_work += work + self.rigid.commit()
-        x.copy(self._accepted)
+        self._accepted.work += work + self.rigid.commit()
+        x.copy(self._accepted.x)
         for contact in self.contacts:
             contact.commit()
         self.stabilisation.commit()
@@ -412,14 +358,13 @@ class Problem:
             contact_force: Forces of contact on them, force.
             load: Loads on them, force.
         """
-        self._accepted.array[:] = u
-        self._set_unknowns(self._accepted)
-        self._accepted_outside = self.bulk.force(self._of_mesh).array_r - contact_force
-        self._accepted_reaction = self._accepted_outside - load
+        self._accepted.x.array[:] = u
+        self._set_unknowns(self._accepted.x)
+        self._accepted.take(self.bulk.force(self._of_mesh).array_r - contact_force, load)
 
     def roll_back(self) -> None:
         """Return to the accepted state."""
-        self._set_unknowns(self._accepted)
+        self._set_unknowns(self._accepted.x)
         self._evaluated = None
         self.rigid.roll_back()
         for contact in self.contacts:
@@ -436,15 +381,11 @@ class Problem:
         """All that the next increments depend on, of this rank."""
         if self.reduction is not None:
             self.reduction.recover()
-        now, begun = self._at_hand(), self._begun
-        common = now.common | {f"begun_{name}": values for name, values in begun.common.items()}
+        nodal, common = self._memory.persistent()
         if self._coupled is not None and self._comm.size == 1:
             common["couplings"] = self._coupled.pattern
-        return Persistent(
-            nodal=now.nodal | {f"begun_{name}": values for name, values in begun.nodal.items()},
-            points=[part.persistent() for contact in self.contacts for part in contact.parts],
-            common=common,
-        )
+        points = [part.persistent() for contact in self.contacts for part in contact.parts]
+        return Persistent(nodal, points, common)
 
     def restore(self, kept: Persistent, steps: Sequence[Step]) -> None:
         """Go on from what `persistent` gave.
@@ -456,7 +397,7 @@ class Problem:
         for step in steps[:-1]:
             # What a step prescribes at its end does not depend on where it began.
             self.begin(step, again=True)
-        self._put(kept, "begun_")
+        self._put(kept, BEGUN)
         for step in steps[-1:]:
             self.begin(step, again=True)
         self._put(kept, "")
@@ -468,52 +409,9 @@ class Problem:
                 part.restore(next(points), self._u.x.array.reshape(-1, 3))
             contact.rejoin()
 
-    def split(self, x: Vec) -> tuple[Floats, Floats]:
-        """Values at the nodes this rank owns, (nodes, 3), and of the rigid bodies on every rank."""
-        values = np.array(x.array_r)
-        rigid = self._comm.bcast(values[self._owned :], root=self._comm.size - 1)
-        return values[: self._owned].reshape(-1, 3), rigid
-
-    def joined(self, nodal: Floats, rigid: Floats) -> Vec:
-        """Vector of the parts that `split` gives."""
-        x = self.new_vector()
-        x.array[: self._owned] = nodal.reshape(-1)
-        if self._last_rank:
-            x.array[self._owned :] = rigid
-        return x
-
-    def _at_hand(self) -> Persistent:
-        """Accepted state, without that of the contacts and without what a step prescribes."""
-        displacement, rigid = self.split(self._accepted)
-        nodal = {
-            "displacement": displacement,
-            "outside": self._accepted_outside.reshape(-1, 3).copy(),
-            "reaction": self._accepted_reaction.reshape(-1, 3).copy(),
-        }
-        common = {
-            "external_work": np.array([self._external_work]),
-            "rigid": rigid,
-            "springs": self.attached.persistent(),
-            "stabilisation": np.array([self.stabilisation.energy]),
-        }
-        return Persistent(nodal, [], common | self.rigid.persistent())
-
     def _put(self, kept: Persistent, prefix: str) -> None:
-        """Take an accepted state that `_at_hand` gave."""
-        nodal = {n: kept.nodal[f"{prefix}{n}"] for n in ("displacement", "outside", "reaction")}
-        common = {
-            name.removeprefix(prefix): values
-            for name, values in kept.common.items()
-            if name.startswith(prefix)
-        }
-        self._accepted = self.joined(nodal["displacement"], common["rigid"])
-        self._accepted_outside = nodal["outside"].reshape(-1).copy()
-        self._accepted_reaction = nodal["reaction"].reshape(-1).copy()
-        self._external_work = float(common["external_work"][0])
-        self.stabilisation.energy = float(common["stabilisation"][0])
-        self.rigid.restore(common)
-        self.attached.restore(common["springs"])
-        self._set_unknowns(self._accepted)
+        self._memory.restore(kept, prefix)
+        self._set_unknowns(self._accepted.x)
         self.rigid.roll_back()
         self._evaluated = None
 
@@ -528,7 +426,7 @@ class Problem:
 
     def accepted(self) -> Vec:
         """Copy of the accepted displacements."""
-        return self._accepted.copy()
+        return self._accepted.x.copy()
 
     def reactions(self) -> dict[str, Floats]:
         """Force of the supports of each facet group on the bodies, and of springs, (3,), force.
@@ -537,7 +435,7 @@ class Problem:
         """
         if self.reduction is not None:
             return self.reduction.reactions()
-        across, rest = self.constraints.planes.forces(self._accepted_reaction)
+        across, rest = self.constraints.planes.forces(self._accepted.reaction)
         sums = self.supports.reactions(rest)
         attached = self.attached.reactions(self._u.x.array.reshape(-1, 3))
         for name, force in (*across.items(), *attached.items()):
@@ -568,7 +466,7 @@ class Problem:
         if self.reduction is not None:
             stored = {"elastic": self.reduction.elastic()}
         else:
-            self._of_mesh.array[:] = self._accepted.array_r[: self._owned]
+            self._of_mesh.array[:] = self._accepted.x.array_r[: self._owned]
             stored = {"elastic": self.bulk.energy(self._of_mesh)}
         stored |= dict.fromkeys(("adhesion", "normal", "friction", "viscous", "stabilisation"), 0.0)
         stored["stabilisation"] = self.stabilisation.energy
@@ -578,37 +476,24 @@ class Problem:
         if self.attached or any(body.springs.any() for body in self.rigid.bodies):
             now = self._u.x.array.reshape(-1, 3)
             stored["springs"] = self.rigid.energy() + self.attached.energy(now)
-        residual = self._external_work - sum(stored.values())
-        return {"external": self._external_work} | stored | {"residual": residual}
+        residual = self._accepted.work - sum(stored.values())
+        return {"external": self._accepted.work} | stored | {"residual": residual}
 
     def _set_unknowns(self, x: Vec) -> Floats:
         """Bring all bodies to a state; on every rank the unknowns of rigid bodies."""
         self._evaluated = np.array(x.array_r)
-        self._of_mesh.array[:] = x.array_r[: self._owned]
+        nodal, rigid = self.layout.split(x)
+        self._of_mesh.array[:] = nodal.reshape(-1)
         self._u.x.array[: self._owned] = self._of_mesh.array_r
         self._u.x.scatter_forward()
-        rigid = np.array(x.array_r[self._owned :])
-        if self.rigid.size:
-            rigid = np.asarray(self._comm.bcast(rigid, root=self._comm.size - 1))
         self.rigid.place(rigid)
         return rigid
 
     def _commit_bulk(self, x: Vec) -> float:
         self.evaluate(x)
-        self._add_work(x)
-        self._accepted_outside = self._outside
-        self._accepted_reaction = self._outside - self._load
-        return self._way.work + self.attached.commit(self._u.x.array.reshape(-1, 3))
-
-    def _assembled(self, local: Floats) -> Floats:
-        """Owned entries of forces on local unknowns, with what other ranks add to them."""
-        with self._ghosted.localForm() as form:
-            form.array[:] = local
-        self._ghosted.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
-        return np.array(self._ghosted.array_r)
-
-    def _norm(self, owned: Floats) -> float:
-        return float(np.sqrt(self._comm.allreduce(float(owned @ owned))))
+        self._accepted.go_on(x, self._outside)
+        self._accepted.take(self._outside, self._load)
+        return self._accepted.way_work + self.attached.commit(self._u.x.array.reshape(-1, 3))
 
 
 def _check(

@@ -139,7 +139,7 @@ class Solver:
         numbers |= {"step": place.step, "time": place.time, "begun": place.begun}
         kept.common.update({f"place.{name}": np.array(v) for name, v in numbers.items()})
         if place.before is not None:
-            kept.nodal["before"], kept.common["before"] = self.problem.split(place.before)
+            kept.nodal["before"], kept.common["before"] = self.problem.layout.split(place.before)
         return kept
 
     def restore(self, kept: Persistent) -> None:
@@ -149,7 +149,7 @@ class Solver:
         step, time, begun = (numbers.pop(name) for name in ("step", "time", "begun"))
         before = None
         if "before" in kept.nodal:
-            before = self.problem.joined(kept.nodal["before"], kept.common["before"])
+            before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
         self.place = Place(step, time, Pace(self.limits, **numbers), begun, before)
         self.problem.restore(kept, self.steps[: step + begun])
 

@@ -1,0 +1,69 @@
+"""Where the unknowns of a problem are: those of the mesh, then those of rigid bodies."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import PETSc, Vec, fem
+
+Floats = npt.NDArray[np.float64]
+
+
+class Layout:
+    """Unknowns of the mesh on every rank, those of rigid bodies behind them on the last one.
+
+    Args:
+        space: Vector space of the displacement.
+        rigid: Number of unknowns of rigid bodies.
+
+    Attributes:
+        comm: Communicator of the mesh.
+        owned: Number of unknowns of the mesh this rank owns.
+        rigid: Number of unknowns of rigid bodies.
+        last_rank: Whether this rank has them.
+    """
+
+    def __init__(self, space: Any, rigid: int) -> None:
+        self.comm = space.mesh.comm
+        self.owned = int(3 * space.dofmap.index_map.size_local)
+        self.rigid = rigid
+        self.last_rank = bool(self.comm.rank == self.comm.size - 1)
+        self._nodal = fem.Function(space)  # owns the memory behind its PETSc vector
+        self._ghosted = self._nodal.x.petsc_vec
+
+    def new_vector(self) -> Vec:
+        """Vector of the unknowns, zero."""
+        vector = PETSc.Vec().create(self.comm)
+        vector.setSizes((self.owned + self.rigid * self.last_rank, None), bsize=3)
+        vector.setType(PETSc.Vec.Type.STANDARD)
+        return vector
+
+    def split(self, x: Vec) -> tuple[Floats, Floats]:
+        """Values at the nodes this rank owns, (nodes, 3), and of the rigid bodies on every rank."""
+        values = np.array(x.array_r)
+        rigid = values[self.owned :]
+        if self.rigid:
+            rigid = np.asarray(self.comm.bcast(rigid, root=self.comm.size - 1))
+        return values[: self.owned].reshape(-1, 3), rigid
+
+    def joined(self, nodal: Floats, rigid: Floats) -> Vec:
+        """Vector of the parts that `split` gives."""
+        x = self.new_vector()
+        x.array[: self.owned] = nodal.reshape(-1)
+        if self.last_rank:
+            x.array[self.owned :] = rigid
+        return x
+
+    def assembled(self, local: Floats) -> Floats:
+        """Owned entries of forces on local unknowns, with what other ranks add to them."""
+        with self._ghosted.localForm() as form:
+            form.array[:] = local
+        self._ghosted.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
+        return np.array(self._ghosted.array_r)
+
+    def norm(self, owned: Floats) -> float:
+        """Norm over all ranks of what each owns."""
+        return float(np.sqrt(self.comm.allreduce(float(owned @ owned))))

@@ -1,0 +1,71 @@
+"""What a problem goes on from, but for the history of its contacts."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from anisocontact.solver.accepted import AcceptedState
+from anisocontact.solver.attached import Attachments
+from anisocontact.solver.persistent import Arrays, Persistent
+from anisocontact.solver.rigid import RigidBodies
+from anisocontact.solver.stabilisation import Stabilisation
+
+#: In front of the names of what was when the step began.
+BEGUN = "begun_"
+
+
+class Memory:
+    """The accepted state now and as it was when the step began.
+
+    What a step prescribes goes on from the state in which it began, so both are needed.
+
+    Args:
+        accepted: Accepted state.
+        rigid: Rigid bodies.
+        attached: Elastic supports and springs.
+        stabilisation: Springs that keep bodies in reach.
+    """
+
+    def __init__(
+        self,
+        accepted: AcceptedState,
+        rigid: RigidBodies,
+        attached: Attachments,
+        stabilisation: Stabilisation,
+    ) -> None:
+        self._parts = (accepted, rigid, attached, stabilisation)
+        self.begin()
+
+    def begin(self) -> None:
+        """A step begins here."""
+        self._begun = self._now()
+
+    def persistent(self) -> tuple[Arrays, Arrays]:
+        """Values at the nodes this rank owns, and what all ranks have in common."""
+        now, begun = self._now(), self._begun
+        nodal, common = (
+            a | {f"{BEGUN}{name}": values for name, values in b.items()}
+            for a, b in zip(now, begun, strict=True)
+        )
+        return nodal, common
+
+    def restore(self, kept: Persistent, prefix: str = "") -> None:
+        """Go on from what `persistent` gave, or with `BEGUN` from where the step began."""
+        accepted, rigid, attached, stabilisation = self._parts
+        nodal, common = (
+            {n.removeprefix(prefix): v for n, v in values.items() if n.startswith(prefix)}
+            for values in (kept.nodal, kept.common)
+        )
+        accepted.restore(nodal, common)
+        stabilisation.energy = float(common["stabilisation"][0])
+        rigid.restore(common)
+        attached.restore(common["springs"])
+
+    def _now(self) -> tuple[Arrays, Arrays]:
+        accepted, rigid, attached, stabilisation = self._parts
+        nodal, common = accepted.persistent()
+        own = {
+            "springs": attached.persistent(),
+            "stabilisation": np.array([stabilisation.energy]),
+        }
+        return nodal, common | own | rigid.persistent()
