@@ -34,7 +34,7 @@ sanitize: setup ## the programs of tests/cpp under address and undefined-behavio
 	@echo 'int main() {}' | $${CXX:-c++} -x c++ -fsanitize=address,undefined -o /dev/null - 2>/dev/null || \
 	  { echo "error: $${CXX:-c++} has no sanitizers: install its libasan and libubsan" >&2; exit 1; }
 	@$(IN_VENV) cmake -S . -B build/sanitize -G Ninja -DANISOCONTACT_PYTHON=OFF -DANISOCONTACT_CPP_TESTS=ON \
-	  -DCMAKE_BUILD_TYPE=RelWithDebInfo -DANISOCONTACT_SANITIZE=address,undefined \
+	  -DCMAKE_BUILD_TYPE=Debug -DANISOCONTACT_SANITIZE=address,undefined \
 	  -DPython_EXECUTABLE="$(CURDIR)/.venv/bin/python" --log-level=WARNING
 	@$(IN_VENV) cmake --build build/sanitize
 	@UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(IN_VENV) ctest --test-dir build/sanitize --output-on-failure -E no_allocation
