@@ -155,3 +155,26 @@ def test_points_that_run_off_the_end_are_said(tmp_path, capsys):
         found = [line for line in lines.splitlines() if said in line]
         assert 1 <= len(found) <= 3
         assert found[0].strip().startswith("block.bottom on base.top: ")
+
+
+def test_the_side_that_has_the_directions(tmp_path):
+    """`directions_on` reaches the laws, and anything but a side is one line."""
+    directed = (
+        "friction = { coefficients = [0.3, 0.1], directions_on = 'slave', "
+        "directions = { kind = 'constant', vector = [1, 0, 0] } }"
+    )
+    case = tmp_path / "case.toml"
+    case.write_text(CASE.replace("friction = { coefficients = [0.3, 0.3] }", directed))
+    (contact,) = build(load(case)).problem.contacts
+    assert contact.interface.friction.directions_on == "slave"
+    assert contact.interface.adhesion.directions_on == "master"
+
+
+def test_directions_on_neither_side(tmp_path, capsys):
+    case = tmp_path / "case.toml"
+    wrong = 'friction = { coefficients = [0.3, 0.3], directions_on = "base" }'
+    case.write_text(CASE.replace("friction = { coefficients = [0.3, 0.3] }", wrong))
+    assert main(["check", str(case)]) == 2
+    line = capsys.readouterr().err
+    assert "contact[0].friction.directions_on" in line
+    assert all(word in line for word in ("base", "slave", "master"))

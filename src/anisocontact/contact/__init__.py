@@ -2,6 +2,7 @@
 
 from anisocontact.augmentation import Augmentation
 from anisocontact.contact.contact import Contact
+from anisocontact.contact.directions import facet_directions
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.initial import Overlap, check_start, initial_overlap
 from anisocontact.contact.multipliers import NotHeldError
@@ -29,6 +30,7 @@ __all__ = [
     "TwoHalfPass",
     "auto_penalty",
     "check_start",
+    "facet_directions",
     "facet_quadrature",
     "facet_size",
     "initial_overlap",

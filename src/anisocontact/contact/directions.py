@@ -1,0 +1,86 @@
+"""Direction fields from functions on the facets of a body."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import facet_sides
+from anisocontact.anisotropy import DirectionField, make_directions
+from anisocontact.contact.quadrature import facet_quadrature
+from anisocontact.errors import InputError
+from anisocontact.mesh import Model
+
+Floats = npt.NDArray[np.float64]
+
+#: Degree of the rule at whose points a function is sampled: nine on a quadrilateral.
+SAMPLES = 4
+
+
+def facet_directions(
+    model: Model,
+    group: str,
+    f: Callable[[Floats], npt.ArrayLike] | Any,
+    *,
+    interpolation: str = "smooth",
+) -> DirectionField:
+    """A field sampled on a facet group in the reference configuration.
+
+    Between the samples directions are interpolated as lines, v and -v being the same, so the group
+    should be smooth: give each side of a sharp edge a group and a field of its own.
+
+    Args:
+        model: Mesh with the group.
+        group: Facet group "body.group" that has the directions.
+        f: Positions (n, 3) to directions (n, 3), or to two of them (n, 2, 3) for axes that are not
+            orthogonal; or a DOLFINx function with three components on the same mesh. Directions
+            are projected on the facets.
+        interpolation: "smooth" (second order in the size of the facets) or "nearest".
+
+    Returns:
+        A field of the kind "tabulated-points", the same on every rank.
+
+    Raises:
+        InputError: No such group or none of its facets, or `f` gives anything but directions.
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"block": BoxSpec((1, 1, 0), (1, 1, 1), (2, 2, 1))})
+        >>> rings = facet_directions(model, "block.bottom", lambda x: np.cross((0, 0, 1), x))
+        >>> rings.name
+        'tabulated-points'
+    """
+    facets = np.sort(model.facets(group, "group"))
+    if model.count_facets(group) == 0:
+        raise InputError(f"facet group {group!r} has no facets", "group")
+    quadrature = facet_quadrature(model.space, facets, SAMPLES)
+    x = quadrature.reference
+    values = _of_function(model, facets, f, x) if hasattr(f, "function_space") else f(x)
+    values = np.asarray(values, dtype=np.float64)
+    if values.shape not in ((len(x), 3), (len(x), 2, 3)):
+        raise InputError(
+            f"an array of shape {values.shape} for {len(x)} positions given, "
+            f"({len(x)}, 3) or ({len(x)}, 2, 3) needed",
+            "f",
+        )
+    comm = model.mesh.comm
+    points, first, *second = (
+        np.concatenate(comm.allgather(part)).reshape(-1)
+        for part in (x, *np.moveaxis(values.reshape(len(x), -1, 3), 1, 0))
+    )
+    more = {"second_vectors": second[0]} if second else {}
+    return make_directions(
+        "tabulated-points", points=points, vectors=first, interpolation=interpolation, **more
+    )
+
+
+def _of_function(model: Model, facets: npt.NDArray[np.int32], f: Any, x: Floats) -> Floats:
+    """Values of a DOLFINx function at points of boundary facets, as many on each."""
+    if len(x) == 0:
+        return np.zeros((0, 3))
+    cells, _ = facet_sides(model.mesh, facets)
+    values = f.eval(x, np.repeat(cells, len(x) // len(cells)))
+    return np.asarray(values).reshape(len(x), -1)
