@@ -271,5 +271,5 @@ def test_options_read_late_are_seen(fe):
     problem.set_level(1.0, 1.0)
     assert not newton.solve(problem.accepted()).reason
     assert newton.snes.getKSP().getPC().getFactorMatrix().getMumpsIcntl(14) == 77
-    newton.close()
     assert not PETSc.Options("late_").hasName("mat_mumps_icntl_14")
+    newton.close()

@@ -97,8 +97,9 @@ def test_tangent_with_ties_and_planes(cell):
     from anisocontact.solver import Step
 
     planes = ["one.left", "two.front"]
+    supports = {"one.bottom": {"y": 0.0, "z": 0.0}, "two.bottom": {"x": 0.0, "z": 0.0}}
     made = problem([block("one", 1, cell), block("two", 2, cell, x=5.0)], symmetry=planes)
-    made.begin(Step("a", 1, {"one.bottom": {"z": 0.0}}, pressure={"one.top": 2.0}))
+    made.begin(Step("a", 1, supports, pressure={"one.top": 2.0}))
     made.set_level(1.0, 1.0)
     rng = np.random.default_rng(3)
     x, direction = made.new_vector(), made.new_vector()

@@ -109,7 +109,10 @@ def test_units(kind: Any, length: float, stress: float) -> None:
 
 
 def _twins(slave: str, master: str, kind: Any) -> np.ndarray:
-    """Forces on the upper of two equal blocks, meshes askew to each other, pressed and sheared."""
+    """Forces on the upper of two equal blocks, meshes askew to each other, pressed and sheared.
+
+    The lower one has the texture, whichever part it plays.
+    """
     model = build_box(
         {
             "upper": BoxSpec((0, 0, 0), (1, 1, 0.5), (3, 4, 1)),
@@ -117,10 +120,11 @@ def _twins(slave: str, master: str, kind: Any) -> np.ndarray:
         }
     )
     marks = make_directions("constant", vector=(2, 1, 0))
+    on = "master" if master.startswith("lower") else "slave"
     law = PairLaw(
         NormalLaw(penalty=2e4),
-        Adhesion(stiffness=(1e4, 4e3), directions=marks),
-        Friction(coefficients=(0.3, 0.12), directions=marks),
+        Adhesion(stiffness=(1e4, 4e3), directions=marks, directions_on=on),
+        Friction(coefficients=(0.3, 0.12), directions=marks, directions_on=on),
     )
     contact = kind(model, slave, master, law=law)
     rubber = make_material("neo-hookean", E=1000.0, nu=0.3)

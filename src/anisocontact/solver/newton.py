@@ -131,11 +131,12 @@ class Newton:
         self.snes.setFunction(self._function, problem.new_vector())
         self.snes.setJacobian(self._jacobian, problem.new_tangent())
         self.snes.setTolerances(rtol=TOLERANCE, atol=0.0, stol=0.0, max_it=MAX_ITERATIONS)
-        # Some options, such as those of MUMPS, are read when they are first needed.
+        # Some options, such as those of MUMPS, are read when they are first needed, in `solve`.
         self._database = Database(prefix, DEFAULTS | dict(options))
-        self.snes.setFromOptions()
-        self.snes.getKSP().setFromOptions()
-        self.snes.getKSP().getPC().setFromOptions()
+        with self._database:
+            self.snes.setFromOptions()
+            self.snes.getKSP().setFromOptions()
+            self.snes.getKSP().getPC().setFromOptions()
         self.snes.setConvergenceTest(self._converged)
         self.snes.setLineSearchPreCheck(self._damp)
         self._line_search = self.snes.getLineSearch().getType()
@@ -143,7 +144,6 @@ class Newton:
     def close(self) -> None:
         """Give back PETSc's objects, which hold this one and would keep it for ever."""
         self.snes.destroy()
-        self._database.clear()
 
     @property
     def residual(self) -> npt.NDArray[np.float64]:
@@ -187,7 +187,8 @@ class Newton:
         """Newton's method with the multipliers as they are."""
         self._residuals = []
         try:
-            self.snes.solve(None, x)
+            with self._database:
+                self.snes.solve(None, x)
         except PETSc.Error as error:
             if isinstance(error.__cause__, SingularError):
                 return NewtonResult(len(self._residuals) - 1, self._residuals, str(error.__cause__))
@@ -250,15 +251,23 @@ _TINY = float(np.finfo(np.float64).tiny)
 
 
 class Database:
-    """PETSc options, those of the user left as they are, until `clear`."""
+    """PETSc options while something reads them; those of the user come first and stay.
+
+    Args:
+        prefix: Prefix of the options.
+        options: Values by name, without prefix.
+    """
 
     def __init__(self, prefix: str, options: Mapping[str, OptionValue]) -> None:
         self._options = PETSc.Options(prefix)
-        self._set = {k: v for k, v in options.items() if not self._options.hasName(k)}
-        for name, value in self._set.items():
-            self._options.setValue(name, value)
+        self._given = dict(options)
+        self._set: list[str] = []
 
-    def clear(self) -> None:
-        """Take back what was set."""
+    def __enter__(self) -> None:
+        self._set = [name for name in self._given if not self._options.hasName(name)]
+        for name in self._set:
+            self._options.setValue(name, self._given[name])
+
+    def __exit__(self, *_: object) -> None:
         for name in self._set:
             self._options.delValue(name)

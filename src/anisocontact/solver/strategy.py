@@ -140,7 +140,7 @@ def _obstacles(
         yield "a body is held by contact alone"
     if problem.constraints:
         yield "nodes are tied to others"
-    given = [*options, *(name for name in PETSc.Options(prefix).getAll())]
+    given = [*options, *PETSc.Options(prefix).getAll()]
     linear = [name for name in given if name.startswith(("ksp_", "pc_", "mat_"))]
     if linear:
         yield f"the option {linear[0]} asks for a solver of the whole system"

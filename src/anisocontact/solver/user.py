@@ -124,7 +124,7 @@ class ContactProblem:
         return result.iterations
 
     def close(self) -> None:
-        """Give back the objects of PETSc and the options that were set."""
+        """Give back the objects of PETSc."""
         self.newton.close()
 
     @property
