@@ -55,7 +55,8 @@ def test_the_force_is_that_of_two_directions(tmp_path: Path) -> None:
 def test_swapped_sheets(tmp_path: Path) -> None:
     """With two half passes it does not matter which sheet is called the slave: 1e-9.
 
-    Angles count about the normal of the master, which points the other way in the swapped case.
+    Each sheet keeps its direction: what was on the master is on the slave. Angles count about the
+    normal of the master, which points the other way in the swapped case.
     """
     text = CASE.read_text().replace("increments = 4", "increments = 2")
     text = text.replace("increments = 20", "increments = 2").replace("x = 1.5", "x = 0.15")
@@ -64,6 +65,8 @@ def test_swapped_sheets(tmp_path: Path) -> None:
         'master = "lower.face"': 'master = "upper.face"',
         "angle_deg = 15": "angle_deg = -15",
         "angle_deg = -45": "angle_deg = 45",
+        'sliding_rule = "linear"': 'sliding_rule = "linear"\ndirections_on = "slave"\n'
+        'directions_second_on = "master"',
     }
     swapped = text
     for old, new in swaps.items():
