@@ -142,10 +142,10 @@ def test_a_run_that_is_killed_three_times(tmp_path):
     bitwise equal to an uninterrupted one: history, summary but for the wall time, and all fields.
     Tolerance: none, files are compared byte by byte.
     """
-    check(tmp_path, kills=3, increments=6, seed=1)
+    check(tmp_path, kills=3, increments=12, seed=1)
 
 
 @pytest.mark.slow
 def test_a_run_that_is_killed_twenty_times(tmp_path):
     """Twenty SIGKILLs in one run; otherwise as above."""
-    check(tmp_path, kills=20, increments=40, seed=2)
+    check(tmp_path, kills=20, increments=90, seed=2)
