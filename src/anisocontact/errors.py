@@ -24,7 +24,7 @@ class InputError(ValueError):
 
     def __init__(self, message: str, field: str = "") -> None:
         line = " ".join(message.split())
-        if field and not line.startswith(field):
+        if field and not line.startswith(f"{field}:"):
             line = f"{field}: {line}"
         super().__init__("".join(c if c.isprintable() else repr(c)[1:-1] for c in line))
         self.field = field

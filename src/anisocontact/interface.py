@@ -359,6 +359,10 @@ def _made[T](kind: Callable[..., T], *arguments: object) -> T:
     try:
         return kind(*arguments)
     except ValueError as error:
+        name, _, line = str(error).partition(": ")
+        # The values of an adhesion model are judged where it is made, in the core.
+        if any(name in named[1] for named in arguments if isinstance(named, tuple)):
+            raise InputError(line, field=f"adhesion.{name}") from None
         raise InputError(str(error)) from None
 
 

@@ -25,7 +25,7 @@ WRONG = [
     ("[0.3, 0.1]", "[true, 0.1]", "contact[0].friction.coefficients", "True"),
     ("[0.3, 0.1]", "[0.3, 0.1, 0.2]", "contact[0].friction.coefficients", "two"),
     ("[4e3, 1e3]", "[-4e3, 1e3]", "contact[0].adhesion.stiffness", ">= 0"),
-    ("[4e3, 1e3]", "[0, 0]", "contact[0]", "stiffness: 0 along both axes"),
+    ("[4e3, 1e3]", "[0, 0]", "contact[0].adhesion.stiffness", "0 along both axes"),
     ("penalty = 1e4", "penalty = 0", "contact[0].normal.penalty", "> 0"),
     ("penalty = 1e4", "penalty = inf", "contact[0].normal.penalty", "finite"),
     ("penalty = 1e4", 'penalty = "big"', "contact[0].normal.penalty", '"auto"'),

@@ -279,6 +279,17 @@ def test_a_view_of_a_closed_master():
     assert not ContactView(half, 0).closed
 
 
+def test_points_that_have_never_seen_their_master_are_seen_across_their_plane():
+    pyvista = pytest.importorskip("pyvista")
+    place = np.random.default_rng(4).uniform(size=(20, 3)) * [1.0, 0.0, 2.0]
+    points = pyvista.PolyData(place)
+    points["normal"], points["contact"] = np.zeros((20, 3)), np.zeros(20, dtype=int)
+    points["status"], points["area"] = np.zeros(20, dtype=int), np.ones(20)
+    view = ContactView(points, 0)
+    assert not view.closed
+    assert view.frame.names() == ("x", "z")
+
+
 def test_steps_and_moments_of_the_report(run):
     data = RunData(run.folder)
     assert [name for name, _ in data.steps] == ["press", "drag"]

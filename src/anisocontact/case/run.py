@@ -13,6 +13,7 @@ from types import FrameType
 from typing import Any, Protocol
 
 from anisocontact.case.build import Built
+from anisocontact.errors import InputError
 from anisocontact.results.checkpoint import NAME, Stored, distribute
 from anisocontact.results.files import WriteError
 from anisocontact.results.writer import Writer
@@ -147,6 +148,9 @@ def _solve(built: Built, writer: Writer, listener: Listener, text: str) -> tuple
         writer.log(f"stopped: {stop}")
         writer.log_culprits(stop.culprits)
         return "stopped", str(stop)
+    except InputError as error:  # a mistake that shows only where a step begins
+        writer.log(f"stopped: {error}")
+        return "stopped", str(error)
     except WriteError as error:
         return "stopped", str(error)
     return "done", ""

@@ -72,6 +72,10 @@ def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
         )
 
 
+# Half the squared sum of two unit normals below which they are opposite.
+_OPPOSITE = 1e-12
+
+
 @dataclass(frozen=True)
 class Frames:
     """Tangents of the master and its normal at n points.
@@ -99,9 +103,9 @@ class Frames:
     def turned_to(self, other: Frames, vectors: Floats) -> Floats:
         """Tangent vectors turned with the least rotation of the normal, (n, 3)."""
         both = self.normal + other.normal
-        share = np.einsum("nd,nd->n", vectors, other.normal) / (
-            1.0 + np.einsum("nd,nd->n", self.normal, other.normal)
-        )
+        # Opposite normals have no least rotation: there a tangent vector stays as it is.
+        squared = 0.5 * np.einsum("nd,nd->n", both, both)
+        share = np.einsum("nd,nd->n", vectors, other.normal) / np.maximum(squared, _OPPOSITE)
         return np.asarray(vectors - share[:, None] * both)
 
 

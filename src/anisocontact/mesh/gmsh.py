@@ -94,6 +94,8 @@ def _volumes(msh: MshFile, bodies: Sequence[str] | None) -> list[tuple[str, Bloc
     named = [(name, block) for name, block in _named(msh, 3) if len(block.nodes)]
     if not named:
         raise InputError("no named volume group; give each body a physical volume with a name")
+    if bodies is not None and not len(bodies):
+        raise InputError("no volume group is taken: the list of bodies is empty")
     known = list(dict.fromkeys(name for name, _ in named))
     for name in known:
         if "." in name:

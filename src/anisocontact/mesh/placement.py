@@ -10,6 +10,7 @@ import numpy as np
 
 from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import Floats, MeshArrays
+from anisocontact.mesh.quality import check_cells
 
 
 @dataclass(frozen=True)
@@ -83,11 +84,23 @@ class Placement:
         check_vector("move", self.move)
 
     def apply(self, mesh: MeshArrays) -> MeshArrays:
-        """The mesh where it is to stand."""
-        points = self.scale * mesh.points
-        if self.rotate is not None:
-            points = self.rotate.apply(points)
-        return replace(mesh, points=points + np.asarray(self.move, dtype=float))
+        """The mesh where it is to stand.
+
+        Raises:
+            InputError: Floating point cannot tell its nodes apart there.
+        """
+        if self == IN_PLACE:
+            return mesh
+        with np.errstate(over="ignore", invalid="ignore"):
+            points = self.scale * mesh.points
+            if self.rotate is not None:
+                points = self.rotate.apply(points)
+            placed = replace(mesh, points=points + np.asarray(self.move, dtype=float))
+        try:
+            check_cells(placed)
+        except InputError as error:
+            raise InputError(f"after scale, rotate and move {error}") from None
+        return placed
 
 
 def check_vector(field: str, given: Sequence[float]) -> None:

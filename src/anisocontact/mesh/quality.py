@@ -39,12 +39,15 @@ def check_cells(mesh: MeshArrays) -> None:
     Raises:
         InputError: Says what is wrong and how often.
     """
-    volumes = _corner_volumes(mesh)
-    if mesh.degree == 2:
-        volumes = np.hstack([volumes, _inner_volumes(mesh)])
+    # Sizes whose volumes overflow or underflow count as flat.
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        volumes = _corner_volumes(mesh)
+        if mesh.degree == 2:
+            volumes = np.hstack([volumes, _inner_volumes(mesh)])
     for name, cells in mesh.bodies.items():
         own = volumes[cells]
-        bad = int(np.sum(own.min(axis=1) <= FLAT * np.abs(own).max()))
+        sound = own.min(axis=1) > FLAT * np.abs(own).max()
+        bad = len(own) - int(sound.sum())
         if bad:
             raise InputError(f"body {name!r}: {bad} of {len(own)} cells are flat or inverted")
     shared = _facets_of_more_than_two(mesh)

@@ -30,9 +30,9 @@ def at_start(contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]]) ->
             place = ", ".join(f"{v:.4g}" for v in overlap.point)
             found.append(
                 f"{_pair(entry)}: the bodies overlap by {overlap.depth:.3g} at the start, "
-                f"{overlap.depth / entry['facet_size']:.0%} of the facet size, at {overlap.count} "
-                f"points, most at ({place}); the first increment pushes them apart, adjust = true "
-                "lets them just touch"
+                f"{100.0 * overlap.depth / entry['facet_size']:.2g}% of the facet size, "
+                f"at {overlap.count} points, most at ({place}); the first increment pushes them "
+                "apart, adjust = true lets them just touch"
             )
     return found
 

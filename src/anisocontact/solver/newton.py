@@ -186,14 +186,17 @@ class Newton:
     def _equilibrium(self, x: Vec) -> NewtonResult:
         """Newton's method with the multipliers as they are."""
         self._residuals = []
+        # PETSc leaves the iterate locked where a callback raises: that is not to be the caller's.
+        iterate = x.copy()
         try:
             with self._database:
-                self.snes.solve(None, x)
+                self.snes.solve(None, iterate)
         except PETSc.Error as error:
             if isinstance(error.__cause__, SingularError):
                 return NewtonResult(len(self._residuals) - 1, self._residuals, str(error.__cause__))
             # What a callback raises (an interrupt too) comes wrapped by PETSc.
             raise error.__cause__ or error from None
+        iterate.copy(x)
         reason = self.snes.getConvergedReason()
         text = "" if reason > 0 else self._explain(reason)
         return NewtonResult(self.snes.getIterationNumber(), self._residuals, text)

@@ -100,11 +100,16 @@ class ContactView:
     def _seen_against(self) -> Floats:
         """Mean normal, or an axis of space where the master is closed and the mean means nothing.
 
-        It is the axis that most normals are along, the last one of several.
+        It is the axis that most normals are along, the last one of several. Points far from a
+        meshed master have no normal; where none has one, it is that of the plane through them.
         """
         normal = self.data["normal"]
+        if not normal.any():
+            self.closed = False
+            away = self.position - self.position.mean(axis=0)
+            across = np.linalg.svd(away, full_matrices=False)[2][-1]
+            return np.asarray(across * np.sign(across[np.argmax(np.abs(across))]))
         total = np.asarray(normal.sum(axis=0))
-        # Points far from a meshed master have none.
         self.closed = bool(np.linalg.norm(total) < CLOSED * np.linalg.norm(normal, axis=1).sum())
         if not self.closed:
             return total
