@@ -5,7 +5,7 @@
 
 IN_VENV := tools/venv-run
 EXAMPLE := milled_block
-N := 12
+N := 12 24 36
 CPP := $(shell find cpp src tests -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
 
 help: ## list the targets
@@ -44,7 +44,7 @@ format: setup ## format Python and C++
 	@$(IN_VENV) ruff format --quiet .
 	@[ -z "$(CPP)" ] || $(IN_VENV) clang-format -i $(CPP)
 
-bench: setup ## block on plane and block on block in this code and in others, N="12 24"
+bench: setup ## all benchmarks, this code and others; N="12 24" for sizes
 	@$(IN_VENV) python benchmarks/run.py $(N) --docs
 
 docs: setup ## build the documentation in docs/_build/html

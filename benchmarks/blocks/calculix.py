@@ -1,4 +1,7 @@
-"""CalculiX: surface-to-surface penalty contact; Debian has it as `calculix-ccx`."""
+"""CalculiX: surface-to-surface penalty contact; Debian has it as `calculix-ccx`.
+
+Its own tolerance of balance holds (0.5 % of the mean force), trilinear hexahedra C3D8, SPOOLES.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from blocks.code import Increment
 from blocks.problem import (
     ALONG,
     DOWN,
@@ -25,6 +29,8 @@ from blocks.problem import (
     upper,
 )
 
+kinds = KINDS
+
 
 def command(kind: str, n: int, folder: Path) -> list[str]:
     """Write the input and say how to run it."""
@@ -32,23 +38,28 @@ def command(kind: str, n: int, folder: Path) -> list[str]:
     return ["ccx", "case"]
 
 
-def available() -> str:
-    """Version, empty if it is not installed."""
+def version() -> str:
+    """Its version; empty where it is not installed."""
     if shutil.which("ccx") is None:
         return ""
     found = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False)
-    version = re.search(r"Version\s+(\S+)", found.stdout)
-    return f"CalculiX {version.group(1)}" if version else "CalculiX"
+    number = re.search(r"Version\s+(\S+)", found.stdout)
+    return f"CalculiX {number.group(1)}" if number else "CalculiX"
 
 
-def forces(folder: Path) -> list[tuple[float, float]]:
-    """Tangential force and normal force on the top after each increment."""
-    found = []
+def increments(folder: Path) -> list[Increment]:
+    """Forces on the top from `case.dat`, iterations from `case.sta`."""
+    forces, iterations = [], []
     for line in (folder / "case.dat").read_text().splitlines():
         numbers = line.split()
         if len(numbers) == 3 and all(re.fullmatch(r"-?\d\.\d+E[+-]\d+", v) for v in numbers):
-            found.append((float(numbers[0]), -float(numbers[2])))
-    return found
+            forces.append((float(numbers[0]), -float(numbers[2])))
+    for line in (folder / "case.sta").read_text().splitlines():
+        numbers = line.split()
+        # step, increment, attempt, iterations, three times
+        if len(numbers) == 7 and numbers[0].isdigit():
+            iterations.append(int(numbers[3]))
+    return [Increment(*force, k) for force, k in zip(forces, iterations, strict=True)]
 
 
 def _lines(kind: str, n: int) -> Iterable[str]:

@@ -7,6 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+from blocks.code import Increment
 from blocks.problem import (
     ALONG,
     DOWN,
@@ -20,6 +21,8 @@ from blocks.problem import (
     lower,
     upper,
 )
+
+kinds = KINDS
 
 
 def case_text(kind: str, n: int, strategy: str = "auto") -> str:
@@ -66,15 +69,19 @@ def command(kind: str, n: int, folder: Path) -> list[str]:
     return [sys.executable, "-m", "anisocontact", "run", "case.toml", "-o", "out", "--overwrite"]
 
 
-def forces(folder: Path) -> list[tuple[float, float]]:
-    """Tangential and normal force of the contact after each increment."""
+def increments(folder: Path) -> list[Increment]:
+    """Force of the contact and iterations from `history.csv`."""
     with (folder / "out" / "history.csv").open() as file:
         rows = list(csv.DictReader(file))
-    return [(-float(r["contacts.0.force.x"]), float(r["contacts.0.force.z"])) for r in rows]
+    force = "contacts.0.force."
+    return [
+        Increment(-float(r[force + "x"]), float(r[force + "z"]), int(r["newton_iterations"]))
+        for r in rows
+    ]
 
 
-def available() -> str:
-    """Version."""
+def version() -> str:
+    """Its version."""
     found = subprocess.run(
         [sys.executable, "-m", "anisocontact", "--version"],
         capture_output=True,

@@ -1,0 +1,110 @@
+"""Every code on every problem, one after the other."""
+
+from __future__ import annotations
+
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import measure
+from about import made
+from records import Record
+
+from blocks import calculix, ours
+from blocks.code import Code, Increment, Script
+from blocks.problem import ALONG, DRAGS, KINDS, PRESSES, lower, upper
+
+PART = "blocks"
+OURS = "anisocontact"
+# it does not know its own version, Debian does
+_GETFEM = """
+import getfem, shutil, subprocess
+query = ["dpkg-query", "-W", "-f", "${Version}", "python3-getfem"]
+print(subprocess.check_output(query, text=True) if shutil.which(query[0]) else "unknown")
+"""
+CODES: dict[str, Code] = {
+    OURS: ours,
+    "CalculiX": calculix,
+    "NGSolve": Script("blocks.ngsolve_block", "import ngsolve; print(ngsolve.__version__)"),
+    "FElupe": Script(
+        "blocks.felupe_block",
+        "import felupe, pypardiso; print(felupe.__version__)",
+        KINDS[:1],
+    ),
+    "GetFEM": Script(
+        "blocks.getfem_block",
+        _GETFEM,
+        KINDS[:1],
+    ),
+}
+THREADS = 2
+#: Drag at which the tangential force is compared while part of the face still sticks.
+PARTLY = 0.006
+LIMIT = 3600.0
+
+
+def unknowns(kind: str, n: int) -> int:
+    """Three for every node of the bodies that deform."""
+    boxes = [upper(n)] + [lower(n)] * (kind == KINDS[1])
+    return sum(3 * (a + 1) * (b + 1) * (c + 1) for a, b, c in boxes)
+
+
+def forces(increments: Sequence[Increment]) -> dict[str, float]:
+    """Resultants to compare, and iterations.
+
+    Raises:
+        ValueError: Increments are missing.
+    """
+    if len(increments) != PRESSES + DRAGS:
+        raise ValueError(f"{len(increments)} increments given, {PRESSES + DRAGS} needed")
+    partly = PRESSES - 1 + round(DRAGS * PARTLY / ALONG)
+    return {
+        "iterations": float(sum(one.iterations for one in increments)),
+        "normal force pressed": increments[PRESSES - 1].normal,
+        "tangential force partly": abs(increments[partly].tangential),
+        "tangential force at the end": abs(increments[-1].tangential),
+        "normal force at the end": increments[-1].normal,
+    }
+
+
+def one(name: str, kind: str, n: int, limit: float = LIMIT) -> Record:
+    """Run one code on one problem; a record without values says why."""
+    code = CODES[name]
+    about = made() | {"version": code.version(), "threads": str(THREADS)}
+    with tempfile.TemporaryDirectory() as there:
+        folder = Path(there)
+        paths = {"PYTHONPATH": _paths()}
+        used = measure.run(code.command(kind, n, folder), folder, THREADS, limit, paths)
+        values, note = used.values | {"unknowns": float(unknowns(kind, n))}, ""
+        try:
+            values |= forces(code.increments(folder))
+        except (OSError, ValueError) as error:
+            last = (folder / "stdout").read_text().strip().splitlines()[-1:]
+            note = f"stopped after {used.wall:.0f} s: {error} {' '.join(last)}"
+            if used.wall >= limit:
+                note = f"longer than {limit:.0f} s"
+    return Record(PART, kind, n, name, {} if note else values, about, note)
+
+
+def everything(
+    sizes: Sequence[int], kinds: Sequence[str], names: Sequence[str], limit: float
+) -> Iterator[Record]:
+    """All runs of the codes that are installed, the smallest first."""
+    for name in names:
+        if not CODES[name].version():
+            print(f"{name}: not installed, left out", file=sys.stderr)
+    present = [name for name in names if CODES[name].version()]
+    for n in sizes:
+        for kind in kinds:
+            for name in present:
+                if kind in CODES[name].kinds:
+                    yield one(name, kind, n, limit)
+
+
+def _paths() -> str:
+    """Where the scripts find the problem and this Python finds this code."""
+    import anisocontact
+
+    here, package = Path(__file__).parents[1], Path(anisocontact.__file__).parents[1]
+    return f"{here}:{package}" if package.name == "src" else str(here)
