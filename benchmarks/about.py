@@ -22,6 +22,14 @@ def commit() -> str:
     return done.stdout.strip() or "unknown"
 
 
+def paths() -> str:
+    """`PYTHONPATH` for scripts of the benchmarks: this folder, and this code's sources if used."""
+    import anisocontact
+
+    here, package = Path(__file__).parent, Path(anisocontact.__file__).parents[1]
+    return f"{here}:{package}" if package.name == "src" else str(here)
+
+
 def compiler() -> str:
     """The compiler that the core itself names."""
     from anisocontact import _core

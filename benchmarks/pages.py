@@ -3,32 +3,60 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from string import ascii_lowercase
 
+import finite_strain.runs as finite
 from about import ROOT
 from blocks import runs, show
+from parts import PRINTED, SCRIPTS
 from records import KEPT, Record, of
 
 FIGURES = ROOT / "docs" / "figures"
 
 
+def about(record: Record) -> str:
+    """What a record was made with, in a line."""
+    made = record.made
+    return (
+        f"{made['date']}, commit {made['commit']}, core compiled by {made['compiler']}, "
+        f"Python {made['python']}, {made['processor']}, {made['cores']} cores"
+    )
+
+
 def letters(records: Sequence[Record]) -> dict[str, str]:
     """A letter for everything that records were made with, oldest first."""
-    texts = sorted({show.about(record) for record in records})
+    texts = sorted({about(record) for record in records})
     return {text: ascii_lowercase[k % 26] * (1 + k // 26) for k, text in enumerate(texts)}
 
 
-def legend(marks: dict[str, str]) -> str:
-    """What the letters stand for."""
-    return "\n".join(f"- {mark}: {text}" for text, mark in marks.items()) + "\n"
+def legend(marks: dict[str, str], records: Sequence[Record]) -> str:
+    """What the letters of some records stand for."""
+    used = {about(record) for record in records}
+    return "\n".join(f"- {mark}: {text}" for text, mark in marks.items() if text in used) + "\n"
 
 
-def write(records: Sequence[Record]) -> None:
-    """Write everything beside the records and into the figures."""
+def write(records: Sequence[Record], tables: Path = KEPT.parent, figures: Path = FIGURES) -> None:
+    """Write everything: tables as `*.md.in`, which the page includes.
+
+    Args:
+        records: All that is known.
+        tables: Folder of the tables.
+        figures: Folder of the pictures.
+    """
+    marks = letters(records)
+    marked = {record.key: marks[about(record)] for record in records}
     blocks = of(runs.PART, records)
     if blocks:
-        marks = letters(blocks)
-        said = f"{show.versions(blocks)}; {runs.THREADS} threads.\n\n{legend(marks)}"
-        table = f"{show.table(blocks, marks)}\n{said}"
-        (KEPT.parent / "blocks.md.in").write_text(table)
-        show.picture(blocks, FIGURES / "benchmarks-blocks.png")
+        said = f"{show.versions(blocks)}; {runs.THREADS} threads.\n\n{legend(marks, blocks)}"
+        (tables / "blocks.md.in").write_text(f"{show.table(blocks, marked)}\n{said}")
+        show.picture(blocks, figures / "benchmarks-blocks.png")
+    for part in (finite.PART, finite.RANKS):
+        found = of(part, records)
+        if found:
+            text = f"{finite.table(found, marked)}\n{legend(marks, found)}"
+            (tables / f"{part.replace(' ', '-')}.md.in").write_text(text)
+    for record in of(PRINTED, records):
+        head = f"`python benchmarks/{record.case}.py`: {SCRIPTS[record.case]}. {about(record)}."
+        body = record.note or record.table
+        (tables / f"{record.case.replace('_', '-')}.md.in").write_text(f"{head}\n\n{body}\n")

@@ -2,9 +2,60 @@
 
 from __future__ import annotations
 
+import sys
+import tempfile
 from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
 
+import finite_strain.runs
+import measure
+from about import made, paths
 from records import Record
 
+PRINTED = "printed"
+#: Scripts that print tables: what they measure.
+SCRIPTS = {
+    "growth": "time and memory against contact unknowns, points and steps",
+    "kernel_rates": "points per second and core of laws, projections and interfaces",
+    "pair_rates": "slave points per second and core of two meshed sheets",
+    "search": "closest points per second and core on a sheet of facets",
+}
+
+
+def printed(name: str, limit: float) -> Iterator[Record]:
+    """Run a script beside this one and keep the tables that it prints."""
+    script = Path(__file__).with_name(f"{name}.py")
+    if not script.exists():
+        print(f"{script.name}: not there, left out", file=sys.stderr)
+        return
+    with tempfile.TemporaryDirectory() as there:
+        folder = Path(there)
+        command = [sys.executable, str(script)]
+        used = measure.run(command, folder, 1, limit, {"PYTHONPATH": paths()})
+        lines = (folder / "stdout").read_text().splitlines()
+    table = tables(lines)
+    note = "" if used.status == 0 and table else f"stopped: {' '.join(lines[-1:])}"
+    yield Record(PRINTED, name, 0, "anisocontact", used.values, made(), note, table)
+
+
+def tables(lines: list[str]) -> str:
+    r"""The Markdown tables among lines, with an empty line between two.
+
+    Example:
+        >>> tables(["hello", "| a |", "|---|", "", "| b |"])
+        '| a |\n|---|\n\n| b |'
+    """
+    kept = [line if line.startswith("|") else "" for line in lines]
+    text = "\n".join(kept).strip("\n")
+    while "\n\n\n" in text:
+        text = text.replace("\n\n\n", "\n\n")
+    return text
+
+
 #: Runs a part; its argument is the time that a process may take, s.
-PARTS: dict[str, Callable[[float], Iterator[Record]]] = {}
+PARTS: dict[str, Callable[[float], Iterator[Record]]] = {
+    "finite-strain": finite_strain.runs.everything,
+    "ranks": finite_strain.runs.on_ranks,
+    **{name: partial(printed, name) for name in SCRIPTS},
+}

@@ -28,6 +28,7 @@ class Record:
         values: What was measured, by name with unit.
         made: Commit, versions and machine, see `about.made`.
         note: Why there are no values, if there are none.
+        table: Lines of Markdown, where a benchmark makes a table of its own.
     """
 
     part: str
@@ -37,6 +38,7 @@ class Record:
     values: dict[str, float]
     made: dict[str, str] = field(default_factory=dict)
     note: str = ""
+    table: str = ""
 
     @property
     def key(self) -> tuple[str, str, int, str]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import measure
-from about import made
+from about import made, paths
 from records import Record
 
 from blocks import calculix, ours
@@ -74,8 +74,8 @@ def one(name: str, kind: str, n: int, limit: float = LIMIT) -> Record:
     about = made() | {"version": code.version(), "threads": str(THREADS)}
     with tempfile.TemporaryDirectory() as there:
         folder = Path(there)
-        paths = {"PYTHONPATH": _paths()}
-        used = measure.run(code.command(kind, n, folder), folder, THREADS, limit, paths)
+        where = {"PYTHONPATH": paths()}
+        used = measure.run(code.command(kind, n, folder), folder, THREADS, limit, where)
         values, note = used.values | {"unknowns": float(unknowns(kind, n))}, ""
         try:
             values |= forces(code.increments(folder))
@@ -100,11 +100,3 @@ def everything(
             for name in present:
                 if kind in CODES[name].kinds:
                     yield one(name, kind, n, limit)
-
-
-def _paths() -> str:
-    """Where the scripts find the problem and this Python finds this code."""
-    import anisocontact
-
-    here, package = Path(__file__).parents[1], Path(anisocontact.__file__).parents[1]
-    return f"{here}:{package}" if package.name == "src" else str(here)

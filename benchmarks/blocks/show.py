@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from records import Record
@@ -34,12 +34,12 @@ HEADS = (
 )
 
 
-def table(records: Sequence[Record], marks: dict[str, str]) -> str:
+def table(records: Sequence[Record], marks: Mapping[tuple[str, str, int, str], str]) -> str:
     """One table for each problem.
 
     Args:
         records: Runs of blocks.
-        marks: Letter of what each record was made with, by the text of it.
+        marks: By key of a record, the letter of what it was made with.
     """
     parts = []
     for kind in KINDS:
@@ -50,7 +50,7 @@ def table(records: Sequence[Record], marks: dict[str, str]) -> str:
             "|" + "---|" * (3 + len(HEADS)),
         ]
         for r in sorted((r for r in records if r.case == kind), key=lambda r: (r.n, _order(r))):
-            mark = marks[about(r)]
+            mark = marks[r.key]
             if r.note:
                 lines.append(f"| {r.n} | | {r.code} | {r.note} |" + " |" * 8 + f" {mark} |")
                 continue
@@ -62,15 +62,6 @@ def table(records: Sequence[Record], marks: dict[str, str]) -> str:
             lines.append(f"| {r.n} | {r.values['unknowns']:.0f} | {r.code} | {found} | {mark} |")
         parts.append("\n".join(lines))
     return "\n\n".join(parts) + "\n"
-
-
-def about(record: Record) -> str:
-    """What a record was made with, in a line."""
-    made = record.made
-    return (
-        f"{made['date']}, commit {made['commit']}, core compiled by {made['compiler']}, "
-        f"Python {made['python']}, {made['processor']}, {made['cores']} cores"
-    )
 
 
 def versions(records: Sequence[Record]) -> str:
@@ -100,7 +91,8 @@ def picture(records: Sequence[Record], path: Path) -> None:
             ax.grid(True, which="both", alpha=0.3)
             ax.set_ylabel(label)
         axes[0, column].set_title(f"block on {kind}")
-        axes[0, column].legend()
+        if axes[0, column].lines:
+            axes[0, column].legend()
         axes[1, column].set_xlabel("unknowns")
     figure.savefig(path, dpi=110)
     pyplot.close(figure)

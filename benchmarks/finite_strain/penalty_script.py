@@ -1,0 +1,174 @@
+"""Block on plane in a plain DOLFINx script: `python -m finite_strain.penalty_script plane n`.
+
+Contact is a form of its own, so that its time can be told from that of the material. The elastic
+slip at the 2 x 2 points of a face is kept as a discontinuous trilinear function, whose values at
+the four corners of the face give those at the points.
+"""
+
+from __future__ import annotations
+
+import anisocontact._fenicsx  # isort: skip  # noqa: F401  (loads the PETSc of the wheel)
+
+import sys
+import time
+from typing import Any
+
+import basix
+import numpy as np
+import ufl
+from mpi4py import MPI
+
+from finite_strain.problem import FRICTION, PENALTY, POISSON, YOUNG, Clock, path, show
+
+from dolfinx import fem, mesh
+from dolfinx.fem import petsc
+from petsc4py import PETSc
+
+TOLERANCE, ITERATIONS, TINY = 1e-8, 25, 1e-30
+
+
+class History:
+    """Elastic slip at the points of quadrature, two components."""
+
+    def __init__(self, grid: mesh.Mesh, facets: np.ndarray, slip: Any, space: Any) -> None:
+        self.values = fem.Function(space)
+        grid.topology.create_connectivity(2, 3)
+        cells = grid.topology.connectivity(2, 3)
+        self._cells = np.array([cells.links(f)[0] for f in facets], dtype=np.int32)
+        plane, _ = basix.make_quadrature(basix.CellType.quadrilateral, 2)
+        points = np.column_stack([plane, np.zeros(len(plane))])
+        corners = space.element.basix_element.tabulate(0, points)[0, :, :4, 0]
+        self._to_corners = np.linalg.inv(corners)
+        self._slip = fem.Expression(slip(self.values), points)
+        self._mesh, self._dofs = grid, space.dofmap.list[self._cells][:, :4]
+
+    def advance(self) -> None:
+        """Take the elastic slip of now as the history."""
+        found = self._slip.eval(self._mesh, self._cells).reshape(len(self._cells), 4, 2)
+        self.values.x.array.reshape(-1, 2)[self._dofs] = np.einsum(
+            "cp,mpi->mci", self._to_corners, found
+        )
+
+
+class Block:
+    """Forms, supports and history."""
+
+    def __init__(self, n: int) -> None:
+        corners = [np.array([0.0, 0.0, 0.0]), np.array([1.0, 1.0, 0.5])]
+        grid = mesh.create_box(MPI.COMM_WORLD, corners, [n, n, n // 2], mesh.CellType.hexahedron)
+        space = fem.functionspace(grid, ("Lagrange", 1, (3,)))
+        self.u, self.before = fem.Function(space), fem.Function(space)
+        top = mesh.locate_entities_boundary(grid, 2, lambda x: np.isclose(x[2], 0.5))
+        bottom = mesh.locate_entities_boundary(grid, 2, lambda x: np.isclose(x[2], 0.0))
+        self.top = fem.locate_dofs_topological(space, 2, top)
+        self.moved = fem.Constant(grid, np.zeros(3))
+        self.held = fem.dirichletbc(self.moved, self.top, space)
+        slips = fem.functionspace(grid, ("DQ", 1, (2,)))
+        self.history = History(grid, bottom, self._slip, slips)
+        v, du = ufl.TestFunction(space), ufl.TrialFunction(space)
+        tags = mesh.meshtags(grid, 2, bottom, np.full(len(bottom), 1, dtype=np.int32))
+        ds = ufl.Measure("ds", domain=grid, subdomain_data=tags, metadata={"quadrature_degree": 2})
+        works = (self._material(v), self._contact(v) * ds(1))
+        self.works = [fem.form(work) for work in works]
+        self.tangents = [fem.form(ufl.derivative(work, self.u, du)) for work in works]
+
+    def _material(self, v: Any) -> Any:
+        gradient = ufl.variable(ufl.Identity(3) + ufl.grad(self.u))
+        shear = YOUNG / 2 / (1 + POISSON)
+        lame = 2 * shear * POISSON / (1 - 2 * POISSON)
+        log_j = ufl.ln(ufl.det(gradient))
+        energy = shear / 2 * (ufl.tr(gradient.T * gradient) - 3 - 2 * log_j) + lame / 2 * log_j**2
+        return ufl.derivative(energy * ufl.dx(metadata={"quadrature_degree": 2}), self.u, v)
+
+    def _pressure(self) -> Any:
+        gap = (ufl.SpatialCoordinate(self.u.function_space.mesh) + self.u)[2]
+        return ufl.conditional(gap < 0, -PENALTY * gap, 0.0)
+
+    def _slip(self, history: Any) -> Any:
+        """Elastic slip of now: Coulomb's law by return mapping."""
+        trial = history + ufl.as_vector([self.u[i] - self.before[i] for i in range(2)])
+        size = ufl.sqrt(ufl.inner(trial, trial) + TINY)
+        limit = FRICTION * self._pressure() / PENALTY
+        return ufl.conditional(size <= limit, trial, limit / size * trial)
+
+    def _contact(self, v: Any) -> Any:
+        slip = self._slip(self.history.values)
+        gradient = ufl.Identity(3) + ufl.grad(self.u)
+        normal = ufl.FacetNormal(self.u.function_space.mesh)
+        area = ufl.det(gradient) * ufl.sqrt(ufl.inner(*[ufl.inv(gradient).T * normal] * 2))
+        return area * (PENALTY * (slip[0] * v[0] + slip[1] * v[1]) - self._pressure() * v[2])
+
+
+class Newton:
+    """Newton's method with a direct solver; every part of it is timed."""
+
+    def __init__(self, block: Block) -> None:
+        self.block, self.clock = block, Clock()
+        self.matrix = petsc.create_matrix(block.tangents[0])
+        self.force = self.matrix.createVecLeft()
+        self.solver = PETSc.KSP().create(MPI.COMM_WORLD)
+        self.solver.setOperators(self.matrix)
+        self.solver.setType("preonly")
+        self.solver.getPC().setType("lu")
+        self.solver.getPC().setFactorSolverType("mumps")
+
+    def residual(self) -> None:
+        """Forces on the nodes."""
+        self.force.set(0.0)
+        for name, work in zip(("assembly", "contact"), self.block.works, strict=True):
+            with self.clock.phase(name):
+                petsc.assemble_vector(self.force, work)
+
+    def tangent(self) -> None:
+        """Matrix with unit rows of the supports."""
+        self.matrix.zeroEntries()
+        for name, tangent in zip(("assembly", "contact"), self.block.tangents, strict=True):
+            with self.clock.phase(name):
+                petsc.assemble_matrix(self.matrix, tangent)
+                self.matrix.assemble()
+
+    def solve(self) -> tuple[int, np.ndarray]:
+        """Balance; iterations and force on the top."""
+        block, rows = self.block, 3 * self.block.top[:, None] + np.arange(3)
+        for iteration in range(ITERATIONS):
+            self.residual()
+            force = self.force.array.copy()
+            at_top = force[rows]
+            force[rows] = block.u.x.array[rows] - block.moved.value
+            moved = np.abs(force[rows]).max() < 1e-12
+            if moved and np.linalg.norm(force) < TOLERANCE * np.linalg.norm(at_top):
+                return iteration, at_top.sum(axis=0)
+            self.tangent()
+            with self.clock.phase("assembly"):
+                self.matrix.zeroRows(rows.ravel().astype(PETSc.IntType), 1.0)
+            self.force.array[:] = force
+            with self.clock.phase("linear"):
+                step = self.force.duplicate()
+                self.solver.solve(self.force, step)
+            block.u.x.array[:] -= step.array
+        raise SystemExit("no balance")
+
+
+def main(n: int) -> None:
+    """Solve and print."""
+    block = Block(n)
+    newton, iterations, forces = Newton(block), 0, []
+    start = time.perf_counter()
+    for number, (x, z) in enumerate(path()):
+        last = block.u.x.array.copy()
+        # the increment goes on as the last one did
+        if number > 0:
+            block.u.x.array[:] += last - block.before.x.array
+        block.before.x.array[:] = last
+        block.moved.value[:] = x, 0.0, z
+        spent, force = newton.solve()
+        with newton.clock.phase("contact"):
+            block.history.advance()
+        iterations += spent
+        forces.append((force[0], -force[2]))
+    solving = time.perf_counter() - start
+    show(newton.clock, solving, iterations, forces, len(block.u.x.array))
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[2]))

@@ -1,0 +1,148 @@
+"""The benchmarks' own parts: what other codes print is read, records are kept, tables are made."""
+
+import sys
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+BENCHMARKS = Path(__file__).parents[2] / "benchmarks"
+DAT = """
+ total force (fx,fy,fz) for set TOP and time  0.2000000E+00
+
+        8.335455E-14  8.336517E-14 -2.641706E+00
+
+ total force (fx,fy,fz) for set TOP and time  0.4000000E+00
+
+        1.346188E-10  1.722636E-10 -5.254782E+00
+"""
+STA = """SUMMARY OF JOB INFORMATION
+  STEP      INC     ATT  ITRS     TOT TIME     STEP TIME      INC TIME
+     1          1     1     7  0.200000E+00  0.200000E+00  0.200000E+00
+     1          2     1     4  0.400000E+00  0.400000E+00  0.200000E+00
+"""
+
+
+@pytest.fixture
+def benchmarks(monkeypatch: pytest.MonkeyPatch):
+    """Imports a module of the benchmarks; none of them stays."""
+    monkeypatch.syspath_prepend(str(BENCHMARKS))
+    before = set(sys.modules)
+
+    def module(name: str) -> ModuleType:
+        __import__(name)
+        return sys.modules[name]
+
+    yield module
+    for name in set(sys.modules) - before:
+        if str(BENCHMARKS) in str(getattr(sys.modules[name], "__file__", "")):
+            del sys.modules[name]
+
+
+def record(benchmarks, code: str, wall: float, note: str = "", date: str = "2026-01-01"):
+    made = dict.fromkeys(("commit", "compiler", "python", "processor", "cores", "version"), "x")
+    names = ("processor s", "peak MB", "unknowns", "iterations", "normal force pressed")
+    values = dict.fromkeys((*names, "tangential force partly", "tangential force at the end"), 1.0)
+    values |= {"wall s": wall}
+    kept = benchmarks("records").Record
+    return kept("blocks", "plane", 12, code, {} if note else values, made | {"date": date}, note)
+
+
+def test_calculix_output_is_read(benchmarks, tmp_path):
+    (tmp_path / "case.dat").write_text(DAT)
+    (tmp_path / "case.sta").write_text(STA)
+    found = benchmarks("blocks.calculix").increments(tmp_path)
+    assert [(one.normal, one.iterations) for one in found] == [(2.641706, 7), (5.254782, 4)]
+
+
+def test_calculix_input_names_every_cell_and_facet(benchmarks, tmp_path):
+    benchmarks("blocks.calculix").command("block", 4, tmp_path)
+    text = (tmp_path / "case.inp").read_text()
+    # 4 x 4 x 2 cells on 6 x 6 x 1
+    assert text.count(", S1\n") == 16
+    assert text.count(", S2\n") == 36
+    assert "\n68, " in text
+
+
+def test_resultants_need_every_increment(benchmarks):
+    runs, code = benchmarks("blocks.runs"), benchmarks("blocks.code")
+    whole = [code.Increment(0.1 * k, -0.2 * k, 2) for k in range(15)]
+    found = runs.forces(whole)
+    # after 5 increments of pressing; the third of the drag is at 0.006
+    assert found["normal force pressed"] == pytest.approx(-0.8)
+    assert found["tangential force partly"] == pytest.approx(0.7)
+    assert found["iterations"] == 30
+    with pytest.raises(ValueError, match="14 increments given, 15 needed"):
+        runs.forces(whole[:-1])
+
+
+def test_a_code_that_is_absent_has_no_version_and_is_left_out(benchmarks, monkeypatch, capsys):
+    code, runs = benchmarks("blocks.code"), benchmarks("blocks.runs")
+    monkeypatch.setenv("BENCH_PYTHON", "/nowhere/python")
+    absent = code.Script("blocks.none", "import no_such_code")
+    assert absent.version() == ""
+    monkeypatch.setitem(runs.CODES, "none", absent)
+    assert list(runs.everything([4], ["plane"], ["none"], 1.0)) == []
+    assert "none: not installed, left out" in capsys.readouterr().err
+
+
+def test_the_time_limit_ends_a_process(benchmarks, tmp_path):
+    used = benchmarks("measure").run([sys.executable, "-c", "input()"], tmp_path, 1, 60.0)
+    assert used.status == 1
+    command = [sys.executable, "-c", "import time; time.sleep(60)"]
+    used = benchmarks("measure").run(command, tmp_path, 1, 0.3)
+    assert used.status < 0
+    assert used.wall < 10.0
+
+
+def test_a_record_replaces_that_of_the_same_run_only(benchmarks, tmp_path):
+    records, path = benchmarks("records"), tmp_path / "records.json"
+    records.store(
+        [record(benchmarks, "anisocontact", 2.0), record(benchmarks, "CalculiX", 9.0)], path
+    )
+    records.store([record(benchmarks, "anisocontact", 3.0)], path)
+    found = {one.code: one.values["wall s"] for one in records.load(path)}
+    assert found == {"anisocontact": 3.0, "CalculiX": 9.0}
+
+
+def test_pages_have_ratios_and_say_where_figures_come_from(benchmarks, tmp_path):
+    made = [
+        record(benchmarks, "anisocontact", 2.0, date="2026-01-02"),
+        record(benchmarks, "CalculiX", 9.0),
+        record(benchmarks, "NGSolve", 0.0, note="longer than 3600 s"),
+    ]
+    benchmarks("pages").write(made, tmp_path, tmp_path)
+    text = (tmp_path / "blocks.md.in").read_text()
+    assert "| 12 | 1 | CalculiX | 9.0 | 4.5 |" in text
+    assert "longer than 3600 s" in text
+    assert "- a: 2026-01-01" in text and "- b: 2026-01-02" in text
+    assert text.count("| b |") == 1
+    assert (tmp_path / "benchmarks-blocks.png").stat().st_size > 10_000
+
+
+def test_the_command_runs_and_keeps(benchmarks, tmp_path):
+    """Requirement: forces of the coarse block to 1e-4. Source: CalculiX 2.20, same mesh: 22.8364
+    and 6.4937. Tolerance: it balances to 0.5 % of the mean force, 2.3e-4 of the forces here.
+    """
+    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    path = tmp_path / "records.json"
+    arguments = ["4", "--only", "anisocontact", "--problems", "plane", "--records", str(path)]
+    benchmarks("run").main(arguments)
+    (found,) = benchmarks("records").load(path)
+    assert found.note == ""
+    assert found.values["normal force pressed"] == pytest.approx(22.83644, rel=3e-4)
+    assert found.values["tangential force at the end"] == pytest.approx(6.493652, rel=3e-4)
+    assert found.values["peak MB"] > 50.0
+
+
+@pytest.mark.slow
+def test_finite_strain_agrees_with_a_dolfinx_script(benchmarks):
+    """Requirement: forces to 1e-7. Source: an independent script in UFL of the same equations
+    and points. Tolerance: both balance to 1e-8 of the forces at work.
+    """
+    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    runs = benchmarks("finite_strain.runs")
+    ours, script = (runs.one(name, "plane", 4, 300.0) for name in (runs.OURS, runs.SCRIPT))
+    for name in ("normal force pressed", "tangential force at the end"):
+        assert ours.values[name] == pytest.approx(script.values[name], rel=1e-7)
+    assert 0.0 < runs.share(ours, "contact") < 1.0
