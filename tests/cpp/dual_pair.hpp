@@ -16,6 +16,7 @@ using Vec = Vec3<S>;
 struct Result {
   Vec traction;
   std::array<S, 2> xi;
+  std::array<Vec, 2> couple;
   PointState state;
   Failure failure{Failure::none};
 };
@@ -149,13 +150,27 @@ inline anisotropy::Axes<S> axes_at(const Directions& d, const PairPoint& p, cons
                  n.dot(value(g.normal)) < 0.0 ? -turns : turns, s.own, g);
 }
 
+/// m_j = c (T . rho^j) n_f - c^j T with x - rho = c^j rho_j + c n_f; c^j = 0 inside a facet.
+inline std::array<Vec, 2> couple(const PairPoint& p, const Seen& s, const Vec& friction) {
+  const Vec apart = seed(p.slave, 0) - s.facet.jet.position;
+  const S above = apart.dot(s.facet.normal);
+  std::array<Vec, 2> m;
+  for (std::size_t j = 0; j < 2; ++j) {
+    const Vec dual = s.facet.dual_basis(j);
+    m[j] = above * friction.dot(dual) * s.facet.normal;
+    if (p.feature != Feature::interior) m[j] -= apart.dot(dual) * friction;
+  }
+  return m;
+}
+
 /// The update, by the law in the basis of the facet or of the ridge.
 inline Result update(const InterfaceLaw& law, const PointState& state, const PairPoint& p,
                      double dt) {
   const Seen s = see(state, p, dt);
   const auto reaction =
       react(law, state, s.k, [&](const Directions& d) { return axes_at(d, p, s); });
-  Result out{reaction.pressure * s.k.now.normal + s.k.now.spatial(reaction.traction), s.dxi,
+  const Vec friction = s.k.now.spatial(reaction.traction);
+  Result out{reaction.pressure * s.k.now.normal + friction, s.dxi, couple(p, s, friction),
              reaction.state, reaction.failure};
   out.state.facet = p.facet;
   if (p.feature == Feature::interior || reaction.state.status == 0) return out;

@@ -1,5 +1,5 @@
-// The pair kernel against the same update in dual numbers: tractions, all derivatives and trial
-// states of random points on every kind of feature, with every rule, adhesion and friction model,
+// The pair kernel against the same update in dual numbers: tractions, couples, all derivatives and
+// trial states of random points on every kind of feature, with every rule, adhesion and friction model,
 // with directions on either body, in stick, in slip and at the beginning of contact.
 
 #include <algorithm>
@@ -145,21 +145,28 @@ struct Compared {
   double relative() const { return size > 0.0 ? most / size : most; }
 };
 
-double difference(const kernel::PairResult& a, const oracle::Result& b) {
-  Compared traction, slopes, shift;
+double difference(const kernel::PairResult& a, const kernel::PairSlopes& d,
+                  const oracle::Result& b) {
+  Compared traction, slopes, shift, couple, by_couple;
   for (Eigen::Index i = 0; i < 3; ++i) {
     traction.add(a.traction[i], b.traction[i].v);
     for (std::size_t j = 0; j < oracle::variables; ++j)
-      slopes.add(a.d_traction[j / 3](i, static_cast<Eigen::Index>(j % 3)), b.traction[i].d[j]);
+      slopes.add(d.traction[j / 3](i, static_cast<Eigen::Index>(j % 3)), b.traction[i].d[j]);
+    for (std::size_t k = 0; k < 2; ++k) {
+      couple.add(a.couple[k][i], b.couple[k][i].v);
+      for (std::size_t j = 0; j < oracle::variables; ++j)
+        by_couple.add(d.couple[k][j / 3](i, static_cast<Eigen::Index>(j % 3)), b.couple[k][i].d[j]);
+    }
   }
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < oracle::variables; ++j) {
       const double mine =
-          j < 12 ? a.d_xi[j / 3](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j % 3))
+          j < 12 ? d.xi[j / 3](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j % 3))
                  : 0.0;
       shift.add(mine, b.xi[i].d[j]);
     }
-  return std::max({traction.relative(), slopes.relative(), shift.relative()});
+  return std::max({traction.relative(), slopes.relative(), shift.relative(), couple.relative(),
+                   by_couple.relative()});
 }
 
 double difference(const kernel::PointState& a, const kernel::PointState& b) {
@@ -188,7 +195,8 @@ void compare(Random& r, const law::AnyRule& rule, Feature feature, Tally& tally)
   const auto law = law_of(r, rule, r(0.0, 1.0) < 0.3);
   const auto state = history(r);
   const auto p = point(r, feature);
-  const auto fast = kernel::update_pair<true>(law, state, p, 0.5);
+  kernel::PairSlopes by;
+  const auto fast = kernel::update_pair<true>(law, state, p, 0.5, &by);
   const auto slow = oracle::update(law, state, p, 0.5);
   const auto plain = kernel::update_pair<false>(law, state, p, 0.5);
   if (fast.failure != slow.failure) {
@@ -199,7 +207,7 @@ void compare(Random& r, const law::AnyRule& rule, Feature feature, Tally& tally)
   ++tally.status[static_cast<std::size_t>(fast.state.status)];
   tally.most = std::max(tally.most, difference(fast.state, slow.state));
   tally.most = std::max(tally.most, difference(plain.state, slow.state));
-  if (fast.state.status != 0) tally.most = std::max(tally.most, difference(fast, slow));
+  if (fast.state.status != 0) tally.most = std::max(tally.most, difference(fast, by, slow));
 }
 
 std::vector<law::AnyRule> rules() {

@@ -63,9 +63,14 @@ Sheet sheet(Random& r, Topology t, std::int32_t cells) {
   return s;
 }
 
-kernel::NodalShape nodal(const surface::FacetKind& kind, const std::array<double, 2>& xi) {
+surface::Shape<double> shape_at(const surface::FacetKind& kind, const std::array<double, 2>& xi) {
   surface::Shape<double> f;
   surface::shape(kind, xi[0], xi[1], f);
+  return f;
+}
+
+kernel::NodalShape nodal(const surface::FacetKind& kind, const std::array<double, 2>& xi) {
+  const auto f = shape_at(kind, xi);
   kernel::NodalShape n;
   n.count = kind.nodes();
   n.n = f.N;
@@ -108,19 +113,21 @@ std::size_t meet(const search::FacetSurface& s, const Vec3<double>& x,
   p.own = {jet, jet, {}};
   kernel::PairShapes shapes;
   shapes.slave = shapes.master = nodal(s.kind(hit.facet), hit.xi);
+  shapes.bend = shape_at(s.kind(hit.facet), hit.xi).d2N;
   shapes.area = {0.3, true, jet.d1};
   if (state.facet >= 0) {
     const auto f = static_cast<std::int32_t>(state.facet);
     p.before = s.jet(f, state.xi);
     shapes.before = nodal(s.kind(f), state.xi);
   }
-  const auto r = kernel::update_pair<true>(l, state, p, 1.0);
+  kernel::PairSlopes by;
+  const auto r = kernel::update_pair<true>(l, state, p, 1.0, &by);
   const std::size_t size = 3 * 2 * shapes.slave.count, half = size / 2;
   std::vector<double> own(size * size), earlier(size * half), residual(size);
   const bool apart = state.facet >= 0 && state.facet != hit.facet;
   if (r.state.status != 0 && r.failure == kernel::Failure::none) {
     kernel::add_residual(r, shapes, residual.data());
-    kernel::add_tangent(r, shapes, own.data(), apart ? earlier.data() : nullptr);
+    kernel::add_tangent(r, by, shapes, own.data(), apart ? earlier.data() : nullptr);
   }
   state = r.state;
   return state.status != 0 ? 1 : 0;

@@ -144,6 +144,7 @@ struct Batch {
     s.point.edge = {hits.edge[2 * p], hits.edge[2 * p + 1]};
     const surface::Shape<double> shape = master_shape(p);
     s.shapes.master = nodal(mesh.width, shape);
+    s.shapes.bend = shape.d2N;
     s.point.master.now = surface::facet_jet(mesh.kind(f), mesh.nodes(mesh.now, f), shape);
     if (on_master)
       s.point.master.reference =
@@ -285,7 +286,7 @@ struct PairBlocks {
 
   /// Adds a point to its blocks; names their nodes where it is the first.
   void add(const Batch& b, const Slots& slots, std::size_t p, const kernel::PairResult& r,
-           const Seen& s, std::int64_t committed) const {
+           const kernel::PairSlopes& d, const Seen& s, std::int64_t committed) const {
     const std::int32_t o = slots.own[p], e = slots.earlier[p];
     if (o < 0) return;
     const std::size_t ks = b.slave.width;
@@ -303,7 +304,7 @@ struct PairBlocks {
       b.mesh.copy_nodes(committed, earlier.column_nodes_of(e));
       earlier.begin(e);
     }
-    kernel::add_tangent(r, s.shapes, own.at(o), earlier.at(e));
+    kernel::add_tangent(r, d, s.shapes, own.at(o), earlier.at(e));
   }
 
   void finish(std::size_t threads) const {
@@ -319,7 +320,7 @@ struct PairBlocks {
 struct Answer {
   std::size_t ks, km;
   Array<std::uint8_t> state;
-  Array<double> traction, normal, adhesion, friction, area, stiffness;
+  Array<double> traction, couple, normal, adhesion, friction, area, stiffness;
   Array<std::int8_t> failure;
 
   Answer(std::size_t n, const Batch& b)
@@ -327,6 +328,7 @@ struct Answer {
         km(b.mesh.width),
         state({n, sizeof(kernel::PointState)}),
         traction({n, 3}),
+        couple({n, 2, 3}),
         normal({n, 3}),
         adhesion({n, 2, 3}),
         friction({n, 2, 3}),
@@ -334,48 +336,53 @@ struct Answer {
         stiffness({n}),
         failure({n}) {}
 
-  template <bool tangent>
-  void put(std::size_t p, const kernel::PairResult& r, const Seen& s) const {
+  /// With the slopes of a point that touches.
+  void put(std::size_t p, const kernel::PairResult& r, const kernel::PairSlopes* d,
+           const Seen& s) const {
     store(state.data, p, r.state);
     put3(traction.data, p, r.traction);
     put3(normal.data, p, r.normal);
     for (std::size_t k = 0; k < 2; ++k) {
+      put3(couple.data, 2 * p + k, r.couple[k]);
       put3(adhesion.data, 2 * p + k, r.adhesion_axes[k]);
       put3(friction.data, 2 * p + k, r.friction_axes[k]);
     }
     failure.data[p] = static_cast<std::int8_t>(r.failure);
     area.data[p] = s.shapes.area.value();
-    stiffness.data[p] = tangent && touches(r) ? size_of_block(p, r, s) : 0.0;
+    stiffness.data[p] = d != nullptr && touches(r) ? size_of_block(p, *d, s) : 0.0;
   }
 
   /// Forces on the nodes, point after point.
   Array<double> forces(const Batch& b, std::size_t n, std::size_t nodes) const {
     Array<double> f({nodes, 3});
     std::fill_n(f.data, 3 * nodes, 0.0);
-    const auto add = [&](std::int32_t node, double factor, const Vec3<double>& t) {
+    const auto add = [&](std::int32_t node, const Vec3<double>& t) {
       if (node < 0) return;
       for (std::size_t i = 0; i < 3; ++i)
-        f.data[3 * static_cast<std::size_t>(node) + i] += factor * t[static_cast<Eigen::Index>(i)];
+        f.data[3 * static_cast<std::size_t>(node) + i] += t[static_cast<Eigen::Index>(i)];
     };
     for (std::size_t p = 0; p < n; ++p) {
       if (load(state.data, p).status == 0 || failure.data[p] != 0) continue;
-      const Vec3<double> t = area.data[p] * row3(traction.data, p);
+      const double dA = area.data[p];
+      const Vec3<double> t = dA * row3(traction.data, p), m0 = dA * row3(couple.data, 2 * p),
+                         m1 = dA * row3(couple.data, 2 * p + 1);
       for (std::size_t a = 0; a < ks; ++a)
-        add(b.slave.nodes[p * ks + a], b.slave.shape[p * ks + a], t);
+        add(b.slave.nodes[p * ks + a], b.slave.shape[p * ks + a] * t);
       const auto shape = b.master_shape(p);
       for (std::size_t c = 0; c < km; ++c)
-        add(b.mesh.node_or_none(b.hits.facet[p], c), -shape.N[c], t);
+        add(b.mesh.node_or_none(b.hits.facet[p], c),
+            shape.dN[c][0] * m0 + shape.dN[c][1] * m1 - shape.N[c] * t);
     }
     return f;
   }
 
  private:
   /// Size of a point's block: of |dt/dx| and of the shape functions on both sides.
-  double size_of_block(std::size_t p, const kernel::PairResult& r, const Seen& s) const {
+  double size_of_block(std::size_t p, const kernel::PairSlopes& d, const Seen& s) const {
     double squares = 0.0;
     for (const auto* shape : {&s.shapes.slave, &s.shapes.master})
       for (std::size_t a = 0; a < shape->count; ++a) squares += shape->n[a] * shape->n[a];
-    return area.data[p] * squares * r.d_traction[0].norm();
+    return area.data[p] * squares * d.traction[0].norm();
   }
 };
 
@@ -443,10 +450,11 @@ nb::dict assemble(const PairHandle& h, const Question& q) {
       for (std::size_t p = slots.runs[run]; p < slots.runs[run + 1]; ++p) {
         const kernel::PointState old = load(q.state, p);
         const Seen s = q.batch.see(old, p);
-        const auto r = kernel::update_pair<tangent>(h.law, old, s.point, q.dt);
-        out.put<tangent>(p, r, s);
+        kernel::PairSlopes by;
+        const auto r = kernel::update_pair<tangent>(h.law, old, s.point, q.dt, &by);
+        out.put(p, r, tangent ? &by : nullptr, s);
         if constexpr (tangent)
-          if (touches(r)) blocks.add(q.batch, slots, p, r, s, old.facet);
+          if (touches(r)) blocks.add(q.batch, slots, p, r, by, s, old.facet);
       }
     });
     blocks.finish(q.threads);
@@ -469,7 +477,8 @@ nb::dict update(const PairHandle& h, const Question& q) {
   std::fill_n(residual.data, n * rows, 0.0);
   std::fill_n(matrix.data, tangent ? n * rows * columns : 0, 0.0);
   std::fill_n(nodes.data, n * (ks + 2 * km), -1);
-  const auto put = [&](std::size_t p, const kernel::PairResult& r, const Seen& s,
+  const auto put = [&](std::size_t p, const kernel::PairResult& r,
+                       [[maybe_unused]] const kernel::PairSlopes& d, const Seen& s,
                        std::int64_t committed) {
     std::int32_t* const id = nodes.data + p * (ks + 2 * km);
     std::copy_n(q.batch.slave.nodes + p * ks, ks, id);
@@ -482,7 +491,7 @@ nb::dict update(const PairHandle& h, const Question& q) {
       std::array<double, most * most> own, earlier;
       std::fill_n(own.data(), rows * rows, 0.0);
       std::fill_n(earlier.data(), rows * 3 * km, 0.0);
-      kernel::add_tangent(r, s.shapes, own.data(), earlier.data());
+      kernel::add_tangent(r, d, s.shapes, own.data(), earlier.data());
       double* to = matrix.data + p * rows * columns;
       for (std::size_t i = 0; i < rows; ++i) {
         to = std::copy_n(own.data() + i * rows, rows, to);
@@ -495,9 +504,10 @@ nb::dict update(const PairHandle& h, const Question& q) {
     kernel::parallel_for(n, q.threads, [&](std::size_t p) {
       const kernel::PointState old = load(q.state, p);
       const Seen s = q.batch.see(old, p);
-      const auto r = kernel::update_pair<tangent>(h.law, old, s.point, q.dt);
-      out.put<tangent>(p, r, s);
-      put(p, r, s, old.facet);
+      kernel::PairSlopes by;
+      const auto r = kernel::update_pair<tangent>(h.law, old, s.point, q.dt, &by);
+      out.put(p, r, tangent ? &by : nullptr, s);
+      put(p, r, by, s, old.facet);
     });
   }
   nb::dict d = common(out);

@@ -185,19 +185,16 @@ inline FrameInput frame_input(double gap, double dt, const Dual<1>& pressure,
   return in;
 }
 
-/// The forms of t_1 . dt, t_2 . dt and n . dt for t = N n + T_a t_a.
-inline std::array<Form, 3> traction_forms(const FrameReaction& r, const FrameInput& in,
-                                          const LawAxes& axes, const ContactPlane& p,
-                                          const PointState& state,
+/// The forms of t_1 . dT and t_2 . dT for T = T_a t_a.
+inline std::array<Form, 2> friction_forms(const FrameReaction& r, const LawAxes& axes,
+                                          const ContactPlane& p, const PointState& state,
                                           const CommittedPoint* committed) {
-  std::array<Form, 3> f;
+  std::array<Form, 2> f;
   for (std::size_t a = 0; a < 2; ++a) {
     p.add_gap(r.slope(Slope::gap, 0)[a], f[a]);
     add_angles(r, Slope::adhesion, axes.adhesion, a, p, f[a]);
     add_angles(r, Slope::friction, axes.friction, a, p, f[a]);
     add_angles(r, Slope::second, axes.second, a, p, f[a]);
-    f[a].turn[a] += in.pressure;
-    f[2].turn[a] -= r.traction[a];
     if (committed == nullptr) continue;
     committed->add_increment(slopes_of(r, Slope::increment, a), p, f[a]);
     if (!remembers(state)) continue;
@@ -205,6 +202,18 @@ inline std::array<Form, 3> traction_forms(const FrameReaction& r, const FrameInp
                             f[a]);
     committed->add_vector(slopes_of(r, Slope::elastic, a), committed->vector(state.elastic), p,
                           f[a]);
+  }
+  return f;
+}
+
+/// The forms of t_1 . dt, t_2 . dt and n . dt for t = N n + T_a t_a.
+inline std::array<Form, 3> traction_forms(const std::array<Form, 2>& friction,
+                                          const FrameReaction& r, const FrameInput& in,
+                                          const ContactPlane& p) {
+  std::array<Form, 3> f{friction[0], friction[1], {}};
+  for (std::size_t a = 0; a < 2; ++a) {
+    f[a].turn[a] += in.pressure;
+    f[2].turn[a] -= r.traction[a];
   }
   p.add_gap(in.d_pressure, f[2]);
   return f;

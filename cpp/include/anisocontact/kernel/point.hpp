@@ -186,7 +186,8 @@ PointResult update_in_plane(const Interface& itf, const PointState& state, const
   out.state = in_basis(r, state, foot.xi, plane, here);
   out.traction = pressure.v * plane.n + plane.spatial(r.traction);
   if constexpr (tangent) {
-    const auto forms = traction_forms(r, in, axes, plane, state, &committed);
+    const auto friction = friction_forms(r, axes, plane, state, &committed);
+    const auto forms = traction_forms(friction, r, in, plane);
     const auto dxi = projection::coordinate_gradient(here, foot, x);
     for (std::size_t i = 0; i < 3; ++i) {
       const Vec3<double>& direction = i < 2 ? plane.t[i] : plane.n;
