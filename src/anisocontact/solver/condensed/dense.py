@@ -1,23 +1,35 @@
-"""Newton corrections of the contact unknowns: a kept dense factor and Krylov iterations."""
+"""Newton corrections of the contact unknowns: a kept dense factor and Krylov iterations.
+
+All of this is in single precision but the residual of a correction: products and solutions are
+bound by the memory that they read.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy.linalg
+import scipy.sparse
 
 from anisocontact.contact.transfer import Couplings
+from anisocontact.solver.persistent import Arrays
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
+Singles = npt.NDArray[np.float32]
 Block = tuple[slice, Floats]
 
-#: Krylov iterations after which the factor is renewed: about what a new one costs.
-PATIENCE = 25
-#: Krylov iterations with a factor of the same matrix: single precision needs a few.
-MOST = 40
+#: Krylov iterations after which the factor is renewed: a new one costs as much as some thirty.
+PATIENCE = 16
+#: Residual that Krylov iterations in single precision reach before they begin anew.
+_SINGLE = 1e-4
+#: Most of such beginnings with one factor.
+_ROUNDS = 4
+#: Names of the tangent of the kept factor: entries, columns and starts of the rows.
+_KEPT = ("tangent", "tangent_columns", "tangent_starts")
 
 
 def blocks_times(blocks: Sequence[Block], x: Floats) -> Floats:
@@ -30,20 +42,26 @@ def blocks_times(blocks: Sequence[Block], x: Floats) -> Floats:
 
 
 class ContactTangent:
-    """`S` plus the tangent of the contacts, never summed up.
+    """`S` plus the tangent of the contacts, never summed up but to be factorised.
 
     Args:
         blocks: Blocks of S on the diagonal.
         number: Contact unknown of each unknown of the system, -1 for all others, (n,).
         count: Number of contact unknowns.
+
+    Attributes:
+        scale: Largest stiffness: forces are over it in single precision, for any units.
     """
 
     def __init__(self, blocks: Sequence[Block], number: Ints, count: int) -> None:
         self.count = count
+        self.scale = max((float(np.abs(np.diagonal(b)).max()) for _, b in blocks), default=1.0)
         self._blocks = blocks
+        self._single = [(place, _single(block, self.scale)) for place, block in blocks]
         # one more place takes what belongs to no contact unknown; it also stands for "no node"
         self._number = np.append(np.where(number < 0, count, number), [count] * 3)
         self._couplings: list[tuple[Ints, Ints, Floats]] = []
+        self._small: list[tuple[Ints, Ints, Singles]] = []
 
     def take(self, couplings: Sequence[Couplings]) -> None:
         """Replace the tangent of the contacts."""
@@ -51,50 +69,82 @@ class ContactTangent:
             (self._unknowns(rows), self._unknowns(columns), _whole(values))
             for rows, columns, values in couplings
         ]
+        self._small = [
+            (rows, columns, (values / self.scale).astype(np.float32))
+            for rows, columns, values in self._couplings
+        ]
 
     def times(self, x: Floats) -> Floats:
         """The product with a vector, (c,)."""
-        out = np.zeros(self.count + 1)
-        longer = np.append(x, 0.0)
-        for rows, columns, values in self._couplings:
-            y = np.matmul(values, longer[columns][:, :, None])[:, :, 0]
-            out += np.bincount(rows.ravel(), y.ravel(), minlength=self.count + 1)
-        out[:-1] += blocks_times(self._blocks, x)
-        return out[:-1]
+        out = self._coupled(self._couplings, x)
+        return out + blocks_times(self._blocks, x)
 
-    def factor(self) -> Callable[[Floats], Floats]:
-        """LU of the sum in single precision, as a function that solves with it.
+    def times_single(self, x: Singles) -> Singles:
+        """The product over `scale` with a vector, in single precision, (c,)."""
+        out = self._coupled(self._small, x).astype(np.float32)
+        for place, block in self._single:
+            out[place] += scipy.linalg.blas.ssymv(1.0, block, x[place], lower=1)
+        return out
+
+    def summed(self) -> scipy.sparse.csr_array:
+        """The tangent of the contacts over `scale` as one matrix, (c, c)."""
+        n = self.count
+        parts = []
+        for rows, columns, values in self._couplings:
+            there = (rows < n)[:, :, None] & (columns < n)[:, None, :]
+            at = rows[:, :, None] * n + columns[:, None, :]
+            parts.append((at[there], values[there] / self.scale))
+        places = np.concatenate([np.zeros(0, np.int64), *(at for at, _ in parts)])
+        values = np.concatenate([np.zeros(0), *(v for _, v in parts)])
+        order = np.argsort(places, kind="stable")
+        first = np.flatnonzero(np.diff(places[order], prepend=-1))
+        sums = np.add.reduceat(values[order], first) if len(first) else values
+        row, column = np.divmod(places[order][first], n)
+        return scipy.sparse.csr_array((sums.astype(np.float32), (row, column)), shape=(n, n))
+
+    def factor(self, contact: scipy.sparse.csr_array) -> Callable[[Singles], Singles]:
+        """LU of `S` over `scale` plus a matrix, as a function that solves with it.
+
+        Args:
+            contact: What `summed` gave, now or earlier.
 
         Raises:
             ZeroDivisionError: The matrix is singular.
         """
         n = self.count
-        # forces are divided by the stiffness of the bodies, so that units do not overflow
-        scale = max(float(np.abs(np.diagonal(block)).max()) for _, block in self._blocks)
         matrix = np.zeros((n, n), dtype=np.float32, order="F")
-        for place, block in self._blocks:
-            matrix[place, place] = block / scale
-        flat = matrix.reshape(-1, order="F")
-        for rows, columns, values in self._couplings:
-            there = (rows < n)[:, :, None] & (columns < n)[:, None, :]
-            at = columns[:, None, :] * n + rows[:, :, None]
-            np.add.at(flat, at[there], (values[there] / scale).astype(np.float32))
+        for place, block in self._single:
+            matrix[place, place] = block
+        entries = contact.tocoo()
+        matrix[entries.row, entries.col] += entries.data
         lu, pivots, info = scipy.linalg.lapack.sgetrf(matrix, overwrite_a=1)
         if info != 0:
             raise ZeroDivisionError("the tangent is singular")
 
-        def solve(b: Floats) -> Floats:
-            size = float(np.linalg.norm(b)) or 1.0
-            x, _ = scipy.linalg.lapack.sgetrs(lu, pivots, (b / size).astype(np.float32))
-            return np.asarray(x.astype(np.float64) * (size / scale))
+        def solve(b: Singles) -> Singles:
+            return np.asarray(scipy.linalg.lapack.sgetrs(lu, pivots, b)[0])
 
         return solve
+
+    def _coupled(self, couplings: Sequence[tuple[Ints, Ints, Any]], x: Any) -> Floats:
+        """Product of the couplings alone, (c,)."""
+        out = np.zeros(self.count + 1)
+        longer = np.append(x, x.dtype.type(0.0))
+        for rows, columns, values in couplings:
+            y = np.matmul(values, longer[columns][:, :, None])[:, :, 0]
+            out += np.bincount(rows.ravel(), y.ravel(), minlength=self.count + 1)
+        return out[:-1]
 
     def _unknowns(self, nodes: npt.NDArray[np.int32]) -> Ints:
         """Contact unknowns of nodes, (p, k) -> (p, 3 k); node -1 has none."""
         at = 3 * nodes[:, :, None].astype(np.int64) + np.arange(3)
         at[nodes < 0] = len(self._number) - 1
         return np.asarray(self._number[at].reshape(len(nodes), 3 * nodes.shape[1]))
+
+
+def _single(block: Floats, scale: float) -> Singles:
+    """A symmetric block over a number, by columns: a copy would turn it."""
+    return np.asarray((block.T / scale).astype(np.float32, order="C").T)
 
 
 def _whole(values: Floats) -> Floats:
@@ -118,7 +168,8 @@ class KeptFactor:
 
     def __init__(self, tangent: ContactTangent) -> None:
         self._tangent = tangent
-        self._solve: Callable[[Floats], Floats] | None = None
+        self._solve: Callable[[Singles], Singles] | None = None
+        self._made_of: scipy.sparse.csr_array | None = None
         self.factors = 0
         self.iterations = 0
 
@@ -131,35 +182,76 @@ class KeptFactor:
         """
         known, left = np.zeros_like(b), 1.0
         if self._solve is not None:
-            known, left, used = gmres(self._tangent.times, self._solve, b, rtol, PATIENCE)
-            self.iterations += used
+            known, left = self._improved(known, b, rtol, PATIENCE)
             if left <= rtol:
                 return known
         try:
-            self._solve = self._tangent.factor()
+            self._make(self._tangent.summed())
         except ZeroDivisionError:
             return None
-        self.factors += 1
-        rest = b - self._tangent.times(known)
-        x, more, used = gmres(self._tangent.times, self._solve, rest, rtol / left, MOST)
-        self.iterations += used
+        known, left = self._improved(known, b, rtol, PATIENCE)
         # what single precision cannot do better is still a direction for the line search
-        return known + x if more * left < 0.5 else None
+        return known if left < 0.5 else None
+
+    def persistent(self) -> Arrays:
+        """The tangent of the contacts that the kept factor was made of, none without one."""
+        made = self._made_of
+        if made is None:
+            return {}
+        parts = (made.data, made.indices, made.indptr)
+        return dict(zip(_KEPT, parts, strict=True))
+
+    def restore(self, kept: Arrays) -> None:
+        """Make the factor of `persistent` again."""
+        if _KEPT[0] in kept:
+            n = self._tangent.count
+            parts = tuple(kept[name] for name in _KEPT)
+            self._make(scipy.sparse.csr_array(parts, shape=(n, n)))
+
+    def _make(self, contact: scipy.sparse.csr_array) -> None:
+        self._solve = None  # gives the memory back
+        self._solve = self._tangent.factor(contact)
+        self._made_of = contact
+        self.factors += 1
+
+    def _improved(self, x: Floats, b: Floats, rtol: float, most: int) -> tuple[Floats, float]:
+        """Krylov iterations from `x` on; the norm of the residual over that of `b` comes with it.
+
+        In single precision, begun anew with the residual in double precision.
+        """
+        assert self._solve is not None
+        norm = float(np.linalg.norm(b)) or 1.0
+        rest, left = b - self._tangent.times(x) if x.any() else b, 1.0
+        for _ in range(_ROUNDS):
+            size = float(np.linalg.norm(rest)) or 1.0
+            goal = max(rtol * norm / size, _SINGLE)
+            unit = (rest / size).astype(np.float32)
+            y, _, used = gmres(self._tangent.times_single, self._solve, unit, 0.9 * goal, most)
+            self.iterations += used
+            better = x + y.astype(np.float64) * (size / self._tangent.scale)
+            rest = b - self._tangent.times(better)
+            now = float(np.linalg.norm(rest))
+            if not now < size:
+                break
+            x, left, most = better, now / norm, most - used
+            if left <= rtol or most <= 0:
+                break
+        return x, left
 
 
 def gmres(
-    times: Callable[[Floats], Floats],
-    precondition: Callable[[Floats], Floats],
-    b: Floats,
+    times: Callable[[Singles], Singles],
+    precondition: Callable[[Singles], Singles],
+    b: Singles,
     rtol: float,
     most: int,
-) -> tuple[Floats, float, int]:
+) -> tuple[Singles, float, int]:
     """Generalised minimal residuals, preconditioned from the right, without restart.
 
     Args:
         times: Product with the matrix.
         precondition: Approximate solution with the matrix.
-        b: Right-hand side, (n,).
+        b: Right-hand side, (n,); its precision is that of the vectors.
         rtol: Norm of the residual over that of `b` at which to stop.
         most: Most iterations.
 
@@ -173,22 +265,30 @@ def gmres(
     norm = float(np.linalg.norm(b))
     if norm == 0.0:
         return np.zeros_like(b), 0.0, 0
-    basis, directions = [b / norm], []
+    # SciPy's library alone: threads of NumPy's would wait for each other with those of SciPy's
+    (product,) = scipy.linalg.get_blas_funcs(("gemv",), (b,))
+    basis = np.empty((len(b), most + 1), dtype=b.dtype, order="F")
+    directions = np.empty((len(b), most), dtype=b.dtype, order="F")
+    basis[:, 0] = b / norm
     hessenberg = np.zeros((most + 1, most))
     right = np.zeros(most + 1)
     right[0] = norm
-    y, left = np.zeros(0), 1.0
-    for j in range(most):
-        directions.append(precondition(basis[j]))
-        w = times(directions[j])
-        for i in range(j + 1):
-            hessenberg[i, j] = basis[i] @ w
-            w = w - hessenberg[i, j] * basis[i]
-        hessenberg[j + 1, j] = np.linalg.norm(w)
-        h = hessenberg[: j + 2, : j + 1]
-        y = np.linalg.lstsq(h, right[: j + 2])[0]
-        left = float(np.linalg.norm(h @ y - right[: j + 2])) / norm
-        if left <= rtol or hessenberg[j + 1, j] == 0.0 or not np.isfinite(left):
+    y, left, used = np.zeros(0), 1.0, 0
+    while used < most:
+        j = used
+        used += 1
+        directions[:, j] = precondition(basis[:, j])
+        w = times(directions[:, j])
+        for _ in range(2):  # twice is enough for orthogonality to rounding
+            shares = product(1.0, basis[:, :used], w, trans=1)
+            hessenberg[:used, j] += shares
+            w = product(-1.0, basis[:, :used], shares, beta=1.0, y=w)
+        length = float(np.linalg.norm(w))
+        hessenberg[used, j] = length
+        h = hessenberg[: used + 1, :used]
+        y = np.linalg.lstsq(h, right[: used + 1])[0]
+        left = float(np.linalg.norm(h @ y - right[: used + 1])) / norm
+        if left <= rtol or length == 0.0 or not np.isfinite(left):
             break
-        basis.append(w / hessenberg[j + 1, j])
-    return np.stack(directions, axis=1) @ y, left, len(directions)
+        basis[:, used] = w / length
+    return product(1.0, directions[:, :used], y.astype(b.dtype)), left, used

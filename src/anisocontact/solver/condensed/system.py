@@ -23,7 +23,7 @@ Flags = npt.NDArray[np.bool_]
 #: Random patterns of signs that measure the norm of the forces at the supports.
 _SAMPLES = 8
 #: Residual of a correction over the right-hand side, far from the solution.
-_ROUGH = 1e-4
+_ROUGH = 1e-2
 _TINY = float(np.finfo(np.float64).tiny)
 
 
