@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact._fenicsx import facet_keys, facet_sides
 from anisocontact.augmentation import Augmentation
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.facet_mesh import (
@@ -16,8 +17,8 @@ from anisocontact.contact.facet_mesh import (
     facet_mesh,
     facet_rule,
     near_facets,
-    node_positions,
 )
+from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.quadrature import default_degree
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.contact.transfer import Couplings, Transfer
@@ -69,8 +70,7 @@ class FacetContact(ContactRecord):
         name: Name in output; the slave if not given.
 
     Raises:
-        InputError: No such facet group, one without facets, the same for both, or more than one
-            process.
+        InputError: No such facet group, one without facets, or the same for both.
     """
 
     def __init__(
@@ -97,13 +97,14 @@ class FacetContact(ContactRecord):
         self.current_area = current_area
         self._mirrored = mirrored
         self._law = law.pairs(mirrored)
-        self._reference = node_positions(model.space)
-        self._master = facet_mesh(model.space, model.facets(master))
+        self._gathered = MasterSurface(model.space, model.facets(master))
+        self._reference, self._master = self._gathered.reference, self._gathered.facets
         own = facet_mesh(model.space, model.facets(slave))
         if degree is None:
             degree = default_degree(model.order, augmentation is not None)
         rule = facet_rule(own.topology, degree)
-        self._points = SlavePoints(own, rule, self._reference, current_area, weight)
+        comm = model.mesh.comm
+        self._points = SlavePoints(own, rule, self._reference, current_area, weight, comm)
         self._surface = FacetSurface(
             self._reference, self._master.nodes, self._master.topology, self._master.flip
         )
@@ -114,14 +115,17 @@ class FacetContact(ContactRecord):
         self._excluded: FacetSets | None = None
         near = None
         if apart is not None:
-            near = near_facets(own, self._surface, self._reference, apart)
+            numbers = self._gathered.number(facet_keys(model.mesh, np.sort(model.facets(slave))))
+            near = near_facets(own, numbers, self._surface, self._reference, apart)
             self._excluded = near.take(self._points.facet)
         self._now = self._reference
         x = self._points.positions(self._now)
         self._hint = self._surface.project(x, max_distance=self.reach, exclude=self._excluded)
         self._answer: dict[str, Any] = {}
         self._transfer = (
-            Transfer(own, rule, self._master, self._surface, self.reach, near) if overlaps else None
+            Transfer(own, rule, self._master, self._surface, self.reach, near, comm)
+            if overlaps
+            else None
         )
         self._handed: Mask = np.zeros(len(self._points.nodes), dtype=bool)
         state = adjusted(self._initial(), adjust)
@@ -175,7 +179,7 @@ class FacetContact(ContactRecord):
         Returns:
             The response; the committed history is unchanged.
         """
-        self._now = self._reference + u
+        self._now = self._reference + self._gathered.everywhere(u)
         self._trial = self._respond(self._start, self._now, dt, tangent=True)
         if self._transfer is not None:
             self._hand_over(self._transfer)
@@ -184,7 +188,8 @@ class FacetContact(ContactRecord):
     def commit(self) -> None:
         """Make the trial the history."""
         if self._trial is not None:
-            self.ran_off = self._lost_off_the_end(self._trial)
+            lost = self._comm.allgather(self._lost_off_the_end(self._trial))
+            self.ran_off = np.concatenate(lost)
             if self._transfer is not None:
                 self._transfer.place(self._now)
         super().commit()
@@ -211,7 +216,7 @@ class FacetContact(ContactRecord):
         super().restore(kept, u)
         names = [f.name for f in fields(FacetProjections)]
         self._hint = FacetProjections(*(np.array(kept[f"projection.{n}"]) for n in names))
-        self._now = self._reference + u
+        self._now = self._reference + self._gathered.everywhere(u)
         self._committed = (self._now, self._hint)
         self._surface.update(self._now)
         if self._transfer is not None:
@@ -225,14 +230,16 @@ class FacetContact(ContactRecord):
 
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial on both bodies to the local nodes, (nodes, 3), force."""
+        total = self._gathered.zeros(out)
         if self._transfer is None:
-            out += self._answer["force"]
-            return
-        forces = -self._answer["residual"]
-        rows = self._answer["nodes"][:, : forces.shape[1] // 3]
-        held = rows >= 0
-        np.add.at(out, rows[held], forces.reshape(*rows.shape, 3)[held])
-        self._transfer.add_force(out)
+            total += self._answer["force"]
+        else:
+            forces = -self._answer["residual"]
+            rows = self._answer["nodes"][:, : forces.shape[1] // 3]
+            held = rows >= 0
+            np.add.at(total, rows[held], forces.reshape(*rows.shape, 3)[held])
+            self._transfer.add_force(total)
+        self._gathered.hand_back(total, out)
 
     def couplings(self) -> Sequence[Couplings]:
         """Where `-d force / d u` of the trial has entries, and the entries.
@@ -240,9 +247,14 @@ class FacetContact(ContactRecord):
         Points of one slave facet share a block where they meet the same facet of the master.
 
         Returns:
-            Each with local nodes of the rows (p, r) and of the columns (p, c), -1 for none, and p
-            blocks, (p, r, c, 3, 3) or (p, 3 r, 3 c).
+            Each with nodes of the rows (p, r) and of the columns (p, c), numbered as
+            `CoupledTangent` has them, -1 for none, and p blocks, (p, r, c, 3, 3) or (p, 3 r, 3 c).
         """
+        named = self._gathered.coupled
+        return [(named(rows), named(columns), k) for rows, columns, k in self._blocks()]
+
+    def _blocks(self) -> Sequence[Couplings]:
+        """`couplings` with the node numbers of the surface."""
         if self._transfer is None:
             blocks: Sequence[Couplings] = self._answer["blocks"]
             return blocks
@@ -370,18 +382,15 @@ class FacetContact(ContactRecord):
 
 
 def _check(model: Model, slave: str, master: str, apart: float | None) -> None:
-    if model.mesh.comm.size > 1:
-        raise InputError(
-            f"meshed bodies meet on one process only, {model.mesh.comm.size} given", "master"
-        )
     for name, field in ((slave, "slave"), (master, "master")):
         model.facets(name, field)
         if model.count_facets(name) == 0:
             raise InputError(f"facet group {name!r} has no facets", field)
-    shared = np.intersect1d(model.facets(slave), model.facets(master))
+    both = np.intersect1d(model.facets(slave), model.facets(master))
+    shared = model.mesh.comm.allreduce(len(facet_sides(model.mesh, both)[0]))
     if apart is not None and not apart > 0.0:
         raise InputError(f"{apart!r} given, must be > 0", "apart")
-    if shared.size and apart is None:
+    if shared and apart is None:
         raise InputError(
-            f"{slave!r} and {master!r} share {shared.size} facets, they must not overlap", "master"
+            f"{slave!r} and {master!r} share {shared} facets, they must not overlap", "master"
         )

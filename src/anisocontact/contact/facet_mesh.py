@@ -58,12 +58,15 @@ def facet_mesh(space: Any, facets: Ints) -> FacetMesh:
     return FacetMesh(topology, nodes, outward_flips(x, nodes, topology, middle))
 
 
-def near_facets(mesh: FacetMesh, surface: FacetSurface, x: Floats, apart: float) -> FacetSets:
+def near_facets(
+    mesh: FacetMesh, numbers: Ints, surface: FacetSurface, x: Floats, apart: float
+) -> FacetSets:
     """Facets that a facet cannot meet: those that are near from the beginning.
 
     Args:
         mesh: The facets.
-        surface: The same as a surface, in the reference configuration.
+        numbers: Their numbers on the surface, (m,).
+        surface: The surface they are part of, in the reference configuration.
         x: Positions of the local nodes there, (nodes, 3), length.
         apart: Facets nearer than this to the middle or a corner of a facet are near, and its
             neighbours.
@@ -75,16 +78,17 @@ def near_facets(mesh: FacetMesh, surface: FacetSurface, x: Floats, apart: float)
     points = np.concatenate([corners, corners.mean(axis=1, keepdims=True)], axis=1)
     count, each, _ = points.shape
     found = surface.within(points.reshape(-1, 3), apart)
-    rings = surface.rings(np.arange(count))
+    rings = surface.rings(numbers)
     owner = np.concatenate(
         [
             np.repeat(np.arange(count * each) // each, np.diff(found.offsets)),
             np.repeat(np.arange(count), np.diff(rings.offsets)),
         ]
     )
-    pairs = np.unique(owner * count + np.concatenate([found.facets, rings.facets]))
-    offsets = np.searchsorted(pairs, np.arange(count + 1) * count)
-    return FacetSets(offsets.astype(np.int64), (pairs % count).astype(np.int32))
+    all_facets = len(surface)
+    pairs = np.unique(owner * all_facets + np.concatenate([found.facets, rings.facets]))
+    offsets = np.searchsorted(pairs, np.arange(count + 1) * all_facets)
+    return FacetSets(offsets.astype(np.int64), (pairs % all_facets).astype(np.int32))
 
 
 def node_positions(space: Any) -> Floats:
@@ -188,6 +192,7 @@ class SlavePoints:
         reference: Positions of the local nodes in the reference configuration, (nodes, 3), length.
         current_area: Whether the area of a point is that of now or of the reference.
         share: Share of the area that counts.
+        comm: Communicator of the mesh.
 
     Attributes:
         facet: Number of the facet of each point, (n,).
@@ -197,7 +202,7 @@ class SlavePoints:
         weight: Weight of each point: its area, or where the area is that of now what the area of
             the tangents is multiplied by, (n,).
         outward: Outward normals in the reference configuration, (n, 3).
-        size: Length of a facet: square root of the mean area.
+        size: Length of a facet: square root of the mean area, over all ranks.
     """
 
     def __init__(
@@ -207,6 +212,7 @@ class SlavePoints:
         reference: Floats,
         current_area: bool,
         share: float,
+        comm: Any,
     ) -> None:
         count, q = len(facets.nodes), len(rule.weights)
         self.current_area = current_area
@@ -221,7 +227,8 @@ class SlavePoints:
         sign = np.where(np.repeat(facets.flip, q), -1.0, 1.0)
         cross = np.cross(tangents[:, 0], tangents[:, 1])
         self.outward = (sign / stretch)[:, None] * cross
-        self.size = float(np.sqrt((weights * stretch).sum() / max(count, 1)))
+        area, facets_in_all = comm.allreduce(np.array([(weights * stretch).sum(), count]))
+        self.size = float(np.sqrt(area / max(facets_in_all, 1.0)))
 
     def positions(self, now: Floats) -> Floats:
         """Positions of the points, (n, 3), from those of the nodes, (nodes, 3), length."""

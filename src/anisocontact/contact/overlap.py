@@ -62,7 +62,7 @@ def overlaps(
         master: Facets that cut them.
         surface: The master where it is now.
         now: Positions of the nodes, (nodes, 3), length.
-        reach: Distance within which a master facet counts, length.
+        reach: Distance from the middle of a slave facet within which a master facet counts, length.
         excluded: Master facets that do not count, for each slave facet.
 
     Returns:
@@ -121,6 +121,11 @@ def _area(polygons: Floats) -> Floats:
     return np.asarray(0.5 * cross.sum(axis=1))
 
 
+def largest_radius(slave: FacetMesh, now: Floats) -> float:
+    """Largest distance of a node from the middle of its facet, length; 0 without facets."""
+    return float(_ball(now[slave.nodes])[1].max(initial=0.0))
+
+
 def _facing(
     slave: FacetMesh,
     shapes: FacetShapes,
@@ -133,7 +138,7 @@ def _facing(
 ) -> tuple[Ints, Ints]:
     """Pairs of facets within reach that oppose each other and may overlap along the normal."""
     middle, radius = _ball(x)
-    sets = surface.within(middle, float(radius.max(initial=0.0)) + reach)
+    sets = surface.within(middle, reach)
     f = np.repeat(np.arange(len(x)), np.diff(sets.offsets))
     g = sets.facets.astype(np.int64)
     normal, other = _normals(shapes, slave, now), _outward(master, now)

@@ -20,7 +20,7 @@ import numpy.typing as npt
 from scipy.sparse import csr_array
 
 from anisocontact.contact.facet_mesh import FacetMesh, FacetRule, FacetShapes
-from anisocontact.contact.overlap import Overlaps, overlaps
+from anisocontact.contact.overlap import Overlaps, largest_radius, overlaps
 from anisocontact.facets import FEATURES, FacetProjections, FacetSets, FacetSurface
 
 Ints = npt.NDArray[np.int32]
@@ -59,6 +59,7 @@ class Transfer:
         surface: The same as a surface.
         reach: Distance within which the master is searched, length.
         excluded: Master facets that do not count, for each slave facet.
+        comm: Communicator of the mesh.
     """
 
     def __init__(
@@ -68,9 +69,11 @@ class Transfer:
         master: FacetMesh,
         surface: FacetSurface,
         reach: float,
-        excluded: FacetSets | None = None,
+        excluded: FacetSets | None,
+        comm: Any,
     ) -> None:
         self._slave, self._rule, self._master = slave, rule, master
+        self._comm = comm
         self._surface, self._reach, self._excluded = surface, reach, excluded
         self._shapes = FacetShapes(slave.topology)
         self._degree = min(rule.degree // 2, self._shapes.order)
@@ -84,8 +87,10 @@ class Transfer:
         Args:
             now: Positions of the nodes, (nodes, 3), length.
         """
+        # the same on all ranks, so that no facet counts on one number of them and not on another
+        reach = self._reach + max(self._comm.allgather(largest_radius(self._slave, now)))
         self._parts = parts = overlaps(
-            self._slave, self._master, self._surface, now, self._reach, self._excluded
+            self._slave, self._master, self._surface, now, reach, self._excluded
         )
         self._shape, self._gradient = self._shapes.at(parts.at)
         moments = self._shapes.moments(parts.at, self._degree)

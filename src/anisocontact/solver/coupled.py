@@ -19,8 +19,9 @@ Floats = npt.NDArray[np.float64]
 class CoupledTangent:
     """Sum of a bulk matrix and blocks that couple nodes of different bodies.
 
-    Unknowns beyond those of the mesh come after them, on the last rank. They too are counted in
-    threes, as nodes that follow the local nodes of the mesh.
+    Unknowns beyond those of the mesh come after them, on the last rank, and are counted in threes
+    as nodes too. Couplings name a node by its local number, or by the number of local nodes plus
+    its number in the whole mesh, which those beyond the mesh continue.
 
     Couplings that were once there keep their place, so the pattern grows only when a slave point
     meets a facet it has not met before; the symbolic factorisation is reused in between.
@@ -39,14 +40,11 @@ class CoupledTangent:
         added = 3 * extra
         self._size = (own + added * (comm.rank == comm.size - 1), total + added)
         index_map = space.dofmap.index_map
-        #: Number of local nodes of the mesh.
-        self.nodes = index_map.size_local + index_map.num_ghosts
-        self._global = np.concatenate(
-            [
-                index_map.local_to_global(np.arange(self.nodes, dtype=np.int32)),
-                index_map.size_global + np.arange(extra),
-            ]
-        )
+        local = index_map.size_local + index_map.num_ghosts
+        self._global = index_map.local_to_global(np.arange(local, dtype=np.int32))
+        #: What couplings call the first node beyond those of the mesh.
+        self.first_extra = int(local + index_map.size_global)
+        self._numbers = self.first_extra + extra
         first = 3 * index_map.local_range[0]
         starts, columns, _ = stiffness.getValuesCSR()
         self._rows = np.repeat(np.arange(len(starts) - 1) + first, np.diff(starts))
@@ -84,8 +82,9 @@ class CoupledTangent:
 
     def assemble(self, out: Mat, couplings: Sequence[Couplings]) -> None:
         """Write bulk plus couplings into a matrix of `new_matrix`."""
-        keys, blocks = _pairs(couplings, len(self._global))
-        if not np.array_equal(keys, self._given):
+        keys, blocks = _pairs(couplings, self._numbers)
+        changed = not np.array_equal(keys, self._given)
+        if out.getComm().tompi4py().allreduce(changed):
             self._locate(keys, out)
         values = np.concatenate([self._bulk.getValuesCSR()[2], (self._sum @ blocks).reshape(-1)])
         out.setValuesCOO(values, PETSc.InsertMode.INSERT_VALUES)
@@ -103,16 +102,23 @@ class CoupledTangent:
         self._given = keys
 
     def _preallocate(self, matrix: Mat) -> None:
-        row, column = np.divmod(self._keys, len(self._global))
+        row, column = (self._globally(node) for node in np.divmod(self._keys, self._numbers))
         component = np.arange(3)
-        rows = 3 * self._global[row][:, None, None] + component[:, None]
-        columns = 3 * self._global[column][:, None, None] + component
+        rows = 3 * row[:, None, None] + component[:, None]
+        columns = 3 * column[:, None, None] + component
         shape = (len(self._keys), 3, 3)
         matrix.setPreallocationCOO(
             _joined(self._rows, np.broadcast_to(rows, shape)),
             _joined(self._columns, np.broadcast_to(columns, shape)),
         )
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+
+    def _globally(self, nodes: Keys) -> Keys:
+        """Numbers in the whole mesh of nodes as couplings name them."""
+        found = nodes - len(self._global)
+        local = found < 0
+        found[local] = self._global[nodes[local]]
+        return found
 
 
 def _joined(bulk: Any, contact: Any) -> Any:

@@ -303,7 +303,7 @@ class Problem:
         bulk.assemble()
         if self._coupled is not None:
             couplings = [k for c in self._meshed for k in c.couplings()]
-            couplings += self.rigid.couplings(self._coupled.nodes)
+            couplings += self.rigid.couplings(self._coupled.first_extra)
             couplings += self.attached.couplings()
             self._coupled.assemble(out, couplings)
         self.constraints.transform(out, self._support_scale)

@@ -142,19 +142,19 @@ class RigidBodies:
         """Which of the unknowns are prescribed, (size,)."""
         return np.concatenate([np.zeros(0, dtype=bool), *(self._drives[b].held for b in self.free)])
 
-    def couplings(self, nodes: int) -> list[Couplings]:
+    def couplings(self, first: int) -> list[Couplings]:
         """Blocks of the tangent in rows or columns of free bodies, of the contacts of this rank.
 
         Args:
-            nodes: Number of local nodes: the i-th body has the "nodes" `nodes + 2 i` of its
-                translation and the one after it for its turn.
+            first: What `CoupledTangent` calls the first node beyond those of the mesh: the i-th body
+                has the "nodes" `first + 2 i` of its translation and the one after it for its turn.
 
         Raises:
             SingularError: A motion of a body meets no stiffness at all.
         """
         found: list[Couplings] = []
         for i, body in enumerate(self.free):
-            own = np.array([[nodes + 2 * i, nodes + 2 * i + 1]], dtype=np.int32)
+            own = np.array([[first + 2 * i, first + 2 * i + 1]], dtype=np.int32)
             scale = self._scales[body]
             diagonal = np.diag(body.springs / scale**2) * (self._comm.rank == 0)
             stiff = [diagonal]
