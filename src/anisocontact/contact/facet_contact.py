@@ -263,7 +263,8 @@ class FacetContact(ContactRecord):
         rows = nodes[:, : tangent.shape[1] // 3]
         k = self._points.nodes.shape[1]
         handed, kept = touching & self._handed, touching & ~self._handed
-        force = -tangent.reshape(len(tangent), -1, 3, tangent.shape[2])[:, :k].sum(axis=1)
+        count, unknowns = len(tangent), tangent.shape[2]
+        force = -tangent[:, : 3 * k].reshape(count, k, 3, unknowns).sum(axis=1)
         return [
             (rows[kept], nodes[kept], tangent[kept]),
             (rows[handed, :k], nodes[handed], tangent[handed, : 3 * k]),

@@ -72,7 +72,7 @@ class MasterSurface:
         self._received = np.concatenate(comm.allgather(self._places))
         return (self._local + place[node]).reshape(by_facet.shape).astype(np.int32)
 
-    def number(self, facets: Ints) -> Ints:
+    def number(self, facets: Keys) -> Ints:
         """Numbers on this surface of facets that are part of it.
 
         Args:

@@ -80,26 +80,35 @@ class CoupledTangent:
         self._preallocate(matrix)
         return matrix
 
-    def assemble(self, out: Mat, couplings: Sequence[Couplings]) -> None:
-        """Write bulk plus couplings into a matrix of `new_matrix`."""
+    def assemble(self, out: Mat, couplings: Sequence[Couplings]) -> bool:
+        """Write bulk plus couplings into a matrix of `new_matrix`.
+
+        Returns:
+            Whether its pattern has grown. On several processes PETSc does not notice, so that
+            what was factorised with the old pattern has to be thrown away.
+        """
         keys, blocks = _pairs(couplings, self._numbers)
         changed = not np.array_equal(keys, self._given)
+        grown = False
         if out.getComm().tompi4py().allreduce(changed):
-            self._locate(keys, out)
+            grown = self._locate(keys, out)
         values = np.concatenate([self._bulk.getValuesCSR()[2], (self._sum @ blocks).reshape(-1)])
         out.setValuesCOO(values, PETSc.InsertMode.INSERT_VALUES)
+        return grown
 
-    def _locate(self, keys: Keys, out: Mat) -> None:
-        """Places of the blocks of `keys`; the pattern grows by those that are new."""
+    def _locate(self, keys: Keys, out: Mat) -> bool:
+        """Places of the blocks of `keys`; whether the pattern grows by some that are new."""
         there = np.flatnonzero(keys >= 0)
         unknown = np.setdiff1d(keys[there], self._keys)
-        if out.getComm().tompi4py().allreduce(unknown.size) > 0:
+        grown = bool(out.getComm().tompi4py().allreduce(unknown.size) > 0)
+        if grown:
             self._keys = np.union1d(self._keys, unknown)
             self._preallocate(out)
         places = np.searchsorted(self._keys, keys[there])
         entries = (np.ones(len(there)), (places, there))
         self._sum = csr_array(entries, shape=(len(self._keys), len(keys)))
         self._given = keys
+        return grown
 
     def _preallocate(self, matrix: Mat) -> None:
         row, column = (self._globally(node) for node in np.divmod(self._keys, self._numbers))

@@ -63,8 +63,8 @@ class System(Protocol):
         """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer."""
         ...
 
-    def tangent(self, x: Vec, out: Mat) -> None:
-        """Write d residual / d x into a matrix of `new_tangent`.
+    def tangent(self, x: Vec, out: Mat) -> bool:
+        """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown.
 
         Raises:
             SingularError: It has no inverse.
@@ -208,7 +208,10 @@ class Newton:
 
     def _jacobian(self, _: SNES, x: Vec, matrix: Mat, __: Mat) -> None:
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            self._problem.tangent(x, matrix)
+            grown = self._problem.tangent(x, matrix)
+        # on several processes PETSc would go on with the symbolic factorisation of the old pattern
+        if grown and self._problem.comm.size > 1:
+            self.snes.getKSP().reset()
 
     def _damp(self, _: Vec, direction: Vec) -> bool:
         share = 1.0 if self._damping is None else self._damping()

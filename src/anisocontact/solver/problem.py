@@ -289,8 +289,9 @@ class Problem:
             residual[:] = np.nan
         return np.append(residual, of_bodies) if self.layout.last_rank else residual
 
-    def tangent(self, x: Vec, out: Mat) -> None:
-        """Write d residual / d x into a matrix of `new_tangent`."""
+    def tangent(self, x: Vec, out: Mat) -> bool:
+        """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown."""
+        grown = False
         if self._evaluated is None or not np.array_equal(self._evaluated, x.array_r):
             self.evaluate(x)
         bulk = out if self._coupled is None else self._coupled.bulk
@@ -305,7 +306,7 @@ class Problem:
             couplings = [k for c in self._meshed for k in c.couplings()]
             couplings += self.rigid.couplings(self._coupled.first_extra)
             couplings += self.attached.couplings()
-            self._coupled.assemble(out, couplings)
+            grown = self._coupled.assemble(out, couplings)
         self.constraints.transform(out, self._support_scale)
         held = (
             np.flatnonzero(self.rigid.held())
@@ -315,6 +316,7 @@ class Problem:
         rows = np.concatenate([self.supports.unknowns, self._owned + held])
         first, _ = out.getOwnershipRange()
         out.zeroRows((first + rows).astype(PETSc.IntType), self._support_scale)
+        return grown
 
     def improve(self, x: Vec) -> bool:
         """Better multipliers of contacts, weaker springs of stabilisation; whether any changed.

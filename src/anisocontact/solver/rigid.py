@@ -146,8 +146,8 @@ class RigidBodies:
         """Blocks of the tangent in rows or columns of free bodies, of the contacts of this rank.
 
         Args:
-            first: What `CoupledTangent` calls the first node beyond those of the mesh: the i-th body
-                has the "nodes" `first + 2 i` of its translation and the one after it for its turn.
+            first: What `CoupledTangent` calls the first node beyond those of the mesh: the i-th
+                body has the "nodes" `first + 2 i` of its translation and the one after for its turn.
 
         Raises:
             SingularError: A motion of a body meets no stiffness at all.

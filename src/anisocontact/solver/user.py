@@ -168,8 +168,9 @@ class ContactProblem:
             residual[:] = np.nan
         return residual
 
-    def tangent(self, x: Vec, out: Mat) -> None:
-        """Write d residual / d x into a matrix of `new_tangent`."""
+    def tangent(self, x: Vec, out: Mat) -> bool:
+        """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown."""
+        grown = False
         if not np.array_equal(self.u.x.array[: self._owned], x.array_r):
             self.evaluate(x)
         bulk = self._coupled.bulk if self._coupled else out
@@ -181,8 +182,9 @@ class ContactProblem:
         bulk.assemble()
         if self._coupled:
             meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
-            self._coupled.assemble(out, [k for c in meshed for k in c.couplings()])
+            grown = self._coupled.assemble(out, [k for c in meshed for k in c.couplings()])
         out.zeroRowsLocal(prescribed_rows(self.bcs), self._support_scale)
+        return grown
 
     def improve(self, x: Vec) -> bool:
         """Better multipliers of the contacts from equilibrium; whether any changed.
