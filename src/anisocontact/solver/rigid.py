@@ -147,7 +147,7 @@ class RigidBodies:
 
         Args:
             first: What `CoupledTangent` calls the first node beyond those of the mesh: the i-th
-                body has the "nodes" `first + 2 i` of its translation and the one after for its turn.
+                body has the "nodes" `first + 2 i` of its translation and the next of its turn.
 
         Raises:
             SingularError: A motion of a body meets no stiffness at all.
