@@ -27,7 +27,7 @@ LAWS: dict[str, Any] = {
 }
 
 
-def _hairpin(half: bool) -> Model:
+def hairpin(half: bool) -> Model:
     """A strip bent to a U that opens towards +x, or its upper half: a leg and half of the bend."""
     legs = np.concatenate(
         [np.linspace(LEG, 0.0, ALONG + 1)[:-1], np.linspace(0.0, -np.pi, AROUND + 1)]
@@ -83,7 +83,7 @@ def _close(model: Model, contact: Any, material: str, depth: float) -> list[np.n
 
 
 @pytest.mark.parametrize("material", ["linear-elastic", "neo-hookean"])
-def test_hairpin_against_its_half(material: str) -> None:
+def testhairpin_against_its_half(material: str) -> None:
     """The force that closes a hairpin is that of its half on a rigid plane.
 
     Requirement: every side of the fold carries half of the contact. Source: symmetry; where the
@@ -94,11 +94,11 @@ def test_hairpin_against_its_half(material: str) -> None:
     """
     finite = material != "linear-elastic"
     depth = 0.5 * GAP + 2e-3
-    whole = _hairpin(half=False)
+    whole = hairpin(half=False)
     law = PairLaw(NormalLaw(penalty=PENALTY), **LAWS)
     folded = SelfContact(whole, "pin.inner", law=law, apart=0.3, current_area=finite)
     forces = _close(whole, folded, material, depth)
-    upper = _hairpin(half=True)
+    upper = hairpin(half=True)
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
     interface = Interface(plane, NormalLaw(penalty=2.0 * PENALTY), **LAWS)
     rigid = Contact(upper, "pin.inner", interface, current_area=finite)
@@ -111,7 +111,7 @@ def test_hairpin_against_its_half(material: str) -> None:
 
 def test_what_is_near_from_the_beginning_does_not_meet() -> None:
     """Sides of a gap narrower than `apart` pass through each other; with less they meet."""
-    model = _hairpin(half=False)
+    model = hairpin(half=False)
     law = PairLaw(NormalLaw(penalty=PENALTY), **LAWS)
     forces = {
         apart: _close(
@@ -124,7 +124,7 @@ def test_what_is_near_from_the_beginning_does_not_meet() -> None:
 
 def test_mistakes_are_said() -> None:
     """A group against itself needs to say so; the distance has to be positive."""
-    model = _hairpin(half=False)
+    model = hairpin(half=False)
     law = PairLaw(NormalLaw(penalty=PENALTY), **LAWS)
     with pytest.raises(InputError, match=r"master: .*share 96 facets"):
         FacetContact(model, "pin.inner", "pin.inner", law=law)

@@ -403,7 +403,8 @@ class Problem:
         for step in steps[-1:]:
             self.begin(step, again=True)
         self._put(kept, "")
-        if self._coupled is not None and "couplings" in kept.common:
+        # numbers of nodes are those of one process
+        if self._coupled is not None and self._comm.size == 1 and "couplings" in kept.common:
             self._coupled.pattern = kept.common["couplings"]
         points = iter(kept.points)
         for contact in self.contacts:

@@ -41,7 +41,8 @@ class StatusWatch:
     def history(self, contact: int) -> Codes:
         """Status of the points of a contact, (iterations, points), the latest at the end."""
         points = len(self._contacts[contact].trial.status)
-        return np.array([seen[contact] for seen in self._seen], dtype=np.int8).reshape(-1, points)
+        statuses = [seen[contact] for seen in self._seen]
+        return np.array(statuses, dtype=np.int8).reshape(len(statuses), points)
 
     def alternating(self) -> list[Flags]:
         """Points of each contact that changed their status again and again."""

@@ -123,11 +123,12 @@ class ContactSystem:
         self._residual = residual
         return residual.copy()
 
-    def tangent(self, x: Vec, out: Mat) -> None:
-        """Take the tangent at x; `out` multiplies with it."""
+    def tangent(self, x: Vec, out: Mat) -> bool:
+        """Take the tangent at x; `out` multiplies with it, and has no pattern that could grow."""
         self.evaluate(x)
         self._tangent.take([part for c in self.contacts for part in couplings(c)])
         out.assemble()
+        return False
 
     def improve(self, x: Vec) -> bool:
         """Better multipliers of the contacts from equilibrium; see `Problem.improve`."""

@@ -1,0 +1,186 @@
+"""Runs problems of meshed pairs on the processes it is started on, for `test_pairs_on_ranks`.
+
+Usage: `mpirun -n N python -m tests.verification.pairs_on_ranks FOLDER MODE CASE...`, MODE one of whole,
+stop, from:M. What there is after all increments is written to `FOLDER/CASE-N-whole.npz`; with `stop` the state after
+the second one goes to `FOLDER/CASE-N-stop.npz`, and `from:M` goes on from the one that M processes
+have left and writes `FOLDER/CASE-N-from-M.npz`.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from tests.conftest import make_interface
+from tests.verification.test_fe_self_contact import GAP, hairpin
+
+from anisocontact.anisotropy import make_directions
+from anisocontact.augmentation import Augmentation
+from anisocontact.bulk import make_material
+from anisocontact.contact import Contact, FacetContact, SelfContact, TwoHalfPass
+from anisocontact.interface import PairLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.results.checkpoint import Stored, distribute, gathered
+from anisocontact.rigid import RigidBody
+from anisocontact.solver import Problem, Solver, Step
+
+#: Accepted increments before a run is stopped.
+STOP = 2
+#: Distance of the block from the mat.
+GAP_BELOW = 0.01
+
+type Made = tuple[Problem, list[Step]]
+
+
+def _law(angle: float = 0.5) -> PairLaw:
+    along = make_directions("constant", vector=(1, 0, 0), angle=angle)
+    return PairLaw(
+        NormalLaw(penalty=20.0),
+        Adhesion(stiffness=(8.0, 16.0), directions=along),
+        Friction(coefficients=(0.2, 0.4), directions=along),
+    )
+
+
+def _bodies(cell: str = "hexahedron", order: int = 1) -> Any:
+    """A block just above a mat; nothing touches by rounding alone."""
+    return build_box(
+        {
+            "block": BoxSpec((-2, -2, GAP_BELOW), (4, 4, 2), (4, 3, 2), cell, order),
+            "mat": BoxSpec((-6, -5, -3), (12, 10, 3), (7, 6, 2), cell, order),
+        }
+    )
+
+
+def _dragged(model: Any, contacts: list[Any], material: str = "neo-hookean") -> Made:
+    """Press the block down, then drag it over several facets of the mat."""
+    materials = {
+        "block": make_material(material, E=8.0, nu=0.3),
+        "mat": make_material(material, E=3.0, nu=0.3),
+    }
+    held = {"mat.bottom": dict.fromkeys("xyz", 0.0)}
+    steps = [
+        Step("press", 2, held | {"block.top": {"x": 0.0, "y": 0.0, "z": -0.2}}),
+        Step("drag", 2, held | {"block.top": {"x": 2.0, "y": 0.3, "z": -0.25}}),
+    ]
+    return Problem(model, materials, contacts), steps
+
+
+def _single() -> Made:
+    model = _bodies("tetrahedron")
+    return _dragged(model, [FacetContact(model, "block.bottom", "mat.top", law=_law())])
+
+
+def _second_order() -> Made:
+    model = _bodies("hexahedron", 2)
+    return _dragged(model, [FacetContact(model, "block.bottom", "mat.top", law=_law())])
+
+
+def _two_half() -> Made:
+    model = _bodies()
+    return _dragged(model, [TwoHalfPass(model, "block.bottom", "mat.top", law=_law())])
+
+
+def _augmented() -> Made:
+    model = _bodies()
+    exact = Augmentation(tangential=False)
+    pair = FacetContact(model, "block.bottom", "mat.top", law=_law(), augmentation=exact)
+    return _dragged(model, [pair], "linear-elastic")
+
+
+def _under_a_lid() -> Made:
+    """A free rigid lid presses the block on the mat: unknowns beyond those of the mesh."""
+    model = _bodies()
+    lid = RigidBody("lid", (0, 0, 2), free=True, springs={"x": 4.0, "y": 4.0, "rz": 40.0})
+    plane = make_interface(
+        point=(0, 0, 2 + GAP_BELOW),
+        normal=(0, 0, -1),
+        stiffness=(10.0, 20.0),
+        penalty=20.0,
+        angle=0.3,
+    )
+    pair = FacetContact(model, "block.bottom", "mat.top", law=_law(), current_area=False)
+    top = Contact(model, "block.top", plane, body=lid)
+    problem, _ = _dragged(model, [pair, top], "linear-elastic")
+    held = {"mat.bottom": dict.fromkeys("xyz", 0.0)}
+    free = {"lid": dict.fromkeys(("x", "y", "rz"))}
+    steps = [
+        Step("press", 2, held, motion={"lid": {"z": -0.2}}),
+        Step("push", 2, held, motion=free, load={"lid": {"x": 1.0, "y": -0.5, "rz": 1.0}}),
+    ]
+    return problem, steps
+
+
+def _folded() -> Made:
+    model = hairpin(half=False)
+    law = PairLaw(
+        NormalLaw(penalty=2e4),
+        Adhesion(stiffness=(1e4, 1e4)),
+        Friction(coefficients=(0.2, 0.2)),
+    )
+    contact = SelfContact(model, "pin.inner", law=law, apart=0.3)
+    problem = Problem(model, {"pin": make_material("neo-hookean", E=1000.0, nu=0.3)}, [contact])
+    depth = 0.5 * GAP + 2e-3
+    ends = {
+        "pin.upper": {"x": 0.02, "y": 0.0, "z": -depth},
+        "pin.lower": {"x": 0.0, "y": 0.0, "z": depth},
+    }
+    return problem, [Step("close", 4, ends)]
+
+
+CASES: dict[str, Callable[[], Made]] = {
+    "single": _single,
+    "second-order": _second_order,
+    "two-half": _two_half,
+    "augmented": _augmented,
+    "under-a-lid": _under_a_lid,
+    "folded": _folded,
+}
+
+
+def _facets(problem: Problem) -> np.ndarray:
+    """Slave and master facets of the first contact on every rank, (ranks, 2)."""
+    pair = problem.contacts[0]
+    model = problem.model
+    own = [
+        int(np.sum(model.facets(name) < model.mesh.topology.index_map(2).size_local))
+        for name in (pair.slave, pair.master)
+    ]
+    return np.array(problem.comm.allgather(own))
+
+
+def _save(path: Path, solver: Solver, **more: Any) -> None:
+    problem = solver.problem
+    facets = _facets(problem)
+    arrays = gathered(problem.model, solver.persistent())
+    if problem.comm.rank == 0:
+        np.savez(path, facets=facets, **arrays, **more)
+
+
+def run(name: str, folder: Path, mode: str) -> None:
+    """One of `CASES`."""
+    problem, steps = CASES[name]()
+    ranks = problem.comm.size
+    solver = Solver(problem, steps, options={"snes_rtol": 1e-13}, strategy="direct")
+    if mode.startswith("from:"):
+        with np.load(folder / f"{name}-{mode[5:]}-stop.npz") as file:
+            stored = Stored(dict(file), {})
+        solver.restore(distribute(stored, problem.model, solver.persistent()))
+    rows = []
+    for count, accepted in enumerate(solver.run(), 1):
+        wrench = [np.concatenate(pair) for pair in accepted.resultants.values()]
+        reactions = list(accepted.reactions.values())
+        energies = np.array(list(accepted.energies.values()))
+        rows.append(np.concatenate([energies, *wrench, *reactions]))
+        if mode == "stop" and count == STOP:
+            _save(folder / f"{name}-{ranks}-stop.npz", solver)
+    kind = mode.replace(":", "-") if mode.startswith("from") else "whole"
+    _save(folder / f"{name}-{ranks}-{kind}.npz", solver, numbers=np.array(rows))
+
+
+if __name__ == "__main__":
+    for case in sys.argv[3:]:
+        run(case, Path(sys.argv[1]), sys.argv[2])
