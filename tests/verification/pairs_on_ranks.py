@@ -1,9 +1,10 @@
 """Runs problems of meshed pairs on the processes it is started on, for `test_pairs_on_ranks`.
 
-Usage: `mpirun -n N python -m tests.verification.pairs_on_ranks FOLDER MODE CASE...`, MODE one of whole,
-stop, from:M. What there is after all increments is written to `FOLDER/CASE-N-whole.npz`; with `stop` the state after
-the second one goes to `FOLDER/CASE-N-stop.npz`, and `from:M` goes on from the one that M processes
-have left and writes `FOLDER/CASE-N-from-M.npz`.
+Usage: `mpirun -n N python -m tests.verification.pairs_on_ranks FOLDER MODE CASE...`
+
+MODE "whole" writes what there is after all increments to `FOLDER/CASE-N-whole.npz`, "stop" also
+what there is after the second one to `FOLDER/CASE-N-stop.npz`; "from:M" goes on from where M
+processes have stopped and writes `FOLDER/CASE-N-from-M.npz`.
 """
 
 from __future__ import annotations
