@@ -46,11 +46,11 @@ def _law(angle: float = 0.5) -> PairLaw:
     )
 
 
-def _bodies(cell: str = "hexahedron", order: int = 1) -> Any:
+def _bodies(cell: str = "hexahedron", order: int = 1, gap: float = GAP_BELOW) -> Any:
     """A block just above a mat; nothing touches by rounding alone."""
     return build_box(
         {
-            "block": BoxSpec((-2, -2, GAP_BELOW), (4, 4, 2), (4, 3, 2), cell, order),
+            "block": BoxSpec((-2, -2, gap), (4, 4, 2), (4, 3, 2), cell, order),
             "mat": BoxSpec((-6, -5, -3), (12, 10, 3), (7, 6, 2), cell, order),
         }
     )
@@ -86,7 +86,7 @@ def _two_half() -> Made:
 
 
 def _augmented() -> Made:
-    model = _bodies()
+    model = _bodies(gap=0.0)
     exact = Augmentation(tangential=False)
     pair = FacetContact(model, "block.bottom", "mat.top", law=_law(), augmentation=exact)
     return _dragged(model, [pair], "linear-elastic")
