@@ -21,7 +21,7 @@ from anisocontact.contact.facet_mesh import node_positions
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.results.files import replacing
-from anisocontact.solver.persistent import Arrays, Persistent
+from anisocontact.solver.persistent import Arrays, Persistent, under
 
 __all__ = ["NAME", "Stored", "distribute", "gathered", "load_checkpoint", "save_checkpoint"]
 
@@ -63,7 +63,8 @@ def gathered(model: Model, kept: Persistent) -> Arrays:
     if parts is None:
         return {}
     joined = {name: np.concatenate([part[name] for part in parts]) for name in local}
-    return joined | {f"common/{name}": values for name, values in kept.common.items()}
+    joined |= {f"common/{name}": values for name, values in kept.common.items()}
+    return joined | {f"strategy/{name}": values for name, values in kept.strategy.items()}
 
 
 def save_checkpoint(folder: Path, arrays: Arrays, facts: dict[str, Any]) -> None:
@@ -135,25 +136,19 @@ def distribute(stored: Stored, model: Model, like: Persistent) -> Persistent:
     if len(arrays["node/position"]) != nodes or len(passes) != len(like.points):
         raise InputError("the mesh or the contacts are not those of the run that is to go on")
     rows = _matched(arrays["node/position"], arrays["node/body"], *where, SAME * size)
-    nodal = {
-        name.removeprefix("nodal/"): values[rows]
-        for name, values in arrays.items()
-        if name.startswith("nodal/")
-    }
+    nodal = {name: values[rows] for name, values in under("nodal/", arrays).items()}
     points = [
         _points_of(arrays, f"points/{i}/", part, SAME * size) for i, part in enumerate(like.points)
     ]
-    common = {
-        name.removeprefix("common/"): values
-        for name, values in arrays.items()
-        if name.startswith("common/")
-    }
-    return Persistent(nodal, points, common)
+    # numbers of unknowns mean something only where they are those of the run that wrote them
+    same = model.mesh.comm.size == 1 and np.array_equal(rows, np.arange(nodes))
+    strategy = under("strategy/", arrays) if same else {}
+    return Persistent(nodal, points, under("common/", arrays), strategy)
 
 
 def _points_of(arrays: Arrays, prefix: str, like: Arrays, near: float) -> Arrays:
     """Values of this rank's slave points of one pass."""
-    stored = {n.removeprefix(prefix): v for n, v in arrays.items() if n.startswith(prefix)}
+    stored = under(prefix, arrays)
     for name, values in like.items():
         if name not in stored or stored[name].dtype.names != values.dtype.names:
             raise InputError("the states of points are not those of this version")

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.contact import NotHeldError
+from anisocontact.solver.persistent import Arrays
 
 OptionValue = str | int | float | bool | None
 
@@ -140,6 +141,10 @@ class Newton:
         self.snes.setConvergenceTest(self._converged)
         self.snes.setLineSearchPreCheck(self._damp)
         self._line_search = self.snes.getLineSearch().getType()
+
+    def persistent(self) -> Arrays:
+        """Nothing is kept from one solution to the next."""
+        return {}
 
     def close(self) -> None:
         """Give back PETSc's objects, which hold this one and would keep it for ever."""

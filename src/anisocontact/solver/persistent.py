@@ -11,6 +11,18 @@ import numpy.typing as npt
 type Arrays = dict[str, npt.NDArray[Any]]
 
 
+def under(prefix: str, arrays: Arrays) -> Arrays:
+    """Arrays whose names begin with a prefix, which is taken off.
+
+    Example:
+        >>> import numpy as np
+        >>> values = np.zeros(1)
+        >>> list(under("a/", {"a/x": values, "b/x": values}))
+        ['x']
+    """
+    return {n.removeprefix(prefix): v for n, v in arrays.items() if n.startswith(prefix)}
+
+
 @dataclass(frozen=True)
 class Persistent:
     """State of a problem, or of a run, on one rank.
@@ -20,8 +32,11 @@ class Persistent:
         points: For each pass over slave points its values at them, (points, ...) each; "reference"
             are their positions in the reference configuration.
         common: What all ranks have in common.
+        strategy: What the strategy keeps from one increment to the next; where it keeps anything
+            there is one rank, and the arrays have its numbering of the unknowns.
     """
 
     nodal: Arrays
     points: list[Arrays]
     common: Arrays = field(default_factory=dict)
+    strategy: Arrays = field(default_factory=dict)

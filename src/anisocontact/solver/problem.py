@@ -18,10 +18,11 @@ from anisocontact.solver.attached import Attachments, ElasticSupport, Spring
 from anisocontact.solver.cells import DeformedCells
 from anisocontact.solver.constraints import Constraints
 from anisocontact.solver.coupled import CoupledTangent
+from anisocontact.solver.interior import PENDING, Interior
 from anisocontact.solver.layout import Layout
 from anisocontact.solver.loads import Loads
 from anisocontact.solver.memory import BEGUN, Memory
-from anisocontact.solver.persistent import Persistent
+from anisocontact.solver.persistent import Persistent, under
 from anisocontact.solver.reduction import Reduction
 from anisocontact.solver.rigid import RigidBodies
 from anisocontact.solver.stabilisation import Stabilisation
@@ -381,9 +382,9 @@ class Problem:
 
     def persistent(self) -> Persistent:
         """All that the next increments depend on, of this rank."""
-        if self.reduction is not None:
-            self.reduction.recover()
         nodal, common = self._memory.persistent()
+        if self.reduction is not None:
+            nodal |= {f"{PENDING}{name}": v for name, v in self.reduction.pending().items()}
         if self._coupled is not None and self._comm.size == 1:
             common["couplings"] = self._coupled.pattern
         points = [part.persistent() for contact in self.contacts for part in contact.parts]
@@ -411,6 +412,8 @@ class Problem:
             for part in contact.parts:
                 part.restore(next(points), self._u.x.array.reshape(-1, 3))
             contact.rejoin()
+        pending = under(PENDING, kept.nodal)
+        self.reduction = Interior(self, pending) if pending else None
 
     def _put(self, kept: Persistent, prefix: str) -> None:
         self._memory.restore(kept, prefix)

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import Vec
+from anisocontact.solver.persistent import Arrays
 
 Floats = npt.NDArray[np.float64]
 
@@ -17,6 +18,14 @@ class Reduction(Protocol):
 
     def commit(self, x: Vec) -> float:
         """Take over an accepted state and return the work from outside since the last one."""
+        ...
+
+    def pending(self) -> Arrays:
+        """What `recover` needs beside the accepted state, at the nodes; none if it is up to date.
+
+        "in_reach" are the nodes at which the accepted state is true, (nodes,); "load" and
+        "contact_force" the forces of that state, (nodes, 3).
+        """
         ...
 
     def recover(self) -> None:

@@ -11,15 +11,16 @@ from anisocontact._fenicsx import Vec
 from anisocontact.limits import Limits
 from anisocontact.solver.attempts import Attempts, Outcome
 from anisocontact.solver.culprits import NAMED
+from anisocontact.solver.interior import PENDING
 from anisocontact.solver.loads import check_steps
 from anisocontact.solver.newton import NewtonResult, OptionValue
 from anisocontact.solver.pace import Pace
-from anisocontact.solver.persistent import Persistent
+from anisocontact.solver.persistent import Arrays, Persistent, under
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Accepted, Cut, Progress, Step, StoppedError
-from anisocontact.solver.strategy import choose, make_newton
+from anisocontact.solver.strategy import AnyNewton, choose, make_newton
 from anisocontact.solver.watch import StatusWatch
-from anisocontact.strategies import AUTO
+from anisocontact.strategies import AUTO, CONDENSED
 
 
 @dataclass
@@ -88,6 +89,8 @@ class Solver:
         self._prefix = options_prefix
         self._options = dict(options or {})
         self.choice = choose(strategy, problem, self.steps, self._prefix, self._options)
+        self._newton: AnyNewton | None = None
+        self._kept: Arrays = {}
         self._on_iteration: Callable[[Progress], None] | None = None
         self._on_cut: Callable[[Cut], None] | None = None
         self._watch = StatusWatch(problem.contacts)
@@ -112,7 +115,7 @@ class Solver:
             StoppedError: An increment did not converge; the problem holds the last accepted one.
         """
         self._on_iteration, self._on_cut = on_iteration, on_cut
-        newton = make_newton(
+        self._newton = newton = make_newton(
             self.choice,
             self.problem,
             self.steps,
@@ -120,6 +123,7 @@ class Solver:
             self._options,
             self._report,
             on_note or (lambda _: None),
+            self._kept,
         )
         attempts = Attempts(self.problem, newton, self._watch)
         try:
@@ -128,6 +132,7 @@ class Solver:
                 yield from self._step(attempts, step)
                 self.place = self._beginning(self.place.step + 1, self.place.time + step.duration)
         finally:
+            self._newton, self._kept = None, {}
             newton.close()
 
     def persistent(self) -> Persistent:
@@ -140,6 +145,7 @@ class Solver:
         kept.common.update({f"place.{name}": np.array(v) for name, v in numbers.items()})
         if place.before is not None:
             kept.nodal["before"], kept.common["before"] = self.problem.layout.split(place.before)
+        kept.strategy.update(self._kept if self._newton is None else self._newton.persistent())
         return kept
 
     def restore(self, kept: Persistent) -> None:
@@ -148,10 +154,13 @@ class Solver:
         numbers = {name.removeprefix("place."): v for name, v in numbers.items()}
         step, time, begun = (numbers.pop(name) for name in ("step", "time", "begun"))
         before = None
-        if "before" in kept.nodal:
+        self.problem.restore(kept, self.steps[: step + begun])
+        self._kept = kept.strategy and kept.strategy | under(PENDING, kept.nodal)
+        # without its interior it is no state to extrapolate from
+        whole = self.problem.reduction is None or (self.choice.name == CONDENSED and self._kept)
+        if "before" in kept.nodal and whole:
             before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
         self.place = Place(step, time, Pace(self.limits, **numbers), begun, before)
-        self.problem.restore(kept, self.steps[: step + begun])
 
     def _beginning(self, step: int, time: float) -> Place:
         return Place(step, time, Pace(self.limits, self.limits.largest))

@@ -16,6 +16,7 @@ from anisocontact.contact import SelfContact
 from anisocontact.errors import InputError
 from anisocontact.solver.condensed import Condensed, CondensedNewton, contact_unknowns, reachable
 from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.persistent import Arrays
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Step
 from anisocontact.strategies import CONDENSED, DIRECT, STRATEGIES
@@ -38,6 +39,10 @@ class AnyNewton(Protocol):
         self, x: Vec, full_steps: bool = False, damping: Callable[[], float] | None = None
     ) -> NewtonResult:
         """Correct `x` until it is in equilibrium or no more can be done."""
+        ...
+
+    def persistent(self) -> Arrays:
+        """What the next solutions depend on beside the state of the problem."""
         ...
 
     def close(self) -> None:
@@ -100,6 +105,7 @@ def make_newton(
     options: Mapping[str, OptionValue],
     on_iteration: Callable[[int, float], None],
     note: Callable[[str], None],
+    kept: Arrays,
 ) -> AnyNewton:
     """Newton's method for a choice.
 
@@ -111,9 +117,12 @@ def make_newton(
         options: PETSc options without prefix.
         on_iteration: Called with the number of the iteration and the residual.
         note: Told what is worth a line in the log.
+        kept: What `AnyNewton.persistent` gave in the run that goes on; empty for a new one.
     """
+    if problem.reduction is not None and not (choice.name == CONDENSED and kept):
+        problem.reduction.recover()
     if choice.name == CONDENSED:
-        condensed = Condensed(problem, steps, note)
+        condensed = Condensed(problem, steps, note, kept)
         return CondensedNewton(condensed, prefix, options, on_iteration)
     return Newton(problem, prefix, options, on_iteration)
 

@@ -10,14 +10,14 @@ import scipy.sparse
 
 from anisocontact._fenicsx import Vec
 from anisocontact.solver.condensed.parts import Condensation, connected
-from anisocontact.solver.condensed.patterns import State
+from anisocontact.solver.condensed.patterns import Response, State
 from anisocontact.solver.condensed.reach import Reach
 from anisocontact.solver.condensed.system import ContactSystem
+from anisocontact.solver.persistent import Arrays
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Step
 
 Floats = npt.NDArray[np.float64]
-Flags = npt.NDArray[np.bool_]
 
 
 class Condensed:
@@ -30,10 +30,15 @@ class Condensed:
         problem: The problem, on one process, with linear bulk.
         steps: What will be done: tells what can be touched.
         note: Told what is done, line by line.
+        kept: What `persistent` gave of a run that goes on; nothing for one that begins.
     """
 
     def __init__(
-        self, problem: Problem, steps: Sequence[Step], note: Callable[[str], None]
+        self,
+        problem: Problem,
+        steps: Sequence[Step],
+        note: Callable[[str], None],
+        kept: Arrays | None = None,
     ) -> None:
         self._problem, self._note = problem, note
         starts, columns, values = problem.bulk.stiffness.getValuesCSR()
@@ -49,12 +54,55 @@ class Condensed:
         self._forces: Floats = np.zeros(n)
         self._stale = False
         self._held: dict[tuple[str, int], int] = {}
-        self._means: dict[str, list[int]] = {}
+        self._means: dict[str, Response] = {}
         problem.reduction = self
+        if kept:
+            self._restore(kept)
 
     def accepted(self) -> Vec:
         """Copy of the accepted state, true for what contacts need."""
         return self._problem.accepted()
+
+    @property
+    def known(self) -> ContactSystem | None:
+        """The system of the contact unknowns, as far as there is one."""
+        return self._system
+
+    def persistent(self) -> Arrays:
+        """All that the next increments depend on beside the state of the problem.
+
+        Factors are not written but made again: from the same numbers, in the same order.
+        """
+        if self._system is None or self._state is None:
+            return {}
+        own = {
+            "u": self._state.u,
+            "a": self._state.a,
+            "b": self._state.b,
+            "at_supports": self._state.at_supports,
+        }
+        parts = (self._reach, self._system.patterns, self._system.solver)
+        for part in parts:
+            own |= part.persistent()
+        return own
+
+    def pending(self) -> Arrays:
+        """What `recover` needs beside the accepted state, at the nodes."""
+        if not self._stale:
+            return {}
+        loads = {"load": self._load, "contact_force": self._forces}
+        return {"in_reach": self._reach.nodes} | {n: f.reshape(-1, 3) for n, f in loads.items()}
+
+    def _restore(self, kept: Arrays) -> None:
+        self._reach.restore(kept)
+        system = self._eliminate(self._reach.start)
+        system.patterns.restore(kept)
+        system.solver.restore(kept)
+        self._state = State(kept["u"], kept["a"], kept["b"], kept["at_supports"])
+        if "load" in kept:  # also where the interior is known meanwhile, by other operations
+            self._load = kept["load"].reshape(-1)
+            self._forces = kept["contact_force"].reshape(-1)
+            self._stale = True
 
     def prepare(self) -> ContactSystem:
         """The system of the contact unknowns at the level of the problem.
@@ -65,13 +113,11 @@ class Condensed:
         Raises:
             SingularError: A body is not held.
         """
-        fixed = np.zeros(self._stiffness.shape[0], dtype=np.bool_)
-        fixed[self._problem.supports.unknowns] = True
         same = self._bulk is not None and np.array_equal(
             self._bulk.prescribed, self._problem.supports.unknowns
         )
         if not same or not self._reach.valid(self._nodal()):
-            self._condense(fixed)
+            self._condense()
         assert self._system is not None
         problem = self._problem
         self._trial_load = problem.dead_load()
@@ -85,9 +131,7 @@ class Condensed:
         self.recover()
         self._reach.widen()
         self._note("a slave point left the part of its master that can be touched: widened")
-        fixed = np.zeros(self._stiffness.shape[0], dtype=np.bool_)
-        fixed[self._problem.supports.unknowns] = True
-        self._condense(fixed)
+        self._condense()
 
     def commit(self, x: Vec) -> float:
         """Accept a state of the contact unknowns.
@@ -115,6 +159,8 @@ class Condensed:
         if self._stale and self._state is not None:
             self._stale = False
             u = self.system.patterns.displacement(self._state)
+            fixed = self.system.bulk.prescribed
+            u[fixed] = self._problem.accepted().array_r[fixed]  # without rounding
             self._problem.complete(u, self._forces, self._load)
 
     def reactions(self) -> dict[str, Floats]:
@@ -147,8 +193,8 @@ class Condensed:
         supports = each[fixed]
         if group not in self._means:
             each[fixed] = 0.0
-            self._means[group] = patterns.add_forces(each)
-        free = patterns.works(self._state)[self._means[group]]
+            self._means[group] = patterns.respond(each)
+        free = patterns.work_of(self._means[group], self._state)
         return np.asarray(free + supports.T @ self._problem.accepted().array_r[fixed])
 
     @property
@@ -169,11 +215,27 @@ class Condensed:
         """Accepted displacement of the nodes, true for those in reach, (nodes, 3), length."""
         return np.asarray(self._problem.accepted().array_r).reshape(-1, 3)
 
-    def _condense(self, fixed: Flags) -> None:
+    def _condense(self) -> None:
         """Eliminate what neither is prescribed nor can be touched from the accepted state on."""
         self.recover()
         u = self._nodal()
         self._reach.select(u)
+        system = self._eliminate(u)
+        # in terms of the new unknowns: forces on what is no longer prescribed become loads
+        outside = self._problem.outside
+        supports = u.reshape(-1)[system.bulk.prescribed]
+        system.set_level(supports, outside, 0.0)
+        system.forces = self._stiffness @ u.reshape(-1) - outside
+        self._state = system.state(u.reshape(-1)[system.bulk.contact])
+
+    def _eliminate(self, u: Floats) -> ContactSystem:
+        """The system of the unknowns that are in reach.
+
+        Args:
+            u: Displacement of the nodes when they were selected, (nodes, 3), length.
+        """
+        fixed = np.zeros(self._stiffness.shape[0], dtype=np.bool_)
+        fixed[self._problem.supports.unknowns] = True
         touched = np.repeat(self._reach.nodes, 3)
         self._bulk = Condensation(
             self._stiffness, self._part_of, touched, fixed, self._bulk, self._note
@@ -182,16 +244,11 @@ class Condensed:
             self._bulk, self._problem.contacts, self._reach.nodes, u
         )
         self._means = {}
-        self._held = {}
-        held = self._problem.supports.owners
+        # the order of steps that were taken up again is another one
+        held = dict(sorted(self._problem.supports.owners.items()))
         marks = np.zeros((len(self._bulk.prescribed), len(held)))
         for column, unknowns in enumerate(held.values()):
             marks[np.searchsorted(self._bulk.prescribed, unknowns), column] = 1.0
         numbers = system.patterns.add_displacements(marks)
         self._held = dict(zip(held, numbers, strict=True))
-        # in terms of the new unknowns: forces on what is no longer prescribed become loads
-        outside = self._problem.outside
-        supports = u.reshape(-1)[self._bulk.prescribed]
-        system.set_level(supports, outside, 0.0)
-        system.forces = self._stiffness @ u.reshape(-1) - outside
-        self._state = system.state(u.reshape(-1)[self._bulk.contact])
+        return system

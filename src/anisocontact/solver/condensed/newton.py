@@ -11,6 +11,7 @@ from anisocontact._fenicsx import PETSc, Vec
 from anisocontact.solver.condensed.condensed import Condensed
 from anisocontact.solver.condensed.system import ContactSystem
 from anisocontact.solver.newton import Newton, NewtonResult, OptionValue, SingularError
+from anisocontact.solver.persistent import Arrays
 
 #: How often an increment may begin anew because a slave point has left the reach.
 _MOST_GROWTHS = 6
@@ -37,7 +38,7 @@ class CondensedNewton:
     ) -> None:
         self._condensed, self._prefix, self._options = condensed, prefix, dict(options)
         self._on_iteration = on_iteration
-        self._system: ContactSystem | None = None
+        self._system: ContactSystem | None = condensed.known
         self._newton: Newton | None = None
         self._size = 0
 
@@ -81,6 +82,10 @@ class CondensedNewton:
         x.array[:] = system.nodal.reshape(-1)
         x.array[system.bulk.contact] = own.array_r
         return result
+
+    def persistent(self) -> Arrays:
+        """What the next increments depend on beside the state of the problem."""
+        return self._condensed.persistent()
 
     def close(self) -> None:
         """Give back PETSc's objects and the factors; the problem is brought up to date."""

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.solver.condensed.parts import Condensation
+from anisocontact.solver.persistent import Arrays
 
 Floats = npt.NDArray[np.float64]
 
@@ -33,6 +34,10 @@ class Span:
     def __init__(self, size: int) -> None:
         self.vectors: Floats = np.zeros((size, 0))
 
+    def add(self, unit: Floats) -> None:
+        """Add a vector, (size,), of length one and orthogonal to the others."""
+        self.vectors = np.column_stack([self.vectors, unit])
+
     def coefficients(self, v: Floats) -> Floats:
         """Coefficients of `v`; a vector is added where the span does not hold it.
 
@@ -49,7 +54,7 @@ class Span:
             rest, found = rest - self.vectors @ part, found + part
         left = float(np.linalg.norm(rest))
         if left > _ROUNDING * norm:
-            self.vectors = np.column_stack([self.vectors, rest / left])
+            self.add(rest / left)
             found = np.append(found, left)
         return found
 
@@ -69,6 +74,21 @@ class State:
     a: Floats
     b: Floats
     at_supports: Floats
+
+
+@dataclass(frozen=True)
+class Response:
+    """Forces and what the bulk makes of them.
+
+    Attributes:
+        force: The forces f, zero where prescribed, (n, k).
+        answer: Displacement of the interior, `y = K_ii^-1 f_i`, (n, k).
+        passed_on: Load on the contact unknowns, `f_c - K_ci y`, (c, k).
+    """
+
+    force: Floats
+    answer: Floats
+    passed_on: Floats
 
 
 class Patterns:
@@ -109,7 +129,7 @@ class Patterns:
         known = self._supports.vectors.shape[1]
         found = self._supports.coefficients(u)
         if len(found) > known:
-            self._support_columns += self.add_displacements(self._supports.vectors[:, known:])
+            self._meet_supports()
         return _scattered(found, self._support_columns, self._lifts.shape[1])
 
     def loads(self, force: Floats) -> Floats:
@@ -117,8 +137,27 @@ class Patterns:
         known = self._loads.vectors.shape[1]
         found = self._loads.coefficients(force)
         if len(found) > known:
-            self._load_columns += self.add_forces(self._loads.vectors[:, known:])
+            self._meet_loads()
         return _scattered(found, self._load_columns, self._forces.shape[1])
+
+    def persistent(self) -> Arrays:
+        """What supports and loads have been met so far, in order."""
+        return {"supports": self._supports.vectors, "loads": self._loads.vectors}
+
+    def restore(self, kept: Arrays) -> None:
+        """Meet again what `persistent` gave, one by one, so that rounding is the same."""
+        for vector in kept["supports"].T:
+            self._supports.add(vector)
+            self._meet_supports()
+        for vector in kept["loads"].T:
+            self._loads.add(vector)
+            self._meet_loads()
+
+    def _meet_supports(self) -> None:
+        self._support_columns += self.add_displacements(self._supports.vectors[:, -1:])
+
+    def _meet_loads(self) -> None:
+        self._load_columns += self.add_forces(self._loads.vectors[:, -1:])
 
     def add_displacements(self, patterns: Floats) -> list[int]:
         """Add displacements of the prescribed unknowns, (p, k); their numbers are returned."""
@@ -138,15 +177,28 @@ class Patterns:
 
     def add_forces(self, patterns: Floats) -> list[int]:
         """Add forces, (n, k), zero where prescribed; their numbers are returned."""
-        old, bulk = self._forces.shape[1], self._bulk
-        answer = bulk.interior(patterns)
-        on_contact = patterns[bulk.contact] - (bulk.stiffness @ answer)[bulk.contact]
-        self._forces = np.column_stack([self._forces, patterns])
-        self._answers = np.column_stack([self._answers, answer])
-        self._passed_on = np.column_stack([self._passed_on, on_contact])
+        old, new = self._forces.shape[1], self.respond(patterns)
+        self._forces = np.column_stack([self._forces, new.force])
+        self._answers = np.column_stack([self._answers, new.answer])
+        self._passed_on = np.column_stack([self._passed_on, new.passed_on])
         self._lift_work = self._lifts.T @ self._forces
         self._load_work = self._answers.T @ self._forces
         return list(range(old, old + patterns.shape[1]))
+
+    def respond(self, forces: Floats) -> Response:
+        """What the bulk makes of forces, (n, k), zero where prescribed."""
+        bulk = self._bulk
+        answer = bulk.interior(forces)
+        on_contact = forces[bulk.contact] - (bulk.stiffness @ answer)[bulk.contact]
+        return Response(forces, answer, on_contact)
+
+    def work_of(self, response: Response, state: State) -> Floats:
+        """Work `f . u` of each force of a response in a state, (k,)."""
+        a, b = self._padded(state)
+        lifted = response.force.T @ (self._lifts @ a)
+        return np.asarray(
+            response.passed_on.T @ state.u + lifted + response.answer.T @ (self._forces @ b)
+        )
 
     def load(self, a: Floats, b: Floats) -> Floats:
         """Load g on the contact unknowns, (c,), force."""

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from anisocontact.contact import AnyContact, Contact, FacetContact
 from anisocontact.mesh import Model
+from anisocontact.solver.persistent import Arrays
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import AXES, Step
 
@@ -51,6 +52,24 @@ class Reach:
             else:
                 for half in contact.passes:
                     self._select_pass(half, self._reference + u)
+
+    def persistent(self) -> Arrays:
+        """Where the last selection was made, and what came of it."""
+        return {
+            "start": self._start,
+            "in_reach": self.nodes,
+            "widened": np.array(self._factor),
+        }
+
+    def restore(self, kept: Arrays) -> None:
+        """Go on from what `persistent` gave."""
+        self._start, self.nodes = kept["start"], kept["in_reach"]
+        self._factor = float(kept["widened"])
+
+    @property
+    def start(self) -> Floats:
+        """Displacement of the nodes at the last selection, (nodes, 3), length."""
+        return self._start
 
     def widen(self) -> None:
         """Allow for twice the motion from the next selection on."""
