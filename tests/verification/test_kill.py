@@ -113,9 +113,12 @@ def killed(case: Path, folder: Path, lines: int, pause: float) -> bool:
     return alive
 
 
-def check(tmp_path: Path, kills: int, increments: int, seed: int) -> None:
+def check(tmp_path: Path, strategy: str, kills: int, increments: int, seed: int) -> None:
+    text = CASE.replace("INCREMENTS", str(increments)) + f'strategy = "{strategy}"\n'
+    if strategy == "condensed":
+        text = text.replace("neo-hookean", "linear-elastic")
     case = tmp_path / "case.toml"
-    case.write_text(CASE.replace("INCREMENTS", str(increments)))
+    case.write_text(text)
     whole = tmp_path / "whole"
     subprocess.run(command(case, whole), check=True, capture_output=True)
     assert json.loads((whole / "summary.json").read_text())["cuts"]
@@ -135,17 +138,19 @@ def check(tmp_path: Path, kills: int, increments: int, seed: int) -> None:
     assert not list(folder.rglob(".*"))
 
 
-def test_a_run_that_is_killed_three_times(tmp_path):
+@pytest.mark.parametrize("strategy", ["direct", "condensed"])
+def test_a_run_that_is_killed_three_times(tmp_path, strategy):
     """Three SIGKILLs at random moments, on a run that needs cuts.
 
     Requirement: a run killed at any moment resumes from the last accepted increment and ends
     bitwise equal to an uninterrupted one: history, summary but for the wall time, and all fields.
     Tolerance: none, files are compared byte by byte.
     """
-    check(tmp_path, kills=3, increments=12, seed=1)
+    check(tmp_path, strategy, kills=3, increments=12, seed=1)
 
 
 @pytest.mark.slow
-def test_a_run_that_is_killed_twenty_times(tmp_path):
+@pytest.mark.parametrize("strategy", ["direct", "condensed"])
+def test_a_run_that_is_killed_twenty_times(tmp_path, strategy):
     """Twenty SIGKILLs in one run; otherwise as above."""
-    check(tmp_path, kills=20, increments=90, seed=2)
+    check(tmp_path, strategy, kills=20, increments=90, seed=2)

@@ -15,7 +15,7 @@ from anisocontact.registry import Entry, Parameter
 
 __all__ = ["command", "facts"]
 
-_PACKAGES = ("numpy", "scipy", "pydantic", "gmsh", "pyvista", "vtk", "h5py")
+_PACKAGES = ("numpy", "scipy", "pydantic", "gmsh", "pyvista", "vtk")
 
 
 def command(arguments: argparse.Namespace) -> int:
