@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from anisocontact.errors import InputError
+from anisocontact.whole_files import replacing
 
 __all__ = [
     "Disk",
@@ -80,20 +79,6 @@ class Disk:
         failure = self._comm.bcast(self._failure)
         if failure:
             raise WriteError(failure)
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[Path]:
-    """A path to write to; it takes the place of `path` when the block ends well.
-
-    Readers see the old file or the new one, never a part of either.
-    """
-    draft = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
-    try:
-        yield draft
-        draft.replace(path)
-    finally:
-        draft.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:

@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from anisocontact.figure_style import save as write
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
 from anisocontact.point.pictures.compare import compare
 from anisocontact.point.pictures.forces import force_plane
 from anisocontact.point.pictures.path import path_on_surface
 from anisocontact.point.pictures.time import over_time
-from anisocontact.results.report.style import save as write
 
 __all__ = ["compare", "force_plane", "over_time", "path_on_surface", "save"]
 

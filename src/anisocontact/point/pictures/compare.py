@@ -8,12 +8,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from anisocontact.figure_style import new_figure
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
 from anisocontact.point.pictures.ellipse import yield_ellipse
 from anisocontact.point.pictures.forces import limits
 from anisocontact.point.pictures.style import INK, RUNS, UNITS, number
-from anisocontact.results.report.style import new_figure
 from anisocontact.surfaces import Floats
 
 

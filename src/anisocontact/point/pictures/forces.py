@@ -6,11 +6,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from anisocontact.figure_style import new_figure
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History, Table
 from anisocontact.point.pictures.ellipse import yield_ellipse
 from anisocontact.point.pictures.style import COLOURS, INK, UNITS, number, runs
-from anisocontact.results.report.style import new_figure
 
 
 def force_plane(history: History, interface: PointInterface, *, title: str = "") -> Figure:

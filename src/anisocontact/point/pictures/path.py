@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FormatStrFormatter, MaxNLocator
 
+from anisocontact.figure_style import new_figure
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
 from anisocontact.point.pictures.ellipse import adhesion_domain
 from anisocontact.point.pictures.style import AXES, COLOURS, INK, UNITS, chosen, number, runs, size
-from anisocontact.results.report.style import new_figure
 from anisocontact.surfaces import Floats, Surface
 
 # An ellipse smaller than this share of the picture is drawn enlarged.

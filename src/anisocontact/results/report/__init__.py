@@ -6,11 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from anisocontact.figure_style import save
 from anisocontact.results.files import write_text
 from anisocontact.results.report import curves, maps, shape
 from anisocontact.results.report.page import Picture, page
 from anisocontact.results.report.run_data import RunData
-from anisocontact.results.report.style import save
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

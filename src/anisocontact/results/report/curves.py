@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.ticker import MaxNLocator
 
+from anisocontact.figure_style import ACCENT, GREY, STEP_COLOURS, new_figure
 from anisocontact.results.report.run_data import RunData
-from anisocontact.results.report.style import ACCENT, GREY, STEP_COLOURS, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

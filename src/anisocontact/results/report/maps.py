@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
+from anisocontact.figure_style import STATUS_COLOURS, new_figure
 from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import Moment, RunData
-from anisocontact.results.report.style import STATUS_COLOURS, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pyvista
 
+from anisocontact.figure_style import GREY
 from anisocontact.results.report.shape import LABEL, caption, round_box, surfaces
-from anisocontact.results.report.style import GREY
 
 
 def _main(source: str, picture: str, scale: float) -> None:

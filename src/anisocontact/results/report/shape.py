@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from anisocontact.figure_style import new_figure, save
 from anisocontact.results.files import replacing
-from anisocontact.results.report.style import new_figure, save
 
 if TYPE_CHECKING:
     import pyvista

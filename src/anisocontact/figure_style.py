@@ -8,7 +8,7 @@ from pathlib import Path
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from anisocontact.results.files import replacing
+from anisocontact.whole_files import replacing
 
 __all__ = ["ACCENT", "GREY", "STATUS_COLOURS", "STEP_COLOURS", "new_figure", "save"]
 
