@@ -10,7 +10,10 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import re
+import time
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -49,6 +52,7 @@ __all__ = [
     "call_petsc",
     "cell_nodes",
     "cell_permutation",
+    "compiled",
     "corner_weights",
     "create_mesh",
     "create_stiffness",
@@ -79,6 +83,40 @@ type SNES = Any
 Ints = npt.NDArray[np.int32]
 Nodes = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
+
+
+#: Seconds after which nobody is taken to compile a form any more.
+ABANDONED = 60.0
+_WAITED = "JIT compilation timed out"
+_MODULE = re.compile(r"\(e\.g\. remove (.+?\.c)\)")
+
+
+def compiled(form: Any, comm: MPI.Comm) -> Any:
+    """A form as machine code: `fem.form`, also where a process was killed while it compiled.
+
+    FFCx marks a form that is being compiled by a file in its cache and gives up after ten seconds
+    of waiting for whoever wrote it. A slow compilation is waited for, what a dead one has left is
+    removed.
+
+    Args:
+        form: UFL form.
+        comm: Communicator of its mesh.
+
+    Returns:
+        The DOLFINx form.
+    """
+    while True:
+        try:
+            return fem.form(form)
+        except (TimeoutError, RuntimeError) as error:
+            if _WAITED not in str(error):
+                raise
+            if comm.rank == 0 and (found := _MODULE.search(str(error))):
+                mark = Path(found[1])
+                with contextlib.suppress(FileNotFoundError):
+                    if time.time() - mark.stat().st_mtime > ABANDONED:
+                        mark.unlink()
+            comm.barrier()
 
 
 def create_mesh(comm: MPI.Comm, cell: str, degree: int, cells: Nodes, points: Floats) -> Any:
@@ -199,7 +237,7 @@ def scalar_element(space: Any) -> Any:
 def body_shares(space: Any, cells: Ints) -> Floats:
     """Integral of the basis function of each local node over cells, (nodes,), length^3."""
     dx = ufl.Measure("dx", domain=space.mesh, subdomain_data=[(1, np.sort(cells))])
-    form = fem.form(ufl.TestFunction(space)[0] * dx(1))
+    form = compiled(ufl.TestFunction(space)[0] * dx(1), space.mesh.comm)
     return np.array(fem.assemble_vector(form).array[::3])
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact._fenicsx import Mat, PETSc, Vec, create_stiffness, fem, ufl
+from anisocontact._fenicsx import Mat, PETSc, Vec, compiled, create_stiffness, ufl
 from anisocontact.bulk.materials import Material
 from anisocontact.mesh import Model
 
@@ -24,7 +24,9 @@ class LinearBulk:
     rest_length = 0.0
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
-        self.stiffness = create_stiffness(fem.form(_bilinear_form(model, materials)))
+        self.stiffness = create_stiffness(
+            compiled(_bilinear_form(model, materials), model.mesh.comm)
+        )
         self._force = self.stiffness.createVecLeft()
         #: Diagonal of K: the scale of forces that displacements of one unit make.
         self.diagonal = self.stiffness.getDiagonal()

@@ -13,6 +13,7 @@ from anisocontact._fenicsx import (
     Vec,
     assemble_force,
     assemble_into,
+    compiled,
     create_stiffness,
     fem,
     ufl,
@@ -33,10 +34,10 @@ class NonlinearBulk:
         self._u: Any = fem.Function(model.space)
         v, du = ufl.TestFunction(model.space), ufl.TrialFunction(model.space)
         work, energy = _forms(model, materials, self._u, v)
-        self._work = fem.form(work)
-        self._tangent = fem.form(ufl.derivative(work, self._u, du))
-        self._energy = None if energy is None else fem.form(energy)
         self._comm = model.mesh.comm
+        self._work = compiled(work, self._comm)
+        self._tangent = compiled(ufl.derivative(work, self._u, du), self._comm)
+        self._energy = None if energy is None else compiled(energy, self._comm)
         self.stiffness = create_stiffness(self._tangent)
         self._force = self.stiffness.createVecLeft()
         #: Length whose strain is round-off where nothing moves: F = I + grad(u) is rounded over
@@ -72,7 +73,7 @@ class NonlinearBulk:
 def _cell_size(model: Model) -> float:
     """Cube root of the mean volume of a cell."""
     comm, cells = model.mesh.comm, model.mesh.topology.index_map(3)
-    one = fem.form(fem.Constant(model.mesh, 1.0) * ufl.dx(domain=model.mesh))
+    one = compiled(fem.Constant(model.mesh, 1.0) * ufl.dx(domain=model.mesh), comm)
     volume = comm.allreduce(fem.assemble_scalar(one))
     return float(np.cbrt(volume / cells.size_global))
 

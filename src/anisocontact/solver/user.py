@@ -14,8 +14,8 @@ from anisocontact._fenicsx import (
     Vec,
     assemble_force,
     assemble_into,
+    compiled,
     create_stiffness,
-    fem,
     prescribe,
     prescribed_rows,
     ufl,
@@ -84,8 +84,9 @@ class ContactProblem:
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
         self.force_scale = self.round_off = 0.0
         trial = ufl.TrialFunction(space)
-        self._residual = fem.form(F)
-        self._tangent = fem.form(ufl.derivative(F, u, trial) if J is None else J)
+        tangent = ufl.derivative(F, u, trial) if J is None else J
+        self._residual = compiled(F, space.mesh.comm)
+        self._tangent = compiled(tangent, space.mesh.comm)
         self._matrix = create_stiffness(self._tangent)
         self._diagonal = self._matrix.getDiagonal()
         self._support_scale = self._diagonal.sum() / self._diagonal.getSize()
