@@ -6,7 +6,12 @@ from dataclasses import dataclass
 
 from anisocontact.errors import InputError
 
-__all__ = ["Augmentation"]
+__all__ = ["AUTO", "NEWTON", "SCHEMES", "UZAWA", "Augmentation"]
+
+#: Ways to the multipliers: with the displacements in one Newton iteration, in cycles around it, or
+#: whichever of the two suits the laws.
+NEWTON, UZAWA, AUTO = "newton", "uzawa", "auto"
+SCHEMES = (AUTO, NEWTON, UZAWA)
 
 
 @dataclass(frozen=True)
@@ -16,9 +21,10 @@ class Augmentation:
     Args:
         tolerance: Largest penetration and elastic slip, share of the facet size, > 0.
         tangential: Whether the stiffness of adhesion is a penalty as well; not if it is physical.
+        multipliers: Way to the multipliers, one of `SCHEMES`.
 
     Raises:
-        InputError: The tolerance is out of range.
+        InputError: The tolerance is out of range, or there is no such way.
 
     Example:
         >>> Augmentation().tolerance
@@ -27,7 +33,11 @@ class Augmentation:
 
     tolerance: float = 1e-6
     tangential: bool = True
+    multipliers: str = AUTO
 
     def __post_init__(self) -> None:
         if not 0.0 < self.tolerance < 1.0:
             raise InputError(f"{self.tolerance!r} given, must be > 0 and < 1", "tolerance")
+        if self.multipliers not in SCHEMES:
+            allowed = ", ".join(f'"{name}"' for name in SCHEMES)
+            raise InputError(f"{self.multipliers!r} given, allowed: {allowed}", "multipliers")

@@ -79,6 +79,24 @@ def test_summary_has_the_promised_keys(run):
     assert energies <= set(summary["energy"])
 
 
+def test_warning_says_the_worst_of_the_run(tmp_path, case_text):
+    """A block that is lifted at the end was deepest when it was pressed, and the summary knows it.
+
+    Source: 0.01 of a block of height 0.5 on springs a hundredth as stiff as it: nearly all of it.
+    """
+    text = case_text.replace("normal = { penalty = 1e4 }", "normal = { penalty = 20.0 }")
+    text = text.replace("z = -0.01", "z = -0.05").replace("x = 0.02, y = 0.01", "z = 0.01")
+    (tmp_path / "case.toml").write_text(text)
+    done = run_case(tmp_path / "case.toml", tmp_path / "out")
+    done.writer.close("done")
+    contact = done.writer.summary["contacts"][0]
+    assert contact["max_penetration"] == 0.0
+    assert contact["worst_penetration"] > 0.045
+    assert contact["worst_penetration_time"] == 1.0
+    (said,) = [line for line in done.writer.summary["warnings"] if "penetration" in line]
+    assert "was up to 15% of the facet size, at time 1;" in said
+
+
 def test_summary_is_the_last_increment(run):
     """Numbers of the file against those of the solver, the same doubles."""
     summary, last = run.results.summary, run.accepted[-1]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
+from anisocontact.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.case import objects
 from anisocontact.case.model import (
     AUGMENTED,
@@ -121,6 +122,9 @@ def _method(contact: ContactSection, place: str) -> Iterator[InputError]:
         if contact.tolerance is not None:
             text = f'given with method "{PENALTY}", needs "{AUGMENTED}"'
             yield InputError(text, field=f"{place}.tolerance")
+        if contact.multipliers != AUTO_MULTIPLIERS:
+            text = f'given with method "{PENALTY}", needs "{AUGMENTED}"'
+            yield InputError(text, field=f"{place}.multipliers")
     elif contact.half_passes:
         text = f'"{TWO_HALF}" given, "{SINGLE}" needed with method "{AUGMENTED}"'
         yield InputError(text, field=f"{place}.pass")

@@ -143,10 +143,8 @@ def _augmentation(section: ContactSection) -> Augmentation | None:
     """What the table asks for; a stiffness of adhesion that the user gave is physical."""
     if section.method != AUGMENTED:
         return None
-    tangential = _auto_adhesion(section)
-    if section.tolerance is None:
-        return Augmentation(tangential=tangential)
-    return Augmentation(section.tolerance, tangential)
+    tolerance = Augmentation.tolerance if section.tolerance is None else section.tolerance
+    return Augmentation(tolerance, _auto_adhesion(section), section.multipliers)
 
 
 def _auto_adhesion(section: ContactSection) -> bool:

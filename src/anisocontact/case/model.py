@@ -13,7 +13,8 @@ from typing import Annotated, Any
 from pydantic import Field, create_model
 
 from anisocontact import registry
-from anisocontact.augmentation import Augmentation
+from anisocontact.augmentation import AUTO as AUTO_MULTIPLIERS
+from anisocontact.augmentation import NEWTON, SCHEMES, UZAWA, Augmentation
 from anisocontact.case.bodies import Mesh, mesh_type
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
 from anisocontact.case.quantity import number as _number
@@ -175,6 +176,15 @@ class ContactSection(Section):
             "positive",
         ),
     ] = None
+    multipliers: Annotated[
+        str,
+        _word(
+            f'how "{AUGMENTED}" finds its multipliers: "{NEWTON}" together with the displacements, '
+            f'"{UZAWA}" in cycles around Newton\'s method; "{AUTO_MULTIPLIERS}" takes "{NEWTON}", '
+            f'"{UZAWA}" for the sliding rule "explicit"',
+            *SCHEMES,
+        ),
+    ] = AUTO_MULTIPLIERS
     adjust: Annotated[
         bool, _number("flag", "1", "whether slave points that overlap at the start just touch")
     ] = False

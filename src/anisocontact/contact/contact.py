@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,11 @@ from anisocontact._fenicsx import Mat, PETSc
 from anisocontact.augmentation import Augmentation
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
+from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.quadrature import Surfaced, default_degree, facet_quadrature
 from anisocontact.contact.record import ContactRecord, Snapshot
+from anisocontact.contact.semismooth import Base, Semismooth
 from anisocontact.contact.transfer import Couplings
 from anisocontact.errors import InputError
 from anisocontact.interface import Interface, Response, SlaveSurface, State
@@ -24,6 +27,9 @@ from anisocontact.rigid import MovingInterface, RigidBody
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
+
+#: What answers for the surface and its laws.
+type Master = Interface | PythonInterface | MovingInterface
 
 
 class Contact(ContactRecord):
@@ -77,10 +83,12 @@ class Contact(ContactRecord):
             raise InputError(f"{degree!r} given, must be >= 1", "degree")
         self.interface = interface
         self.body = body
-        self._master = interface if body is None else MovingInterface(interface, body)
+        self._master: Master = interface if body is None else MovingInterface(interface, body)
+        self._stiff = self._master
         self.current_area = current_area
         self.quadrature = facet_quadrature(model.space, facets, degree)
         self._moved: Surfaced | None = None
+        self._base: Base | None = None
         points = self.quadrature.reference
         self._facets = facets
         self._carries = isinstance(interface, Interface) and interface.takes_slave()
@@ -112,11 +120,16 @@ class Contact(ContactRecord):
         moved = self.quadrature.moved(u) if self.current_area or self._carries else None
         if moved is not None:
             self._slave = self._surface(moved.tangents)
-        response = self._respond(self._start, x, dt)
         self._moved = moved if self.current_area else None
         areas = self.quadrature.areas if self._moved is None else self._moved.areas
+        semismooth = self._semismooth
+        if semismooth is not None:
+            self._follow(semismooth, x, dt)
+        response = self._respond(self._start, x, dt)
         self._trial = Snapshot(x, areas, response)
-        return response
+        if semismooth is not None:
+            self._trial = self._linearised(semismooth, self._trial, dt)
+        return self._trial.response
 
     def persistent(self) -> dict[str, npt.NDArray[Any]]:
         """As of `ContactRecord`, with the positions in the reference configuration."""
@@ -191,16 +204,87 @@ class Contact(ContactRecord):
         """
         now = self.current
         stiffness = np.linalg.norm(now.response.tangent, axis=(1, 2)) * now.areas
+        if self._semismooth is not None:
+            stiffness /= self._semismooth.ratio
         distance = np.linalg.norm(now.points, axis=1)
         if self.body is not None:
             distance += np.linalg.norm(self.body.position)
         return float(np.linalg.norm(stiffness * distance))
 
+    def add_lag(self, out: Floats) -> None:
+        """As of `ContactRecord`."""
+        if self._base is not None:
+            self.quadrature.to_nodes(self.lag(), out, self.current.areas)
+
+    def lag(self) -> Floats:
+        """Tractions that a Newton step takes beyond those of the trial, (n, 3), stress."""
+        if self._base is None:
+            return np.zeros_like(self.trial.traction)
+        return self._in_space(self._base.lag)
+
+    def lag_wrench(self, about: Floats) -> Floats:
+        """Force and moment of `lag` about a point on the slave over the points here, (6,)."""
+        now = self.current
+        lag = replace(now.response, traction=self.lag())
+        return replace(now, response=lag).wrench(about)
+
+    def _follow(self, semismooth: Semismooth, x: Floats, dt: float) -> None:
+        """Let the multipliers follow a step of Newton's method to x."""
+        there = self._place(x)
+        if self._base is None or np.array_equal(there, self._base_place):
+            return
+        change = np.einsum("nij,nj->ni", self._base_tangent, there - self._base_place)
+        state = self._respond(self._start, x, dt).state
+        self._start = semismooth.advance(
+            self._start,
+            self._base.after(change, semismooth.share),
+            Frames.of(self._tangents(state)),
+            Frames.of(self._tangents(self._start)),
+        )
+
+    def _linearised(self, semismooth: Semismooth, trial: Snapshot, dt: float) -> Snapshot:
+        """The trial with the derivative of a Newton step that takes the multipliers along."""
+        step = self._step(trial)
+        state, slip = semismooth.stiff(step)
+        stiff = self._respond(state, trial.points, dt, self._stiff)
+        turn = np.eye(3) if self.body is None else self.body.trial.rotation
+        self._base_place, self._base_tangent = (
+            self._place(trial.points),
+            turn.T @ stiff.tangent @ turn,
+        )
+        lag = np.einsum("nij,nj->ni", self._base_tangent, slip)
+        traction = trial.response.traction @ turn
+        self._base = Base(semismooth.vector(step), traction, lag)
+        response = replace(trial.response, tangent=stiff.tangent, tangent_slave=stiff.tangent_slave)
+        return replace(trial, response=response)
+
+    def _place(self, x: Floats) -> Floats:
+        """Points of space in the frame of the surface, (n, 3), length."""
+        return x if self.body is None else self.body.to_body(x)
+
+    def _in_space(self, vectors: Floats) -> Floats:
+        return vectors if self.body is None else self.body.to_space(vectors)
+
+    def _begin(self) -> None:
+        super()._begin()
+        self._base = None
+
+    def _stiffness(self, diagonal: Floats) -> float:
+        nodes = self.slave_nodes[self.slave_nodes < len(diagonal)]
+        local = np.array([diagonal[nodes].mean(axis=1).sum(), self.quadrature.areas.sum()])
+        stiffness, area = self._comm.allreduce(local)
+        return float(stiffness / area)
+
     def _stiffen(self, factor: float) -> None:
         """Multiply the penalties of the law with a factor."""
+        self._master = self._on_body(factor)
+        if self._semismooth is not None:
+            self._stiff = self._on_body(factor * self._semismooth.ratio)
+
+    def _on_body(self, factor: float) -> Master:
         tangential = self._multipliers is not None and self._multipliers.tangential
         stiff = self.interface.stiffened(factor, tangential)
-        self._master = stiff if self.body is None else MovingInterface(stiff, self.body)
+        return stiff if self.body is None else MovingInterface(stiff, self.body)
 
     def _tangents(self, state: State) -> Floats:
         """Tangents of the master as given at the coordinates of a state, (n, 2, 3), length."""
@@ -217,7 +301,10 @@ class Contact(ContactRecord):
             tangents.reshape(-1, 2, 3),
         )
 
-    def _respond(self, state: State, x: Floats, dt: float) -> Response:
-        if self._slave is None or isinstance(self._master, PythonInterface):
-            return self._master.update(state, x, dt)
-        return self._master.update(state, x, dt, slave=self._slave)
+    def _respond(
+        self, state: State, x: Floats, dt: float, master: Master | None = None
+    ) -> Response:
+        master = master or self._master
+        if self._slave is None or isinstance(master, PythonInterface):
+            return master.update(state, x, dt)
+        return master.update(state, x, dt, slave=self._slave)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact._core import FacetPairs
 from anisocontact._fenicsx import facet_keys, facet_sides
 from anisocontact.augmentation import Augmentation
 from anisocontact.contact.adjust import adjusted
@@ -16,11 +17,15 @@ from anisocontact.contact.facet_mesh import (
     SlavePoints,
     facet_mesh,
     facet_rule,
+    group_area,
     near_facets,
 )
 from anisocontact.contact.master_surface import MasterSurface
+from anisocontact.contact.multipliers import Frames
+from anisocontact.contact.point_tangent import PointTangent
 from anisocontact.contact.quadrature import default_degree
 from anisocontact.contact.record import ContactRecord, Snapshot
+from anisocontact.contact.semismooth import Base, Semismooth
 from anisocontact.contact.transfer import Couplings, Transfer
 from anisocontact.errors import InputError
 from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSets, FacetSurface
@@ -96,10 +101,14 @@ class FacetContact(ContactRecord):
         self.interface = law
         self.current_area = current_area
         self._mirrored = mirrored
-        self._law = law.pairs(mirrored)
+        self._law = self._stiff = law.pairs(mirrored)
+        self._base: Base | None = None
+        self._linear: PointTangent | None = None
+        self._lag: Floats = np.zeros((0, 0, 3))
         self._gathered = MasterSurface(model.space, model.facets(master))
         self._reference, self._master = self._gathered.reference, self._gathered.facets
         own = facet_mesh(model.space, model.facets(slave))
+        self._sides = own, facet_mesh(model.space, model.facets(master))
         if degree is None:
             degree = default_degree(model.order, augmentation is not None)
         rule = facet_rule(own.topology, degree)
@@ -118,6 +127,7 @@ class FacetContact(ContactRecord):
             numbers = self._gathered.number(facet_keys(model.mesh, np.sort(model.facets(slave))))
             near = near_facets(own, numbers, self._surface, self._reference, apart)
             self._excluded = near.take(self._points.facet)
+        self._multipliers = None
         self._now = self._reference
         x = self._points.positions(self._now)
         self._hint = self._surface.project(x, max_distance=self.reach, exclude=self._excluded)
@@ -180,10 +190,46 @@ class FacetContact(ContactRecord):
             The response; the committed history is unchanged.
         """
         self._now = self._reference + self._gathered.everywhere(u)
-        self._trial = self._respond(self._start, self._now, dt, tangent=True)
+        semismooth = self._semismooth
+        if semismooth is None:
+            self._trial = self._respond(self._start, self._now, dt, tangent=True)
+        else:
+            self._trial = self._linearised(semismooth, dt)
         if self._transfer is not None:
             self._hand_over(self._transfer)
         return self._trial.response
+
+    def _linearised(self, semismooth: Semismooth, dt: float) -> Snapshot:
+        """A trial to which the multipliers have followed, with the derivative of a Newton step."""
+        hit = self._project(self._now, self._points.positions(self._now))
+        self._follow(semismooth, hit)
+        trial = self._ask(self._law, self._start, hit, dt, tangent=False)
+        step = self._step(trial)
+        state, slip = semismooth.stiff(step)
+        answer = self._answer
+        self._ask(self._stiff, state, hit, dt, tangent=True)
+        stiff = self._answer["stiffness"] / semismooth.ratio
+        kept = {name: self._answer[name] for name in ("tangent", "nodes")}
+        self._answer = answer | kept | {"stiffness": stiff}
+        vector = semismooth.vector(step)
+        self._linear = PointTangent(self._points, self._now, self._answer, trial)
+        self._base = Base(vector, trial.response.traction, self._linear.slipped(slip))
+        self._lag = self._linear.forces(slip)
+        return trial
+
+    def _follow(self, semismooth: Semismooth, hit: FacetProjections) -> None:
+        """Let the multipliers follow a step of Newton's method."""
+        if self._base is None or self._linear is None or self._linear.at(self._now):
+            return
+        there = self._start.copy()
+        on = hit.status == FACET_STATUS.index("on")
+        there["facet"], there["xi"] = np.where(on, hit.facet, -1), np.nan_to_num(hit.xi)
+        self._start = semismooth.advance(
+            self._start,
+            self._base.after(self._linear.change(self._now), semismooth.share),
+            Frames.of(self._tangents(there)),
+            Frames.of(self._tangents(self._start)),
+        )
 
     def commit(self) -> None:
         """Make the trial the history."""
@@ -231,15 +277,31 @@ class FacetContact(ContactRecord):
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial on both bodies to the local nodes, (nodes, 3), force."""
         total = self._gathered.zeros(out)
-        if self._transfer is None:
-            total += self._answer["force"]
+        if self._by_points:
+            self._add_rows(-self._answer["residual"], total)
         else:
-            forces = -self._answer["residual"]
-            rows = self._answer["nodes"][:, : forces.shape[1] // 3]
-            held = rows >= 0
-            np.add.at(total, rows[held], forces.reshape(*rows.shape, 3)[held])
+            total += self._answer["force"]
+        if self._transfer is not None:
             self._transfer.add_force(total)
         self._gathered.hand_back(total, out)
+
+    def add_lag(self, out: Floats) -> None:
+        """As of `ContactRecord`."""
+        if self._linear is None or self._base is None:
+            return
+        total = self._gathered.zeros(out)
+        forces = self._lag.copy()
+        if self._transfer is not None:
+            forces[self._handed, 3 * self._points.nodes.shape[1] :] = 0.0
+            self._transfer.add_force(total, self.current.areas[:, None] * self._base.lag)
+        self._add_rows(forces, total)
+        self._gathered.hand_back(total, out)
+
+    def _add_rows(self, forces: Floats, out: Floats) -> None:
+        """Add forces on the nodes of the rows of each point, (n, 3 r)."""
+        rows = self._answer["nodes"][:, : forces.shape[1] // 3]
+        held = rows >= 0
+        np.add.at(out, rows[held], forces.reshape(*rows.shape, 3)[held])
 
     def couplings(self) -> Sequence[Couplings]:
         """Where `-d force / d u` of the trial has entries, and the entries.
@@ -255,12 +317,14 @@ class FacetContact(ContactRecord):
 
     def _blocks(self) -> Sequence[Couplings]:
         """`couplings` with the node numbers of the surface."""
-        if self._transfer is None:
+        if not self._by_points:
             blocks: Sequence[Couplings] = self._answer["blocks"]
             return blocks
         touching = self.trial.status != 0
         nodes, tangent = self._answer["nodes"], self._answer["tangent"]
         rows = nodes[:, : tangent.shape[1] // 3]
+        if self._transfer is None:
+            return [(rows[touching], nodes[touching], tangent[touching])]
         k = self._points.nodes.shape[1]
         handed, kept = touching & self._handed, touching & ~self._handed
         count, unknowns = len(tangent), tangent.shape[2]
@@ -295,11 +359,20 @@ class FacetContact(ContactRecord):
         return float(np.linalg.norm(stiff * np.linalg.norm(self.current.points, axis=1)))
 
     def _respond(self, state: State, now: Floats, dt: float, *, tangent: bool) -> Snapshot:
-        x = self._points.positions(now)
-        hit = self._project(now, x)
-        slave = self._points
-        # one block a point where each of them hands over its own force, else summed by facets
-        ask = self._law.assemble if self._transfer is None else self._law.update
+        hit = self._project(now, self._points.positions(now))
+        return self._ask(self._law, state, hit, dt, tangent=tangent)
+
+    @property
+    def _by_points(self) -> bool:
+        """Whether every point has a block, as it hands over its own force or has multipliers."""
+        return self._transfer is not None or self._semismooth is not None
+
+    def _ask(
+        self, law: FacetPairs, state: State, hit: FacetProjections, dt: float, *, tangent: bool
+    ) -> Snapshot:
+        """What a law answers where the points are; forces and blocks go to `_answer`."""
+        slave, now = self._points, self._now
+        ask = law.update if self._by_points else law.assemble
         self._answer = answer = ask(
             raw_state(state),
             dt,
@@ -331,7 +404,7 @@ class FacetContact(ContactRecord):
             directions_friction=answer["friction_axes"],
             failure=np.where(lost, np.int8(1), answer["failure"]),
         )
-        return Snapshot(x, answer["area"], response)
+        return Snapshot(slave.positions(now), answer["area"], response)
 
     def _may_touch(self, state: State, hit: FacetProjections) -> Mask:
         """Points that may have a force, as far as rounding goes, (n,)."""
@@ -345,10 +418,30 @@ class FacetContact(ContactRecord):
         self._handed = transfer.update(self._now, force, now.response.status != 0)
         answer["residual"][self._handed, 3 * self._points.nodes.shape[1] :] = 0.0
 
+    def _stiffness(self, diagonal: Floats) -> float:
+        """Of both surfaces, one behind the other."""
+        found = []
+        for side in self._sides:
+            nodes = np.unique(side.nodes)
+            owned = diagonal[nodes[nodes < len(diagonal)]]
+            local = np.array([owned.mean(axis=1).sum(), group_area(side, self._reference)])
+            total, area = self._comm.allreduce(local)
+            found.append(total / area)
+        return float(1.0 / sum(1.0 / k for k in found))
+
     def _stiffen(self, factor: float) -> None:
         """Multiply the penalties of the law with a factor."""
+        self._law = self._with(factor)
+        if self._semismooth is not None:
+            self._stiff = self._with(factor * self._semismooth.ratio)
+
+    def _with(self, factor: float) -> FacetPairs:
         tangential = self._multipliers is not None and self._multipliers.tangential
-        self._law = self.interface.stiffened(factor, tangential).pairs(self._mirrored)
+        return self.interface.stiffened(factor, tangential).pairs(self._mirrored)
+
+    def _begin(self) -> None:
+        super()._begin()
+        self._base = self._linear = None
 
     def _tangents(self, state: State) -> Floats:
         """Tangents of the master of now, (n, 2, 3), length; any where a point has no facet."""

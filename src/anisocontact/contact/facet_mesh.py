@@ -101,6 +101,18 @@ def facet_corners(topology: str) -> list[int]:
     return [0, 1, 2] if topology.startswith("tri") else [0, 1, 3, 2]
 
 
+def group_area(mesh: FacetMesh, x: Floats) -> float:
+    """Area of facets from their corners, length^2.
+
+    Args:
+        mesh: The facets.
+        x: Positions of the local nodes, (nodes, 3), length.
+    """
+    corners = x[mesh.nodes[:, facet_corners(mesh.topology)]]
+    fan = np.cross(corners[:, 1:-1] - corners[:, :1], corners[:, 2:] - corners[:, :1])
+    return float(0.5 * np.linalg.norm(fan, axis=2).sum())
+
+
 class FacetShapes:
     """Shape functions of a reference facet, and what it is.
 
@@ -229,6 +241,14 @@ class SlavePoints:
         self.outward = (sign / stretch)[:, None] * cross
         area, facets_in_all = comm.allreduce(np.array([(weights * stretch).sum(), count]))
         self.size = float(np.sqrt(area / max(facets_in_all, 1.0)))
+
+    def areas(self, now: Floats) -> Floats:
+        """Areas of the points, (n,), from the positions of the nodes, (nodes, 3), length^2."""
+        if not self.current_area:
+            return self.weight
+        tangents = np.einsum("pkd,pki->pdi", self.gradient, now[self.nodes])
+        cross = np.cross(tangents[:, 0], tangents[:, 1])
+        return np.asarray(self.weight * np.linalg.norm(cross, axis=1))
 
     def positions(self, now: Floats) -> Floats:
         """Positions of the points, (n, 3), from those of the nodes, (nodes, 3), length."""

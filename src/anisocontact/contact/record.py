@@ -10,12 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.augmentation import Augmentation
-from anisocontact.contact.multipliers import (
-    AugmentedLaw,
-    Frames,
-    Multipliers,
-    check,
-)
+from anisocontact.contact.multipliers import AugmentedLaw, Frames, Multipliers, Step
+from anisocontact.contact.schemes import make_multipliers
+from anisocontact.contact.semismooth import Semismooth
 from anisocontact.interface import STATUS, Response, State
 
 Floats = npt.NDArray[np.float64]
@@ -131,6 +128,9 @@ class ContactRecord:
         if self._trial is not None:
             self._accepted = self._trial
             self.state = self.last.state
+            if self._multipliers is not None and self._multipliers.tangential:
+                # a force that is a multiplier does no work on elastic slip
+                self.state["energy_adhesion"] = 0.0
             self._trial = None
         if self._multipliers is not None:
             self._multipliers.commit()
@@ -153,14 +153,7 @@ class ContactRecord:
         """
         if self._multipliers is None:
             return False
-        now, before = self.current, self._start
-        better = self._multipliers.improve(
-            before,
-            now.response,
-            now.areas,
-            Frames.of(self._tangents(now.response.state)),
-            Frames.of(self._tangents(before)),
-        )
+        better = self._multipliers.improve(self._step(self.current))
         if better is None:
             return False
         self._start = better
@@ -178,11 +171,60 @@ class ContactRecord:
         self._stiffen(self._multipliers.factor)
         return True
 
+    @property
+    def follows(self) -> bool:
+        """Whether multipliers follow every step of Newton's method."""
+        return self._multipliers is not None and self._multipliers.follows
+
+    def held(self) -> bool:
+        """Whether multipliers that follow are what the trial answers to them."""
+        semismooth = self._semismooth
+        return semismooth is None or semismooth.held(self._step(self.current))
+
+    def suit(self, diagonal: Floats) -> None:
+        """Suit multipliers that follow to the bodies.
+
+        Args:
+            diagonal: Diagonal of the stiffness of the bodies, of the nodes this rank owns,
+                (nodes, 3), force/length.
+        """
+        if self._semismooth is not None:
+            self._semismooth.suit(self._stiffness(diagonal))
+            self._begin()
+
+    def _stiffness(self, diagonal: Floats) -> float:
+        """Traction per displacement of a single node, mean over the surface, stress/length."""
+        raise NotImplementedError
+
+    def take_share(self, share: float) -> None:
+        """Take only a share of the next step of multipliers that follow."""
+        if self._semismooth is not None:
+            self._semismooth.share = share
+
+    def add_lag(self, out: Floats) -> None:
+        """Add the forces that a Newton step takes beyond those of the trial.
+
+        They take the violation of multipliers that follow away; (nodes, 3), force.
+        """
+
+    @property
+    def _semismooth(self) -> Semismooth | None:
+        return self._multipliers if isinstance(self._multipliers, Semismooth) else None
+
+    def _step(self, trial: Snapshot) -> Step:
+        """A trial with the frames of the master."""
+        return Step(
+            self._start,
+            trial.response,
+            trial.areas,
+            Frames.of(self._tangents(trial.response.state)),
+            Frames.of(self._tangents(self._start)),
+        )
+
     def _augment(self, augmentation: Augmentation | None, size: float, law: AugmentedLaw) -> None:
         if augmentation is None:
             return
-        check(augmentation, law)
-        self._multipliers = Multipliers(augmentation, size, law.penalties(), self._comm)
+        self._multipliers = make_multipliers(augmentation, law, size, self._comm)
         self._begin()
 
     def _begin(self) -> None:

@@ -150,11 +150,17 @@ class Transfer:
         hint = self._facet[points]
         return x, self._surface.project(x, hint, self._reach, excluded)
 
-    def add_force(self, out: Floats) -> None:
-        """Add the forces of the trial on the master to the local nodes, (nodes, 3), force."""
+    def add_force(self, out: Floats, force: Floats | None = None) -> None:
+        """Add forces on the master to the local nodes, (nodes, 3), force.
+
+        Args:
+            out: Forces of the nodes.
+            force: Forces of the slave points on the slave, (n, 3); those of the trial if not given.
+        """
         if (t := self._trial) is None:
             return
-        forces = -np.einsum("pgb,pgi->pbi", self._shares(t), t.force[t.owner])
+        points = t.force if force is None else force.reshape(t.force.shape)
+        forces = -np.einsum("pgb,pgi->pbi", self._shares(t), points[t.owner])
         np.add.at(out, self._master.nodes[t.facet], forces)
 
     def couplings(self, nodes: Ints, derivative: Floats, active: Mask) -> list[Couplings]:

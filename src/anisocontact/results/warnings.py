@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from anisocontact.contact import AnyContact, initial_overlap
 from anisocontact.interface import STATUS
 
-__all__ = ["at_end", "at_start"]
+__all__ = ["at_end", "at_start", "worst"]
 
 #: Share of the facet size beyond which a penetration or an elastic slip is worth a warning.
 DEEP = 0.05
@@ -37,6 +37,25 @@ def at_start(contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]]) ->
     return found
 
 
+def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> dict[str, float]:
+    """Largest penetration and elastic slip of a contact over the run, and when they occurred.
+
+    Args:
+        entry: Entry of the contact in the summary, with the largest of now.
+        before: Its entry before, with the worst so far; empty at the start.
+        time: Time of now.
+
+    Returns:
+        "worst_penetration", "worst_elastic_slip", length, and each with "_time".
+    """
+    found = {}
+    for name in ("penetration", "elastic_slip"):
+        key, when, now = f"worst_{name}", f"worst_{name}_time", entry[f"max_{name}"]
+        grown = key not in before or now > before[key]
+        found |= {key: now, when: time} if grown else {key: before[key], when: before[when]}
+    return found
+
+
 def at_end(
     contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]], energy: dict[str, float]
 ) -> list[str]:
@@ -49,15 +68,16 @@ def at_end(
     """
     found = []
     for contact, entry in zip(contacts, shown, strict=True):
-        soft = [("penetration", "max_penetration", "a larger normal penalty")]
+        soft = [("penetration", "worst_penetration", "a larger normal penalty")]
         if not contact.physical_adhesion:
-            soft.append(("elastic slip", "max_elastic_slip", "a larger stiffness of adhesion"))
+            soft.append(("elastic slip", "worst_elastic_slip", "a larger stiffness of adhesion"))
         for name, key, cure in soft:
             share = entry[key] / entry["facet_size"]
             if share > DEEP:
                 found.append(
-                    f"{_pair(entry)}: the {name} is {share:.0%} of the facet size; {cure} makes it "
-                    'smaller, method = "augmented" takes it away'
+                    f"{_pair(entry)}: the {name} was up to {share:.0%} of the facet size, at time "
+                    f"{entry[f'{key}_time']:.4g}; {cure} makes it smaller, "
+                    'method = "augmented" takes it away'
                 )
         if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
             found.append(f"{_pair(entry)}: no point touches at the end")

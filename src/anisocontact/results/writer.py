@@ -19,7 +19,7 @@ from anisocontact.results.paraview import Bodies, Collection, slave_points
 from anisocontact.results.report import write_report
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
-from anisocontact.results.warnings import at_end, at_start
+from anisocontact.results.warnings import at_end, at_start, worst
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
 from anisocontact.solver.persistent import Persistent
 
@@ -251,6 +251,9 @@ class Writer:
     def _take(self, numbers: dict[str, Any]) -> None:
         pairs = zip(numbers["contacts"], self._constants, strict=True)
         contacts = [constant | changing for changing, constant in pairs]
+        before = self.summary.get("contacts", [{}] * len(contacts))
+        for entry, old in zip(contacts, before, strict=True):
+            entry.update(worst(entry, old, self.summary["time"]))
         self.summary.update(numbers, contacts=contacts)
 
     def _write_fields(self, at: float) -> None:

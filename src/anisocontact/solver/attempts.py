@@ -68,6 +68,8 @@ class Attempts:
             (first, False, None),
             (last, True, None),
         ]
+        if self._problem.follows and first is last:
+            del ways[0]  # there is no line search, so both would be the same
         for start, full_steps, damping in ways:
             result, culprits = self._attempt(start.copy(), full_steps, damping)
             spent += result.iterations

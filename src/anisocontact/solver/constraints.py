@@ -57,6 +57,12 @@ class Constraints:
             residual = self._handed(constraint, residual) + scale * violation
         return residual
 
+    def handed(self, force: Floats) -> Floats:
+        """Forces on the mesh as the equations have them, without the violation of constraints."""
+        for constraint in self._all():
+            force = self._handed(constraint, force)
+        return force
+
     def transform(self, matrix: Mat, scale: float) -> None:
         """The same for the tangent, in place."""
         for constraint in self._all():

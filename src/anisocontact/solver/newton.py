@@ -30,6 +30,10 @@ TOLERANCE = 1e-8
 MAX_ITERATIONS = 25
 #: Residual over its smallest value at which an iteration is given up.
 DIVERGED = 1e8
+#: Smallest share of a correction that is taken where multipliers follow.
+LEAST_SHARE = 1.0 / 8.0
+#: Two corrections have gained something where the residual is below this share of the least before.
+GAINED = 0.9
 
 
 class SingularError(RuntimeError):
@@ -84,6 +88,27 @@ class System(Protocol):
         """After a solution that failed: take penalties that are easier; whether to try again."""
         ...
 
+    @property
+    def follows(self) -> bool:
+        """Whether multipliers follow every correction: no line search can tell how far to go."""
+        ...
+
+    def unbalanced(self, norm: float) -> float:
+        """Norm of the residual with the multipliers as they are.
+
+        Args:
+            norm: Norm of what `evaluate` has returned.
+        """
+        ...
+
+    def held(self) -> bool:
+        """Whether multipliers that follow are what the last evaluation answers to them."""
+        ...
+
+    def take_share(self, share: float) -> None:
+        """Let multipliers take only a share of the next correction."""
+        ...
+
 
 @dataclass(frozen=True)
 class NewtonResult:
@@ -127,6 +152,7 @@ class Newton:
         self._on_iteration = on_iteration
         self._residuals: list[float] = []
         self._damping: Callable[[], float] | None = None
+        self._share = 1.0
         self.snes = PETSc.SNES().create(problem.comm)
         self.snes.setOptionsPrefix(prefix)
         self.snes.setFunction(self._function, problem.new_vector())
@@ -171,6 +197,7 @@ class Newton:
         """
         self._damping = damping
         search = self.snes.getLineSearch()
+        full_steps = full_steps or self._problem.follows
         search.setType("basic" if full_steps else self._line_search)
         spent = 0
         last = x.copy()
@@ -219,23 +246,42 @@ class Newton:
             self.snes.getKSP().reset()
 
     def _damp(self, _: Vec, direction: Vec) -> bool:
-        share = 1.0 if self._damping is None else self._damping()
+        share = self._pace() if self._damping is None else self._damping()
+        self._problem.take_share(share)
         if share != 1.0:
             direction.scale(share)
         return share != 1.0
+
+    def _pace(self) -> float:
+        """Share of the next correction where no line search can tell how far to go.
+
+        Half as much as before where two corrections have gained nothing, twice as much where the
+        residual falls as it should.
+        """
+        if not self._problem.follows:
+            return 1.0
+        known = self._residuals
+        if len(known) < 3:
+            self._share = 1.0
+        elif min(known[-2:]) > GAINED * min(known[:-2]):
+            self._share = max(0.5 * self._share, LEAST_SHARE)
+        elif known[-1] < (1.0 - 0.5 * self._share) * known[-2]:
+            self._share = min(2.0 * self._share, 1.0)
+        return self._share
 
     def _converged(
         self, snes: SNES, iteration: int, norms: tuple[float, float, float]
     ) -> PETSc.SNES.ConvergedReason:
         reasons = PETSc.SNES.ConvergedReason
-        norm = norms[2]
+        norm = self._problem.unbalanced(norms[2])
         rtol, atol, _, _ = snes.getTolerances()
         relative = norm / max(self._problem.force_scale, self._problem.round_off, _TINY)
         self._residuals.append(relative)
         self._on_iteration(iteration, relative)
         if not np.isfinite(norm):
             return reasons.DIVERGED_FUNCTION_NANORINF
-        if norm <= max(rtol * self._problem.force_scale, self._problem.round_off, atol):
+        small = norm <= max(rtol * self._problem.force_scale, self._problem.round_off, atol)
+        if small and self._problem.held():
             return reasons.CONVERGED_FNORM_RELATIVE
         if relative > DIVERGED * min(self._residuals[1:], default=np.inf):
             return reasons.DIVERGED_DTOL

@@ -112,6 +112,7 @@ class Problem:
         self.reduction: Reduction | None = None
         self.force_scale = 0.0
         self.round_off = 0.0
+        self._norm = 0.0
         self._load: Floats = np.zeros(self._owned)
         self._level = 0.0
         self._dt = 0.0
@@ -122,6 +123,8 @@ class Problem:
         self.constraints = Constraints(model, symmetry, self._accepted.x)
         diagonal = self.bulk.diagonal
         self._support_scale = diagonal.sum() / diagonal.getSize()
+        for contact in self.contacts:
+            contact.suit(np.array(diagonal.array_r).reshape(-1, 3))
         holders = {model.body_of(group) for one in attached for group in one.groups}
         self.stabilisation = Stabilisation(
             model, self.contacts, self._support_scale, holders, stabilised
@@ -288,7 +291,36 @@ class Problem:
             self.round_off = min(self.round_off, LOAD_SHARE * load_norm)
         if self._comm.allreduce(failed):
             residual[:] = np.nan
-        return np.append(residual, of_bodies) if self.layout.last_rank else residual
+        whole = np.append(residual, of_bodies) if self.layout.last_rank else residual
+        return whole - self._lag(whole) if self.follows else whole
+
+    def _lag(self, residual: Floats) -> Floats:
+        """Forces that a correction takes beyond those of the trial, see `ContactRecord.add_lag`."""
+        self._norm = float(np.sqrt(self._comm.allreduce(float(residual @ residual))))
+        forces = np.zeros(len(self._u.x.array))
+        for contact in self.contacts:
+            contact.add_lag(forces.reshape(-1, 3))
+        lag = self.constraints.handed(self.layout.assembled(forces))
+        lag[self.supports.unknowns] = 0.0
+        return np.append(lag, self.rigid.lag()) if self.layout.last_rank else lag
+
+    @property
+    def follows(self) -> bool:
+        """Whether multipliers follow every correction."""
+        return any(contact.follows for contact in self.contacts)
+
+    def unbalanced(self, norm: float) -> float:
+        """Norm of the residual with the multipliers as they are, see `System`."""
+        return self._norm if self.follows else norm
+
+    def held(self) -> bool:
+        """Whether multipliers that follow are what the last evaluation answers to them."""
+        return all([contact.held() for contact in self.contacts])
+
+    def take_share(self, share: float) -> None:
+        """Let multipliers take only a share of the next correction."""
+        for contact in self.contacts:
+            contact.take_share(share)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown."""

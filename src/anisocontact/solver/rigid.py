@@ -124,6 +124,15 @@ class RigidBodies:
             rows[6 * i : 6 * i + 6] = np.where(drive.held, support_scale * off, row)
         return rows
 
+    def lag(self) -> Floats:
+        """`ContactRecord.add_lag` of the free bodies as the rows have it, (size,), force."""
+        rows = np.zeros(self.size)
+        for i, body in enumerate(self.free):
+            local = sum((c.lag_wrench(body.position) for c in self.contacts[body]), np.zeros(6))
+            row = -np.asarray(self._comm.allreduce(local)) / self._scales[body]
+            rows[6 * i : 6 * i + 6] = np.where(self._drives[body].held, 0.0, row)
+        return rows
+
     def loads(self) -> Floats:
         """Loads of the free bodies as the rows have them, (size,), force."""
         parts = [self._drives[b].load(self._level) / self._scales[b] for b in self.free]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -82,7 +82,7 @@ class ContactProblem:
                     f"rigid body {body.name!r} is free; a script can only move it", "contacts"
                 )
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
-        self.force_scale = self.round_off = 0.0
+        self.force_scale = self.round_off = self._balance = 0.0
         trial = ufl.TrialFunction(space)
         tangent = ufl.derivative(F, u, trial) if J is None else J
         self._residual = compiled(F, space.mesh.comm)
@@ -90,6 +90,8 @@ class ContactProblem:
         self._matrix = create_stiffness(self._tangent)
         self._diagonal = self._matrix.getDiagonal()
         self._support_scale = self._diagonal.sum() / self._diagonal.getSize()
+        for contact in contacts:
+            contact.suit(np.array(self._diagonal.array_r).reshape(-1, 3))
         meshed = not all(isinstance(c, Contact) for c in contacts)
         self._coupled = CoupledTangent(self._matrix, space) if meshed else None
         self._dt = 1.0
@@ -153,7 +155,7 @@ class ContactProblem:
         self.u.x.scatter_forward()
         nodal = self.u.x.array.reshape(-1, 3)
         failed = [bool(c.update(nodal, self._dt).failed.any()) for c in self.contacts]
-        contact_force = self._contact_force()
+        contact_force = self._assembled([contact.add_force for contact in self.contacts])
         assemble_force(self._residual, self._force)
         outside: Floats = self._force.array_r - contact_force
         prescribe(self._force, self.bcs, x)
@@ -167,7 +169,30 @@ class ContactProblem:
         self.round_off = ROUND_OFF * stiff
         if self.comm.allreduce(any(failed)):
             residual[:] = np.nan
+        self._balance = self._norm(residual)
+        if self.follows:
+            lag = self._assembled([contact.add_lag for contact in self.contacts])
+            lag[rows] = 0.0
+            residual -= lag
         return residual
+
+    @property
+    def follows(self) -> bool:
+        """Whether multipliers follow every correction."""
+        return any(contact.follows for contact in self.contacts)
+
+    def unbalanced(self, norm: float) -> float:
+        """Norm of the residual with the multipliers as they are, see `System`."""
+        return self._balance if self.follows else norm
+
+    def held(self) -> bool:
+        """Whether multipliers that follow are what the last evaluation answers to them."""
+        return all([contact.held() for contact in self.contacts])
+
+    def take_share(self, share: float) -> None:
+        """Let multipliers take only a share of the next correction."""
+        for contact in self.contacts:
+            contact.take_share(share)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown."""
@@ -201,11 +226,12 @@ class ContactProblem:
         """After a solution that failed: softer penalties of augmented contacts; whether any."""
         return any([contact.soften() for contact in self.contacts])
 
-    def _contact_force(self) -> Floats:
+    def _assembled(self, parts: Sequence[Callable[[Floats], None]]) -> Floats:
+        """Sum of what the parts add to the nodes, at the unknowns this rank owns."""
         with self._ghosted.localForm() as form:
             nodal = np.zeros(len(form.array_r))
-            for contact in self.contacts:
-                contact.add_force(nodal.reshape(-1, 3))
+            for add in parts:
+                add(nodal.reshape(-1, 3))
             form.array[:] = nodal
         self._ghosted.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
         return np.array(self._ghosted.array_r)

@@ -124,12 +124,17 @@ def _contacts(summary: dict[str, Any]) -> list[dict[str, Any]]:
         row |= {
             "largest pressure [stress]": contact["max_pressure"],
             "largest penetration [length]": contact["max_penetration"],
-            "penetration over facet size": contact["max_penetration"] / contact["facet_size"],
-            "elastic slip over facet size": contact["max_elastic_slip"] / contact["facet_size"],
+            "worst penetration over facet size": _share(contact, "penetration"),
+            "worst elastic slip over facet size": _share(contact, "elastic_slip"),
             **contact["points"],
         }
         rows.append(row)
     return rows
+
+
+def _share(contact: dict[str, Any], name: str) -> float:
+    """Largest value of the run over the facet size."""
+    return float(contact[f"worst_{name}"] / contact["facet_size"])
 
 
 # Of what has no displacement of its own, such as a spring.

@@ -129,6 +129,8 @@ class Condensed:
     def grow(self) -> None:
         """Condense anew with more in reach, from the accepted state."""
         self.recover()
+        for contact in self._problem.contacts:
+            contact.roll_back()
         self._reach.widen()
         self._note("a slave point left the part of its master that can be touched: widened")
         self._condense()

@@ -63,6 +63,7 @@ class ContactSystem:
         self.force_scale = self.round_off = 0.0
         self.tolerance = TOLERANCE
         self.outgrown = False
+        self._norm = 0.0
         self._dt, self._load_norm = 0.0, 0.0
         self._a, self._b, self._g = np.zeros(0), np.zeros(0), np.zeros(len(bulk.contact))
         self._evaluated: Floats | None = None
@@ -120,8 +121,32 @@ class ContactSystem:
         self._measure(u)
         if failed or self.outgrown:
             residual[:] = np.nan
+        self._norm = float(np.linalg.norm(residual))
+        if self.follows:
+            lag = np.zeros(self.nodal.size)
+            for contact in self.contacts:
+                contact.add_lag(lag.reshape(-1, 3))
+            residual -= lag[self.bulk.contact]
         self._residual = residual
         return residual.copy()
+
+    @property
+    def follows(self) -> bool:
+        """Whether multipliers follow every correction."""
+        return any(contact.follows for contact in self.contacts)
+
+    def unbalanced(self, norm: float) -> float:
+        """Norm of the residual with the multipliers as they are, see `System`."""
+        return self._norm if self.follows else norm
+
+    def held(self) -> bool:
+        """Whether multipliers that follow are what the last evaluation answers to them."""
+        return all([contact.held() for contact in self.contacts])
+
+    def take_share(self, share: float) -> None:
+        """Let multipliers take only a share of the next correction."""
+        for contact in self.contacts:
+            contact.take_share(share)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Take the tangent at x; `out` multiplies with it, and has no pattern that could grow."""

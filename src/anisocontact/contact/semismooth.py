@@ -1,0 +1,152 @@
+"""Multipliers together with the displacements: semismooth Newton method of Alart and Curnier.
+
+Unknowns are the displacement u and the traction lambda of every point, equations
+
+    K(u) - integral of P(u, lambda) = 0,    lambda - P(u, lambda) = 0,
+
+P the projections of `multipliers`. The second is eliminated point by point: with the penalties
+times a large `ratio` r the derivative of the law, taken where it answers the same P, is that of P
+with lambda eliminated from `lambda + dlambda - P - dP = -dlambda / (r - 1)`. A step leaves the
+share k / (r eps) of a violation, k the stiffness of the bodies behind the point, and its square.
+What the derivative is multiplied with enters no state that is evaluated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.augmentation import Augmentation
+from anisocontact.contact.multipliers import SHARE, Frames, Multipliers, Step
+from anisocontact.interface import State
+
+Floats = npt.NDArray[np.float64]
+
+#: What the penalties are multiplied with in the derivative.
+RATIO = 1e4
+
+
+@dataclass(frozen=True)
+class Base:
+    """The trial about which a Newton step is linear.
+
+    Attributes:
+        multiplier: lambda as a vector, (n, 3), stress.
+        traction: P, (n, 3), stress.
+        lag: Change of P that takes the violation away, (n, 3), stress.
+    """
+
+    multiplier: Floats
+    traction: Floats
+    lag: Floats
+
+    def after(self, change: Floats, share: float) -> Floats:
+        """Multiplier after a step.
+
+        Args:
+            change: Change of the traction with the displacement of the step, (n, 3), stress.
+            share: Share of the step that was taken.
+
+        Returns:
+            lambda as a vector, (n, 3), stress.
+        """
+        rest = (1.0 - share) * self.multiplier
+        return np.asarray(rest + share * (self.traction + self.lag) + change)
+
+
+class Semismooth(Multipliers):
+    """Multipliers that follow every Newton step.
+
+    Args:
+        augmentation: What is asked for.
+        size: Facet size, length.
+        penalties: Normal penalty and least tangential stiffness, stress/length.
+        comm: Communicator of the mesh.
+
+    Attributes:
+        share: Share that is taken of the next step.
+    """
+
+    follows: ClassVar[bool] = True
+
+    def __init__(
+        self, augmentation: Augmentation, size: float, penalties: tuple[float, float], comm: Any
+    ) -> None:
+        super().__init__(augmentation, size, penalties, comm)
+        self.share = 1.0
+        self.ratio = RATIO
+
+    def suit(self, stiffness: float) -> None:
+        """Bring the penalties to the stiffness of the bodies, where the iteration converges best.
+
+        Args:
+            stiffness: Traction per displacement of the surfaces, stress/length.
+        """
+        self.level = stiffness / self._penalties[0]
+
+    def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
+        """What the trials of the next increment start from, see `Multipliers.begin`."""
+        self.share = 1.0
+        self.factor = self.level
+        return super().begin(state, located)
+
+    def improve(self, step: Step) -> State | None:
+        """They are as good as equilibrium is: see `held`."""
+        return None
+
+    def held(self, step: Step) -> bool:
+        """Whether the multipliers are what the trial answers to them."""
+        given, found = self.values(step)
+        changed, carried = self._norms(found - given, step)
+        return self._violation(found - given) <= self._limit and changed <= SHARE * carried
+
+    def stiff(self, step: Step) -> tuple[State, Floats]:
+        """Where to take the derivative, and the violation that a step is to take away.
+
+        Args:
+            step: The trial.
+
+        Returns:
+            State from which the law with `ratio` times the penalties answers as the trial does;
+            displacement of the slave points that would make the trial exact, (n, 3), length.
+        """
+        given, found = self.values(step)
+        shifted = given + (1.0 - self.ratio) * (found - given)
+        shifted[step.answer.pressure == 0.0] = 0.0
+        state, trial = step.start.copy(), step.answer.state
+        state["multiplier"] = shifted[:, 0]
+        deep = (given[:, 0] - found[:, 0]) / (self.factor * self._penalties[0])
+        slip = deep[:, None] * step.now.normal
+        if self.tangential:
+            state["stored"] = np.einsum("nid,nd->ni", step.before.tangents, shifted[:, 1:])
+            kept = step.before.turned_to(step.now, step.before.moved(step.start["elastic"]))
+            more = step.now.moved(trial["elastic"]) - kept
+            slip += np.where(step.remembers, more, 0.0)
+        slip[step.answer.pressure == 0.0] = 0.0
+        return state, (1.0 - 1.0 / self.ratio) * slip
+
+    def advance(self, start: State, traction: Floats, now: Frames, before: Frames) -> State:
+        """State with other multipliers.
+
+        Args:
+            start: State of the trials.
+            traction: lambda as a vector, (n, 3), stress.
+            now: Frames where the points are.
+            before: Frames at the committed coordinates.
+        """
+        new = start.copy()
+        normal = np.einsum("nd,nd->n", traction, now.normal)
+        new["multiplier"] = normal
+        if self.tangential:
+            tangential = now.turned_to(before, traction - normal[:, None] * now.normal)
+            new["stored"] = np.einsum("nid,nd->ni", before.tangents, tangential)
+        return new
+
+    def vector(self, step: Step) -> Floats:
+        """The multipliers of a trial as vectors where it is, (n, 3), stress."""
+        given, _ = self.values(step)
+        turned = step.before.turned_to(step.now, given[:, 1:])
+        return np.asarray(given[:, :1] * step.now.normal + turned)
