@@ -48,7 +48,7 @@ def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> d
     Returns:
         "worst_penetration", "worst_elastic_slip", length, and each with "_time".
     """
-    found = {}
+    found: dict[str, float] = {}
     for name in ("penetration", "elastic_slip"):
         key, when, now = f"worst_{name}", f"worst_{name}_time", entry[f"max_{name}"]
         grown = key not in before or now > before[key]

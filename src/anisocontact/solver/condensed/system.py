@@ -24,6 +24,8 @@ Flags = npt.NDArray[np.bool_]
 _SAMPLES = 8
 #: Residual of a correction over the right-hand side, far from the solution.
 _ROUGH = 1e-2
+#: The same where multipliers follow, over the forces out of balance, and over all.
+_FINE, _FINEST = 1e-5, 1e-13
 _TINY = float(np.finfo(np.float64).tiny)
 
 
@@ -177,6 +179,10 @@ class ContactSystem:
         relative = float(np.linalg.norm(b.array_r)) / max(self.force_scale, _TINY)
         # Newton squares the residual: no correction has to be better than that or than asked for
         rtol = max(min(_ROUGH, relative), 0.1 * self.tolerance / max(relative, _TINY))
+        if self.follows:
+            # forces that take violations away are large beside those that are out of balance
+            size = max(float(np.linalg.norm(b.array_r)), _TINY)
+            rtol = max(_FINE * min(self._norm / size, 1.0), _FINEST)
         found = self.solver.solve(b.array_r, min(rtol, 0.1))
         if found is None:
             pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
