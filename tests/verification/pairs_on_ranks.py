@@ -87,7 +87,7 @@ def _two_half() -> Made:
 
 def _augmented() -> Made:
     model = _bodies(gap=0.0)
-    exact = Augmentation(tangential=False)
+    exact = Augmentation(tangential=False, multipliers="uzawa")
     pair = FacetContact(model, "block.bottom", "mat.top", law=_law(), augmentation=exact)
     return _dragged(model, [pair], "linear-elastic")
 
