@@ -297,6 +297,16 @@ def test_a_view_of_a_closed_master():
     assert not ContactView(half, 0).closed
 
 
+def test_maps_of_two_half_passes_show_the_points_of_the_slave():
+    pyvista = pytest.importorskip("pyvista")
+    points = pyvista.PolyData(np.random.default_rng(5).uniform(size=(10, 3)))
+    points["normal"], points["contact"] = np.tile([0.0, 0, 1], (10, 1)), np.zeros(10, dtype=int)
+    points["status"], points["area"] = np.ones(10, dtype=int), np.ones(10)
+    assert len(ContactView(points, 0).position) == 10
+    points["pass"] = np.repeat([0, 1], [4, 6])
+    assert np.array_equal(ContactView(points, 0).position, points.points[:4])
+
+
 def test_points_that_have_never_seen_their_master_are_seen_across_their_plane():
     pyvista = pytest.importorskip("pyvista")
     place = np.random.default_rng(4).uniform(size=(20, 3)) * [1.0, 0.0, 2.0]

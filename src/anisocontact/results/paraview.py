@@ -184,7 +184,8 @@ def slave_points(contacts: Iterable[AnyContact], comm: Any) -> pyvista.PolyData 
         comm: Communicator of the mesh.
 
     Returns:
-        Points with `contact` (its number), `area` [length^2], `gap` [length], `pressure`,
+        Points with `contact` (its number), `pass` (1 on the master of two half passes, else 0),
+        `area` [length^2], `gap` [length], `pressure`,
         `traction` and its tangential part `traction_t` [stress], `traction_principal` along the
         friction axes,
         `elastic_slip` and `slip_accumulated` [length], `status` (0 open, 1 stick, 2 slip),
@@ -206,9 +207,11 @@ def slave_points(contacts: Iterable[AnyContact], comm: Any) -> pyvista.PolyData 
 
 def _point_data(number: int, contact: AnyContact) -> dict[str, npt.NDArray[Any]]:
     last, state = contact.last, contact.state
+    counts = [len(part.areas) for part in contact.parts]
     return {
         "points": contact.points,
         "contact": np.full(len(contact.areas), number, dtype=np.int32),
+        "pass": np.repeat(np.arange(len(counts), dtype=np.int32), counts),
         "area": contact.areas,
         "gap": last.gap,
         "pressure": last.pressure,
