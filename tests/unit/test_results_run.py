@@ -279,6 +279,18 @@ def test_maps_of_a_slave_that_moves_far(run):
         assert np.allclose(axes.get_xlim(), view.box[:, 0])
 
 
+def test_maps_of_a_slave_that_moves_a_little(run):
+    """Panels in common axes show all places: the last picture does not cut the first."""
+    data = RunData(run.folder)
+    first, last = (data.view(moment.index, 0) for moment in data.ends())
+    last.position += 0.2
+    for axes in maps.pressure(data, 0).axes[:2]:
+        low, high = axes.get_xlim()
+        assert low == min(first.box[0, 0], last.box[0, 0])
+        assert high == max(first.box[1, 0], last.box[1, 0])
+        assert high > first.box[1, 0]
+
+
 def test_a_view_of_a_closed_master():
     """All around a bar along z: seen from the front, without the points behind."""
     pyvista = pytest.importorskip("pyvista")

@@ -74,6 +74,14 @@ def _panels(
     figure = new_figure(3.9 * len(moments) + 1.0, 3.6 * views[0].aspect + 1.4)
     shared = _in_one_place(views)
     row = figure.subplots(1, len(moments), sharex=shared, sharey=shared, squeeze=False)[0]
+    if shared:
+        (left, bottom), (right, top) = (
+            np.min([view.box[0] for view in views], axis=0),
+            np.max([view.box[1] for view in views], axis=0),
+        )
+        for axes in row:  # a picture would set them to its own size otherwise
+            axes.set_xlim(left, right)
+            axes.set_ylim(bottom, top)
     return figure, list(zip(row, views, moments, strict=True))
 
 
