@@ -127,7 +127,7 @@ def test_contact_tangent_and_its_factor() -> None:
     x = rng.random(4)
     np.testing.assert_allclose(tangent.times(x), dense @ x, atol=1e-12)
     single = (dense @ x / tangent.scale).astype(np.float32)
-    np.testing.assert_allclose(tangent.factor(tangent.summed())(single), x, atol=1e-5)
+    np.testing.assert_allclose(tangent.factor(tangent.summed)(single), x, atol=1e-5)
     kept = KeptFactor(tangent)
     np.testing.assert_allclose(kept.solve(dense @ x, 1e-12), x, atol=1e-10)
     assert kept.factors == 1

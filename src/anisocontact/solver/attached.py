@@ -31,9 +31,11 @@ class Attached(Protocol):
 
     Attributes:
         name: Name in reactions and messages.
+        nodes: Local nodes of the bodies that it acts on.
     """
 
     name: str
+    nodes: npt.NDArray[np.int32]
 
     def begin(self, step: Step) -> None:
         """Take over a step."""
@@ -53,6 +55,10 @@ class Attached(Protocol):
 
     def couplings(self) -> list[Couplings]:
         """The other part of `-d force / d u`; see `FacetContact.couplings`."""
+        ...
+
+    def blocks(self) -> list[Couplings]:
+        """All of `-d force / d u` as couplings."""
         ...
 
     def energy(self, u: Floats) -> float:
@@ -158,6 +164,7 @@ class _Bed:
         stiffness = spec.normal * along + spec.tangential * (np.eye(3) - along)
         self._stiffness: Floats = stiffness
         self._blocks = self._quadrature.facet_matrices(stiffness)
+        self.nodes = np.unique(self._quadrature.nodes)
 
     def begin(self, step: Step) -> None:
         pass
@@ -174,6 +181,9 @@ class _Bed:
 
     def couplings(self) -> list[Couplings]:
         return []
+
+    def blocks(self) -> list[Couplings]:
+        return [(self._quadrature.nodes, self._quadrature.nodes, self._blocks)]
 
     def energy(self, u: Floats) -> float:
         moved = self._quadrature.at_points(u)
@@ -203,11 +213,11 @@ class _Spring:
             weights = weights - mean_shares(model, spec.to, f"{field}.to")
         if model.mesh.comm.size > 1:
             raise InputError("springs of facet groups need one process", field)
-        self._nodes = np.flatnonzero(weights).astype(np.int32)
-        if len(self._nodes) > MOST_NODES:
-            text = f"{len(self._nodes)} nodes in its groups, at most {MOST_NODES} allowed"
+        self.nodes = np.flatnonzero(weights).astype(np.int32)
+        if len(self.nodes) > MOST_NODES:
+            text = f"{len(self.nodes)} nodes in its groups, at most {MOST_NODES} allowed"
             raise InputError(text, field)
-        self._weights = weights[self._nodes]
+        self._weights = weights[self.nodes]
         self._stiffness = np.asarray(spec.stiffness, dtype=float)
         self._start, self._end, self._anchor = np.zeros((3, 3))
         self.accepted: Floats = np.zeros((2, 3))
@@ -222,16 +232,19 @@ class _Spring:
         self._anchor = (1.0 - fraction) * self._start + fraction * self._end
 
     def add_force(self, u: Floats, out: Floats) -> None:
-        out[self._nodes] += self._weights[:, None] * self._force(u, self._anchor)
+        out[self.nodes] += self._weights[:, None] * self._force(u, self._anchor)
 
     def add_tangent(self, matrix: Mat) -> None:
         pass
 
     def couplings(self) -> list[Couplings]:
         pairs = np.einsum("a,ij,b->aibj", self._weights, np.diag(self._stiffness), self._weights)
-        size = 3 * len(self._nodes)
-        nodes = self._nodes[None]
+        size = 3 * len(self.nodes)
+        nodes = self.nodes[None]
         return [(nodes, nodes, pairs.reshape(1, size, size))]
+
+    def blocks(self) -> list[Couplings]:
+        return self.couplings()
 
     def energy(self, u: Floats) -> float:
         anchor, _ = self.accepted
@@ -249,7 +262,7 @@ class _Spring:
         return np.asarray(-self._stiffness * self._stretch(u, anchor))
 
     def _stretch(self, u: Floats, anchor: Floats) -> Floats:
-        return np.asarray(self._weights @ u[self._nodes] - anchor)
+        return np.asarray(self._weights @ u[self.nodes] - anchor)
 
 
 class Attachments:
@@ -312,6 +325,15 @@ class Attachments:
     def couplings(self) -> list[Couplings]:
         """The other part of `-d force / d u`."""
         return [found for one in self._all for found in one.couplings()]
+
+    def blocks(self) -> list[Couplings]:
+        """All of `-d force / d u`."""
+        return [found for one in self._all for found in one.blocks()]
+
+    @property
+    def nodes(self) -> npt.NDArray[np.int32]:
+        """Local nodes of the bodies that they act on."""
+        return np.concatenate([np.zeros(0, dtype=np.int32), *(one.nodes for one in self._all)])
 
     def energy(self, u: Floats) -> float:
         """Stored energy, over all ranks, force times length."""

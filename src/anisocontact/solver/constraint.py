@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse
 
 from anisocontact._fenicsx import Mat, PETSc, Vec
 
@@ -44,6 +45,12 @@ class Constraint:
         out = u.duplicate()
         self._constrain.mult(u, out)
         return out
+
+    def gathering(self) -> scipy.sparse.csr_array:
+        """R, (n, n); rows of slaves are empty. On one process."""
+        starts, columns, values = self._gather.getValuesCSR()
+        n = len(starts) - 1
+        return scipy.sparse.csr_array((values, columns, starts), shape=(n, n))
 
     def transform(self, matrix: Mat, scale: float) -> None:
         """Make the tangent of the system that of the constrained one, in place.

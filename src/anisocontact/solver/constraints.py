@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse
 
 from anisocontact._fenicsx import Mat, Vec
 from anisocontact.mesh import Model
@@ -67,6 +68,17 @@ class Constraints:
         """The same for the tangent, in place."""
         for constraint in self._all():
             constraint.transform(matrix, scale)
+
+    def gathering(self) -> scipy.sparse.csr_array | None:
+        """R that hands the forces of slaves to their masters; None without constraints.
+
+        The displacements that satisfy the constraints are `R^T v`. On one process.
+        """
+        product = None
+        for constraint in self._all():
+            own = constraint.gathering()
+            product = own if product is None else own @ product
+        return product
 
     def _all(self) -> list[Constraint]:
         found = (self._ties, self.planes.constraint if self.planes else None)

@@ -393,9 +393,10 @@ class Problem:
             contact_force: Forces of contact on them, force.
             load: Loads on them, force.
         """
-        self._accepted.x.array[:] = u
+        self._accepted.x.array[: self._owned] = u
         self._set_unknowns(self._accepted.x)
-        self._accepted.take(self.bulk.force(self._of_mesh).array_r - contact_force, load)
+        outside = self.bulk.force(self._of_mesh).array_r - contact_force
+        self._accepted.take(self.constraints.tied(outside), self.constraints.tied(load))
 
     def roll_back(self) -> None:
         """Return to the accepted state."""
@@ -472,7 +473,9 @@ class Problem:
         Unknowns on an edge that several groups prescribe count for the first of them.
         """
         if self.reduction is not None:
-            return self.reduction.reactions()
+            if not self.constraints.planes:
+                return self.reduction.reactions()
+            self.reduction.recover()  # forces of the planes need all displacements on them
         across, rest = self.constraints.planes.forces(self._accepted.reaction)
         sums = self.supports.reactions(rest)
         attached = self.attached.reactions(self._u.x.array.reshape(-1, 3))

@@ -112,6 +112,15 @@ class RigidBodies:
         parts = [body.accepted.values * self._scales[body] for body in self.free]
         return np.concatenate([np.zeros(0), *parts])
 
+    def prescribed(self) -> Floats:
+        """Unknowns with the values that are prescribed at this level, zero for others, (size,)."""
+        parts = [
+            np.where(self._drives[b].held, self._drives[b].values(self._level), 0.0)
+            * self._scales[b]
+            for b in self.free
+        ]
+        return np.concatenate([np.zeros(0), *parts])
+
     def residual(self, unknowns: Floats, support_scale: float) -> Floats:
         """Rows of the free bodies at the trial of the contacts, (size,), force."""
         self._outside = self._forces()

@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import PETSc, Vec
 from anisocontact.bulk import LinearBulk
-from anisocontact.contact import SelfContact
 from anisocontact.errors import InputError
 from anisocontact.solver.condensed import Condensed, CondensedNewton, contact_unknowns, reachable
 from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
@@ -138,17 +137,8 @@ def _obstacles(
     if not isinstance(problem.bulk, LinearBulk):
         names = [name for name, law in problem.materials.items() if not law.linear]
         yield f"material.{names[0]} is not linear"
-    if problem.rigid.free:
-        yield f"the rigid body {problem.rigid.free[0].name!r} is free"
-    for contact in problem.contacts:
-        if isinstance(contact, SelfContact):
-            yield f"{contact.slave!r} touches itself"
-    if problem.holding:
-        yield f"{problem.holding[0]!r} holds the bodies by a spring or a plane of symmetry"
     if problem.check_held(steps):
         yield "a body is held by contact alone"
-    if problem.constraints:
-        yield "nodes are tied to others"
     given = [*options, *PETSc.Options(prefix).getAll()]
     linear = [name for name in given if name.startswith(("ksp_", "pc_", "mat_"))]
     if linear:

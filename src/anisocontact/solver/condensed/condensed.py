@@ -44,8 +44,9 @@ class Condensed:
         starts, columns, values = problem.bulk.stiffness.getValuesCSR()
         n = len(starts) - 1
         self._stiffness = scipy.sparse.csr_array((values, columns, starts), shape=(n, n))
+        self._gathering = problem.constraints.gathering()
         self._part_of = np.repeat(connected(n // 3, problem.model.space.dofmap.list), 3)
-        self._reach = Reach(problem.model, problem.contacts, steps)
+        self._reach = Reach(problem.model, problem.contacts, steps, problem.attached.nodes)
         self._bulk: Condensation | None = None
         self._system: ContactSystem | None = None
         self._state: State | None = None
@@ -87,7 +88,12 @@ class Condensed:
         return own
 
     def pending(self) -> Arrays:
-        """What `recover` needs beside the accepted state, at the nodes."""
+        """What `recover` needs beside the accepted state, at the nodes.
+
+        With constraints the state is completed: see `Interior`, which knows of none.
+        """
+        if self._gathering is not None:
+            self.recover()
         if not self._stale:
             return {}
         loads = {"load": self._load, "contact_force": self._forces}
@@ -113,18 +119,31 @@ class Condensed:
         Raises:
             SingularError: A body is not held.
         """
-        same = self._bulk is not None and np.array_equal(
-            self._bulk.prescribed, self._problem.supports.unknowns
-        )
-        if not same or not self._reach.valid(self._nodal()):
+        problem = self._problem
+        if self._system is None or not self._fits(self._system):
             self._condense()
         assert self._system is not None
-        problem = self._problem
         self._trial_load = problem.dead_load()
-        problem.rigid.place(np.zeros(0))
-        supports = problem.supports.at(problem.level)
+        supports = np.zeros(self._stiffness.shape[0])
+        supports[problem.supports.unknowns] = problem.supports.at(problem.level)
         self._system.set_level(supports, self._trial_load, problem.dt)
         return self._system
+
+    def _fits(self, system: ContactSystem) -> bool:
+        """Whether unknowns are prescribed and in reach as when the bodies were condensed."""
+        fixed, _ = self._fixed()
+        same = np.array_equal(system.bulk.prescribed, np.flatnonzero(fixed))
+        same = same and np.array_equal(system.led, self._problem.rigid.held())
+        return same and self._reach.valid(self._nodal())
+
+    def _fixed(self) -> tuple[Flags, scipy.sparse.csr_array | None]:
+        """Unknowns that are prescribed or follow from others; and how forces are handed on."""
+        fixed = np.zeros(self._stiffness.shape[0], dtype=np.bool_)
+        fixed[self._problem.supports.unknowns] = True
+        gathering = self._problem.constraints.gathering()
+        if gathering is not None:
+            fixed |= abs(gathering).sum(axis=1) == 0.0
+        return fixed, gathering
 
     def grow(self) -> None:
         """Condense anew with more in reach, from the accepted state."""
@@ -144,17 +163,16 @@ class Condensed:
         Returns:
             Work from outside since the last one, force times length.
         """
-        system, bulk = self.system, self.system.bulk
+        system, problem = self.system, self._problem
         own = system.new_vector()
-        own.array[:] = x.array_r[bulk.contact]
+        own.array[:] = x.array_r[system.places]
         system.evaluate(own)
         before, after = self._state, system.state(own.array_r)
         assert before is not None
         work = system.patterns.work(before, after)
-        self._problem.rigid.residual(np.zeros(0), 1.0)
-        self._state, self._load, self._forces = after, self._trial_load, system.forces
+        self._state, self._load, self._forces = after, self._trial_load, system.raw_forces
         self._stale = True
-        return work
+        return work + problem.attached.commit(self._nodes_of(x))
 
     def recover(self) -> None:
         """Bring the state of the whole bulk up to date: one solution with the interior."""
@@ -163,16 +181,21 @@ class Condensed:
             u = self.system.patterns.displacement(self._state)
             fixed = self.system.bulk.prescribed
             u[fixed] = self._problem.accepted().array_r[fixed]  # without rounding
+            if self._gathering is not None:
+                u = self._gathering.T @ u
             self._problem.complete(u, self._forces, self._load)
 
     def reactions(self) -> dict[str, Floats]:
         """Force of the supports of each facet group on the bodies, (3,), force."""
         assert self._state is not None
         outside = self.system.patterns.outside(self._state)
+        load = self.system.handed(self._load)
         sums: dict[str, Floats] = {}
         for (group, axis), unknowns in self._problem.supports.owners.items():
-            total = outside[self._held[group, axis]] - self._load[unknowns].sum()
+            total = outside[self._held[group, axis]] - load[unknowns].sum()
             sums.setdefault(group, np.zeros(3))[axis] = total
+        for name, force in self._problem.attached.reactions(self._nodal()).items():
+            sums[name] = sums.get(name, 0.0) + force
         return sums
 
     def elastic(self) -> float:
@@ -192,6 +215,7 @@ class Condensed:
         each = np.zeros((len(self._load), 3))
         for axis in range(3):
             each[axis::3, axis] = weights
+        each = self.system.handed(each)
         supports = each[fixed]
         if group not in self._means:
             each[fixed] = 0.0
@@ -215,7 +239,11 @@ class Condensed:
 
     def _nodal(self) -> Floats:
         """Accepted displacement of the nodes, true for those in reach, (nodes, 3), length."""
-        return np.asarray(self._problem.accepted().array_r).reshape(-1, 3)
+        return self._nodes_of(self._problem.accepted())
+
+    def _nodes_of(self, x: Vec) -> Floats:
+        """Displacement of the nodes in a vector of all unknowns, (nodes, 3), length."""
+        return np.array(x.array_r[: self._stiffness.shape[0]]).reshape(-1, 3)
 
     def _condense(self) -> None:
         """Eliminate what neither is prescribed nor can be touched from the accepted state on."""
@@ -225,9 +253,8 @@ class Condensed:
         system = self._eliminate(u)
         # in terms of the new unknowns: forces on what is no longer prescribed become loads
         outside = self._problem.outside
-        supports = u.reshape(-1)[system.bulk.prescribed]
-        system.set_level(supports, outside, 0.0)
-        system.forces = self._stiffness @ u.reshape(-1) - outside
+        system.set_level(u.reshape(-1), outside, 0.0)
+        system.forces = system.handed(self._stiffness @ u.reshape(-1) - outside)
         self._state = system.state(u.reshape(-1)[system.bulk.contact])
 
     def _eliminate(self, u: Floats) -> ContactSystem:
@@ -236,14 +263,16 @@ class Condensed:
         Args:
             u: Displacement of the nodes when they were selected, (nodes, 3), length.
         """
-        fixed = np.zeros(self._stiffness.shape[0], dtype=np.bool_)
-        fixed[self._problem.supports.unknowns] = True
+        fixed, gathering = self._fixed()
         touched = np.repeat(self._reach.nodes, 3)
-        self._bulk = Condensation(
-            self._stiffness, self._part_of, touched, fixed, self._bulk, self._note
-        )
+        self._gathering = gathering
+        bulk = self._stiffness
+        if gathering is not None:
+            bulk = (gathering @ bulk @ gathering.T).tocsr()
+            touched = abs(gathering) @ touched > 0.0
+        self._bulk = Condensation(bulk, self._part_of, touched, fixed, self._reusable(), self._note)
         self._system = system = ContactSystem(
-            self._bulk, self._problem.contacts, self._reach.nodes, u
+            self._bulk, self._problem, self._reach.nodes, u, gathering
         )
         self._means = {}
         # the order of steps that were taken up again is another one
@@ -254,3 +283,11 @@ class Condensed:
         numbers = system.patterns.add_displacements(marks)
         self._held = dict(zip(held, numbers, strict=True))
         return system
+
+    def _reusable(self) -> Condensation | None:
+        """The condensation so far where parts of it may be good still; planes change the bulk."""
+        planes = self._problem.constraints.planes
+        if not planes or self._bulk is None:
+            return self._bulk
+        self._bulk.close()
+        return None

@@ -33,8 +33,8 @@ _KEPT = ("tangent", "tangent_columns", "tangent_starts")
 
 
 def blocks_times(blocks: Sequence[Block], x: Floats) -> Floats:
-    """Product of symmetric blocks on the diagonal with a vector."""
-    out = np.empty(len(x))
+    """Product of symmetric blocks on the diagonal with a vector; what no block covers is zero."""
+    out = np.zeros(len(x))
     for place, block in blocks:
         # half of the memory is read that a product with a general matrix reads
         out[place] = scipy.linalg.blas.dsymv(1.0, block, x[place], lower=1)
@@ -47,66 +47,56 @@ class ContactTangent:
     Args:
         blocks: Blocks of S on the diagonal.
         number: Contact unknown of each unknown of the system, -1 for all others, (n,).
-        count: Number of contact unknowns.
+        count: Number of contact unknowns; those behind the blocks have no part in S.
+        spread: Where constraints make unknowns of the system follow from contact unknowns: the
+            former from the latter, (n, c), and `number` does not count.
 
     Attributes:
         scale: Largest stiffness: forces are over it in single precision, for any units.
+        summed: The tangent of the contacts over `scale` in single precision, (c, c).
     """
 
-    def __init__(self, blocks: Sequence[Block], number: Ints, count: int) -> None:
-        self.count = count
+    def __init__(
+        self,
+        blocks: Sequence[Block],
+        number: Ints,
+        count: int,
+        spread: scipy.sparse.csr_array | None = None,
+    ) -> None:
+        self.count, self._spread = count, spread
         self.scale = max((float(np.abs(np.diagonal(b)).max()) for _, b in blocks), default=1.0)
         self._blocks = blocks
         self._single = [(place, _single(block, self.scale)) for place, block in blocks]
-        # one more place takes what belongs to no contact unknown; it also stands for "no node"
-        self._number = np.append(np.where(number < 0, count, number), [count] * 3)
-        self._couplings: list[tuple[Ints, Ints, Floats]] = []
-        self._small: list[tuple[Ints, Ints, Singles]] = []
+        self._places = Places(number if spread is None else np.arange(len(number)))
+        self._contact = scipy.sparse.csr_array((count, count))
+        self.summed = self._contact.astype(np.float32)
 
     def take(self, couplings: Sequence[Couplings]) -> None:
         """Replace the tangent of the contacts."""
-        self._couplings = [
-            (self._unknowns(rows), self._unknowns(columns), _whole(values))
-            for rows, columns, values in couplings
-        ]
-        self._small = [
-            (rows, columns, (values / self.scale).astype(np.float32))
-            for rows, columns, values in self._couplings
-        ]
+        size = self.count if self._spread is None else self._spread.shape[0]
+        contact = self._places.total(couplings, size)
+        if self._spread is not None:
+            contact = (self._spread.T @ contact @ self._spread).tocsr()
+        self._contact = contact
+        parts = ((contact.data / self.scale).astype(np.float32), contact.indices, contact.indptr)
+        self.summed = scipy.sparse.csr_array(parts, shape=contact.shape)
 
     def times(self, x: Floats) -> Floats:
         """The product with a vector, (c,)."""
-        out = self._coupled(self._couplings, x)
-        return out + blocks_times(self._blocks, x)
+        return np.asarray(self._contact @ x + blocks_times(self._blocks, x))
 
     def times_single(self, x: Singles) -> Singles:
         """The product over `scale` with a vector, in single precision, (c,)."""
-        out = self._coupled(self._small, x).astype(np.float32)
+        out: Singles = self.summed @ x
         for place, block in self._single:
             out[place] += scipy.linalg.blas.ssymv(1.0, block, x[place], lower=1)
         return out
-
-    def summed(self) -> scipy.sparse.csr_array:
-        """The tangent of the contacts over `scale` as one matrix, (c, c)."""
-        n = self.count
-        parts = []
-        for rows, columns, values in self._couplings:
-            there = (rows < n)[:, :, None] & (columns < n)[:, None, :]
-            at = rows[:, :, None] * n + columns[:, None, :]
-            parts.append((at[there], values[there] / self.scale))
-        places = np.concatenate([np.zeros(0, np.int64), *(at for at, _ in parts)])
-        values = np.concatenate([np.zeros(0), *(v for _, v in parts)])
-        order = np.argsort(places, kind="stable")
-        first = np.flatnonzero(np.diff(places[order], prepend=-1))
-        sums = np.add.reduceat(values[order], first) if len(first) else values
-        row, column = np.divmod(places[order][first], n)
-        return scipy.sparse.csr_array((sums.astype(np.float32), (row, column)), shape=(n, n))
 
     def factor(self, contact: scipy.sparse.csr_array) -> Callable[[Singles], Singles]:
         """LU of `S` over `scale` plus a matrix, as a function that solves with it.
 
         Args:
-            contact: What `summed` gave, now or earlier.
+            contact: `summed`, of now or earlier.
 
         Raises:
             ZeroDivisionError: The matrix is singular.
@@ -126,20 +116,53 @@ class ContactTangent:
 
         return solve
 
-    def _coupled(self, couplings: Sequence[tuple[Ints, Ints, Any]], x: Any) -> Floats:
-        """Product of the couplings alone, (c,)."""
-        out = np.zeros(self.count + 1)
-        longer = np.append(x, x.dtype.type(0.0))
-        for rows, columns, values in couplings:
-            y = np.matmul(values, longer[columns][:, :, None])[:, :, 0]
-            out += np.bincount(rows.ravel(), y.ravel(), minlength=self.count + 1)
-        return out[:-1]
 
-    def _unknowns(self, nodes: npt.NDArray[np.int32]) -> Ints:
-        """Contact unknowns of nodes, (p, k) -> (p, 3 k); node -1 has none."""
-        at = 3 * nodes[:, :, None].astype(np.int64) + np.arange(3)
-        at[nodes < 0] = len(self._number) - 1
-        return np.asarray(self._number[at].reshape(len(nodes), 3 * nodes.shape[1]))
+class Places:
+    """Where couplings of nodes go in a matrix of the contact unknowns.
+
+    They are found once for couplings of the same nodes, which most iterations have.
+
+    Args:
+        number: Row and column of each unknown of the nodes, -1 for those without, (n,).
+    """
+
+    def __init__(self, number: Ints) -> None:
+        # one more node stands for "no node"
+        self._number = np.append(number, [-1] * 3).reshape(-1, 3)
+        self._keys: Ints = np.full(1, -1)
+
+    def total(self, couplings: Sequence[Couplings], size: int) -> scipy.sparse.csr_array:
+        """The sum of all couplings, (size, size)."""
+        nodes = len(self._number)
+        keys, blocks = [np.zeros(0, np.int64)], [np.zeros((0, 9))]
+        for rows, columns, values in couplings:
+            row, column = (side.astype(np.int64) % nodes for side in (rows, columns))
+            keys.append((row[:, :, None] * nodes + column[:, None, :]).ravel())
+            blocks.append(_pairs(values, rows.shape[1], columns.shape[1]))
+        key = np.concatenate(keys)
+        if not np.array_equal(key, self._keys):
+            self._locate(key, size)
+        if not len(key):
+            return scipy.sparse.csr_array((size, size))
+        sums = np.add.reduceat(np.concatenate(blocks)[self._order], self._first, axis=0)
+        parts = (sums.ravel()[self._entry.data], self._entry.indices, self._entry.indptr)
+        return scipy.sparse.csr_array(parts, shape=(size, size))
+
+    def _locate(self, key: Ints, size: int) -> None:
+        """Sort pairs of nodes, each of them a number."""
+        self._keys = key
+        self._order = np.argsort(key, kind="stable")
+        self._first = np.flatnonzero(np.diff(key[self._order], prepend=-1))
+        pairs = np.divmod(key[self._order][self._first], len(self._number))
+        row, column = (self._number[node] for node in pairs)
+        shape = (len(self._first), 3, 3)
+        rows, columns = (
+            np.broadcast_to(row[:, :, None], shape),
+            np.broadcast_to(column[:, None, :], shape),
+        )
+        there = (rows >= 0) & (columns >= 0)
+        entry = np.arange(there.size).reshape(shape)[there]
+        self._entry = scipy.sparse.csr_array((entry, (rows[there], columns[there])), (size, size))
 
 
 def _single(block: Floats, scale: float) -> Singles:
@@ -147,12 +170,11 @@ def _single(block: Floats, scale: float) -> Singles:
     return np.asarray((block.T / scale).astype(np.float32, order="C").T)
 
 
-def _whole(values: Floats) -> Floats:
-    """Blocks of pairs of nodes, (p, r, c, 3, 3), as matrices, (p, 3 r, 3 c)."""
+def _pairs(values: Floats, r: int, c: int) -> Floats:
+    """Blocks of `Couplings` of r by c nodes as those of their pairs, (p r c, 9)."""
     if values.ndim == 3:
-        return values
-    p, r, c = values.shape[:3]
-    return np.ascontiguousarray(values.swapaxes(2, 3)).reshape(p, 3 * r, 3 * c)
+        values = values.reshape(-1, r, 3, c, 3).swapaxes(2, 3)
+    return values.reshape(-1, 9)
 
 
 class KeptFactor:
@@ -186,7 +208,7 @@ class KeptFactor:
             if left <= rtol:
                 return known
         try:
-            self._make(self._tangent.summed())
+            self._make(self._tangent.summed)
         except ZeroDivisionError:
             return None
         known, left = self._improved(known, b, rtol, PATIENCE)

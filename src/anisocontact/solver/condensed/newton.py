@@ -47,7 +47,7 @@ class CondensedNewton:
         """Residual of all unknowns at the last iterate; the interior is in equilibrium."""
         out = np.zeros(self._size)
         if self._newton is not None and self._system is not None:
-            out[self._system.bulk.contact] = self._newton.residual
+            out[self._system.places] = self._newton.residual
         return out
 
     def solve(
@@ -74,13 +74,12 @@ class CondensedNewton:
             own = system.new_vector()
             # what has come into reach just now has no extrapolation
             start = x if system is known else self._condensed.accepted()
-            own.array[:] = start.array_r[system.bulk.contact]
+            own.array[:] = start.array_r[system.places]
             result = newton.solve(own, full_steps, damping)
             if not (result.reason and system.outgrown):
                 break
             self._condensed.grow()
-        x.array[:] = system.nodal.reshape(-1)
-        x.array[system.bulk.contact] = own.array_r
+        x.array[:] = system.all_unknowns(own.array_r)
         return result
 
     def persistent(self) -> Arrays:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.spatial import cKDTree
 
-from anisocontact.contact import AnyContact, Contact, FacetContact
+from anisocontact.contact import AnyContact, Contact, FacetContact, SelfContact
 from anisocontact.mesh import Model
 from anisocontact.solver.persistent import Arrays
 from anisocontact.solver.problem import Problem
@@ -31,11 +31,18 @@ class Reach:
         model: Mesh.
         contacts: Contacts.
         steps: Loads: supports tell how far bodies will move past each other.
+        others: Nodes that are always in reach: those that something elastic holds.
     """
 
-    def __init__(self, model: Model, contacts: Sequence[AnyContact], steps: Sequence[Step]) -> None:
+    def __init__(
+        self,
+        model: Model,
+        contacts: Sequence[AnyContact],
+        steps: Sequence[Step],
+        others: npt.NDArray[np.int32],
+    ) -> None:
         self._reference = np.asarray(model.space.tabulate_dof_coordinates())
-        self._contacts = contacts
+        self._contacts, self._others = contacts, others
         self._ranges = {body: _prescribed_range(steps, body) for body in model.body_names()}
         self._motions: dict[int, float] = {}
         self._start: Floats = np.zeros_like(self._reference)
@@ -46,9 +53,12 @@ class Reach:
         """Take the nodes in reach of a state of all nodes, (nodes, 3), length."""
         self._start = u.copy()
         self.nodes = np.zeros(len(u), dtype=np.bool_)
+        self.nodes[self._others] = True
         for contact in self._contacts:
             if isinstance(contact, Contact):
                 self.nodes[contact.slave_nodes] = True
+            elif isinstance(contact, SelfContact):
+                self.nodes[contact.slave_facets] = True
             else:
                 for half in contact.passes:
                     self._select_pass(half, self._reference + u)
@@ -78,7 +88,7 @@ class Reach:
     def valid(self, u: Floats) -> bool:
         """Whether no body has moved by more than what was allowed for."""
         for contact in self._contacts:
-            if isinstance(contact, Contact):
+            if isinstance(contact, Contact | SelfContact):
                 continue
             for half in contact.passes:
                 sides = (half.slave_facets, half.master_facets)
@@ -123,7 +133,7 @@ class Reach:
 
 def contact_unknowns(problem: Problem, steps: Sequence[Step]) -> int:
     """Number of unknowns that the steps of a problem can bring into contact."""
-    reach = Reach(problem.model, problem.contacts, steps)
+    reach = Reach(problem.model, problem.contacts, steps, problem.attached.nodes)
     reach.select(problem.u.x.array.reshape(-1, 3))
     return 3 * int(reach.nodes.sum())
 

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse
 
 from anisocontact._fenicsx import Mat, PETSc, Vec
 from anisocontact.contact import AnyContact, Contact
@@ -15,7 +16,7 @@ from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor
 from anisocontact.solver.condensed.parts import Condensation
 from anisocontact.solver.condensed.patterns import Patterns, State
 from anisocontact.solver.newton import TOLERANCE
-from anisocontact.solver.problem import LOAD_SHARE, ROUND_OFF
+from anisocontact.solver.problem import LOAD_SHARE, ROUND_OFF, Problem
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -34,12 +35,19 @@ class ContactSystem:
 
     Args:
         bulk: The condensed bulk.
-        contacts: All contacts.
+        problem: The problem: its contacts, what bodies are attached to, rigid bodies.
         in_reach: Nodes whose unknowns are contact unknowns or prescribed, (nodes,).
+        nodal: Displacement of the nodes to start from, (nodes, 3), length.
+        gathering: Hands forces of constrained unknowns to those they follow, see `Constraints`;
+            the bulk is that of unknowns v with u = gathering^T v.
 
     Attributes:
         patterns: Loads and supports, condensed.
-        nodal: Displacement of the nodes; true for nodes in reach, (nodes, 3), length.
+        places: Numbers of the unknowns of Newton's method: contact unknowns, then those of free
+            rigid bodies that nothing prescribes.
+        led: Which unknowns of free rigid bodies are prescribed.
+        raw_forces: Forces of contacts and of what bodies are attached to, on all nodes, (n,).
+        forces: The same with those of constrained unknowns handed on.
         force_scale: Norm of the forces at work in the last evaluation: loads, contacts or supports.
         round_off: Residual that floating point leaves in the last evaluation, force.
         tolerance: Residual over the forces at work at which Newton stops.
@@ -48,16 +56,25 @@ class ContactSystem:
     """
 
     def __init__(
-        self, bulk: Condensation, contacts: Sequence[AnyContact], in_reach: Flags, nodal: Floats
+        self,
+        bulk: Condensation,
+        problem: Problem,
+        in_reach: Flags,
+        nodal: Floats,
+        gathering: scipy.sparse.csr_array | None = None,
     ) -> None:
-        self.bulk, self.contacts, self._in_reach = bulk, contacts, in_reach
-        self.nodal = nodal.copy()
+        self.bulk, self.contacts, self._in_reach = bulk, problem.contacts, in_reach
+        self._attached, self._rigid = problem.attached, problem.rigid
+        self._gathering = gathering
+        self._v = nodal.reshape(-1).copy()
+        self.led = self._rigid.held()
+        loose = np.flatnonzero(~self.led)
+        self.places = np.concatenate([bulk.contact, nodal.size + loose])
+        self._values = np.zeros(self._rigid.size)
         self.patterns = Patterns(bulk)
         signs = np.random.default_rng(1).choice([-1.0, 1.0], (len(bulk.prescribed), _SAMPLES))
         self._samples = self.patterns.add_displacements(signs.astype(np.float64))
-        number = np.full(nodal.size, -1, dtype=np.int64)
-        number[bulk.contact] = np.arange(len(bulk.contact))
-        self._tangent = ContactTangent(bulk.blocks, number, len(bulk.contact))
+        self._tangent = self._new_tangent()
         self._stiff = np.concatenate(
             [np.zeros(0), *(np.diagonal(block) for _, block in bulk.blocks)]
         )
@@ -70,22 +87,48 @@ class ContactSystem:
         self._a, self._b, self._g = np.zeros(0), np.zeros(0), np.zeros(len(bulk.contact))
         self._evaluated: Floats | None = None
         self._residual: Floats = np.zeros(0)
-        self.forces: Floats = np.zeros(nodal.size)
+        self.raw_forces = self.forces = np.zeros(nodal.size)
+
+    def _new_tangent(self) -> ContactTangent:
+        total = len(self._v) + self._rigid.size
+        number = np.full(total, -1, dtype=np.int64)
+        number[self.places] = np.arange(len(self.places))
+        spread = None
+        if self._gathering is not None:
+            whole = (self._gathering, scipy.sparse.eye_array(self._rigid.size))
+            spread = scipy.sparse.block_diag(whole, format="csr")[self.places].T.tocsr()
+        return ContactTangent(self.bulk.blocks, number, len(self.places), spread)
 
     def set_level(self, supports: Floats, load: Floats, dt: float) -> None:
-        """Take displacements of the supports, (p,), loads, (n,), and the time increment."""
+        """Take the displacements that are prescribed, (n,), loads, (n,), and time increment."""
+        load = self.handed(load)
         free = load.copy()
         free[self.bulk.prescribed] = 0.0
+        supports = supports[self.bulk.prescribed]
         self._a = self.patterns.supports(supports)
         self._b = self.patterns.loads(free)
         self._g = self.patterns.load(self._a, self._b)
-        self._load_norm = float(np.linalg.norm(load))
+        self._load_norm = float(np.hypot(np.linalg.norm(load), np.linalg.norm(self._rigid.loads())))
         self._dt = dt
-        self.nodal.reshape(-1)[self.bulk.prescribed] = supports
+        self._v[self.bulk.prescribed] = supports
+        self._values = self._rigid.prescribed()
         self._evaluated = None
+
+    def handed(self, forces: Floats) -> Floats:
+        """Forces with those of constrained unknowns handed on, (n,) or (n, k)."""
+        return forces if self._gathering is None else np.asarray(self._gathering @ forces)
+
+    def all_unknowns(self, own: Floats) -> Floats:
+        """Unknowns of the problem, true for nodes in reach, from those of Newton's method."""
+        count = len(self.bulk.contact)
+        self._v[self.bulk.contact] = own[:count]
+        self._values[self.places[count:] - len(self._v)] = own[count:]
+        u = self._v if self._gathering is None else self._gathering.T @ self._v
+        return np.concatenate([u, self._values])
 
     def state(self, u: Floats) -> State:
         """State with the contact unknowns `u` and the forces of the last evaluation."""
+        u = u[: len(self.bulk.contact)]
         return State(u.copy(), self._a, self._b, self.forces[self.bulk.prescribed])
 
     @property
@@ -95,13 +138,13 @@ class ContactSystem:
 
     def new_vector(self) -> Vec:
         """Vector of the contact unknowns, zero."""
-        vector = PETSc.Vec().createSeq(len(self.bulk.contact), comm=PETSc.COMM_SELF)
+        vector = PETSc.Vec().createSeq(len(self.places), comm=PETSc.COMM_SELF)
         vector.zeroEntries()
         return vector
 
     def new_tangent(self) -> Mat:
         """Matrix of which only products can be made."""
-        n = len(self.bulk.contact)
+        n = len(self.places)
         matrix = PETSc.Mat().createPython((n, n), self, comm=PETSc.COMM_SELF)
         matrix.setUp()
         return matrix
@@ -112,25 +155,36 @@ class ContactSystem:
         if self._evaluated is not None and np.array_equal(self._evaluated, u):
             return self._residual.copy()
         self._evaluated = u
-        self.nodal.reshape(-1)[self.bulk.contact] = u
-        self.forces = np.zeros(self.nodal.size)
-        failed = False
-        for contact in self.contacts:
-            failed |= bool(contact.update(self.nodal, self._dt).failed.any())
-            contact.add_force(self.forces.reshape(-1, 3))
-        self.outgrown = not self._in_reach[used(self.contacts, self.forces)].all()
-        residual = self.bulk.schur_times(u) - self._g - self.forces[self.bulk.contact]
-        self._measure(u)
+        failed = self._respond(u)
+        own = u[: len(self.bulk.contact)]
+        residual = self.bulk.schur_times(own) - self._g - self.forces[self.bulk.contact]
+        of_bodies = self._rigid.residual(self._values, 1.0)[~self.led]
+        residual = np.concatenate([residual, of_bodies])
+        self._measure(own)
         if failed or self.outgrown:
             residual[:] = np.nan
         self._norm = float(np.linalg.norm(residual))
         if self.follows:
-            lag = np.zeros(self.nodal.size)
+            lag = np.zeros((len(self._v) // 3, 3))
             for contact in self.contacts:
-                contact.add_lag(lag.reshape(-1, 3))
-            residual -= lag[self.bulk.contact]
+                contact.add_lag(lag)
+            residual[: len(own)] -= self.handed(lag.reshape(-1))[self.bulk.contact]
         self._residual = residual
         return residual.copy()
+
+    def _respond(self, u: Floats) -> bool:
+        """Forces on the nodes at the unknowns `u`; whether a law had no answer."""
+        nodal = self.all_unknowns(u)[: len(self._v)].reshape(-1, 3)
+        self._rigid.place(self._values)
+        forces, failed = np.zeros_like(nodal), False
+        for contact in self.contacts:
+            failed |= bool(contact.update(nodal, self._dt).failed.any())
+            contact.add_force(forces)
+        self.outgrown = not self._in_reach[used(self.contacts, forces)].all()
+        self._attached.add_force(nodal, forces)
+        self.raw_forces = forces.reshape(-1)
+        self.forces = self.handed(self.raw_forces)
+        return failed
 
     @property
     def follows(self) -> bool:
@@ -153,7 +207,9 @@ class ContactSystem:
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Take the tangent at x; `out` multiplies with it, and has no pattern that could grow."""
         self.evaluate(x)
-        self._tangent.take([part for c in self.contacts for part in couplings(c)])
+        blocks = [part for c in self.contacts for part in couplings(c)]
+        blocks += self._rigid.couplings(len(self._v) // 3) + self._attached.blocks()
+        self._tangent.take(blocks)
         out.assemble()
         return False
 
@@ -186,14 +242,16 @@ class ContactSystem:
         found = self.solver.solve(b.array_r, min(rtol, 0.1))
         if found is None:
             pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
-            found = np.zeros(len(self.bulk.contact))
+            found = np.zeros(len(self.places))
         x.array[:] = found
 
     def _measure(self, u: Floats) -> None:
         """Forces at work and what rounding makes of them, as of `Problem.evaluate`."""
         outside = self.patterns.outside(self.state(u))[self._samples]
         supports = float(np.sqrt(np.mean(outside**2)))
-        self.force_scale = max(self._load_norm, float(np.linalg.norm(self.forces)), supports)
+        springs = float(np.linalg.norm(self._rigid.spring_forces()))
+        forces = float(np.linalg.norm(self.forces))
+        self.force_scale = max(self._load_norm, forces, supports, springs)
         levers = [contact.lever() for contact in self.contacts]
         stiff = float(np.linalg.norm(self._stiff * u)) + float(np.linalg.norm(levers))
         self.round_off = ROUND_OFF * stiff
