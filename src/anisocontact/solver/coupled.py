@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -33,7 +34,7 @@ class CoupledTangent:
     """
 
     def __init__(self, stiffness: Mat, space: Any, extra: int = 0) -> None:
-        self._bulk = stiffness.duplicate()
+        self._stiffness = stiffness
         self._lg = stiffness.getLGMap()
         comm = space.mesh.comm
         (own, total), _ = stiffness.getSizes()
@@ -45,10 +46,7 @@ class CoupledTangent:
         #: What couplings call the first node beyond those of the mesh.
         self.first_extra = int(local + index_map.size_global)
         self._numbers = self.first_extra + extra
-        first = 3 * index_map.local_range[0]
-        starts, columns, _ = stiffness.getValuesCSR()
-        self._rows = np.repeat(np.arange(len(starts) - 1) + first, np.diff(starts))
-        self._columns = columns
+        self._first = 3 * index_map.local_range[0]
         self._keys: Keys = np.empty(0, dtype=np.int64)
         self._given = self._keys
         self._sum = csr_array((0, 0), dtype=np.float64)
@@ -66,14 +64,20 @@ class CoupledTangent:
         self._keys = keys.copy()
         self._given = np.full(1, -1, dtype=np.int64)
 
-    @property
+    @cached_property
     def bulk(self) -> Mat:
         """Matrix to write the tangent of the bulk into."""
-        return self._bulk
+        return self._stiffness.duplicate()
+
+    @cached_property
+    def _entries(self) -> tuple[Keys, Keys]:
+        """Rows and columns of the entries of the bulk on this rank."""
+        starts, columns, _ = self._stiffness.getValuesCSR()
+        return np.repeat(np.arange(len(starts) - 1) + self._first, np.diff(starts)), columns
 
     def new_matrix(self) -> Mat:
         """Matrix for `assemble`, with the pattern of the bulk for now."""
-        matrix = PETSc.Mat().create(self._bulk.getComm())
+        matrix = PETSc.Mat().create(self._stiffness.getComm())
         matrix.setSizes((self._size, self._size), bsize=3)
         matrix.setType(PETSc.Mat.Type.AIJ)
         matrix.setLGMap(*self._lg)
@@ -92,7 +96,7 @@ class CoupledTangent:
         grown = False
         if out.getComm().tompi4py().allreduce(changed):
             grown = self._locate(keys, out)
-        values = np.concatenate([self._bulk.getValuesCSR()[2], (self._sum @ blocks).reshape(-1)])
+        values = np.concatenate([self.bulk.getValuesCSR()[2], (self._sum @ blocks).reshape(-1)])
         out.setValuesCOO(values, PETSc.InsertMode.INSERT_VALUES)
         return grown
 
@@ -117,8 +121,8 @@ class CoupledTangent:
         columns = 3 * column[:, None, None] + component
         shape = (len(self._keys), 3, 3)
         matrix.setPreallocationCOO(
-            _joined(self._rows, np.broadcast_to(rows, shape)),
-            _joined(self._columns, np.broadcast_to(columns, shape)),
+            _joined(self._entries[0], np.broadcast_to(rows, shape)),
+            _joined(self._entries[1], np.broadcast_to(columns, shape)),
         )
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
 
