@@ -12,15 +12,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.test_fe_self_contact import hairpin
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
-from anisocontact.contact import AnyContact, Contact, FacetContact, TwoHalfPass
+from anisocontact.contact import AnyContact, Contact, FacetContact, SelfContact, TwoHalfPass
 from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.mesh import Body, BoxSpec, Model, Placement, Rotation, build_box, build_mesh
 from anisocontact.python_law import LawKinematics, LawResult, LawState, PythonInterface
-from anisocontact.solver import Accepted, Problem, Solver, Step
+from anisocontact.rigid import RigidBody
+from anisocontact.solver import Accepted, ElasticSupport, Problem, Solver, Spring, Step
 from anisocontact.solver.condensed import reach
 from anisocontact.surfaces import make_surface
 
@@ -202,6 +204,106 @@ def test_large_increments_leave_the_reach_within_newton(monkeypatch: pytest.Monk
     model = _model(length=3.0)
     notes = _same(lambda: _pair(model, reach=0.2), [PRESS, away])
     assert any("widened" in note for note in notes)
+
+
+ELASTIC = make_material("linear-elastic", E=1000.0, nu=0.3)
+PLANE = {"point": (0, 0, 0), "normal": (0, 0, 1)}
+
+
+def _turned(angle: float = 0.0, orders: Sequence[int] = (1,), **held: Any) -> Problem:
+    """Blocks beside each other on a plane, turned about its normal."""
+    turn = {"rotate": Rotation((0, 0, 1), angle)} if angle else {}
+    bodies = [
+        Body(
+            name,
+            BoxSpec((0, 0, 0), (1, 1, 0.5), (3, 3, 2), order=order),
+            Placement(move=(x, 0, 0), **turn),
+        )
+        for name, x, order in zip(("block", "other"), (0.0, 2.0), orders, strict=False)
+    ]
+    model = build_mesh(bodies)
+    interface = Interface(make_surface("plane", **PLANE), *LAWS)
+    contacts = [Contact(model, f"{body.name}.bottom", interface) for body in bodies]
+    return Problem(model, {body.name: ELASTIC for body in bodies}, contacts, **held)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.5], ids=["along the axes", "oblique"])
+def test_symmetry_planes(angle: float) -> None:
+    """Half a block whose cut also carries the edge of the contact; the plane is slid along."""
+    slide = {"x": -0.02 * np.sin(angle), "y": 0.02 * np.cos(angle)}
+    steps = [
+        Step("press", 2, {"block.top": {"z": -0.01}}, {"block.top": slide}),
+        Step("more", 2, {"block.top": {"z": -0.015}}, {"block.back": {"z": 3.0}}),
+    ]
+    _same(lambda: _turned(angle, symmetry=["block.left", "block.front"]), steps)
+
+
+def test_elastic_supports_and_springs() -> None:
+    """A block on a bed, led by the moving end of a spring, and tied to another one by a spring."""
+
+    def make() -> Problem:
+        attached = [
+            ElasticSupport("block.top", 300.0, 100.0),
+            Spring("pull", "block.right", (50.0, 20.0, 0.0)),
+            Spring("link", "block.left", (0.0, 30.0, 10.0), "other.right"),
+        ]
+        return _turned(orders=(1, 1), attached=attached)
+
+    held = {"other.top": {"x": 0.0, "y": 0.0, "z": -0.005}}
+    steps = [
+        Step("press", 2, held, {"block.top": {"z": -5.0}}),
+        Step("pull", 3, anchor={"pull": {"x": 0.2}}),
+    ]
+    _same(make, steps)
+
+
+@pytest.mark.parametrize("symmetry", [[], ["block.left"]])
+def test_bodies_of_two_orders(symmetry: list[str]) -> None:
+    """The middle nodes of the body of order 1 are tied to its corners."""
+    down = {"x": 0.0, "y": 0.0, "z": -0.01}
+    if symmetry:
+        down.pop("x")
+    steps = [Step("press", 2, {"block.top": down, "other.top": {**down, "x": 0.01}})]
+    _same(lambda: _turned(orders=(1, 2), symmetry=symmetry), steps)
+
+
+def test_free_rigid_body() -> None:
+    """A ball under force and moment, some of its components prescribed, held and freed again."""
+
+    def make() -> Problem:
+        model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (4, 4, 2))})
+        surface = make_surface("sphere", centre=(0.5, 0.5, -1.0), radius=1.0)
+        springs = {"x": 20.0, "y": 30.0, "z": 10.0, "rx": 4.0, "ry": 5.0, "rz": 6.0}
+        ball = RigidBody("ball", (0.4, 0.7, -0.9), free=True, springs=springs)
+        adhesion = Adhesion(stiffness=(4e3, 1e3), directions=MARKS)
+        interface = Interface(surface, NormalLaw(penalty=1e4), adhesion, LAWS[2])
+        contact = Contact(model, "block.bottom", interface, body=ball)
+        return Problem(model, {"block": ELASTIC}, [contact])
+
+    clamp = {"block.top": dict.fromkeys("xyz", 0.0)}
+    components = ("x", "y", "z", "rx", "ry", "rz")
+    load = {"x": 0.3, "y": -0.2, "z": 6.0, "rx": 0.3, "ry": -0.2, "rz": 0.25}
+    steps = [
+        Step("touch", 1, clamp, motion={"ball": {"z": 0.005}}),
+        Step("load", 4, motion={"ball": dict.fromkeys(components)}, load={"ball": load}),
+        Step("hold", 2, {"block.top": {"x": 0.01}}, motion={"ball": {"x": 0.0, "rz": 0.01}}),
+    ]
+    _same(make, steps)
+
+
+def test_self_contact() -> None:
+    """A hairpin that closes."""
+
+    def make() -> Problem:
+        model = hairpin(half=False)
+        law = PairLaw(*LAWS)
+        folded = SelfContact(model, "pin.inner", law=law, apart=0.3, current_area=False)
+        return Problem(model, {"pin": ELASTIC}, [folded])
+
+    ends = {f"pin.{end}": {"x": 0.0, "y": 0.0, "z": z} for end, z in (("upper", -1), ("lower", 1))}
+    close = {end: {**axes, "z": 0.202 * axes["z"]} for end, axes in ends.items()}
+    slide = {"pin.upper": {"x": 0.02}}
+    _same(make, [Step("close", 4, close), Step("slide", 2, slide)])
 
 
 def test_law_in_python() -> None:

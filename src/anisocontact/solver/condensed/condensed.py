@@ -18,6 +18,7 @@ from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Step
 
 Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
 
 
 class Condensed:
