@@ -19,8 +19,6 @@ Floats = npt.NDArray[np.float64]
 _ICNTL_SCHUR_SOLUTION, _INTERIOR = 26, 0
 #: MUMPS: workspace beyond what it expects to need, percent: tried one after the other.
 _ICNTL_WORKSPACE, _WORKSPACE = 14, (30, 200, 1000)
-#: MUMPS: give back what the factorisation needs no more.
-_ICNTL_COMPACT = 49
 #: MUMPS: what it says where its workspace was too small.
 _TOO_SMALL = (-8, -9, -14, -15, -17, -20)
 #: Error of a solution beyond which a matrix counts as singular.
@@ -152,7 +150,6 @@ class PartialFactor:
         self._pc.setFactorSetUpSolverType()
         self._factor = self._pc.getFactorMatrix()
         self._factor.setMumpsIcntl(_ICNTL_WORKSPACE, extra)
-        self._factor.setMumpsIcntl(_ICNTL_COMPACT, 1)
         numbers = PETSc.IS().createGeneral(self.border.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
         call_petsc("MatFactorSetSchurIS", self._factor, numbers)
         numbers.destroy()
