@@ -32,11 +32,7 @@ CODES: dict[str, Code] = {
         "import felupe, pypardiso; print(felupe.__version__)",
         KINDS[:1],
     ),
-    "GetFEM": Script(
-        "blocks.getfem_block",
-        _GETFEM,
-        KINDS[:1],
-    ),
+    "GetFEM": Script("blocks.getfem_block", _GETFEM),
 }
 THREADS = 2
 #: Drag at which the tangential force is compared while part of the face still sticks.

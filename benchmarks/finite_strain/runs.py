@@ -16,7 +16,7 @@ from records import Record
 from finite_strain.problem import KINDS, PHASES, read
 
 PART, RANKS = "finite strain", "ranks"
-SIZES, THREADS = (12, 24), 1
+SIZES, THREADS = (12, 18), 1
 OURS, SCRIPT = "anisocontact", "DOLFINx script"
 MODULES = {OURS: ("finite_strain.ours", KINDS), SCRIPT: ("finite_strain.penalty_script", KINDS[:1])}
 
