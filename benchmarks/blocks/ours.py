@@ -25,8 +25,18 @@ from blocks.problem import (
 kinds = KINDS
 
 
-def case_text(kind: str, n: int, strategy: str = "auto") -> str:
-    """The case file."""
+def case_text(
+    kind: str, n: int, strategy: str = "auto", degree: int = 2, drags: int = DRAGS
+) -> str:
+    """The case file.
+
+    Args:
+        kind: Which problem.
+        n: Cells of an edge of the block.
+        strategy: How the equations are solved.
+        degree: Degree of the quadrature of the contact.
+        drags: Increments of the drag.
+    """
     boxes = [("block", (0, 0, 0), (1, 1, 0.5), upper(n))]
     if kind == KINDS[1]:
         boxes.append(("base", (-0.5, -0.5, -0.5), (2, 2, 0.5), lower(n)))
@@ -41,6 +51,7 @@ def case_text(kind: str, n: int, strategy: str = "auto") -> str:
 [[contact]]
 slave = "block.bottom"
 master = "{"plane" if kind == KINDS[0] else "base.top"}"
+degree = {degree}
 normal = {{ penalty = {PENALTY} }}
 adhesion = {{ stiffness = [{PENALTY}, {PENALTY}] }}
 friction = {{ coefficients = [{FRICTION}, {FRICTION}] }}
@@ -52,11 +63,11 @@ displacement = {{ "block.top" = {{ x = 0, y = 0, z = {-DOWN} }}{clamp} }}
 
 [[step]]
 name = "drag"
-increments = {DRAGS}
+increments = {drags}
 displacement = {{ "block.top" = {{ x = {ALONG} }} }}
 
 [output]
-every = {PRESSES + DRAGS}
+every = {PRESSES + drags}
 
 [solver]
 strategy = "{strategy}"
