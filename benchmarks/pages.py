@@ -12,6 +12,7 @@ from blocks import runs, show
 from parts import PRINTED, SCRIPTS
 from records import KEPT, Record, of
 
+ABSENT = "No record yet.\n"
 FIGURES = ROOT / "docs" / "figures"
 
 
@@ -53,10 +54,12 @@ def write(records: Sequence[Record], tables: Path = KEPT.parent, figures: Path =
         show.picture(blocks, figures / "benchmarks-blocks.png")
     for part in (finite.PART, finite.RANKS):
         found = of(part, records)
-        if found:
-            text = f"{finite.table(found, marked)}\n{legend(marks, found)}"
-            (tables / f"{part.replace(' ', '-')}.md.in").write_text(text)
-    for record in of(PRINTED, records):
-        head = f"`python benchmarks/{record.case}.py`: {SCRIPTS[record.case]}. {about(record)}."
-        body = record.note or record.table
-        (tables / f"{record.case.replace('_', '-')}.md.in").write_text(f"{head}\n\n{body}\n")
+        text = f"{finite.table(found, marked)}\n{legend(marks, found)}" if found else ABSENT
+        (tables / f"{part.replace(' ', '-')}.md.in").write_text(text)
+    run = {record.case: record for record in of(PRINTED, records)}
+    for name, what in SCRIPTS.items():
+        text = f"`python benchmarks/{name}.py`: {what}."
+        text += (
+            f" {about(run[name])}.\n\n{run[name].note or run[name].table}\n" if name in run else ""
+        )
+        (tables / f"{name.replace('_', '-')}.md.in").write_text(text or ABSENT)

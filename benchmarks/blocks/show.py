@@ -54,7 +54,7 @@ def table(records: Sequence[Record], marks: Mapping[tuple[str, str, int, str], s
             if r.note:
                 lines.append(f"| {r.n} | | {r.code} | {r.note} |" + " |" * 8 + f" {mark} |")
                 continue
-            own = next((o for o in records if o.key == ("blocks", kind, r.n, OURS)), r)
+            own = next((o for o in records if o.key == (r.part, kind, r.n, OURS)), None)
             cells = [format(r.values[name], form) for name, form in COLUMNS.items()]
             cells.insert(1, _ratio(r, own, "wall s"))
             cells.insert(3, _ratio(r, own, "processor s"))
@@ -66,7 +66,7 @@ def table(records: Sequence[Record], marks: Mapping[tuple[str, str, int, str], s
 
 def versions(records: Sequence[Record]) -> str:
     """The codes and their versions."""
-    found = {r.code: f"{r.code} {r.made['version'].removeprefix(r.code.lower())}" for r in records}
+    found = {r.code: f"{r.code} {r.made['version'].removeprefix(r.code)}" for r in records}
     return ", ".join(" ".join(text.split()) for text in found.values())
 
 
@@ -102,5 +102,5 @@ def _order(record: Record) -> tuple[bool, str]:
     return record.code != OURS, record.code
 
 
-def _ratio(record: Record, own: Record, name: str) -> str:
-    return f"{record.values[name] / own.values[name]:.1f}" if own.values else ""
+def _ratio(record: Record, own: Record | None, name: str) -> str:
+    return f"{record.values[name] / own.values[name]:.1f}" if own and own.values else ""
