@@ -105,6 +105,7 @@ class FacetContact(ContactRecord):
         self._base: Base | None = None
         self._linear: PointTangent | None = None
         self._lag: Floats = np.zeros((0, 0, 3))
+        self._transferred = 0.0
         self._gathered = MasterSurface(model.space, model.facets(master))
         self._reference, self._master = self._gathered.reference, self._gathered.facets
         own = facet_mesh(model.space, model.facets(slave))
@@ -237,9 +238,47 @@ class FacetContact(ContactRecord):
             lost = self._comm.allgather(self._lost_off_the_end(self._trial))
             self.ran_off = np.concatenate(lost)
             if self._transfer is not None:
+                self._transferred += self._comm.allreduce(self._transfer_work(self._transfer))
                 self._transfer.place(self._now)
         super().commit()
         self._committed = (self._now, self._hint)
+
+    def energies(self) -> dict[str, float]:
+        """As of `ContactRecord`; with overlaps also "transfer", see `Transfer`."""
+        own = super().energies()
+        return own if self._transfer is None else own | {"transfer": self._transferred}
+
+    def _transfer_work(self, transfer: Transfer) -> float:
+        """Work of the increment that gaps and slips of the points do not see, over this rank.
+
+        They are measured at the feet of the points, forces act on the master over the overlaps:
+        the work of the force, its mean over the increment, on the difference of displacements.
+        """
+        old, new = (a.areas[:, None] * a.response.traction for a in (self._accepted, self.current))
+        force = np.where(self._handed[:, None], 0.5 * (old + new), 0.0)
+        step = self._now - self._committed[0]
+        out = np.zeros_like(step)
+        transfer.add_force(out, force)
+        handed = np.flatnonzero(self._handed & (self.current.response.state["facet"] >= 0))
+        facet, xi = (self.current.response.state[name][handed] for name in ("facet", "xi"))
+        shape, _, _ = self._surface.shapes(facet, xi)
+        nodes = self._master.nodes[facet]
+        feet = np.einsum("nk,nki->ni", shape[:, : nodes.shape[1]], step[nodes])
+        work = -float(np.sum(out * step) + np.sum(force[handed] * feet))
+        return work + self._crossing_energy()
+
+    def _crossing_energy(self) -> float:
+        """Stored energy of points that went off the master less that of points that came onto it.
+
+        They come from beside it, pressed in at once, which nothing has worked for.
+        """
+        before, now = self._accepted, self.current
+        stored = [
+            a.areas * (a.response.state["energy_normal"] + a.response.state["energy_adhesion"])
+            for a in (before, now)
+        ]
+        was, on = (a.response.state["facet"] >= 0 for a in (before, now))
+        return float(stored[0][was & ~on].sum() - stored[1][on & ~was].sum())
 
     def roll_back(self) -> None:
         """Forget the trial; the surface goes back to where it was."""
@@ -255,11 +294,16 @@ class FacetContact(ContactRecord):
         kept = super().persistent()
         hint = self._committed[1]
         kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
-        return kept | {"reference": self._points.positions(self._reference)}
+        everywhere = np.full(len(self._points.nodes), self._transferred)
+        return kept | {
+            "reference": self._points.positions(self._reference),
+            "transferred": everywhere,
+        }
 
     def restore(self, kept: Mapping[str, npt.NDArray[Any]], u: Floats) -> None:
         """Go on from what `persistent` gave."""
         super().restore(kept, u)
+        self._transferred = self.extreme(kept["transferred"]) - self.extreme(-kept["transferred"])
         names = [f.name for f in fields(FacetProjections)]
         self._hint = FacetProjections(*(np.array(kept[f"projection.{n}"]) for n in names))
         self._now = self._reference + self._gathered.everywhere(u)

@@ -8,6 +8,11 @@ share omega_gs acts at point s of the overlaps, on the node b of the master face
     f_b = - sum_s M_b(xi_s) sum_g omega_gs F_g ,    sum_s omega_gs = 1 ,
 
 so that forces balance, and a uniform traction gives the nodes of the master what they need.
+
+Gaps and slips are those of the points. What F_g works on the difference of the displacements of
+the master, sum_s omega_gs u_m(xi_s) - u_m(xi_g), is neither stored nor dissipated in the law; it is
+booked as the energy of the transfer, with the stored energy of points that cross an end of the
+master. Both are errors of the discretisation and fall with the size of the facets.
 """
 
 from __future__ import annotations
@@ -160,7 +165,7 @@ class Transfer:
         if (t := self._trial) is None:
             return
         points = t.force if force is None else force.reshape(t.force.shape)
-        forces = -np.einsum("pgb,pgi->pbi", self._shares(t), points[t.owner])
+        forces = -np.einsum("pgb,pgi->pbi", self._shares(t), points[t.owner], optimize=True)
         np.add.at(out, self._master.nodes[t.facet], forces)
 
     def couplings(self, nodes: Ints, derivative: Floats, active: Mask) -> list[Couplings]:

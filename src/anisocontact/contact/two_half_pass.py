@@ -128,6 +128,11 @@ class TwoHalfPass(ContactRecord):
         first, second = self.passes
         return np.concatenate([first.elastic_slip(), -second.elastic_slip()])
 
+    def energies(self) -> dict[str, float]:
+        """As of `ContactRecord`, with "transfer" of both passes, see `Transfer`."""
+        transfer = sum(half.energies()["transfer"] for half in self.passes)
+        return super().energies() | {"transfer": transfer}
+
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial on both bodies to the local nodes, (nodes, 3), force."""
         for half in self.passes:

@@ -30,7 +30,7 @@ Ints = npt.NDArray[np.int64]
 
 NAME = "checkpoint.npz"
 #: Changes with the meaning of the file.
-FORMAT = 2
+FORMAT = 3
 #: Distance within which two positions are the same, over the size of the mesh.
 SAME = 1e-9
 

@@ -302,7 +302,8 @@ class Problem:
             contact.add_lag(forces.reshape(-1, 3))
         lag = self.constraints.handed(self.layout.assembled(forces))
         lag[self.supports.unknowns] = 0.0
-        return np.append(lag, self.rigid.lag()) if self.layout.last_rank else lag
+        of_bodies = self.rigid.lag()
+        return np.append(lag, of_bodies) if self.layout.last_rank else lag
 
     @property
     def follows(self) -> bool:
@@ -501,7 +502,8 @@ class Problem:
             "external" work of supports and loads since the start (trapezoidal rule), stored
             "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
             "friction" and "viscous" laws, energy of "stabilisation" and, where there are
-            any, of "springs" and elastic supports, and "residual", what is left of "external" less
+            any, of "springs" and elastic supports and of the "transfer" of two half passes, and
+            "residual", what is left of "external" less
             all others: first order in the size of the increments.
         """
         if self.reduction is not None:
@@ -513,7 +515,7 @@ class Problem:
         stored["stabilisation"] = self.stabilisation.energy
         for contact in self.contacts:
             for name, value in contact.energies().items():
-                stored[name] += value
+                stored[name] = stored.get(name, 0.0) + value
         if self.attached or any(body.springs.any() for body in self.rigid.bodies):
             now = self._u.x.array.reshape(-1, 3)
             stored["springs"] = self.rigid.energy() + self.attached.energy(now)
