@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from anisocontact.augmentation import Augmentation
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.penalty import facet_size
 from anisocontact.interface import PairLaw
@@ -26,14 +25,12 @@ class SelfContact(FacetContact):
         model: Mesh with the group.
         group: Facet group "body.group".
         law: Laws of the interface.
-        degree: Degree of the quadrature; if not given twice the order of the displacement, with an
-            augmentation the order.
+        degree: Degree of the quadrature; twice the order of the displacement if not given.
         apart: Facets nearer to each other than this in the reference configuration do not meet,
             length; three facet sizes if not given. Sides of a narrow gap need less.
         reach: Distance within which a point searches, length; twice the facet size, at most
             `apart`, if not given.
         current_area: Whether tractions act on the area of now (finite strain) or of the reference.
-        augmentation: How exactly the contact is to hold; by its penalties alone if not given.
         name: Name in output; the group if not given.
 
     Raises:
@@ -50,7 +47,6 @@ class SelfContact(FacetContact):
         apart: float | None = None,
         reach: float | None = None,
         current_area: bool = True,
-        augmentation: Augmentation | None = None,
         name: str = "",
     ) -> None:
         model.facets(group, "slave")
@@ -64,7 +60,6 @@ class SelfContact(FacetContact):
             degree=degree,
             reach=min(2.0 * size, apart) if reach is None else reach,
             current_area=current_area,
-            augmentation=augmentation,
             weight=0.5,
             overlaps=True,
             apart=apart,

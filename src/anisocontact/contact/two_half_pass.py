@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.augmentation import Augmentation
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.interface import PairLaw, Response
@@ -28,12 +27,10 @@ class TwoHalfPass(ContactRecord):
         slave: Facet group "body.group" of the first pass.
         master: Facet group "body.group" that it meets.
         law: Laws of the interface.
-        degree: Degree of the quadrature; if not given twice the order of the displacement, with an
-            augmentation the order.
+        degree: Degree of the quadrature; twice the order of the displacement if not given.
         reach: Distance within which each searches the other, length; twice the size of the facets
             that search if not given.
         current_area: Whether tractions act on the area of now (finite strain) or of the reference.
-        augmentation: How exactly both passes are to hold; by their penalties alone if not given.
         adjust: Gaps up to this one are closed and overlaps taken out before the first step, see
             `adjusted`, length; nothing if not given.
         name: Name in output; the slave if not given.
@@ -56,7 +53,6 @@ class TwoHalfPass(ContactRecord):
         degree: int | None = None,
         reach: float | None = None,
         current_area: bool = True,
-        augmentation: Augmentation | None = None,
         adjust: float | None = None,
         name: str = "",
     ) -> None:
@@ -71,7 +67,6 @@ class TwoHalfPass(ContactRecord):
                 degree=degree,
                 reach=reach,
                 current_area=current_area,
-                augmentation=augmentation,
                 adjust=adjust,
                 weight=0.5,
                 mirrored=mirrored,
@@ -137,38 +132,6 @@ class TwoHalfPass(ContactRecord):
         """Add the forces of the trial on both bodies to the local nodes, (nodes, 3), force."""
         for half in self.passes:
             half.add_force(out)
-
-    def add_lag(self, out: Floats) -> None:
-        """As of `ContactRecord`."""
-        for half in self.passes:
-            half.add_lag(out)
-
-    @property
-    def follows(self) -> bool:
-        """Whether multipliers follow every step of Newton's method."""
-        return self.passes[0].follows
-
-    def held(self) -> bool:
-        """Whether multipliers that follow are what the trial answers to them, in both passes."""
-        return all([half.held() for half in self.passes])
-
-    def suit(self, diagonal: Floats) -> None:
-        """Suit multipliers that follow to the bodies, see `ContactRecord.suit`."""
-        for half in self.passes:
-            half.suit(diagonal)
-
-    def take_share(self, share: float) -> None:
-        """Take only a share of the next step of multipliers that follow."""
-        for half in self.passes:
-            half.take_share(share)
-
-    def improve(self) -> bool:
-        """Better multipliers of both passes, see `ContactRecord.improve`."""
-        return any([half.improve() for half in self.passes])
-
-    def soften(self) -> bool:
-        """Softer penalties of both passes after a solution that failed; whether any."""
-        return any([half.soften() for half in self.passes])
 
     def lever(self) -> float:
         """Forces that would move every point of the trial to the origin, norm over this rank."""
