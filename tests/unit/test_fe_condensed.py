@@ -207,7 +207,7 @@ def test_condensed_refuses(
 
 
 def test_unknown_strategy(fe: Any) -> None:
-    with pytest.raises(InputError, match="one of auto, direct, condensed needed"):
+    with pytest.raises(InputError, match="one of auto, direct, condensed, iterative needed"):
         _choice(fe.block(fe.interface()).problem, "fast")
 
 

@@ -80,8 +80,8 @@ class Solver(Section):
         str,
         _word(
             "one factorisation of the whole system in every Newton iteration (direct), one of the "
-            "linear bodies for the whole run and iterations on the contact (condensed), or what "
-            "suits the case (auto)",
+            "linear bodies for the whole run and iterations on the contact (condensed), Krylov "
+            "iterations on the whole system (iterative), or what suits the case (auto)",
             *STRATEGIES,
         ),
     ] = AUTO

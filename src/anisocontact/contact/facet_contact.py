@@ -169,6 +169,11 @@ class FacetContact(ContactRecord):
         """Local nodes of each master facet, (m, k)."""
         return self._master.nodes
 
+    def couplable(self) -> Ints:
+        """Nodes of slave and master, as `couplings` names them."""
+        nodes = np.union1d(self._points.nodes, self._master.nodes)
+        return self._gathered.coupled(nodes.astype(np.int32))
+
     @property
     def facet_size(self) -> float:
         """Length of a slave facet: square root of the mean area."""

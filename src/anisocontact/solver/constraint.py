@@ -24,14 +24,24 @@ class Constraint:
         slaves: Slave of each coefficient, number over all ranks; it lives on this rank.
         masters: Master of each coefficient, number over all ranks.
         factors: The coefficients c.
+
+    Attributes:
+        followers: Slaves on this rank, local numbers.
     """
 
     def __init__(self, like: Vec, slaves: Ints, masters: Ints, factors: Floats) -> None:
         first, last = like.getOwnershipRange()
         followers = np.unique(slaves)
+        self.followers: Ints = followers - first
         free = np.setdiff1d(np.arange(first, last), followers)
         alone, own = np.ones(len(free)), np.ones(len(followers))
         self._gather = _matrix(like, (free, free, alone), (masters, slaves, factors))
+        self._involved = like.duplicate()
+        self._involved.zeroEntries()
+        coupled = np.concatenate([slaves[factors != 0.0], masters[factors != 0.0]])
+        ones = np.ones(len(coupled))
+        self._involved.setValues(coupled.astype(PETSc.IntType), ones, PETSc.InsertMode.ADD_VALUES)
+        self._involved.assemble()
         self._constrain = _matrix(like, (followers, followers, own), (slaves, masters, -factors))
 
     def gather(self, force: Vec) -> Vec:
@@ -52,6 +62,16 @@ class Constraint:
         n = len(starts) - 1
         return scipy.sparse.csr_array((values, columns, starts), shape=(n, n))
 
+    def involved(self) -> npt.NDArray[np.bool_]:
+        """Unknowns of this rank that follow from others, or others from them."""
+        return np.asarray(self._involved.array_r > 0.0)
+
+    def spread(self, columns: Mat) -> Mat:
+        """Displacements in which slaves follow their masters, `R^T U`; takes the matrix over."""
+        out = self._gather.transposeMatMult(columns)
+        columns.destroy()
+        return out
+
     def transform(self, matrix: Mat, scale: float) -> None:
         """Make the tangent of the system that of the constrained one, in place.
 
@@ -66,8 +86,8 @@ class Constraint:
 
     def close(self) -> None:
         """Give back the matrices."""
-        self._gather.destroy()
-        self._constrain.destroy()
+        for part in (self._gather, self._constrain, self._involved):
+            part.destroy()
 
 
 type _Entries = tuple[Ints, Ints, Floats]

@@ -15,6 +15,7 @@ from anisocontact.solver.symmetry import SymmetryPlanes
 from anisocontact.solver.ties import tie, tied_nodes
 
 Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
 
 
 class Constraints:
@@ -79,6 +80,23 @@ class Constraints:
             own = constraint.gathering()
             product = own if product is None else own @ product
         return product
+
+    def followers(self) -> Ints:
+        """Unknowns of this rank that follow from others, local numbers."""
+        return np.concatenate([np.zeros(0, dtype=np.int64), *(c.followers for c in self._all())])
+
+    def involved(self) -> npt.NDArray[np.bool_]:
+        """Unknowns of this rank that follow from others, or others from them."""
+        found = np.zeros(self._like.getLocalSize(), dtype=np.bool_)
+        for constraint in self._all():
+            found |= constraint.involved()
+        return found
+
+    def spread(self, columns: Mat) -> Mat:
+        """Displacements in which all that is constrained follows; takes the matrix over."""
+        for constraint in reversed(self._all()):
+            columns = constraint.spread(columns)
+        return columns
 
     def _all(self) -> list[Constraint]:
         found = (self._ties, self.planes.constraint if self.planes else None)

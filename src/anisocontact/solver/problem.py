@@ -168,6 +168,25 @@ class Problem:
         return self._comm
 
     @property
+    def support_scale(self) -> float:
+        """Force for a unit of length in the rows of given unknowns, force/length."""
+        return float(self._support_scale)
+
+    @property
+    def bulk_state(self) -> tuple[float, ...] | None:
+        """What the tangent without contact depends on; None where it is on every state."""
+        return self.stabilisation.stiffnesses if isinstance(self.bulk, LinearBulk) else None
+
+    def given(self) -> npt.NDArray[np.int64]:
+        """Unknowns whose row says what they are, prescribed or constrained: local numbers."""
+        held = np.flatnonzero(self.rigid.held()) if self.layout.last_rank else np.zeros(0, int)
+        return np.unique(
+            np.concatenate(
+                [self.supports.unknowns, self.constraints.followers(), self._owned + held]
+            )
+        ).astype(np.int64)
+
+    @property
     def holding(self) -> list[str]:
         """Names in `reactions` of what holds the bodies for the whole run."""
         return [*self.constraints.planes.groups, *self.attached.names]

@@ -90,6 +90,11 @@ class Stabilisation:
     def __bool__(self) -> bool:
         return bool(self._free)
 
+    @property
+    def stiffnesses(self) -> tuple[float, ...]:
+        """Stiffness at each node of every body that is kept in reach, force/length."""
+        return tuple(free.stiffness for free in self._free)
+
     def clear(self) -> None:
         """Nothing is free."""
         self._free, self.notes = [], []

@@ -14,15 +14,20 @@ from anisocontact._fenicsx import PETSc, Vec
 from anisocontact.bulk import LinearBulk
 from anisocontact.errors import InputError
 from anisocontact.solver.condensed import Condensed, CondensedNewton, contact_unknowns, reachable
+from anisocontact.solver.iterative import IterativeNewton, Patch, factor_bytes
 from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
 from anisocontact.solver.persistent import Arrays
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Step
-from anisocontact.strategies import CONDENSED, DIRECT, STRATEGIES
+from anisocontact.strategies import CONDENSED, DIRECT, ITERATIVE, STRATEGIES
 
 #: Contact unknowns beyond which their dense matrix costs more than it saves.
 MOST_CONTACT = 8000
-#: Share of the free memory that dense matrices may take.
+#: Unknowns beyond which Krylov iterations are clearly faster than a factorisation.
+MOST_FACTORISED = 50_000
+#: Share of the unknowns that `iterative` may keep on its coarse level, if nobody asks for it.
+MOST_KEPT = 0.25
+#: Share of the free memory that dense matrices or a factor may take.
 MEMORY_SHARE = 0.5
 
 
@@ -54,7 +59,7 @@ class Choice:
     """How the equations are solved.
 
     Attributes:
-        name: "direct" or "condensed".
+        name: "direct", "condensed" or "iterative".
         reason: Why, in a line.
     """
 
@@ -83,17 +88,20 @@ def choose(
     """
     if strategy not in STRATEGIES:
         raise InputError(f"{strategy!r} given, one of {', '.join(STRATEGIES)} needed", "strategy")
-    if strategy == DIRECT:
-        return Choice(DIRECT, "asked for")
+    if strategy in (DIRECT, ITERATIVE):
+        return Choice(strategy, "asked for")
     against = next(_obstacles(problem, steps, prefix, options), "")
     if strategy == CONDENSED:
         if against:
             raise InputError(f"'condensed' given, but {against}", "strategy")
         return Choice(CONDENSED, "asked for")
     against = against or next(_costs(problem, steps), "")
-    if against:
-        return Choice(DIRECT, against)
-    return Choice(CONDENSED, "the bodies are linear: only their contact unknowns change")
+    if not against:
+        return Choice(CONDENSED, "the bodies are linear: only their contact unknowns change")
+    heavy = next(_factor_costs(problem), "")
+    if heavy and not next(_iterative_obstacles(problem, steps, prefix, options), ""):
+        return Choice(ITERATIVE, f"{heavy}; not condensed: {against}")
+    return Choice(DIRECT, against)
 
 
 def make_newton(
@@ -123,6 +131,8 @@ def make_newton(
     if choice.name == CONDENSED:
         condensed = Condensed(problem, steps, note, kept)
         return CondensedNewton(condensed, prefix, options, on_iteration)
+    if choice.name == ITERATIVE:
+        return IterativeNewton(problem, steps, prefix, options, on_iteration, note)
     return Newton(problem, prefix, options, on_iteration)
 
 
@@ -139,12 +149,40 @@ def _obstacles(
         yield f"material.{names[0]} is not linear"
     if problem.check_held(steps):
         yield "a body is held by contact alone"
+    yield from _asked_solver(prefix, options)
+    if not reachable():
+        yield "this PETSc has no MUMPS with a Schur complement"
+
+
+def _asked_solver(prefix: str, options: Mapping[str, OptionValue]) -> Iterator[str]:
+    """PETSc options of a linear solver: the user has chosen."""
     given = [*options, *PETSc.Options(prefix).getAll()]
     linear = [name for name in given if name.startswith(("ksp_", "pc_", "mat_"))]
     if linear:
         yield f"the option {linear[0]} asks for a solver of the whole system"
-    if not reachable():
-        yield "this PETSc has no MUMPS with a Schur complement"
+
+
+def _factor_costs(problem: Problem) -> Iterator[str]:
+    """Why a factorisation of the whole system would not fit or not pay."""
+    count = problem.unknowns
+    needed, free = factor_bytes(count), free_memory()
+    if needed > MEMORY_SHARE * free:
+        yield (
+            f"a factorisation of {count} unknowns needs about {needed / 1e9:.0f} GB, "
+            f"{free / 1e9:.0f} GB are free"
+        )
+    if count > MOST_FACTORISED:
+        yield f"{count} unknowns, more than {MOST_FACTORISED}: Krylov iterations are faster"
+
+
+def _iterative_obstacles(
+    problem: Problem, steps: Sequence[Step], prefix: str, options: Mapping[str, OptionValue]
+) -> Iterator[str]:
+    """Why `auto` does not take `iterative`."""
+    yield from _asked_solver(prefix, options)
+    count = int(problem.comm.allreduce(int(Patch(problem, steps).select().sum())))
+    if 3 * count > MOST_KEPT * problem.unknowns:
+        yield f"{3 * count} of {problem.unknowns} unknowns would stay on the coarse level"
 
 
 def _costs(problem: Problem, steps: Sequence[Step]) -> Iterator[str]:

@@ -1,0 +1,111 @@
+"""The coarse level: what the bodies give is kept, contact comes new with every tangent."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from anisocontact._fenicsx import Mat, PETSc, Vec
+from anisocontact.solver.iterative.split import Split, sparse
+
+#: Diagonal over its largest entry below which a coarse unknown moves nothing.
+IDLE = 1e-13
+
+
+class CoarseLevel:
+    """Factor of `P^T J P`.
+
+    With E the rows of P in the patch and the patch's block of J, `P^T J P = G + E^T J_pp E`; G
+    changes with the bodies alone.
+
+    Args:
+        tangent: Tangent J of all unknowns.
+        prolong: P, which is taken over.
+        split: Where the patch is.
+        scale: Diagonal of coarse unknowns that move nothing, force/length.
+        prefix: Prefix of the options of the solver.
+    """
+
+    def __init__(self, tangent: Mat, prolong: Mat, split: Split, scale: float, prefix: str) -> None:
+        self._prolong, self._patch, self._scale = prolong, split.patch, scale
+        first, last = prolong.getOwnershipRangeColumn()
+        columns = PETSc.IS().createStride(last - first, first, 1, prolong.getComm())
+        self._lift = prolong.createSubMatrix(split.patch, columns)
+        self._entries, self._grown = -1.0, False
+        self._block: Mat | None = None
+        self._contact: Mat | None = None
+        self._matrix: Mat | None = None
+        self._solver = PETSc.KSP().create(tangent.getComm())
+        self._solver.setOptionsPrefix(prefix)
+        self._solver.setFromOptions()
+        self._right, self._rest = prolong.createVecs()
+        self._left, self._correction = self._right.duplicate(), self._rest.duplicate()
+        self._bodies = self._without_contact(tangent)
+
+    def renew(self, tangent: Mat) -> None:
+        """Take bodies that have changed."""
+        self._bodies.destroy()
+        self._bodies = self._without_contact(tangent)
+
+    def factorise(self, tangent: Mat) -> bool:
+        """Take the contact of a tangent; whether the coarse level has an inverse."""
+        self._take_contact(tangent)
+        if self._matrix is None or self._grown:
+            self._grown = False
+            if self._matrix is not None:
+                # on several processes PETSc would keep the symbolic factorisation
+                self._solver.reset()
+                self._matrix.destroy()
+            self._matrix = self._bodies.copy()
+            different = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
+            self._matrix.axpy(1.0, self._contact, structure=different)
+        else:
+            subset = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
+            self._matrix.zeroEntries()
+            for part in (self._bodies, self._contact):
+                self._matrix.axpy(1.0, part, structure=subset)
+        self._solver.setOperators(self._matrix)
+        self._solver.setUp()
+        return bool(self._solver.getPC().getFailedReason() == 0)
+
+    def solve(self, rest: Vec) -> Vec:
+        """Correction of all unknowns for a residual; overwritten by the next call."""
+        self._prolong.multTranspose(rest, self._right)
+        self._solver.solve(self._right, self._left)
+        self._prolong.mult(self._left, self._correction)
+        return self._correction
+
+    def destroy(self) -> None:
+        """Give back PETSc's objects."""
+        parts = (self._solver, self._matrix, self._bodies, self._contact, self._block)
+        for part in (*parts, self._lift, self._prolong):
+            if part is not None:
+                part.destroy()
+
+    def _take_contact(self, tangent: Mat) -> None:
+        """Set `E^T J_pp E`."""
+        entries = tangent.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"]
+        if entries != self._entries:
+            self._entries, self._grown = entries, True
+            for part in (self._block, self._contact):
+                if part is not None:
+                    part.destroy()
+            self._block = self._contact = None
+        self._block = tangent.createSubMatrix(self._patch, self._patch, self._block)
+        self._contact = self._block.ptap(self._lift, self._contact)
+
+    def _without_contact(self, tangent: Mat) -> Mat:
+        """G, with a diagonal where neither the bodies nor contact have one."""
+        whole = tangent.ptap(self._prolong)
+        diagonal = np.abs(whole.getDiagonal().array_r)
+        comm = tangent.getComm()
+        largest = max(comm.tompi4py().allgather(float(diagonal.max(initial=0.0))))
+        first, _ = whole.getOwnershipRange()
+        idle = first + np.flatnonzero(diagonal <= IDLE * largest)
+        own, _ = whole.getLocalSize()
+        unit = sparse(own, own, comm, (idle, idle), np.full(len(idle), self._scale))
+        self._take_contact(tangent)
+        different = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
+        for factor, part in ((1.0, unit), (-1.0, self._contact)):
+            whole.axpy(factor, part, structure=different)
+        unit.destroy()
+        return whole

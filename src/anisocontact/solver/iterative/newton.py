@@ -1,0 +1,133 @@
+"""Newton's method whose corrections are found by FGMRES."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from anisocontact._fenicsx import SNES, Mat, PETSc, Vec
+from anisocontact.solver.iterative.patch import Patch
+from anisocontact.solver.iterative.twolevel import TwoLevel
+from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.problem import Problem
+from anisocontact.solver.steps import Step
+
+DEFAULTS: dict[str, OptionValue] = {
+    "ksp_type": "fgmres",
+    "ksp_gmres_restart": 60,
+    "ksp_max_it": 180,
+    "pc_type": "python",
+    # aggregates alone: they are smoothed with what is known of the patch, and need no levels
+    "aggregates_pc_gamg_agg_nsmooths": 0,
+    "aggregates_pc_gamg_coarse_eq_limit": 10**9,
+    "smoother_ksp_type": "chebyshev",
+    "smoother_ksp_max_it": 2,
+    "smoother_pc_type": "jacobi",
+    "coarse_ksp_type": "preonly",
+    "coarse_pc_type": "lu",
+    "coarse_pc_factor_mat_solver_type": "mumps",
+}
+#: Residual of a correction over that of its start, at most.
+LOOSEST = 1e-4
+#: Share of Newton's tolerance that a last correction may leave.
+LAST = 0.1
+#: Residual of a correction where multipliers follow, over the forces out of balance; over all.
+FINE, FINEST = 1e-5, 1e-12
+#: Stands for a residual that is zero.
+TINY = 1e-300
+#: Solutions without convergence after which the log says what else there is.
+TOLD = 3
+
+
+class IterativeNewton(Newton):
+    """SNES with FGMRES and two levels, see `TwoLevel`.
+
+    A correction is as precise as Newton's next residual asks for: with the residual r over the
+    forces at work, `min(1e-4, r)`, and never more than what Newton's tolerance needs.
+
+    Args:
+        problem: The problem.
+        steps: What will be done.
+        prefix: Prefix of the PETSc options.
+        options: PETSc options without prefix; those already in the PETSc database come first.
+        on_iteration: Called with the number of the iteration and the residual.
+        note: Told what is worth a line in the log.
+
+    Attributes:
+        krylov: Krylov iterations of every correction so far.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        steps: Sequence[Step],
+        prefix: str,
+        options: Mapping[str, OptionValue],
+        on_iteration: Callable[[int, float], None],
+        note: Callable[[str], None],
+    ) -> None:
+        super().__init__(problem, prefix, DEFAULTS | dict(options), on_iteration)
+        self.krylov: list[int] = []
+        self._note = note
+        self._failures = 0
+        given = [*options, *PETSc.Options(prefix).getAll()]
+        self._adapts = "ksp_rtol" not in given
+        ksp = self.snes.getKSP()
+        ksp.setPostSolve(self._count)
+        self._levels: TwoLevel | None = None
+        if ksp.getPC().getType() == PETSc.PC.Type.PYTHON:
+            self._levels = TwoLevel(problem, Patch(problem, steps), prefix, note)
+            ksp.getPC().setPythonContext(self._levels)
+
+    def solve(
+        self, x: Vec, full_steps: bool = False, damping: Callable[[], float] | None = None
+    ) -> NewtonResult:
+        """See `Newton.solve`."""
+        result = super().solve(x, full_steps, damping)
+        if self.snes.getKSP().getConvergedReason() < 0:
+            self._failures += 1
+            if self._failures == TOLD:
+                self._note(
+                    f"the Krylov method has not converged in {TOLD} solutions: "
+                    'if the bodies are held, take the strategy "direct"'
+                )
+        return result
+
+    def close(self) -> None:
+        """Give back PETSc's objects."""
+        if self.krylov:
+            mean = sum(self.krylov) / len(self.krylov)
+            self._note(
+                f"Krylov iterations of {len(self.krylov)} corrections: "
+                f"{mean:.1f} on average, at most {max(self.krylov)}"
+            )
+        if self._levels is not None:
+            self._levels.close()
+        super().close()
+
+    def _jacobian(self, snes: SNES, x: Vec, matrix: Mat, other: Mat) -> None:
+        super()._jacobian(snes, x, matrix, other)
+        if self._adapts:
+            snes.getKSP().setTolerances(rtol=self._precision(snes))
+
+    def _precision(self, snes: SNES) -> float:
+        """Residual of the next correction over that of its start."""
+        residual = self._residuals[-1]
+        if self._problem.follows:
+            # forces that take violations away are large beside those that are out of balance
+            size = max(snes.getFunction()[0].norm(), TINY)
+            return float(max(FINE * min(self._problem.unbalanced(size) / size, 1.0), FINEST))
+        needed = LAST * snes.getTolerances()[0] / max(residual, TINY)
+        return float(max(min(LOOSEST, residual), min(needed, LOOSEST)))
+
+    def _count(self, ksp: PETSc.KSP, _: Vec, __: Vec) -> None:
+        self.krylov.append(ksp.getIterationNumber())
+        if self._levels is not None:
+            self._levels.count(self.krylov[-1])
+
+    def _explain(self, reason: int) -> str:
+        if reason != PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
+            return super()._explain(reason)
+        ksp = self.snes.getKSP()
+        if ksp.getConvergedReason() == PETSc.KSP.ConvergedReason.DIVERGED_PCSETUP_FAILED:
+            return "the coarse level could not be factorised (a body without support?)"
+        return f"the Krylov method did not converge in {ksp.getIterationNumber()} iterations"

@@ -1,0 +1,73 @@
+"""Nodes that keep their unknowns on the coarse level: all that contact can couple."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import PETSc
+from anisocontact.contact import Contact
+from anisocontact.solver.condensed.reach import Reach
+from anisocontact.solver.problem import Problem
+from anisocontact.solver.steps import Step
+
+Flags = npt.NDArray[np.bool_]
+Ints = npt.NDArray[np.int64]
+
+
+class Patch:
+    """Nodes in reach of contacts, of constraints and of springs that couple whole facet groups.
+
+    Args:
+        problem: The problem.
+        steps: What will be done: tells what can be touched.
+    """
+
+    def __init__(self, problem: Problem, steps: Sequence[Step]) -> None:
+        self._problem = problem
+        meshed = [c for c in problem.contacts if not isinstance(c, Contact)]
+        #: On several processes the reach of meshed contacts is not searched: all their nodes count.
+        self._whole = meshed if problem.comm.size > 1 else []
+        self._searched = [c for c in meshed if c not in self._whole]
+        rest = [c for c in problem.contacts if c not in self._whole]
+        self._reach = Reach(problem.model, rest, steps, np.zeros(0, dtype=np.int32))
+
+    def select(self) -> Flags:
+        """Nodes of the patch from the accepted state on, of those this rank owns, (owned,)."""
+        problem = self._problem
+        self._reach.select(problem.u.x.array.reshape(-1, 3))
+        found: list[npt.NDArray[Any]] = [np.flatnonzero(self._reach.nodes)]
+        for contact in self._whole:
+            found += [half.couplable() for half in contact.passes]
+        for rows, columns, _ in problem.attached.couplings():
+            found += [rows.ravel(), columns.ravel()]
+        named = np.unique(np.concatenate(found))
+        marks = problem.new_vector()
+        at = 3 * self._globally(named[named >= 0])
+        marks.setValues(at.astype(PETSc.IntType), np.ones(len(at)), PETSc.InsertMode.ADD_VALUES)
+        marks.assemble()
+        owned = (marks.array_r > 0.0) | problem.constraints.involved()
+        return np.asarray(owned[: problem.layout.owned].reshape(-1, 3).any(axis=1))
+
+    def outgrown(self) -> bool:
+        """Whether slave points of the trial are above master nodes outside; the same on all ranks.
+
+        The next selection then allows for more motion.
+        """
+        outside = any(
+            not self._reach.nodes[half.feet()].all() for c in self._searched for half in c.passes
+        )
+        if outside:
+            self._reach.widen()
+        return outside
+
+    def _globally(self, named: Ints) -> Ints:
+        """Numbers in the whole mesh of nodes as `CoupledTangent` names them."""
+        nodes = self._problem.model.space.dofmap.index_map
+        local = nodes.size_local + nodes.num_ghosts
+        near = named < local
+        there = nodes.local_to_global(named[near].astype(np.int32))
+        return np.concatenate([there, named[~near] - local])

@@ -1,0 +1,95 @@
+"""Unknowns of the whole system cut into an interior and the patch that stays."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import Mat, PETSc, Vec
+from anisocontact.solver.problem import Problem
+
+Flags = npt.NDArray[np.bool_]
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+
+class Split:
+    """Where the unknowns of the interior and of the patch are.
+
+    Args:
+        problem: The problem.
+        patch: Nodes of the mesh that stay, of those this rank owns, (owned,).
+
+    Attributes:
+        given: Unknowns that have a row of their own, local numbers; see `Problem.given`.
+        interior: Unknowns of the other nodes, an index set.
+        patch: Unknowns of the patch and of rigid bodies, an index set.
+        given_inside: Unknowns among `given` that are of the interior, global numbers in it.
+        places: Where the nodes of the interior are, (nodes, 3), length.
+    """
+
+    def __init__(self, problem: Problem, patch: Flags) -> None:
+        like = problem.new_vector()
+        self.first, self.last = like.getOwnershipRange()
+        comm = problem.comm
+        inner = np.flatnonzero(~patch)
+        extra = np.arange(len(patch), (self.last - self.first) // 3)
+        self.interior = self._set(inner, comm)
+        self.patch = self._set(np.concatenate([np.flatnonzero(patch), extra]), comm)
+        self.given = problem.given()
+        self.places: Floats = problem.model.space.tabulate_dof_coordinates()[inner]
+        before = 3 * int(comm.exscan(len(inner)) or 0)
+        number = np.full(self.last - self.first, -1, dtype=np.int64)
+        number[(3 * inner[:, None] + np.arange(3)).reshape(-1)] = np.arange(3 * len(inner))
+        inside = number[self.given]
+        self.given_inside: Ints = before + inside[inside >= 0]
+
+    @property
+    def empty(self) -> bool:
+        """Whether there is no interior on any rank."""
+        return bool(self.interior.getSize() == 0)
+
+    def _set(self, nodes: Ints, comm: object) -> PETSc.IS:
+        return PETSc.IS().createBlock(3, (self.first // 3 + nodes).astype(PETSc.IntType), comm)
+
+
+def interior_matrix(tangent: Mat, split: Split, scale: float, before: Mat | None = None) -> Mat:
+    """Tangent of the interior, rows and columns of given unknowns emptied.
+
+    Args:
+        tangent: Tangent of all unknowns.
+        split: The interior.
+        scale: What the diagonal of given unknowns becomes, force/length.
+        before: Such a matrix, to be overwritten.
+    """
+    matrix = tangent.createSubMatrix(split.interior, split.interior, before)
+    matrix.setBlockSize(3)
+    matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+    matrix.zeroRowsColumns(split.given_inside.astype(PETSc.IntType), scale)
+    return matrix
+
+
+def sparse(rows: int, columns: int, comm: object, at: tuple[Ints, Ints], values: Floats) -> Mat:
+    """Matrix of entries.
+
+    Args:
+        rows: Rows of this rank.
+        columns: Columns of this rank.
+        comm: Communicator.
+        at: Row and column of each entry, global numbers.
+        values: The entries.
+    """
+    matrix = PETSc.Mat().create(comm)
+    matrix.setSizes(((rows, None), (columns, None)))
+    matrix.setType(PETSc.Mat.Type.AIJ)
+    matrix.setPreallocationCOO(*(numbers.astype(PETSc.IntType) for numbers in at))
+    matrix.setValuesCOO(values, PETSc.InsertMode.INSERT_VALUES)
+    return matrix
+
+
+def weights(like: Vec, index_set: PETSc.IS, values: Vec) -> Vec:
+    """Vector that has values in an index set and zero elsewhere."""
+    out = like.duplicate()
+    out.zeroEntries()
+    out.isaxpy(index_set, 1.0, values)
+    return out

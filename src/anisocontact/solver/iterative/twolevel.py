@@ -1,0 +1,155 @@
+"""Two levels: Chebyshev smoothing of the interior, and a factorisation of the coarse level."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import Mat, PETSc, Vec
+from anisocontact.solver.iterative.coarse import CoarseLevel
+from anisocontact.solver.iterative.interpolation import interpolation
+from anisocontact.solver.iterative.patch import Patch
+from anisocontact.solver.iterative.split import Split, interior_matrix
+from anisocontact.solver.problem import Problem
+
+Ints = npt.NDArray[np.int64]
+
+#: Given unknowns follow from given ones at most so often, with ties on a symmetry plane.
+CHAIN = 3
+#: Krylov iterations over those with a new interpolation at which an old one is given up.
+WORN = 1.5
+
+
+class TwoLevel:
+    """Preconditioner of the tangent J of a problem, as a Python context of PETSc.
+
+    Given unknowns are solved from their rows. The rest takes one multiplicative cycle: smoothing of
+    the interior, the coarse level `P^T J P`, smoothing again. Contact lies in the patch, which P
+    leaves as it is, so the coarse level has all of it and the smoother nothing.
+
+    Args:
+        problem: The problem.
+        patch: Nodes that contact can couple.
+        prefix: Prefix of the options of its parts.
+        note: Told when the interpolation is made, in a line.
+    """
+
+    def __init__(
+        self, problem: Problem, patch: Patch, prefix: str, note: Callable[[str], None]
+    ) -> None:
+        self._problem, self._patch, self._prefix, self._note = problem, patch, prefix, note
+        self._split: Split | None = None
+        self._interior: Mat | None = None
+        self._smoother: PETSc.KSP | None = None
+        self._coarse: CoarseLevel | None = None
+        self._bulk: object = None
+        self._fresh = 0
+        self._worn = False
+
+    def count(self, iterations: int) -> None:
+        """Take the number of Krylov iterations of a correction."""
+        if self._fresh == 0:
+            self._fresh = iterations
+        self._worn = iterations > WORN * max(self._fresh, 10)
+
+    def setUp(self, pc: PETSc.PC) -> None:
+        """Take the tangent that the linear solver has been given."""
+        tangent, _ = pc.getOperators()
+        bulk = self._problem.bulk_state
+        changed = bulk is None or bulk != self._bulk
+        if self._outdated(changed):
+            self._build(tangent)
+        elif changed:
+            self._renew(tangent)
+        self._bulk = bulk
+        assert self._coarse is not None
+        if not self._coarse.factorise(tangent):
+            pc.setFailedReason(PETSc.PC.FailedReason.NUMERIC_ZEROPIVOT)
+
+    def apply(self, pc: PETSc.PC, b: Vec, x: Vec) -> None:
+        """One cycle from zero."""
+        tangent, _ = pc.getOperators()
+        assert self._coarse is not None
+        x.zeroEntries()
+        rest = b.copy()
+        self._solve_given(tangent, b, rest, x)
+        self._smooth(rest, x)
+        self._residual(tangent, b, x, rest)
+        x.axpy(1.0, self._coarse.solve(rest))
+        self._residual(tangent, b, x, rest)
+        self._smooth(rest, x)
+
+    def close(self) -> None:
+        """Give back PETSc's objects."""
+        for part in (self._smoother, self._interior, self._coarse):
+            if part is not None:
+                part.destroy()
+        self._split = self._smoother = self._interior = self._coarse = None
+
+    def _outdated(self, bulk_changed: bool) -> bool:
+        """Whether the interpolation has to be made anew; the same on all ranks."""
+        if self._split is None:
+            return True
+        other = not np.array_equal(self._split.given, self._problem.given())
+        worn = self._worn and bulk_changed
+        return bool(self._problem.comm.allreduce(other)) or worn or self._patch.outgrown()
+
+    def _build(self, tangent: Mat) -> None:
+        self.close()
+        problem, scale = self._problem, self._problem.support_scale
+        self._split = split = Split(problem, self._patch.select())
+        self._interior = interior = interior_matrix(tangent, split, scale)
+        prolong = interpolation(problem, tangent, split, interior, f"{self._prefix}aggregates_")
+        self._coarse = CoarseLevel(tangent, prolong, split, scale, f"{self._prefix}coarse_")
+        self._smoother = self._new_smoother()
+        self._fresh, self._worn = 0, False
+        inside, kept = split.interior.getSize(), split.patch.getSize()
+        aggregated = prolong.getSize()[1] - kept
+        self._note(
+            f"two levels: {inside} unknowns of the interior on {aggregated}, "
+            f"{kept} that contact can couple are kept"
+        )
+
+    def _renew(self, tangent: Mat) -> None:
+        """The same interpolation for bodies that have changed."""
+        assert self._coarse is not None and self._split is not None and self._smoother is not None
+        scale = self._problem.support_scale
+        interior_matrix(tangent, self._split, scale, self._interior)
+        self._smoother.setOperators(self._interior)
+        self._coarse.renew(tangent)
+
+    def _new_smoother(self) -> PETSc.KSP:
+        smoother = PETSc.KSP().create(self._problem.comm)
+        smoother.setOptionsPrefix(f"{self._prefix}smoother_")
+        smoother.setOperators(self._interior)
+        smoother.setNormType(PETSc.KSP.NormType.NONE)
+        smoother.setFromOptions()
+        return smoother
+
+    def _solve_given(self, tangent: Mat, b: Vec, rest: Vec, x: Vec) -> None:
+        """Unknowns with a row of their own, and what they leave of the other rows."""
+        assert self._split is not None
+        given = self._split.given
+        for _ in range(CHAIN):
+            left = rest.array_r[given]
+            if not self._problem.comm.allreduce(bool(left.any())):
+                return
+            x.array[given] += left / self._problem.support_scale
+            self._residual(tangent, b, x, rest)
+
+    def _residual(self, tangent: Mat, b: Vec, x: Vec, out: Vec) -> None:
+        assert self._split is not None
+        tangent.mult(x, out)
+        out.aypx(-1.0, b)
+
+    def _smooth(self, rest: Vec, x: Vec) -> None:
+        assert self._split is not None and self._smoother is not None
+        if self._split.empty:
+            return
+        part = rest.getSubVector(self._split.interior)
+        correction = part.duplicate()
+        self._smoother.solve(part, correction)
+        rest.restoreSubVector(self._split.interior, part)
+        x.isaxpy(self._split.interior, 1.0, correction)

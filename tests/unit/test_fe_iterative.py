@@ -1,0 +1,99 @@
+"""Iterative strategy: choice, options, failure."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from anisocontact.solver import Problem, Solver, Step, StoppedError, strategy
+from anisocontact.solver.iterative import IterativeNewton, factor_bytes
+
+PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+RUBBER = {"model": "neo-hookean", "E": 1000.0, "nu": 0.3}
+
+
+def _problem(**material: Any) -> Problem:
+    from anisocontact.bulk import make_material
+    from anisocontact.contact import Contact
+    from anisocontact.interface import Interface
+    from anisocontact.laws import Adhesion, Friction, NormalLaw
+    from anisocontact.mesh import BoxSpec, build_box
+    from anisocontact.surfaces import make_surface
+
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (4, 4, 6))})
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    laws = (
+        NormalLaw(penalty=1e4),
+        Adhesion(stiffness=(1e4, 1e4)),
+        Friction(coefficients=(0.3, 0.3)),
+    )
+    contact = Contact(model, "block.bottom", Interface(plane, *laws))
+    given = {"model": "linear-elastic", "E": 1000.0, "nu": 0.3} | material
+    return Problem(model, {"block": make_material(**given)}, [contact])
+
+
+def _choice(problem: Problem, **options: Any) -> strategy.Choice:
+    return strategy.choose("auto", problem, [PRESS], "none_", options)
+
+
+def test_auto_takes_it_beyond_a_number_of_unknowns(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem = _problem(**RUBBER)
+    assert _choice(problem).name == "direct"
+    monkeypatch.setattr(strategy, "MOST_FACTORISED", 100)
+    choice = _choice(problem)
+    assert choice.name == "iterative"
+    assert choice.reason == (
+        "525 unknowns, more than 100: Krylov iterations are faster; "
+        "not condensed: material.block is not linear"
+    )
+
+
+def test_auto_takes_it_where_a_factor_does_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A factor of 525 unknowns needs 1.5 MB."""
+    assert 1e6 < factor_bytes(525) < 2e6
+    problem = _problem(**RUBBER)
+    monkeypatch.setattr(strategy, "free_memory", lambda: 2e6)
+    assert _choice(problem).name == "iterative"
+    monkeypatch.setattr(strategy, "free_memory", lambda: 4e6)
+    assert _choice(problem).name == "direct"
+
+
+def test_auto_leaves_the_choice_to_options(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A linear solver that the user asks for is one of the whole system."""
+    monkeypatch.setattr(strategy, "MOST_FACTORISED", 100)
+    assert _choice(_problem(**RUBBER), pc_type="cholesky").name == "direct"
+
+
+def test_auto_stays_where_most_would_be_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    """75 of 525 unknowns can be touched."""
+    monkeypatch.setattr(strategy, "MOST_FACTORISED", 100)
+    monkeypatch.setattr(strategy, "MOST_KEPT", 0.14)
+    assert _choice(_problem(**RUBBER)).name == "direct"
+
+
+def test_options_reach_the_krylov_method() -> None:
+    """One iteration to 1e-14 is not possible: cut with the reason, then a line about `direct`."""
+    problem = _problem()
+    notes: list[str] = []
+    options = {"ksp_rtol": 1e-14, "ksp_max_it": 2}
+    solver = Solver(problem, [PRESS], options=options, strategy="iterative")
+    with pytest.raises(StoppedError, match="the Krylov method did not converge in 2 iterations"):
+        list(solver.run(on_note=notes.append))
+    assert sum('take the strategy "direct"' in note for note in notes) == 1
+
+
+def test_another_preconditioner() -> None:
+    """The user's preconditioner replaces both levels."""
+    problem = _problem()
+    notes: list[str] = []
+    newton = IterativeNewton(
+        problem, [PRESS], "another_", {"pc_type": "jacobi"}, lambda *_: None, notes.append
+    )
+    problem.begin(PRESS)
+    problem.set_level(1.0, 1.0)
+    x = problem.accepted()
+    assert not newton.solve(x).reason
+    newton.close()
+    assert not any("two levels" in note for note in notes)
+    assert max(newton.krylov) > 15
