@@ -260,7 +260,8 @@ class Carried:
         if self.field is not None and self.on == body and self.field.name in BY_COORDINATES:
             raise InputError(
                 f"{self.field.name!r} goes by the coordinates of a surface, and the {body} that "
-                "carries it is a mesh; give the directions in space",
+                "carries it is a mesh; give the directions in space, or in Python "
+                "facet_directions with that surface",
                 self.place,
             )
 

@@ -16,7 +16,8 @@ from anisocontact.contact import FacetContact, facet_directions
 from anisocontact.errors import InputError
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.mesh import Body, BoxSpec, Model, build_box, build_mesh, make_shape
+from anisocontact.surfaces import make_surface
 
 Floats = npt.NDArray[np.float64]
 
@@ -81,6 +82,63 @@ def test_a_dolfinx_function(cell: str) -> None:
     found, _ = axes(model, facet_directions(model, "plate.top", function))
     expected, _ = axes(model, facet_directions(model, "plate.top", rings))
     assert np.abs(found - expected).max() < 1e-12
+
+
+def ring() -> Model:
+    """A ring of 24 curved facets around z, of outer radius 2."""
+    shape = make_shape("ring", inner=1.5, outer=2.0, length=1.0, cells=(1, 24, 3), order=2)
+    return build_mesh([Body("ring", shape)])
+
+
+def test_lines_of_coordinates_on_a_meshed_ring() -> None:
+    """Helices at 30 degrees on the facets against their closed form.
+
+    Requirement: fields in the coordinates of a surface, for meshed bodies. Source: the tangent of a
+    helix at the same positions, sampled as a callable: the two tables differ by rounding.
+    """
+    model = ring()
+    bar = make_surface("cylinder", point=(0, 0, 0), axis=(0, 0, 1), radius=2.0, start=(1, 0, 0))
+    lines = make_directions("coordinate-lines", angle=np.pi / 6)
+    sampled = facet_directions(model, "ring.outer", lines, surface=bar)
+
+    def helix(x: Floats) -> Floats:
+        around = rings(x) / np.linalg.norm(rings(x), axis=1)[:, None]
+        along = np.array((0.0, 0.0, 1.0))
+        first = np.cos(np.pi / 6) * around + np.sin(np.pi / 6) * along
+        return np.stack([first, np.cos(np.pi / 6) * along - np.sin(np.pi / 6) * around], axis=1)
+
+    expected = facet_directions(model, "ring.outer", helix)
+    xi = np.random.default_rng(1).uniform((0.0, 0.1), (6.0, 0.9), (50, 2))
+    found, valid = sampled.axes(bar, xi)
+    assert valid.all()
+    assert np.abs(found - expected.axes(bar, xi)[0]).max() < 1e-12
+
+
+def test_a_grid_of_directions_on_a_meshed_plate() -> None:
+    """A table over the coordinates of a plane, in contact of two bodies.
+
+    Source: the table holds one direction, which is constant in space: rounding.
+    """
+    model = blocks(3)
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1), tangent=(0, 1, 0))
+    grid = make_directions(
+        "tabulated-grid", lower=(0, -3), upper=(3, 3), counts=(5, 5), vectors=[1.0, 2.0, 0.0] * 25
+    )
+    found, _ = axes(model, facet_directions(model, "plate.top", grid, surface=plane))
+    assert np.abs(np.cross(found, np.array([1.0, 2.0, 0.0]) / np.sqrt(5.0))).max() < 1e-12
+
+
+def test_fields_that_lie_on_no_surface_or_beside_it() -> None:
+    """A field needs a surface, and a direction at every sample."""
+    rays = make_directions("coordinate-lines")
+    with pytest.raises(InputError, match="surface: missing"):
+        facet_directions(blocks(2), "plate.top", rays)
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1), tangent=(1, 0, 0))
+    small = make_directions(
+        "tabulated-grid", lower=(0, 0), upper=(1, 1), counts=(5, 5), vectors=[1.0, 0.0, 0.0] * 25
+    )
+    with pytest.raises(InputError, match="no direction at"):
+        facet_directions(blocks(2), "plate.top", small, surface=plane)
 
 
 def test_two_directions_are_oblique_axes() -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from anisocontact._fenicsx import MPI
 from anisocontact.anisotropy import make_directions
 from anisocontact.contact.facet_mesh import FacetMesh, SlavePoints, facet_rule
 from anisocontact.errors import InputError
@@ -77,9 +78,8 @@ def test_between_facets(on: str, angle: float, mirrored: bool) -> None:
     reference = np.concatenate([0.4 * square, 4.0 * square])
     reference[:, 2] = 0.0
     nodes = np.array([[0, 1, 2, 3]], dtype=np.int32)
-    points = SlavePoints(
-        FacetMesh("quad4", nodes, np.array([True])), facet_rule("quad4", 1), reference, True, 1.0
-    )
+    facets, rule = FacetMesh("quad4", nodes, np.array([True])), facet_rule("quad4", 1)
+    points = SlavePoints(facets, rule, reference, True, 1.0, MPI.COMM_SELF)
     core = PairLaw(*laws(on)).pairs(mirrored)
     state, n = None, len(points.nodes)
     from anisocontact.interface import STATE

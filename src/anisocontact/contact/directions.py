@@ -13,6 +13,7 @@ from anisocontact.anisotropy import DirectionField, make_directions
 from anisocontact.contact.quadrature import facet_quadrature
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
+from anisocontact.surfaces import PROJECTION_STATUS, Surface
 
 Floats = npt.NDArray[np.float64]
 
@@ -25,6 +26,7 @@ def facet_directions(
     group: str,
     f: Callable[[Floats], npt.ArrayLike] | Any,
     *,
+    surface: Surface | None = None,
     interpolation: str = "smooth",
 ) -> DirectionField:
     """A field sampled on a facet group in the reference configuration.
@@ -36,15 +38,19 @@ def facet_directions(
         model: Mesh with the group.
         group: Facet group "body.group" that has the directions.
         f: Positions (n, 3) to directions (n, 3), or to two of them (n, 2, 3) for axes that are not
-            orthogonal; or a DOLFINx function with three components on the same mesh. Directions
-            are projected on the facets.
+            orthogonal; or a DOLFINx function with three components on the same mesh; or a
+            direction field that lies on `surface`. Directions are projected on the facets.
+        surface: Analytic surface that the facets approximate: a field is taken at the points of it
+            that are closest, so that fields in its coordinates ("coordinate-lines",
+            "tabulated-grid") come to meshed bodies. Angles count about its normal.
         interpolation: "smooth" (second order in the size of the facets) or "nearest".
 
     Returns:
         A field of the kind "tabulated-points", the same on every rank.
 
     Raises:
-        InputError: No such group or none of its facets, or `f` gives anything but directions.
+        InputError: No such group or none of its facets, `f` gives anything but directions, or it
+            is a field without a surface or has no direction at a sample.
 
     Example:
         >>> from anisocontact.mesh import BoxSpec, build_box
@@ -58,6 +64,8 @@ def facet_directions(
         raise InputError(f"facet group {group!r} has no facets", "group")
     quadrature = facet_quadrature(model.space, facets, SAMPLES)
     x = quadrature.reference
+    if isinstance(f, DirectionField):
+        f = _on_surface(f, surface)
     values = _of_function(model, facets, f, x) if hasattr(f, "function_space") else f(x)
     values = np.asarray(values, dtype=np.float64)
     if values.shape not in ((len(x), 3), (len(x), 2, 3)):
@@ -75,6 +83,25 @@ def facet_directions(
     return make_directions(
         "tabulated-points", points=points, vectors=first, interpolation=interpolation, **more
     )
+
+
+def _on_surface(field: DirectionField, surface: Surface | None) -> Callable[[Floats], Floats]:
+    """Both axes of a field, (n, 2, 3), at the points of a surface that are closest."""
+    if surface is None:
+        raise InputError(f"missing; the field {field.name!r} lies on one", "surface")
+
+    def axes(x: Floats) -> Floats:
+        feet = surface.project(x, derivatives=False)
+        found, valid = field.axes(surface, feet.xi)
+        lost = feet.status >= PROJECTION_STATUS.index("ambiguous")
+        wrong = np.flatnonzero(~valid | lost)
+        if wrong.size:
+            raise InputError(
+                f"the field {field.name!r} has no direction at {x[wrong[0]].tolist()}", "f"
+            )
+        return found
+
+    return axes
 
 
 def _of_function(model: Model, facets: npt.NDArray[np.int32], f: Any, x: Floats) -> Floats:
