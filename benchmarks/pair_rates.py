@@ -15,6 +15,7 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
+from mpi4py import MPI
 
 from anisocontact import registry
 from anisocontact.anisotropy import make_directions
@@ -90,6 +91,7 @@ class Sheets:
             self.reference,
             True,
             1.0,
+            MPI.COMM_SELF,
         )
         self.surface = FacetSurface(self.reference, lower, self.topology)
         kind = list(TOPOLOGIES).index(self.topology)

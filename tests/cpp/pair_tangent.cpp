@@ -147,26 +147,23 @@ struct Compared {
 
 double difference(const kernel::PairResult& a, const kernel::PairSlopes& d,
                   const oracle::Result& b) {
-  Compared traction, slopes, shift, couple, by_couple;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    traction.add(a.traction[i], b.traction[i].v);
-    for (std::size_t j = 0; j < oracle::variables; ++j)
-      slopes.add(d.traction[j / 3](i, static_cast<Eigen::Index>(j % 3)), b.traction[i].d[j]);
-    for (std::size_t k = 0; k < 2; ++k) {
-      couple.add(a.couple[k][i], b.couple[k][i].v);
+  Compared traction, shift, couple;
+  std::array<Compared, 3> slopes;
+  for (std::size_t q = 0; q < 3; ++q)
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      if (q == 0) traction.add(a.traction[i], b.traction[i].v);
+      if (q > 0) couple.add(a.couple[q - 1][i], b.couple[q - 1][i].v);
+      const oracle::S& exact = q == 0 ? b.traction[i] : b.couple[q - 1][i];
       for (std::size_t j = 0; j < oracle::variables; ++j)
-        by_couple.add(d.couple[k][j / 3](i, static_cast<Eigen::Index>(j % 3)), b.couple[k][i].d[j]);
+        slopes[q].add(d.matrix(q, j / 3)(i, static_cast<Eigen::Index>(j % 3)), exact.d[j]);
     }
-  }
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < oracle::variables; ++j) {
-      const double mine =
-          j < 12 ? d.xi[j / 3](static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j % 3))
-                 : 0.0;
+      const double mine = j < 12 ? d.near[i].by[j / 3][static_cast<Eigen::Index>(j % 3)] : 0.0;
       shift.add(mine, b.xi[i].d[j]);
     }
-  return std::max({traction.relative(), slopes.relative(), shift.relative(), couple.relative(),
-                   by_couple.relative()});
+  return std::max({traction.relative(), shift.relative(), couple.relative(), slopes[0].relative(),
+                   slopes[1].relative(), slopes[2].relative()});
 }
 
 double difference(const kernel::PointState& a, const kernel::PointState& b) {

@@ -127,7 +127,8 @@ std::size_t meet(const search::FacetSurface& s, const Vec3<double>& x,
   const bool apart = state.facet >= 0 && state.facet != hit.facet;
   if (r.state.status != 0 && r.failure == kernel::Failure::none) {
     kernel::add_residual(r, shapes, residual.data());
-    kernel::add_tangent(r, by, shapes, own.data(), apart ? earlier.data() : nullptr);
+    kernel::add_tangent(r, by, shapes, {own.data(), true},
+                        {apart ? earlier.data() : nullptr, true});
   }
   state = r.state;
   return state.status != 0 ? 1 : 0;

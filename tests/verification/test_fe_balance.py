@@ -96,7 +96,7 @@ def test_forces_balance(fe, tmp_path, way):
         assert np.abs(a[:3] + b[:3]).max() < 1e-8 * scale
 
 
-@pytest.mark.parametrize("way", ["single"])
+@pytest.mark.parametrize("way", ["single", "two-half"])
 def test_moments_balance(fe, tmp_path, way):
     """The moments of both sides about the origin add up to zero.
 

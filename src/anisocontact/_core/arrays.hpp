@@ -4,10 +4,14 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "anisocontact/tensor/dual.hpp"
 
@@ -21,6 +25,34 @@ using Scalars = nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::devic
 using Matrices = nb::ndarray<const double, nb::shape<-1, 2, 2>, nb::c_contig, nb::device::cpu>;
 using Bytes = nb::ndarray<const std::uint8_t, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
 
+/// Memory of arrays that are asked for again and again: it comes back here when the last array on it
+/// has gone. Fresh memory costs more than what is written to it. Only with Python's lock held.
+class Pool {
+ public:
+  struct Block {
+    std::size_t size;
+    std::unique_ptr<double[]> data;
+  };
+
+  /// A block of at least n numbers, not initialised.
+  Block take(std::size_t n) {
+    const auto fits =
+        std::find_if(free_.begin(), free_.end(), [&](const Block& b) { return b.size >= n; });
+    if (fits == free_.end()) return {n, std::unique_ptr<double[]>(new double[n])};
+    Block b = std::move(*fits);
+    free_.erase(fits);
+    return b;
+  }
+  void give(Block b) {
+    constexpr std::size_t most = 4;
+    if (free_.size() == most) free_.erase(free_.begin());
+    free_.push_back(std::move(b));
+  }
+
+ private:
+  std::vector<Block> free_;
+};
+
 /// A new NumPy array and the block behind it.
 template <class T>
 struct Array {
@@ -28,12 +60,34 @@ struct Array {
   nb::ndarray<nb::numpy, T> array;
 
   explicit Array(std::initializer_list<std::size_t> shape) {
-    std::size_t n = 1;
-    for (const auto s : shape) n *= s;
-    auto block = std::make_unique<T[]>(n);
+    auto block = std::make_unique<T[]>(count(shape));
     data = block.get();
     nb::capsule owner(block.release(), [](void* p) noexcept { delete[] static_cast<T*>(p); });
     array = nb::ndarray<nb::numpy, T>(data, shape.size(), shape.begin(), owner);
+  }
+
+  /// Not initialised, in memory of a pool.
+  Array(std::initializer_list<std::size_t> shape, const std::shared_ptr<Pool>& pool)
+    requires std::is_same_v<T, double>
+  {
+    struct Loan {
+      Pool::Block block;
+      std::shared_ptr<Pool> pool;
+    };
+    auto loan = std::make_unique<Loan>(pool->take(count(shape)), pool);
+    data = loan->block.data.get();
+    nb::capsule owner(loan.release(), [](void* p) noexcept {
+      const std::unique_ptr<Loan> back(static_cast<Loan*>(p));
+      back->pool->give(std::move(back->block));
+    });
+    array = nb::ndarray<nb::numpy, T>(data, shape.size(), shape.begin(), owner);
+  }
+
+ private:
+  static std::size_t count(std::initializer_list<std::size_t> shape) {
+    std::size_t n = 1;
+    for (const auto s : shape) n *= s;
+    return n;
   }
 };
 

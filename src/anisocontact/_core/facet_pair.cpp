@@ -94,6 +94,7 @@ NodalShape nodal(std::size_t count, const surface::Shape<double>& s) {
 struct PairHandle {
   kernel::InterfaceLaw law;
   bool mirrored;
+  std::shared_ptr<Pool> pool = std::make_shared<Pool>();  ///< for blocks
 
   bool on(kernel::Side side) const {
     const auto is = [&](const kernel::Directions& d) { return d.field && d.side == side; };
@@ -228,19 +229,19 @@ struct Slots {
   std::size_t first_own_{0}, first_earlier_{0};
 };
 
-/// Blocks of nodes in rows and columns; nodes that are -1 have none.
+/// Blocks of nodes in rows and columns, row by row; nodes that are -1 have none.
 struct Blocks {
   std::size_t count, rows, columns;  ///< rows and columns: nodes
   Array<std::int32_t> row_nodes, column_nodes;
   Array<double> values;
 
-  Blocks(std::size_t n, std::size_t r, std::size_t c)
+  Blocks(std::size_t n, std::size_t r, std::size_t c, const std::shared_ptr<Pool>& pool)
       : count(n),
         rows(r),
         columns(c),
         row_nodes({n, r}),
         column_nodes({n, c}),
-        values({n, r, c, 3, 3}) {
+        values({n, 3 * r, 3 * c}, pool) {
     std::fill_n(row_nodes.data, n * r, -1);
     std::fill_n(column_nodes.data, n * c, -1);
   }
@@ -255,20 +256,11 @@ struct Blocks {
     return column_nodes.data + static_cast<std::size_t>(slot) * columns;
   }
   bool fresh(std::int32_t slot) const { return *row_nodes_of(slot) < 0; }
-  /// Begins a block that is summed up row by row.
-  void begin(std::int32_t slot) const { std::fill_n(at(slot), 9 * rows * columns, 0.0); }
-
-  /// From rows of all columns to one 3 x 3 matrix after the other.
-  void finish(std::int32_t slot) const {
-    constexpr std::size_t most = 3 * 2 * kernel::most_nodes;
-    std::array<double, most * most> by_rows;
-    double* out = at(slot);
-    std::copy_n(out, 9 * rows * columns, by_rows.data());
-    for (std::size_t r = 0; r < rows; ++r)
-      for (std::size_t c = 0; c < columns; ++c)
-        for (std::size_t i = 0; i < 3; ++i)
-          for (std::size_t j = 0; j < 3; ++j)
-            *out++ = by_rows[(3 * r + i) * 3 * columns + 3 * c + j];
+  /// Blocks that no point was added to.
+  void clear_rest() const {
+    for (std::size_t i = 0; i < count; ++i)
+      if (const auto slot = static_cast<std::int32_t>(i); fresh(slot))
+        std::fill_n(at(slot), 9 * rows * columns, 0.0);
   }
 
   nb::tuple result() const {
@@ -294,25 +286,16 @@ struct PairBlocks {
       to = std::copy_n(b.slave.nodes + p * ks, ks, to);
       b.mesh.copy_nodes(b.hits.facet[p], to);
     };
-    if (own.fresh(o)) {
+    const bool first = own.fresh(o), first_earlier = e >= 0 && earlier.fresh(e);
+    if (first) {
       name_rows(own.row_nodes_of(o));
       name_rows(own.column_nodes_of(o));
-      own.begin(o);
     }
-    if (e >= 0 && earlier.fresh(e)) {
+    if (first_earlier) {
       name_rows(earlier.row_nodes_of(e));
       b.mesh.copy_nodes(committed, earlier.column_nodes_of(e));
-      earlier.begin(e);
     }
-    kernel::add_tangent(r, d, s.shapes, own.at(o), earlier.at(e));
-  }
-
-  void finish(std::size_t threads) const {
-    for (const Blocks* blocks : {&own, &earlier})
-      kernel::parallel_for(blocks->count, threads, [&](std::size_t i) {
-        const auto slot = static_cast<std::int32_t>(i);
-        if (!blocks->fresh(slot)) blocks->finish(slot);
-      });
+    kernel::add_tangent(r, d, s.shapes, {own.at(o), first}, {earlier.at(e), first_earlier});
   }
 };
 
@@ -382,7 +365,7 @@ struct Answer {
     double squares = 0.0;
     for (const auto* shape : {&s.shapes.slave, &s.shapes.master})
       for (std::size_t a = 0; a < shape->count; ++a) squares += shape->n[a] * shape->n[a];
-    return area.data[p] * squares * d.traction[0].norm();
+    return area.data[p] * squares * d.matrix(0, kernel::index(kernel::Input::slave)).norm();
   }
 };
 
@@ -442,8 +425,8 @@ nb::dict assemble(const PairHandle& h, const Question& q) {
   const Slots slots(q.batch, q.state, q.near, q.points);
   Answer out(q.points, q.batch);
   const std::size_t ks = q.batch.slave.width, km = q.batch.mesh.width;
-  const PairBlocks blocks{{slots.facets.size(), ks + km, ks + km},
-                          {slots.history.size(), ks + km, km}};
+  const PairBlocks blocks{{slots.facets.size(), ks + km, ks + km, h.pool},
+                          {slots.history.size(), ks + km, km, h.pool}};
   {
     nb::gil_scoped_release free;
     kernel::parallel_for(slots.runs.size() - 1, q.threads, [&](std::size_t run) {
@@ -457,7 +440,8 @@ nb::dict assemble(const PairHandle& h, const Question& q) {
           if (touches(r)) blocks.add(q.batch, slots, p, r, by, s, old.facet);
       }
     });
-    blocks.finish(q.threads);
+    blocks.own.clear_rest();
+    blocks.earlier.clear_rest();
   }
   nb::dict d = common(out);
   d["force"] = out.forces(q.batch, q.points, q.nodes).array;
@@ -489,9 +473,7 @@ nb::dict update(const PairHandle& h, const Question& q) {
     if constexpr (tangent) {
       constexpr std::size_t most = 3 * 2 * kernel::most_nodes;
       std::array<double, most * most> own, earlier;
-      std::fill_n(own.data(), rows * rows, 0.0);
-      std::fill_n(earlier.data(), rows * 3 * km, 0.0);
-      kernel::add_tangent(r, d, s.shapes, own.data(), earlier.data());
+      kernel::add_tangent(r, d, s.shapes, {own.data(), true}, {earlier.data(), true});
       double* to = matrix.data + p * rows * columns;
       for (std::size_t i = 0; i < rows; ++i) {
         to = std::copy_n(own.data() + i * rows, rows, to);

@@ -7,7 +7,8 @@ share omega_gs acts at point s of the overlaps, on the node b of the master face
 
     f_b = - sum_s M_b(xi_s) sum_g omega_gs F_g ,    sum_s omega_gs = 1 ,
 
-so that forces balance, and a uniform traction gives the nodes of the master what they need.
+so that forces balance, and a uniform traction gives the nodes of the master what they need. Moments
+balance by the couple of what is between the points, see `Couples`.
 
 Gaps and slips are those of the points. What F_g works on the difference of the displacements of
 the master, sum_s omega_gs u_m(xi_s) - u_m(xi_g), is neither stored nor dissipated in the law; it is
@@ -24,6 +25,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import csr_array
 
+from anisocontact.contact.couples import Couples
 from anisocontact.contact.facet_mesh import FacetMesh, FacetRule, FacetShapes
 from anisocontact.contact.overlap import Overlaps, largest_radius, overlaps
 from anisocontact.facets import FEATURES, FacetProjections, FacetSets, FacetSurface
@@ -48,6 +50,7 @@ class _Trial:
     sums: Any  # sparse (pairs of facets, s): which pair a point counts for
     owner: npt.NDArray[np.int64]  # slave facet of each pair
     facet: Ints  # master facet of each pair
+    couples: Couples
 
 
 class Transfer:
@@ -106,6 +109,10 @@ class Transfer:
             found = np.bincount(parts.owner, weights=shares[:, g], minlength=count)
             sums[parts.covered, g] = found[parts.covered]
         self._share = shares / sums[parts.owner]
+        # points of the slave less the mean of where their forces act, by the nodes of their facets
+        mean = np.zeros((count, *self._rule.shape.shape))
+        np.add.at(mean, parts.owner, self._share[:, :, None] * self._shape[:, None])
+        self._off = self._rule.shape - mean
         self._facet = parts.facet.copy()
 
     def roll_back(self) -> None:
@@ -143,7 +150,10 @@ class Transfer:
             sums = csr_array(entries, shape=(len(pair), len(points)))
             owner, facet = np.divmod(pair, count)
             forces = force.reshape(-1, q, 3)
-            self._trial = _Trial(points, hit, x, forces, sums, owner, facet.astype(np.int32))
+            facet = facet.astype(np.int32)
+            off = np.einsum("mgk,mki->mgi", self._off, now[self._slave.nodes])
+            couples = self._couples(points, x, hit, off[parts.owner[points]], forces)
+            self._trial = _Trial(points, hit, x, forces, sums, owner, facet, couples)
         return np.repeat(touching, q)
 
     def _project(
@@ -165,7 +175,11 @@ class Transfer:
         if (t := self._trial) is None:
             return
         points = t.force if force is None else force.reshape(t.force.shape)
+        couples = t.couples
+        if force is not None:
+            couples = self._couples(t.points, t.position, t.hit, t.couples.off, points)
         forces = -np.einsum("pgb,pgi->pbi", self._shares(t), points[t.owner], optimize=True)
+        forces += _summed(t, np.einsum("sbj,sji->sbi", self._first(t), couples.on_tangents()))
         np.add.at(out, self._master.nodes[t.facet], forces)
 
     def couplings(self, nodes: Ints, derivative: Floats, active: Mask) -> list[Couplings]:
@@ -184,8 +198,12 @@ class Transfer:
         q = len(self._rule.weights)
         pair, g = np.nonzero(active.reshape(-1, q)[t.owner])
         point = t.owner[pair] * q + g
-        shares = self._shares(t)[pair, g]
-        blocks = shares[:, :, None, None] * derivative[point][:, None]
+        shares = self._shares(t)[pair, g][:, :, None, None] * np.eye(3)
+        for other in range(q):
+            by_force = t.couples.by_force(self._share[t.points, other], other)
+            levers = _summed(t, np.einsum("sbj,sjik->sbik", self._first(t), by_force))
+            shares[g == other] -= levers[pair[g == other]]
+        blocks = shares @ derivative[point][:, None]
         blocks = blocks.reshape(len(pair), 3 * shares.shape[1], derivative.shape[2])
         return [(self._master.nodes[t.facet[pair]], nodes[point], blocks), self._moving(t)]
 
@@ -198,24 +216,61 @@ class Transfer:
             [t.sums @ (share[:, g, None] * value) for g in range(share.shape[1])], axis=1
         )
 
-    def _moving(self, t: _Trial) -> Couplings:
-        """Change of the places at which the forces act."""
+    def _couples(
+        self,
+        points: npt.NDArray[np.int64],
+        x: Floats,
+        hit: FacetProjections,
+        off: Floats,
+        force: Floats,
+    ) -> Couples:
+        """Couples at points of the overlaps, `off` from where forces of slave points act."""
         parts = self._parts
         assert parts is not None
-        km = self._master.nodes.shape[1]
-        value, first, _ = self._surface.shapes(t.hit.facet, t.hit.xi)
-        value, first = value[:, :km], first[:, :km]
+        jet = self._surface.jet(hit.facet, hit.xi)
+        shared = self._share[points][:, :, None] * force[parts.owner[points]]
+        return Couples(
+            jet,
+            x - jet.position,
+            hit.feature == FEATURES.index("interior"),
+            shared.sum(axis=1),
+            np.einsum("sgi,sgj->sij", off, shared),
+            off,
+        )
+
+    def _first(self, t: _Trial) -> Floats:
+        """Derivatives of the shape functions of the master, (s, k, 2)."""
+        _, first, _ = self._surface.shapes(t.hit.facet, t.hit.xi)
+        return np.asarray(first[:, : self._master.nodes.shape[1]])
+
+    def _moving(self, t: _Trial) -> Couplings:
+        """Change of the places at which the forces act, and of their couples."""
+        parts = self._parts
+        assert parts is not None
+        km, k = self._master.nodes.shape[1], self._slave.nodes.shape[1]
+        value, first, second = (a[:, :km] for a in self._surface.shapes(t.hit.facet, t.hit.xi))
         shift = self._shift(t, value, first)
-        change = first @ shift
         owner = parts.owner[t.points]
         pull = np.einsum("sg,sgi->si", self._share[t.points], t.force[owner], optimize=True)
-        s, columns = len(change), shift.shape[2]
-        flat = change.reshape(s, -1)
-        sums = np.stack([(t.sums * pull[:, i]) @ flat for i in range(3)], axis=1)
-        turned = sums.reshape(len(t.owner), 3, km, columns).swapaxes(1, 2)
-        blocks = turned.reshape(len(t.owner), 3 * km, columns)
+        along = pull[:, None, None] * first.swapaxes(1, 2)[..., None]  # (s, 2, km, 3)
+        bent = second[:, :, [[0, 1], [1, 2]]]
+        along -= np.einsum("sbjl,sji->slbi", bent, t.couples.on_tangents(), optimize=True)
+        by_slave, by_master, by_xi = t.couples.by_place(
+            self._shape[t.points],
+            value,
+            first,
+            self._share[t.points],
+            self._off[owner],
+            t.force[owner],
+        )
+        along -= np.einsum("sbj,sjli->slbi", first, by_xi, optimize=True)
+        blocks = np.einsum("slbi,slc->sbic", along, shift, optimize=True)
+        by_nodes = np.concatenate([by_slave, by_master], axis=2)  # (s, j, nodes, 3, 3)
+        levers = np.einsum("sbj,sjnik->sbink", first, by_nodes, optimize=True)
+        blocks -= levers.reshape(blocks.shape)
+        summed = _summed(t, blocks).reshape(len(t.owner), 3 * km, 3 * (k + km))
         rows = self._master.nodes[t.facet]
-        return rows, np.concatenate([self._slave.nodes[t.owner], rows], axis=1), blocks
+        return rows, np.concatenate([self._slave.nodes[t.owner], rows], axis=1), summed
 
     def _shift(self, t: _Trial, value: Floats, first: Floats) -> Floats:
         """Derivative of the coordinates of the projections, (s, 2, 3 columns)."""
@@ -229,6 +284,12 @@ class Transfer:
         right = along[:, None, :, None] * jet.d1[:, :, None, :]
         right[:, :, slave.shape[1] :] += first.swapaxes(1, 2)[..., None] * apart[:, None, None]
         return np.asarray(inverse @ right.reshape(len(apart), 2, -1))
+
+
+def _summed(t: _Trial, values: Floats) -> Floats:
+    """Values at the points of a trial summed over the pairs of facets."""
+    flat = t.sums @ values.reshape(len(values), -1)
+    return np.asarray(flat.reshape(len(t.owner), *values.shape[1:]))
 
 
 def _inverse(hit: FacetProjections, metric: Floats) -> Floats:

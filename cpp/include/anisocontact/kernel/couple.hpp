@@ -32,85 +32,80 @@ class Couple {
     return above_ * upper_[j] * normal_ - beside_[j] * friction_;
   }
 
-  /// d m_j by every input, from the forms of t_a . dT.
-  void differentiate(const Flat& force, const std::array<Form, 2>& friction,
-                     std::array<std::array<Eigen::Matrix3d, inputs>, 2>& out) const noexcept {
-    std::array<Form, 2> bend;  // n_f . d rho_k
-    for (std::size_t k = 0; k < 2; ++k) {
-      add_bend(1.0, k, bend[k]);
-      foot_.expand(bend[k]);
-    }
-    for (std::size_t j = 0; j < 2; ++j) {
-      const Form along = along_normal(j, force, friction);
-      const double size = above_ * upper_[j];
-      for (std::size_t i = 0; i < inputs; ++i) {
-        out[j][i] = normal_ * along.by[i].transpose();
-        if (i > tangent_input(1)) continue;
-        for (std::size_t k = 0; k < 2; ++k)
-          out[j][i] -= size * dual_[k] * bend[k].by[i].transpose();
+  /// Writes d m_j with the components of T; d xi and nu_a are there already.
+  void differentiate(const Flat& force, PairSlopes& d) const noexcept {
+    if (!foot_.interior())
+      for (std::size_t k = 0; k < 2; ++k) {
+        d.form(NearForm::bend, k).clear();
+        add_bend(1.0, k, d, d.form(NearForm::bend, k));
       }
-      if (!foot_.interior()) add_beside(j, force, friction, out[j]);
+    for (std::size_t j = 0; j < 2; ++j) {
+      lift(j, d);
+      if (foot_.interior())
+        inside(j, d);
+      else
+        beside(j, force, d);
     }
   }
 
  private:
   /// Adds k n_f . d rho_m.
-  void add_bend(double k, std::size_t m, Form& f) const {
+  void add_bend(double k, std::size_t m, PairSlopes& d, Near& f) const {
     f.by[tangent_input(m)] += k * normal_;
-    for (std::size_t l = 0; l < 2; ++l) f.xi[l] += k * normal_.dot(foot_.second(m, l));
+    for (std::size_t l = 0; l < 2; ++l)
+      f.add(k * normal_.dot(foot_.second(m, l)), d.form(NearForm::xi, l));
   }
   /// Adds k rho^j . d rho_m.
-  void add_stretch(double k, std::size_t j, std::size_t m, Form& f) const {
+  void add_stretch(double k, std::size_t j, std::size_t m, PairSlopes& d, Near& f) const {
     f.by[tangent_input(m)] += k * dual_[j];
-    for (std::size_t l = 0; l < 2; ++l) f.xi[l] += k * dual_[j].dot(foot_.second(m, l));
+    for (std::size_t l = 0; l < 2; ++l)
+      f.add(k * dual_[j].dot(foot_.second(m, l)), d.form(NearForm::xi, l));
   }
 
-  /// d (c T . rho^j) with dc = n_f . d(x - rho) - c^k n_f . d rho_k and
-  /// T . d rho^j = - (rho^j . d rho_k) T^k + a^jk (T . n_f) (n_f . d rho_k).
-  Form along_normal(std::size_t j, const Flat& force, const std::array<Form, 2>& friction) const {
-    Form f;
+  /// What d (c T . rho^j) has besides c rho^j . dT, with dc = n_f . d(x - rho) - c^k n_f . d rho_k
+  /// and T . d rho^j = - (rho^j . d rho_k) T^k + a^jk (T . n_f) (n_f . d rho_k).
+  void lift(std::size_t j, PairSlopes& d) const {
+    Near& f = d.form(NearForm::lift, j);
+    f.clear();
+    f.by[index(Input::slave)] = upper_[j] * normal_;
+    f.by[index(Input::position)] = -f.by[index(Input::slave)];
+    for (std::size_t k = 0; k < 2; ++k) add_stretch(-above_ * upper_[k], j, k, d, f);
+    d.direction(1 + j, NearForm::lift, j) = normal_;
+    if (foot_.interior()) return;
+    const double out = friction_.dot(normal_);
+    for (std::size_t k = 0; k < 2; ++k)
+      f.add(above_ * foot_.facet().a_contra(j, k) * out - upper_[j] * beside_[k],
+            d.form(NearForm::bend, k));
+  }
+
+  void inside(std::size_t j, PairSlopes& d) const {
     for (std::size_t a = 0; a < 2; ++a) {
-      const double share = above_ * foot_.plane.t[a].dot(dual_[j]);
-      for (std::size_t i = 0; i < inputs; ++i) f.by[i] += share * friction[a].by[i];
-      for (std::size_t l = 0; l < 2; ++l) {
-        f.xi[l] += share * friction[a].xi[l];
-        f.turn[l] += share * friction[a].turn[l];
-      }
+      d.along_friction[1 + j][a] = above_ * foot_.plane.t[a].dot(dual_[j]) * normal_;
+      d.direction(1 + j, NearForm::turn, a) = above_ * upper_[j] * foot_.plane.t[a];
     }
-    f[Input::slave] += upper_[j] * normal_;
-    f[Input::position] -= upper_[j] * normal_;
-    for (std::size_t k = 0; k < 2; ++k) add_stretch(-above_ * upper_[k], j, k, f);
-    if (!foot_.interior()) {
-      const double lean = above_ * foot_.plane.n.dot(dual_[j]), out = friction_.dot(normal_);
-      for (std::size_t k = 0; k < 2; ++k) {
-        f.turn[k] -= lean * force[k];
-        add_bend(above_ * foot_.facet().a_contra(j, k) * out - upper_[j] * beside_[k], k, f);
-      }
-    }
-    foot_.expand(f);
-    return f;
   }
 
-  /// Adds - d (c^j T), beside a facet.
-  void add_beside(std::size_t j, const Flat& force, const std::array<Form, 2>& friction,
-                  std::array<Eigen::Matrix3d, inputs>& out) const {
-    Form shift, fall;  // d c^j and - n . dT
-    shift[Input::slave] += dual_[j];
-    shift[Input::position] -= dual_[j];
-    shift.xi[j] -= 1.0;
+  /// On edges and vertices: dT = t_a (t_a . dT) - n T_a nu_a has a part along n_f, the facet turns
+  /// unlike n, and there is d (c^j T).
+  void beside(std::size_t j, const Flat& force, PairSlopes& d) const {
+    const Vec3<double>& n = foot_.plane.n;
+    for (std::size_t a = 0; a < 2; ++a) {
+      const Vec3<double>& t = foot_.plane.t[a];
+      d.along_friction[1 + j][a] = above_ * t.dot(dual_[j]) * normal_ - beside_[j] * t;
+      d.direction(1 + j, NearForm::turn, a) =
+          force[a] * (beside_[j] * n - above_ * n.dot(dual_[j]) * normal_);
+      d.direction(1 + j, NearForm::bend, a) = -above_ * upper_[j] * dual_[a];
+    }
+    Near& f = d.form(NearForm::beside, j);  // d c^j
+    f.clear();
+    f.by[index(Input::slave)] = dual_[j];
+    f.by[index(Input::position)] = -dual_[j];
+    f.add(-1.0, d.form(NearForm::xi, j));
     for (std::size_t k = 0; k < 2; ++k) {
-      add_stretch(-beside_[k], j, k, shift);
-      add_bend(above_ * foot_.facet().a_contra(j, k), k, shift);
+      add_stretch(-beside_[k], j, k, d, f);
+      f.add(above_ * foot_.facet().a_contra(j, k), d.form(NearForm::bend, k));
     }
-    fall.turn = force;
-    std::array<Form, 2> level = friction;
-    for (Form* f : {&shift, &fall, &level[0], &level[1]}) foot_.expand(*f);
-    for (std::size_t i = 0; i < inputs; ++i) {
-      out[i] -= friction_ * shift.by[i].transpose();
-      for (std::size_t a = 0; a < 2; ++a)
-        out[i] -= beside_[j] * foot_.plane.t[a] * level[a].by[i].transpose();
-      out[i] += beside_[j] * foot_.plane.n * fall.by[i].transpose();
-    }
+    d.direction(1 + j, NearForm::beside, j) = -friction_;
   }
 
   const Footing& foot_;

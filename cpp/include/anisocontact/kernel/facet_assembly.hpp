@@ -5,6 +5,8 @@
 // and its derivative with respect to the nodes of the slave facet, of the master facet and of the
 // facet on which the history was committed. The shape functions M_b of the master move with xi.
 
+#include <algorithm>
+
 #include "anisocontact/kernel/facet_pair.hpp"
 
 namespace anisocontact::kernel {
@@ -38,20 +40,15 @@ struct PairShapes {
 
 namespace detail {
 
+using Row = std::array<double, 3 * 2 * most_nodes>;
+using Rows = std::array<Row, 3>;
+
 /// Columns of some nodes, one after the other: rows of the changes, times area, of what the values of
 /// the shape functions, their derivatives and their second derivatives are multiplied with.
 struct ColumnRows {
-  using Rows = std::array<std::array<double, 3 * 2 * most_nodes>, 3>;
-  Rows force;
-  std::array<Rows, 2> lever;
+  std::array<Rows, 3> acting;  ///< force, and levers on both derivatives
   std::array<Rows, 3> bend;
 };
-
-inline void put(ColumnRows::Rows& to, std::size_t c, const Eigen::Matrix3d& m) {
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j)
-      to[i][3 * c + j] = m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-}
 
 /// Second derivatives of a master's shape functions that are not zero: the first one of 11, 12, 22,
 /// and the one after the last.
@@ -61,110 +58,179 @@ constexpr std::array<std::size_t, 2> bends(std::size_t masters) {
   return {0, 3};
 }
 
-/// A node: what its displacement changes of three inputs.
-struct Shares {
-  std::array<double, 3> s;
-  std::array<std::size_t, 3> input;
-
-  Shares(const NodalShape& n, std::size_t a, const std::array<std::size_t, 3>& i)
-      : s{n.n[a], n.dn[a][0], n.dn[a][1]}, input(i) {}
-
-  Eigen::Matrix3d of(const std::array<Eigen::Matrix3d, inputs>& d) const {
-    return s[0] * d[input[0]] + s[1] * d[input[1]] + s[2] * d[input[2]];
+/// out = sum of factors times rows.
+template <std::size_t K, class Length>
+void combine(Length length, const std::array<double, K>& c,
+             const std::array<const double*, K>& rows, double* out) noexcept {
+  for (std::size_t j = 0; j < length; ++j) {
+    double sum = c[0] * rows[0][j];
+    for (std::size_t k = 1; k < K; ++k) sum += c[k] * rows[k][j];
+    out[j] = sum;
   }
-};
+}
 
-inline constexpr std::array<std::size_t, 3> of_slave{index(Input::slave), slave_input(0),
-                                                     slave_input(1)},
-    of_master{index(Input::position), tangent_input(0), tangent_input(1)},
-    of_before{index(Input::before_position), before_input(0), before_input(1)};
-
-/// Writes the columns of one point.
+/// Writes the columns of one point: its linear forms in the displacements of nodes, and from them what
+/// acts.
 class Columns {
  public:
-  Columns(const PairResult& r, const PairSlopes& d, const PairShapes& s, ColumnRows& out) noexcept
-      : r_(r), d_(d), s_(s), out_(out), area_(s.area.value()) {
-    if (!s.area.current) return;
-    const Vec3<double> m = s.area.cross().normalized();
-    change_ = {s.area.weight * s.area.tangents[1].cross(m),
-               s.area.weight * m.cross(s.area.tangents[0])};
-  }
+  Columns(const PairResult& r, const PairSlopes& d, const PairShapes& s) noexcept
+      : r_(r), d_(d), s_(s), area_(s.area.value()) {}
 
-  template <class Masters>
-  void slave(std::size_t a, std::size_t column, Masters masters) {
-    const Shares own(s_.slave, a, of_slave);
-    const Vec3<double> grows = own.s[1] * change_[0] + own.s[2] * change_[1];
-    put(out_.force, column, area_ * own.of(d_.traction) + r_.traction * grows.transpose());
-    const Eigen::Matrix<double, 2, 3> shift = (area_ * own.s[0]) * d_.xi[0];
-    for (std::size_t j = 0; j < 2; ++j)
-      put(out_.lever[j], column,
-          area_ * own.of(d_.couple[j]) + r_.couple[j] * grows.transpose() -
-              r_.traction * shift.row(static_cast<Eigen::Index>(j)));
-    bend(column, shift, masters);
-  }
-
-  /// `merged` where the history was committed on the same facet.
-  template <class Masters>
-  void master(std::size_t b, std::size_t column, bool merged, Masters masters) {
-    const Shares own(s_.master, b, of_master);
-    Eigen::Matrix3d force = own.of(d_.traction);
-    std::array<Eigen::Matrix3d, 2> lever{own.of(d_.couple[0]), own.of(d_.couple[1])};
-    if (merged) {
-      const Shares old(s_.before, b, of_before);
-      force += old.of(d_.traction);
-      for (std::size_t j = 0; j < 2; ++j) lever[j] += old.of(d_.couple[j]);
+  /// Columns of the nodes of the slave and of the master; `merged` where the history was committed
+  /// on the same facet.
+  template <class Slaves, class Masters, class Length>
+  void own(Slaves slaves, Masters masters, Length length, bool merged, ColumnRows& out) noexcept {
+    for (std::size_t f = 0; f < 2; ++f) {
+      const auto& by = d_.friction[f].by;
+      double* to = friction_[f].data();
+      to = spread(slaves, s_.slave, by[index(Input::slave)], by[slave_input(0)], by[slave_input(1)],
+                  to);
+      spread(masters, s_.master, by[index(Input::position)], by[tangent_input(0)],
+             by[tangent_input(1)], to);
+      if (merged) add_before(masters, by, to);
     }
-    put(out_.force, column, area_ * force);
-    const Eigen::Matrix<double, 2, 3> shift =
-        area_ * (own.s[0] * d_.xi[1] + own.s[1] * d_.xi[2] + own.s[2] * d_.xi[3]);
-    for (std::size_t j = 0; j < 2; ++j)
-      put(out_.lever[j], column,
-          area_ * lever[j] - r_.traction * shift.row(static_cast<Eigen::Index>(j)));
-    bend(column, shift, masters);
+    const std::size_t forms = d_.interior ? PairSlopes::first_beside : PairSlopes::near_forms;
+    for (std::size_t f = 0; f < forms; ++f) {
+      const auto& by = d_.near[f].by;
+      double* to = near_[f].data();
+      for (std::size_t a = 0; a < slaves; ++a)
+        for (Eigen::Index j = 0; j < 3; ++j) *to++ = s_.slave.n[a] * by[0][j];
+      spread(masters, s_.master, by[1], by[2], by[3], to);
+    }
+    put_growth(slaves, length);
+    force(length, out.acting[0]);
+    for (std::size_t j = 0; j < 2; ++j) {
+      if (d_.interior)
+        lever<3>(length, j, out.acting[1 + j]);
+      else
+        lever<6>(length, j, out.acting[1 + j]);
+    }
+    for (std::size_t k = bends(masters)[0]; k < bends(masters)[1]; ++k)
+      bend(length, k, out.bend[k]);
   }
 
-  void before(std::size_t c, std::size_t column) {
-    const Shares old(s_.before, c, of_before);
-    put(out_.force, column, area_ * old.of(d_.traction));
-    for (std::size_t j = 0; j < 2; ++j) put(out_.lever[j], column, area_ * old.of(d_.couple[j]));
+  /// Columns of the nodes of the facet on which the history was committed.
+  template <class Masters, class Length>
+  void before(Masters masters, Length length, ColumnRows& out) noexcept {
+    for (std::size_t f = 0; f < 2; ++f) {
+      std::fill_n(friction_[f].data(), 3 * masters, 0.0);
+      add_before(masters, d_.friction[f].by, friction_[f].data());
+    }
+    for (std::size_t q = 0; q < PairSlopes::acting; ++q)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto& to = d_.along_friction[q];
+        combine<2>(length, {area_ * part(to[0], i), area_ * part(to[1], i)},
+                   {friction_[0].data(), friction_[1].data()}, out.acting[q][i].data());
+      }
   }
 
  private:
-  /// m_j d xi^k M_,jk, the mixed derivative once.
-  template <class Masters>
-  void bend(std::size_t column, const Eigen::Matrix<double, 2, 3>& shift, Masters masters) {
-    for (std::size_t k = bends(masters)[0]; k < bends(masters)[1]; ++k) {
-      const std::size_t i = k / 2, j = k - i;  // 11, 12, 22
-      Eigen::Matrix3d m = r_.couple[i] * shift.row(static_cast<Eigen::Index>(j));
-      if (i != j) m += r_.couple[j] * shift.row(static_cast<Eigen::Index>(i));
-      put(out_.bend[k], column, m);
+  static double part(const Vec3<double>& v, std::size_t i) {
+    return v[static_cast<Eigen::Index>(i)];
+  }
+
+  /// A form in value and derivatives of a displacement, by the nodes; returns the end.
+  template <class Count>
+  static double* spread(Count count, const NodalShape& s, const Vec3<double>& v,
+                        const Vec3<double>& v1, const Vec3<double>& v2, double* to) {
+    for (std::size_t a = 0; a < count; ++a)
+      for (Eigen::Index j = 0; j < 3; ++j)
+        *to++ = s.n[a] * v[j] + s.dn[a][0] * v1[j] + s.dn[a][1] * v2[j];
+    return to;
+  }
+  template <class Count>
+  void add_before(Count count, const std::array<Vec3<double>, inputs>& by, double* to) const {
+    const auto& s = s_.before;
+    const auto &v = by[index(Input::before_position)], &v1 = by[before_input(0)],
+               &v2 = by[before_input(1)];
+    for (std::size_t a = 0; a < count; ++a)
+      for (Eigen::Index j = 0; j < 3; ++j)
+        *to++ += s.n[a] * v[j] + s.dn[a][0] * v1[j] + s.dn[a][1] * v2[j];
+  }
+
+  /// Change of the area with the nodes of the slave.
+  template <class Slaves, class Length>
+  void put_growth(Slaves slaves, Length length) {
+    std::fill_n(growth_.data(), length, 0.0);
+    if (!s_.area.current) return;
+    const Vec3<double> m = s_.area.cross().normalized(), zero = Vec3<double>::Zero();
+    const Vec3<double> c1 = s_.area.weight * s_.area.tangents[1].cross(m),
+                       c2 = s_.area.weight * m.cross(s_.area.tangents[0]);
+    spread(slaves, s_.slave, zero, c1, c2, growth_.data());
+  }
+
+  template <class Length>
+  void force(Length length, Rows& out) {
+    const auto& f = d_.along_friction[0];
+    const auto& n = d_.along[0];
+    for (std::size_t i = 0; i < 3; ++i)
+      combine<6>(length,
+                 {area_ * part(f[0], i), area_ * part(f[1], i), area_ * part(n[2], i),
+                  area_ * part(n[3], i), area_ * part(n[4], i), part(r_.traction, i)},
+                 {friction_[0].data(), friction_[1].data(), near_[2].data(), near_[3].data(),
+                  near_[4].data(), growth_.data()},
+                 out[i].data());
+  }
+
+  /// d (A m_j) - A t d xi^j, with the first `Terms` of its forms.
+  template <std::size_t Terms, class Length>
+  void lever(Length length, std::size_t j, Rows& out) {
+    constexpr std::size_t K = Terms + 4;
+    const auto& to = d_.along_friction[1 + j];
+    const auto terms = PairSlopes::terms(1 + j);
+    std::array<const double*, K> rows{friction_[0].data(), friction_[1].data(), growth_.data(),
+                                      near_[j].data()};
+    for (std::size_t t = 0; t < Terms; ++t) rows[4 + t] = near_[terms[t]].data();
+    for (std::size_t i = 0; i < 3; ++i) {
+      std::array<double, K> c{area_ * part(to[0], i), area_ * part(to[1], i), part(r_.couple[j], i),
+                              -area_ * part(r_.traction, i)};
+      for (std::size_t t = 0; t < Terms; ++t) c[4 + t] = area_ * part(d_.along[1 + j][terms[t]], i);
+      combine<K>(length, c, rows, out[i].data());
     }
+  }
+
+  /// m_j d xi^k M_,jk, the mixed derivative once.
+  template <class Length>
+  void bend(Length length, std::size_t k, Rows& out) {
+    const std::size_t a = k / 2, b = k - a;  // 11, 12, 22
+    for (std::size_t i = 0; i < 3; ++i)
+      combine<2>(length,
+                 {area_ * part(r_.couple[a], i), a == b ? 0.0 : area_ * part(r_.couple[b], i)},
+                 {near_[b].data(), near_[a].data()}, out[i].data());
   }
 
   const PairResult& r_;
   const PairSlopes& d_;
   const PairShapes& s_;
-  ColumnRows& out_;
   double area_;
-  std::array<Vec3<double>, 2> change_{Vec3<double>::Zero(), Vec3<double>::Zero()};
+  std::array<Row, 2> friction_;
+  std::array<Row, PairSlopes::near_forms> near_;
+  Row growth_;
 };
 
-/// Adds rows times columns; `length` is the number of entries in a row. Without `bent` nothing in
-/// these columns moves the projection.
+/// Adds rows times columns, or writes them where the block is `fresh`; `length` is the number of
+/// entries in a row. Without `bent` nothing in these columns moves the projection.
 template <class Slaves, class Masters, class Length>
 void add_rows(Slaves slaves, Masters masters, Length length, const PairShapes& s,
-              const ColumnRows& columns, bool bent, double* out) noexcept {
+              const ColumnRows& columns, bool bent, bool fresh, double* out) noexcept {
+  if (fresh) std::fill_n(out, 3 * (slaves + masters) * length, 0.0);
   for (std::size_t a = 0; a < slaves; ++a)
-    for (std::size_t i = 0; i < 3; ++i, out += length)
-      for (std::size_t j = 0; j < length; ++j) out[j] -= s.slave.n[a] * columns.force[i][j];
-  for (std::size_t b = 0; b < masters; ++b) {
-    const auto& dn = s.master.dn[b];
     for (std::size_t i = 0; i < 3; ++i, out += length) {
+      const double* const force = columns.acting[0][i].data();
+      for (std::size_t j = 0; j < length; ++j) out[j] -= s.slave.n[a] * force[j];
+    }
+  for (std::size_t b = 0; b < masters; ++b) {
+    const double n = s.master.n[b], n1 = s.master.dn[b][0], n2 = s.master.dn[b][1];
+    for (std::size_t i = 0; i < 3; ++i, out += length) {
+      const double *const force = columns.acting[0][i].data(),
+                          *const first = columns.acting[1][i].data(),
+                          *const second = columns.acting[2][i].data();
       for (std::size_t j = 0; j < length; ++j)
-        out[j] += s.master.n[b] * columns.force[i][j] - dn[0] * columns.lever[0][i][j] -
-                  dn[1] * columns.lever[1][i][j];
-      for (std::size_t k = bends(masters)[0]; bent && k < bends(masters)[1]; ++k)
-        for (std::size_t j = 0; j < length; ++j) out[j] -= s.bend[b][k] * columns.bend[k][i][j];
+        out[j] += n * force[j] - n1 * first[j] - n2 * second[j];
+      for (std::size_t k = bends(masters)[0]; bent && k < bends(masters)[1]; ++k) {
+        const double* const bend = columns.bend[k][i].data();
+        for (std::size_t j = 0; j < length; ++j) out[j] -= s.bend[b][k] * bend[j];
+      }
     }
   }
 }
@@ -213,22 +279,27 @@ inline void add_residual(const PairResult& r, const PairShapes& s, double* out) 
         s.master.dn[b][1] * r.couple[1]);
 }
 
+/// A block that a point is added to; a fresh one holds nothing yet.
+struct Block {
+  double* values{nullptr};
+  bool fresh{false};
+};
+
 /// Adds the tangent of a point. Rows of both blocks: nodes of the slave, then of the master.
 /// Columns of `own`: the same; of `earlier`: the nodes of the facet on which the history was
 /// committed. Without `earlier` that is the master's, or there is none.
-inline void add_tangent(const PairResult& r, const PairSlopes& d, const PairShapes& s, double* own,
-                        double* earlier) noexcept {
+inline void add_tangent(const PairResult& r, const PairSlopes& d, const PairShapes& s, Block own,
+                        Block earlier) noexcept {
   detail::with_counts(s.slave.count, s.master.count, [&](auto slaves, auto masters) {
     detail::ColumnRows rows;
-    detail::Columns columns(r, d, s, rows);
-    const bool merged = earlier == nullptr && s.before.count > 0;
-    for (std::size_t a = 0; a < slaves; ++a) columns.slave(a, a, masters);
-    for (std::size_t b = 0; b < masters; ++b) columns.master(b, slaves + b, merged, masters);
-    detail::add_rows(slaves, masters, detail::entries(detail::total(slaves, masters)), s, rows,
-                     true, own);
-    if (earlier == nullptr) return;
-    for (std::size_t c = 0; c < masters; ++c) columns.before(c, c);
-    detail::add_rows(slaves, masters, detail::entries(masters), s, rows, false, earlier);
+    detail::Columns columns(r, d, s);
+    const auto length = detail::entries(detail::total(slaves, masters));
+    columns.own(slaves, masters, length, earlier.values == nullptr && s.before.count > 0, rows);
+    detail::add_rows(slaves, masters, length, s, rows, true, own.fresh, own.values);
+    if (earlier.values == nullptr) return;
+    const auto part = detail::entries(masters);
+    columns.before(masters, part, rows);
+    detail::add_rows(slaves, masters, part, s, rows, false, earlier.fresh, earlier.values);
   });
 }
 

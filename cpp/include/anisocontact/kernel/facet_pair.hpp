@@ -21,13 +21,6 @@ struct PairResult {
   Failure failure{Failure::none};
 };
 
-/// Derivatives at a point that touches.
-struct PairSlopes {
-  std::array<Eigen::Matrix3d, inputs> traction;
-  std::array<std::array<Eigen::Matrix3d, inputs>, 2> couple;
-  std::array<Eigen::Matrix<double, 2, 3>, 4> xi;  ///< by the first four inputs
-};
-
 namespace detail {
 
 /// Axes of fields at a point, with the reference planes of both bodies where they are needed.
@@ -104,15 +97,14 @@ PairResult update_pair(const InterfaceLaw& law, const PointState& state, const P
   for (std::size_t j = 0; j < 2; ++j) out.couple[j] = couple.on_tangent(j);
   if constexpr (tangent) {
     foot.follow(p);
-    const auto level = friction_forms(r, axes, plane, state, committed);
-    couple.differentiate(r.traction, level, d->couple);
-    auto forms = traction_forms(level, r, in, plane);
-    for (Form& f : forms) foot.expand(f);
-    for (std::size_t i = 0; i < inputs; ++i)
-      d->traction[i] = plane.t[0] * forms[0].by[i].transpose() +
-                       plane.t[1] * forms[1].by[i].transpose() +
-                       plane.n * forms[2].by[i].transpose();
-    foot.shift(d->xi);
+    foot.follow(*d);
+    d->friction = friction_forms(r, axes, plane, state, committed);
+    for (Form& f : d->friction) foot.expand(f, *d);
+    d->along_friction[0] = plane.t;
+    d->direction(0, NearForm::gap) = pressure.d[0] * plane.n;
+    for (std::size_t a = 0; a < 2; ++a)
+      d->direction(0, NearForm::turn, a) = pressure.v * plane.t[a] - r.traction[a] * plane.n;
+    couple.differentiate(r.traction, *d);
   }
   return out;
 }

@@ -1,7 +1,7 @@
 #pragma once
 // The facet under a slave point: contact plane, and how the projection follows what moves.
 
-#include "anisocontact/kernel/forms.hpp"
+#include "anisocontact/kernel/pair_slopes.hpp"
 
 namespace anisocontact::kernel {
 
@@ -75,45 +75,46 @@ class Footing {
     }
   }
 
-  /// Replaces what follows by what it follows from.
-  void expand(Form& f) const noexcept {
-    expand_turn(f);
-    const Flat k{w_(0, 0) * f.xi[0] + w_(1, 0) * f.xi[1], w_(0, 1) * f.xi[0] + w_(1, 1) * f.xi[1]};
-    const Vec3<double> q = k[0] * plane.r[0] + k[1] * plane.r[1];
-    f[Input::slave] += q;
-    f[Input::position] -= q;
-    for (std::size_t j = 0; j < 2; ++j) f.by[tangent_input(j)] += k[j] * plane.apart;
+  /// Writes d xi, dg and nu_a.
+  void follow(PairSlopes& d) const noexcept {
+    d.interior = interior_;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Vec3<double> q = w_(i, 0) * plane.r[0] + w_(i, 1) * plane.r[1];
+      d.form(NearForm::xi, i).by = {q, -q, w_(i, 0) * plane.apart, w_(i, 1) * plane.apart};
+    }
+    const Vec3<double> zero = Vec3<double>::Zero();
+    d.form(NearForm::gap).by = {plane.n, -plane.n, zero, zero};
+    for (std::size_t a = 0; a < 2; ++a) turn(plane.t[a], a, d);
   }
 
-  /// d xi by the first four inputs.
-  void shift(std::array<Eigen::Matrix<double, 2, 3>, 4>& d) const noexcept {
-    for (std::size_t i = 0; i < 2; ++i) {
-      const auto row = static_cast<Eigen::Index>(i);
-      const Vec3<double> q = w_(i, 0) * plane.r[0] + w_(i, 1) * plane.r[1];
-      d[0].row(row) = q;
-      d[1].row(row) = -q;
-      for (std::size_t j = 0; j < 2; ++j) d[2 + j].row(row) = w_(i, j) * plane.apart;
-    }
+  /// Replaces what follows by what it follows from.
+  void expand(Form& f, const PairSlopes& d) const noexcept {
+    for (std::size_t k = 0; k < 2; ++k)
+      for (std::size_t i = 0; i < Near::inputs; ++i)
+        f.by[i] += f.xi[k] * d.near[k].by[i] + f.turn[k] * d.near[turn_form + k].by[i];
   }
 
   ContactPlane plane;
 
  private:
-  /// nu_a = - (t_a . rho^j) (n . drho_j + h_jk d xi^k) inside a facet; where n is along x - rho,
-  /// nu_a = t_a . (dx - drho - rho_j d xi^j) / ((x - rho) . n).
-  void expand_turn(Form& f) const noexcept {
-    const Vec3<double> k = plane.spatial(f.turn);
+  static constexpr std::size_t turn_form = static_cast<std::size_t>(NearForm::turn);
+
+  /// nu = - (t . rho^j) (n . drho_j + h_jk d xi^k) inside a facet; where n is along x - rho,
+  /// nu = t . (dx - drho - rho_j d xi^j) / ((x - rho) . n).
+  void turn(const Vec3<double>& t, std::size_t a, PairSlopes& d) const noexcept {
+    Near& f = d.form(NearForm::turn, a);
+    f.clear();
     if (interior_) {
       for (std::size_t j = 0; j < 2; ++j) {
-        const double c = -k.dot(facet_.dual_basis(j));
+        const double c = -t.dot(facet_.dual_basis(j));
         f.by[tangent_input(j)] += c * plane.n;
-        for (std::size_t i = 0; i < 2; ++i) f.xi[i] += c * h_(j, i);
+        for (std::size_t i = 0; i < 2; ++i) f.add(c * h_(j, i), d.form(NearForm::xi, i));
       }
       return;
     }
-    f[Input::slave] += turn_ * k;
-    f[Input::position] -= turn_ * k;
-    for (std::size_t i = 0; i < 2; ++i) f.xi[i] -= turn_ * k.dot(plane.r[i]);
+    f.by[index(Input::slave)] = turn_ * t;
+    f.by[index(Input::position)] = -turn_ * t;
+    for (std::size_t i = 0; i < 2; ++i) f.add(-turn_ * t.dot(plane.r[i]), d.form(NearForm::xi, i));
   }
 
   const surface::Jet<double>& jet_;
