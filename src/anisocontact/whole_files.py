@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-__all__ = ["replacing"]
+__all__ = ["draft_of", "replacing"]
 
 
 @contextmanager
@@ -16,9 +16,14 @@ def replacing(path: Path) -> Iterator[Path]:
 
     Readers see the old file or the new one, never a part of either.
     """
-    draft = path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")
+    draft = draft_of(path)
     try:
         yield draft
         draft.replace(path)
     finally:
         draft.unlink(missing_ok=True)
+
+
+def draft_of(path: Path) -> Path:
+    """Where a file is while this process writes it."""
+    return path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")

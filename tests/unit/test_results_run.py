@@ -232,7 +232,7 @@ def test_report_is_one_file_with_all_pictures(run):
 @pytest.fixture
 def quick(monkeypatch):
     """Pictures in space by matplotlib, which is quicker for a body of a few cells."""
-    monkeypatch.setattr(shape, "_by_vtk", lambda *_: False)
+    monkeypatch.setattr(shape, "_start_vtk", lambda *_: None)
 
 
 def test_report_can_be_made_again_from_the_folder(quick, run):
@@ -247,7 +247,7 @@ def test_a_picture_that_fails_does_not_cost_the_report(run, monkeypatch):
     def broken(*_: object) -> None:
         raise RuntimeError("no ink")
 
-    monkeypatch.setattr(shape, "draw", broken)
+    monkeypatch.setattr(shape.Drawing, "finish", broken)
     assert write_report(run.folder) == ["picture deformed: RuntimeError: no ink"]
     assert (run.folder / "report.html").read_text().count("data:image/png") == 5
 
@@ -256,11 +256,12 @@ def test_without_graphics_matplotlib_draws(run, monkeypatch, tmp_path):
     """A renderer that dies, as VTK does without any OpenGL, leaves the run alone."""
     monkeypatch.setattr(shape, "_RENDERER", "anisocontact.no_such_module")
     picture = tmp_path / "deformed.png"
-    scale = shape.draw(run.results.fields(), run.results.fields_file(), picture)
+    with shape.Drawing(run.results.fields_file(), picture) as drawing:
+        drawing.finish()
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert [entry.name for entry in tmp_path.iterdir()] == ["deformed.png"]
     # The largest movement is 0.025 of a body whose diagonal is 1.5: a round magnification of 5.
-    assert scale == 5.0
+    assert shape.magnification(run.results.fields()) == 5.0
 
 
 def test_bodies_that_move_far_are_true_to_scale(run):

@@ -21,10 +21,11 @@ def command(arguments: argparse.Namespace) -> int:
         raise InputError(f"'{folder}' is a folder of `trace`, whose report is not made anew")
     try:
         failed = write_report(folder)
-    except (ValueError, KeyError) as error:
-        if isinstance(error, InputError):
-            raise
-        raise InputError(f"'{folder}' holds results that cannot be read: {error}") from None
+    except InputError:
+        raise
+    except (ValueError, LookupError, TypeError) as error:
+        text = f"'{folder}' holds no results of this version: {type(error).__name__}: {error}"
+        raise InputError(text) from None
     except OSError as error:
         raise InputError(f"'{folder}' cannot be written: {error.strerror or error}") from None
     for line in failed:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
@@ -26,7 +29,7 @@ class Results:
         folder: The results folder.
 
     Raises:
-        InputError: It holds no `summary.json`.
+        InputError: It holds no `summary.json`; reading raises it where a file is damaged.
 
     Example:
         >>> Results("no-such-folder")
@@ -42,14 +45,19 @@ class Results:
     @property
     def summary(self) -> dict[str, Any]:
         """Content of `summary.json`."""
-        found: dict[str, Any] = json.loads((self.folder / "summary.json").read_text("utf-8"))
+        path = self.folder / "summary.json"
+        with _whole(path):
+            found = json.loads(path.read_text("utf-8"))
+            if not isinstance(found, dict):
+                raise ValueError("no table of results")
         return found
 
     @property
     def history(self) -> dict[str, npt.NDArray[Any]]:
         """Columns of `history.csv`, a value for each accepted increment."""
         path = self.folder / "history.csv"
-        return read_history(path) if path.is_file() else {}
+        with _whole(path):
+            return read_history(path) if path.is_file() else {}
 
     @property
     def times(self) -> npt.NDArray[np.float64]:
@@ -103,10 +111,25 @@ class Results:
         path = self.folder / name
         if not path.is_file():
             return []
-        sets = ElementTree.parse(path).iter("DataSet")
-        return [(float(entry.attrib["timestep"]), entry.attrib["file"]) for entry in sets]
+        with _whole(path):
+            sets = ElementTree.parse(path).iter("DataSet")
+            return [(float(entry.attrib["timestep"]), entry.attrib["file"]) for entry in sets]
 
     def _read(self, name: str, index: int) -> Any:
         import pyvista
 
-        return pyvista.read(self._file(name, index))
+        path = self._file(name, index)
+        with _whole(path):
+            data = pyvista.read(path)
+            if not data.n_points:  # VTK says nothing of a file that is cut off
+                raise ValueError("no points")
+        return data
+
+
+@contextmanager
+def _whole(path: Path) -> Iterator[None]:
+    """Make of everything that is wrong with a file one line that names it."""
+    try:
+        yield
+    except (OSError, ValueError, KeyError, ElementTree.ParseError, csv.Error) as error:
+        raise InputError(f"'{path}' cannot be read: {error}") from None

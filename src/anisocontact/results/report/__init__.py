@@ -71,38 +71,62 @@ def write_report(folder: str | Path) -> list[str]:
     return failed
 
 
+class _Album:
+    """Pictures that could be drawn, and why others could not.
+
+    Args:
+        folder: Where they go.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.pictures: list[Picture] = []
+        self.failed: list[str] = []
+
+    def attempt(self, name: str, title: str, caption: str, draw: Callable[[Path], object]) -> None:
+        """Draw one; a picture is no reason to lose a run."""
+        path = self.folder / f"{name}.png"
+        try:
+            draw(path)
+        except Exception as error:
+            self.failed.append(f"picture {name}: {type(error).__name__}: {error}")
+            return
+        self.pictures.append(Picture(path, title, caption))
+
+
 def _pictures(run: RunData, folder: Path, failed: list[str]) -> list[Picture]:
     folder.mkdir(exist_ok=True)
-    pictures = []
+    first, others = _Album(folder), _Album(folder)
+    with shape.Drawing(run.results.fields_file(), folder / "deformed.png") as bodies:
+        for number in range(len(run.summary["contacts"])):
+            _of_contact(run, number, others)
+        # drawn meanwhile by another process, shown first
+        caption = f"Colour: size of the displacement. State: {run.moments[-1].title}."
+        first.attempt("deformed", "Deformed bodies", caption, lambda _: bodies.finish())
+    failed += first.failed + others.failed
+    return first.pictures + others.pictures
 
-    def attempt(name: str, title: str, caption: str, make: Callable[[Path], str]) -> None:
-        path = folder / f"{name}.png"
-        try:
-            text = make(path)
-        except Exception as error:  # a picture is no reason to lose a run
-            failed.append(f"picture {name}: {type(error).__name__}: {error}")
-            return
-        pictures.append(Picture(path, title, f"{caption} {text}".strip()))
 
-    def deformed(path: Path) -> str:
-        shape.draw(run.results.fields(), run.results.fields_file(), path)
-        return f"State: {run.moments[-1].title}."
+def _of_contact(run: RunData, number: int, album: _Album) -> None:
+    contacts = run.summary["contacts"]
+    many, contact = len(contacts) > 1, contacts[number]
+    pair = f": {contact['slave']} on {contact['master']}" if many else ""
+    for name, draw, title, caption in _OF_CONTACT:
 
-    attempt("deformed", "Deformed bodies", "Colour: size of the displacement.", deformed)
-    for number, contact in enumerate(run.summary["contacts"]):
-        many = len(run.summary["contacts"]) > 1
-        pair = f": {contact['slave']} on {contact['master']}" if many else ""
-        closed = run.view(run.moments[-1].index, number).closed
-        for name, draw, title, caption in _OF_CONTACT:
-            if closed and name == "domain":
-                continue  # the resultants in one tangent plane mean nothing all around a master
+        def drawn(path: Path, draw: Callable[[RunData, int], Figure] = draw) -> None:
+            save(draw(run, number), path)
 
-            def drawn(path: Path, draw: Any = draw, number: int = number) -> str:
-                save(draw(run, number), path)
-                return ""
+        # the resultants in one tangent plane mean nothing all around a master
+        if name != "domain" or not _closed(run, number):
+            album.attempt(f"{name}-{number}" if many else name, f"{title}{pair}", caption, drawn)
 
-            attempt(f"{name}-{number}" if many else name, f"{title}{pair}", caption, drawn)
-    return pictures
+
+def _closed(run: RunData, number: int) -> bool:
+    """Whether slave points are all around the master; not known where they cannot be read."""
+    try:
+        return run.view(run.moments[-1].index, number).closed
+    except Exception:  # each picture says what is wrong
+        return False
 
 
 def _step_rows(run: RunData) -> list[dict[str, Any]]:

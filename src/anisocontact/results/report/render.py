@@ -1,4 +1,4 @@
-"""VTK's picture of the deformed bodies, as a program: grid, picture, magnification."""
+"""VTK's picture of the deformed bodies, as a program: grid, picture."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ import numpy as np
 import pyvista
 
 from anisocontact.figure_style import GREY
-from anisocontact.results.report.shape import LABEL, caption, round_box, surfaces
+from anisocontact.results.report.shape import LABEL, caption, magnification, round_box, surfaces
 
 
-def _main(source: str, picture: str, scale: float) -> None:
+def _main(source: str, picture: str) -> None:
     grid: Any = pyvista.read(source)
+    scale = magnification(grid)
     skin, before = surfaces(grid, scale)
     plotter: Any = pyvista.Plotter(off_screen=True, window_size=[1200, 800])
     plotter.set_background("white")
@@ -59,4 +60,4 @@ def _main(source: str, picture: str, scale: float) -> None:
 
 
 if __name__ == "__main__":
-    _main(sys.argv[1], sys.argv[2], float(sys.argv[3]))
+    _main(sys.argv[1], sys.argv[2])

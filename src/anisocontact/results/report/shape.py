@@ -16,12 +16,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from anisocontact.figure_style import new_figure, save
-from anisocontact.results.files import replacing
+
+from anisocontact.whole_files import draft_of
 
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["LABEL", "caption", "draw", "magnification", "round_box", "surfaces"]
+__all__ = ["LABEL", "Drawing", "caption", "magnification", "round_box", "surfaces"]
 
 #: Seconds that VTK may take.
 PATIENCE = 120.0
@@ -32,21 +33,37 @@ LABEL = "displacement [length]"
 _RENDERER = "anisocontact.results.report.render"
 
 
-def draw(grid: pyvista.UnstructuredGrid, source: Path, picture: Path) -> float:
-    """Draw the deformed bodies.
+class Drawing:
+    """A picture of the deformed bodies that VTK draws while other things are done.
 
     Args:
-        grid: Bodies with `displacement`.
-        source: The file the grid was read from.
+        source: File with the bodies and their `displacement`.
         picture: PNG to write.
-
-    Returns:
-        How many times the displacement was magnified.
     """
-    scale = magnification(grid)
-    if not _by_vtk(source, picture, scale):
-        _by_matplotlib(grid, picture, scale)
-    return scale
+
+    def __init__(self, source: Path, picture: Path) -> None:
+        self._source, self._picture = source, picture
+        self._draft = draft_of(picture)
+        self._process = _start_vtk(source, self._draft)
+
+    def __enter__(self) -> Drawing:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._process is not None and self._process.poll() is None:
+            self._process.kill()
+            self._process.wait()
+        self._draft.unlink(missing_ok=True)
+
+    def finish(self) -> None:
+        """Wait for the picture; where VTK fails, matplotlib draws it."""
+        if _ended(self._process) and self._draft.is_file():
+            self._draft.replace(self._picture)
+            return
+        import pyvista
+
+        self._picture.unlink(missing_ok=True)
+        _by_matplotlib(pyvista.read(self._source), self._picture)
 
 
 def magnification(grid: pyvista.UnstructuredGrid) -> float:
@@ -71,30 +88,36 @@ def surfaces(
     return skin.warp_by_vector("displacement", factor=scale), skin
 
 
-def _by_vtk(source: Path, picture: Path, scale: float) -> bool:
+def _start_vtk(source: Path, picture: Path) -> subprocess.Popen[bytes] | None:
     environment = dict(os.environ)
     if sys.platform == "linux" and not environment.get("DISPLAY"):
         environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-    with replacing(picture) as draft:
-        command = [sys.executable, "-m", _RENDERER, str(source), str(draft), repr(scale)]
-        try:
-            done = subprocess.run(
-                command, env=environment, capture_output=True, timeout=PATIENCE, check=False
-            )
-        except (OSError, subprocess.TimeoutExpired):
-            return False
-        if done.returncode == 0 and draft.is_file():
-            return True
-        draft.touch()
-    picture.unlink(missing_ok=True)
-    return False
+    command = [sys.executable, "-m", _RENDERER, str(source), str(picture)]
+    silent = subprocess.DEVNULL
+    try:
+        return subprocess.Popen(command, env=environment, stdout=silent, stderr=silent)
+    except OSError:
+        return None
 
 
-def _by_matplotlib(grid: pyvista.UnstructuredGrid, picture: Path, scale: float) -> None:
+def _ended(process: subprocess.Popen[bytes] | None) -> bool:
+    """Wait for a process; whether it ended well."""
+    if process is None:
+        return False
+    try:
+        return process.wait(PATIENCE) == 0
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+        return False
+
+
+def _by_matplotlib(grid: Any, picture: Path) -> None:
     from mpl_toolkits.mplot3d.art3d import (  # type: ignore[import-untyped]
         Poly3DCollection,
     )
 
+    scale = magnification(grid)
     skin, before = surfaces(grid, scale)
     figure = new_figure(9.0, 6.0)
     axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
