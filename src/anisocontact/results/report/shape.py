@@ -16,7 +16,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from anisocontact.figure_style import new_figure, save
-
 from anisocontact.whole_files import draft_of
 
 if TYPE_CHECKING:
