@@ -81,7 +81,8 @@ def count(problem: Problem, clock: Clock) -> None:
                 clock.count(contact, method, "contact")
     coupled = problem._coupled
     if coupled is not None:
-        clock.count(coupled, "assemble", "contact")
+        for method in ("make_room", "add"):
+            clock.count(coupled, method, "contact")
     for method in ("force", "tangent"):
         clock.count(problem.bulk, method, "assembly")
 

@@ -41,8 +41,17 @@ class LinearBulk:
         return 0.5 * float(u.dot(self.force(u)))
 
     def tangent(self, out: Mat) -> None:
-        """Write the stiffness into a matrix of the same pattern."""
-        self.stiffness.copy(out, structure=PETSc.Mat.Structure.SAME_NONZERO_PATTERN)
+        """Write the stiffness into a matrix that has room for it and may have more unknowns."""
+        out.zeroEntries()
+        if out.getSizes() == self.stiffness.getSizes():
+            subset = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
+            out.axpy(1.0, self.stiffness, structure=subset)
+            return
+        first, _ = self.stiffness.getOwnershipRange()
+        starts, columns, values = self.stiffness.getValuesCSR()
+        rows = first + np.arange(len(starts) - 1, dtype=PETSc.IntType)
+        out.setValuesIJV(starts, columns, values, PETSc.InsertMode.ADD_VALUES, rows)
+        out.assemble()
 
 
 def _bilinear_form(model: Model, materials: Mapping[str, Material]) -> Any:

@@ -60,7 +60,7 @@ class NonlinearBulk:
         return float(self._comm.allreduce(fem.assemble_scalar(self._energy)))
 
     def tangent(self, out: Mat) -> None:
-        """Write the tangent of the last `force` into a matrix of the same pattern."""
+        """Write the tangent of the last `force` into a matrix that has room for it."""
         out.zeroEntries()
         assemble_into(out, self._tangent)
         out.assemble(PETSc.Mat.AssemblyType.FINAL)

@@ -18,7 +18,9 @@ Floats = npt.NDArray[np.float64]
 
 
 class CoupledTangent:
-    """Sum of a bulk matrix and blocks that couple nodes of different bodies.
+    """Matrix with room for the bulk and for blocks that couple nodes of different bodies.
+
+    The bulk is assembled straight into it, between `make_room` and `add`.
 
     Unknowns beyond those of the mesh come after them, on the last rank, and are counted in threes
     as nodes too. Couplings name a node by its local number, or by the number of local nodes plus
@@ -36,7 +38,7 @@ class CoupledTangent:
     def __init__(self, stiffness: Mat, space: Any, extra: int = 0) -> None:
         self._stiffness = stiffness
         self._lg = stiffness.getLGMap()
-        comm = space.mesh.comm
+        self._comm = comm = space.mesh.comm
         (own, total), _ = stiffness.getSizes()
         added = 3 * extra
         self._size = (own + added * (comm.rank == comm.size - 1), total + added)
@@ -50,6 +52,7 @@ class CoupledTangent:
         self._keys: Keys = np.empty(0, dtype=np.int64)
         self._given = self._keys
         self._sum = csr_array((0, 0), dtype=np.float64)
+        self._blocks: Floats = np.empty((0, 9))
 
     @property
     def pattern(self) -> Keys:
@@ -65,46 +68,52 @@ class CoupledTangent:
         self._given = np.full(1, -1, dtype=np.int64)
 
     @cached_property
-    def bulk(self) -> Mat:
-        """Matrix to write the tangent of the bulk into."""
-        return self._stiffness.duplicate()
-
-    @cached_property
     def _entries(self) -> tuple[Keys, Keys]:
         """Rows and columns of the entries of the bulk on this rank."""
         starts, columns, _ = self._stiffness.getValuesCSR()
         return np.repeat(np.arange(len(starts) - 1) + self._first, np.diff(starts)), columns
 
     def new_matrix(self) -> Mat:
-        """Matrix for `assemble`, with the pattern of the bulk for now."""
-        matrix = PETSc.Mat().create(self._stiffness.getComm())
+        """Matrix for `make_room` and `add`, with the pattern of the bulk for now."""
+        matrix = PETSc.Mat().create(self._comm)
         matrix.setSizes((self._size, self._size), bsize=3)
         matrix.setType(PETSc.Mat.Type.AIJ)
         matrix.setLGMap(*self._lg)
         self._preallocate(matrix)
         return matrix
 
-    def assemble(self, out: Mat, couplings: Sequence[Couplings]) -> bool:
-        """Write bulk plus couplings into a matrix of `new_matrix`.
+    def make_room(self, out: Mat, couplings: Sequence[Couplings]) -> bool:
+        """Let the pattern of a matrix of `new_matrix` grow where these couplings need it.
 
         Returns:
-            Whether its pattern has grown. On several processes PETSc does not notice, so that
-            what was factorised with the old pattern has to be thrown away.
+            Whether it has grown; its entries are gone then. On several processes PETSc does not
+            notice, so that what was factorised with the old pattern has to be thrown away.
         """
         keys, blocks = _pairs(couplings, self._numbers)
         changed = not np.array_equal(keys, self._given)
         grown = False
-        if out.getComm().tompi4py().allreduce(changed):
+        if self._comm.allreduce(changed):
             grown = self._locate(keys, out)
-        values = np.concatenate([self.bulk.getValuesCSR()[2], (self._sum @ blocks).reshape(-1)])
-        out.setValuesCOO(values, PETSc.InsertMode.INSERT_VALUES)
+        self._blocks = self._sum @ blocks
         return grown
+
+    def add(self, out: Mat) -> None:
+        """Add the couplings of `make_room` to the bulk in the matrix, and assemble it."""
+        row, column = self._places()
+        blocks = self._blocks.reshape(-1, 3, 3)
+        out.setValuesBlockedRCV(
+            row.astype(PETSc.IntType)[:, None],
+            column.astype(PETSc.IntType)[:, None],
+            blocks,
+            PETSc.InsertMode.ADD_VALUES,
+        )
+        out.assemble()
 
     def _locate(self, keys: Keys, out: Mat) -> bool:
         """Places of the blocks of `keys`; whether the pattern grows by some that are new."""
         there = np.flatnonzero(keys >= 0)
         unknown = np.setdiff1d(keys[there], self._keys)
-        grown = bool(out.getComm().tompi4py().allreduce(unknown.size) > 0)
+        grown = bool(self._comm.allreduce(unknown.size) > 0)
         if grown:
             self._keys = np.union1d(self._keys, unknown)
             self._preallocate(out)
@@ -115,7 +124,7 @@ class CoupledTangent:
         return grown
 
     def _preallocate(self, matrix: Mat) -> None:
-        row, column = (self._globally(node) for node in np.divmod(self._keys, self._numbers))
+        row, column = self._places()
         component = np.arange(3)
         rows = 3 * row[:, None, None] + component[:, None]
         columns = 3 * column[:, None, None] + component
@@ -125,6 +134,12 @@ class CoupledTangent:
             _joined(self._entries[1], np.broadcast_to(columns, shape)),
         )
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
+        matrix.assemble()
+
+    def _places(self) -> tuple[Keys, Keys]:
+        """Nodes of the rows and of the columns of the couplings, numbers in the whole system."""
+        row, column = np.divmod(self._keys, self._numbers)
+        return self._globally(row), self._globally(column)
 
     def _globally(self, nodes: Keys) -> Keys:
         """Numbers in the whole mesh of nodes as couplings name them."""

@@ -347,19 +347,20 @@ class Problem:
         grown = False
         if self._evaluated is None or not np.array_equal(self._evaluated, x.array_r):
             self.evaluate(x)
-        bulk = out if self._coupled is None else self._coupled.bulk
-        self.bulk.tangent(bulk)
-        for contact in self._analytic:
-            contact.add_tangent(bulk)
-        self.loads.add_tangent(bulk)
-        self.attached.add_tangent(bulk)
-        self.stabilisation.add_tangent(bulk)
-        bulk.assemble()
         if self._coupled is not None:
             couplings = [k for c in self._meshed for k in c.couplings()]
             couplings += self.rigid.couplings(self._coupled.first_extra)
             couplings += self.attached.couplings()
-            grown = self._coupled.assemble(out, couplings)
+            grown = self._coupled.make_room(out, couplings)
+        self.bulk.tangent(out)
+        for contact in self._analytic:
+            contact.add_tangent(out)
+        self.loads.add_tangent(out)
+        self.attached.add_tangent(out)
+        self.stabilisation.add_tangent(out)
+        out.assemble()
+        if self._coupled is not None:
+            self._coupled.add(out)
         self.constraints.transform(out, self._support_scale)
         held = (
             np.flatnonzero(self.rigid.held())

@@ -199,16 +199,17 @@ class ContactProblem:
         grown = False
         if not np.array_equal(self.u.x.array[: self._owned], x.array_r):
             self.evaluate(x)
-        bulk = self._coupled.bulk if self._coupled else out
-        bulk.zeroEntries()
-        assemble_into(bulk, self._tangent)
-        for contact in self.contacts:
-            if isinstance(contact, Contact):
-                contact.add_tangent(bulk)
-        bulk.assemble()
         if self._coupled:
             meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
-            grown = self._coupled.assemble(out, [k for c in meshed for k in c.couplings()])
+            grown = self._coupled.make_room(out, [k for c in meshed for k in c.couplings()])
+        out.zeroEntries()
+        assemble_into(out, self._tangent)
+        for contact in self.contacts:
+            if isinstance(contact, Contact):
+                contact.add_tangent(out)
+        out.assemble()
+        if self._coupled:
+            self._coupled.add(out)
         out.zeroRowsLocal(prescribed_rows(self.bcs), self._support_scale)
         return grown
 
