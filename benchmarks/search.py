@@ -60,10 +60,14 @@ def main(cells: int = 141) -> None:
     rng = np.random.default_rng(1)
     side = int(np.sqrt(POINTS))
     y, x = (a.ravel() for a in np.meshgrid(*[(np.arange(side) + 0.5) / side] * 2, indexing="ij"))
-    print(f"{'':8}{'facets':>8}{'distance':>10}{'cold':>12}{'warm':>12}  thousand a second")
+    print("| facets | number | distance, sizes | cold, thousand/s | warm, thousand/s | refit, ms |")
+    print("|---|---|---|---|---|---|")
     for topology in TOPOLOGIES:
         points, facets = sheet(cells, topology)
         surface = FacetSurface(points, facets, topology)
+        start = time.process_time()
+        surface.update(points)
+        refit = 1e3 * (time.process_time() - start)
         size = 1.0 / cells
         for far in (0.1, 1.0, 10.0):
             z = height(x, y) + far * size * rng.normal(size=x.size)
@@ -73,11 +77,8 @@ def main(cells: int = 141) -> None:
             cold, a = seconds(lambda s=surface, p=now: s.project(p, threads=1))
             warm, b = seconds(lambda s=surface, p=now, h=hint: s.project(p, hint=h, threads=1))
             assert np.abs(a.gap - b.gap).max() < 1e-12
-            rates = "".join(f"{1e-3 * x.size / t:12.0f}" for t in (cold, warm))
-            print(f"{topology:8}{len(surface):8}{far:8.1f} h{rates}")
-        start = time.process_time()
-        surface.update(points)
-        print(f"{'':8}refit {1e3 * (time.process_time() - start):.1f} ms")
+            rates = " | ".join(f"{1e-3 * x.size / t:.0f}" for t in (cold, warm))
+            print(f"| {topology} | {len(surface)} | {far} | {rates} | {refit:.1f} |")
 
 
 if __name__ == "__main__":
