@@ -75,7 +75,7 @@ def picture(records: Sequence[Record], path: Path) -> None:
     import matplotlib
 
     matplotlib.use("Agg")
-    from matplotlib import pyplot
+    from matplotlib import pyplot, ticker
 
     figure, axes = pyplot.subplots(2, 2, figsize=(9.0, 7.0), layout="constrained", sharex="col")
     codes = sorted({r.code for r in records}, key=lambda code: (code != OURS, code))
@@ -94,6 +94,7 @@ def picture(records: Sequence[Record], path: Path) -> None:
         if axes[0, column].lines:
             axes[0, column].legend()
         axes[1, column].set_xlabel("unknowns")
+        axes[1, column].xaxis.set_minor_formatter(ticker.NullFormatter())
     figure.savefig(path, dpi=110)
     pyplot.close(figure)
 
