@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import resource
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,6 +13,7 @@ import scipy.sparse
 
 from anisocontact.errors import InputError
 from anisocontact.solver import Problem, Solver, Step, strategy
+from anisocontact.solver.condensed import costs
 from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor, gmres
 from anisocontact.solver.condensed.parts import Condensation
 from anisocontact.solver.condensed.patterns import Patterns, State
@@ -170,6 +173,17 @@ def test_auto_says_why_it_takes_direct(
     choice = _choice(fe.block(fe.interface()).problem)
     assert choice.name == "direct"
     assert reason in choice.reason
+
+
+def test_memory_limits_are_seen(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A limit of the address space that leaves 5 kB: `auto` says so and takes `direct`."""
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    used = pages * resource.getpagesize()
+    monkeypatch.setattr(costs.resource, "getrlimit", lambda _: (used + 5000, -1))
+    assert costs.free_memory() <= 5000
+    choice = _choice(fe.block(fe.interface()).problem)
+    assert choice.name == "direct"
+    assert "needs 0.0 GB, 0.0 GB are free" in choice.reason
 
 
 def _rubber(fe: Any) -> Problem:

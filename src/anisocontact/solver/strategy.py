@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -14,6 +13,7 @@ from anisocontact._fenicsx import PETSc, Vec
 from anisocontact.bulk import LinearBulk
 from anisocontact.errors import InputError
 from anisocontact.solver.condensed import Condensed, CondensedNewton, contact_unknowns, reachable
+from anisocontact.solver.condensed.costs import free_memory, memory_needed
 from anisocontact.solver.iterative import IterativeNewton, Patch, factor_bytes
 from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
 from anisocontact.solver.persistent import Arrays
@@ -190,25 +190,11 @@ def _costs(problem: Problem, steps: Sequence[Step]) -> Iterator[str]:
     count = contact_unknowns(problem, steps)
     if count > MOST_CONTACT:
         yield f"{count} contact unknowns, more than {MOST_CONTACT}: their dense matrix does not pay"
-    # in double precision for the bodies, with MUMPS' workspace, and in single for the tangent
-    needed, free = (2 * 8 + 4) * count**2, free_memory()
+    needed, free = memory_needed(problem.unknowns, count), free_memory()
     if needed > MEMORY_SHARE * free:
         yield (
-            f"dense matrices of {count} contact unknowns need {needed / 1e9:.1f} GB, "
+            f"condensing on {count} contact unknowns needs {needed / 1e9:.1f} GB, "
             f"{free / 1e9:.1f} GB are free"
         )
     if 2 * count > problem.unknowns:
         yield f"{count} of {problem.unknowns} unknowns are contact unknowns"
-
-
-def free_memory() -> float:
-    """Memory that is free, bytes; no limit where the system does not say."""
-    try:
-        with open("/proc/meminfo", encoding="ascii") as file:
-            found = dict(line.split(":", 1) for line in file)
-        return 1024.0 * float(found["MemAvailable"].split()[0])
-    except (OSError, KeyError, ValueError):
-        try:
-            return float(os.sysconf("SC_AVPHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-        except (ValueError, OSError):
-            return float("inf")
