@@ -100,7 +100,7 @@ def _run(
 
 
 def _close(a: Any, b: Any, scale: float) -> None:
-    np.testing.assert_allclose(a, b, rtol=0.0, atol=1e-7 * scale)
+    np.testing.assert_allclose(a, b, rtol=0.0, atol=1e-8 * scale)
 
 
 def _same(make: Callable[[], Problem], steps: Sequence[Step]) -> list[str]:
