@@ -1,7 +1,7 @@
 """Condensed strategy: the same answers as one factorisation of the whole system.
 
 Requirement: with a tight Newton tolerance both strategies solve the same equations, so that every
-number agrees to 1e-7 of its size: what is left of Newton's method (1e-11) times how much the
+number agrees to 1e-8 of its size: what is left of Newton's method (1e-11) times how much the
 solution answers to it. Source: `direct`, an independent way to solve the same equations.
 """
 

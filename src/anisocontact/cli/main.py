@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -91,6 +92,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments = build_parser().parse_args(argv)
     except SystemExit as end:  # argparse has said what is wrong, or printed the help
         return end.code if isinstance(end.code, int) else BAD_INPUT
+    # NumPy and SciPy bring a pool of threads each, which wait for each other in products that the
+    # memory bounds; it is read when they are imported. Contacts have threads of their own.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     try:
         command = import_module(f"anisocontact.cli.{arguments.command}")
         code: int = command.command(arguments)
