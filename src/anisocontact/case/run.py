@@ -80,6 +80,7 @@ def run(
         RunError: Something unforeseen happened; `run.log` has the details.
     """
     text = built.file.path.read_text(encoding="utf-8")
+    together = built.problem.together
     if checkpoint is not None:
         solver = built.solver
         solver.restore(distribute(checkpoint, built.problem.model, solver.persistent()))
@@ -92,10 +93,16 @@ def run(
         status, message = _solve(built, writer, listener, text)
     except KeyboardInterrupt:
         status, message = "stopped", "interrupted"
+        if together.met() is None:
+            writer.abandon(message)
+            raise
     except Exception as error:
-        writer.log(traceback.format_exc())
         text = " ".join(f"{type(error).__name__}: {error}".split())
-        writer.close("stopped", f"internal error: {text}")
+        if together.met() is None:
+            writer.abandon(f"internal error: {text}", traceback.format_exc())
+        else:
+            writer.log(traceback.format_exc())
+            writer.close("stopped", f"internal error: {text}")
         raise RunError(f"{text}; details in {writer.folder / 'run.log'}") from error
     writer.close(status, message)
     warnings = tuple(writer.summary["warnings"])

@@ -10,6 +10,7 @@ from importlib import import_module
 
 from anisocontact import __version__
 from anisocontact.errors import InputError
+from anisocontact.processes import started_together
 
 __all__ = ["BAD_INPUT", "DONE", "INTERNAL", "STOPPED", "build_parser", "main"]
 
@@ -95,6 +96,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     # NumPy and SciPy bring a pool of threads each, which wait for each other in products that the
     # memory bounds; it is read when they are imported. Contacts have threads of their own.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    together = started_together()
+    if together is None:
+        return _run(arguments)
+    together.quiet()
+    return together.finish(_run(arguments))
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    """Run a command; its exit code."""
     try:
         command = import_module(f"anisocontact.cli.{arguments.command}")
         code: int = command.command(arguments)

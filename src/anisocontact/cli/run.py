@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 import shlex
 import sys
 from pathlib import Path
@@ -36,8 +35,6 @@ def command(arguments: argparse.Namespace) -> int:
     from anisocontact.cli.progress import progress_on
 
     built = build(file)
-    if built.problem.model.mesh.comm.rank > 0:
-        sys.stdout = sys.stderr = open(os.devnull, "w")  # noqa: SIM115 (for good)
     print("\n".join(contents(built)), flush=True)
     if arguments.restart:
         print(_beginning(checkpoint), flush=True)

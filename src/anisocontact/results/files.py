@@ -40,7 +40,7 @@ OWN = (
     "run.log",
 )
 #: Name of a file that is being written.
-_DRAFT = re.compile(r"\..+-\d+\.(csv|html|json|log|npz|png|pvd|toml|vtp|vtu)")
+_DRAFT = re.compile(r"\..+-\d+\.(csv|html|json|log|npz|png|pvd|pvtp|pvtu|toml|vtp|vtu)")
 #: Files that show that a folder is that of a run.
 MARKS = ("summary.json", "run.log")
 
@@ -50,7 +50,7 @@ class WriteError(RuntimeError):
 
 
 class Disk:
-    """Writes on the first rank; a failure there is raised on all ranks at the next `check`.
+    """Writes files; a failure on one rank is raised on all of them at the next `check`.
 
     Args:
         comm: Communicator of the run.
@@ -61,8 +61,13 @@ class Disk:
         self._failure = ""
 
     def write(self, action: Callable[[], object]) -> None:
-        """Do something with files; nothing on other ranks, or once something has failed."""
-        if self._comm.rank > 0 or self._failure:
+        """Do something with files on the first rank; nothing once something has failed."""
+        if self._comm.rank == 0:
+            self.write_each(action)
+
+    def write_each(self, action: Callable[[], object]) -> None:
+        """Do something with files of its own on every rank; nothing once something has failed."""
+        if self._failure:
             return
         try:
             action()
@@ -76,9 +81,9 @@ class Disk:
         Raises:
             WriteError: A disk is full, or a folder gone or protected.
         """
-        failure = self._comm.bcast(self._failure)
-        if failure:
-            raise WriteError(failure)
+        self._failure = next(filter(None, self._comm.allgather(self._failure)), "")
+        if self._failure:
+            raise WriteError(self._failure)
 
 
 def write_text(path: Path, text: str) -> None:

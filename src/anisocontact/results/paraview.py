@@ -1,11 +1,9 @@
-"""Files for ParaView: the bodies, the slave points, and the collections that put them in time."""
+"""What ParaView is shown: the bodies and the slave points."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from pathlib import Path
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import numpy.typing as npt
@@ -13,89 +11,17 @@ import numpy.typing as npt
 from anisocontact._fenicsx import dolfinx, fem, ufl
 from anisocontact.bulk import cauchy_stress
 from anisocontact.contact import AnyContact
-from anisocontact.results.files import replacing, write_text
 from anisocontact.solver import Problem
 
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["Bodies", "Collection", "slave_points"]
+__all__ = ["Bodies", "slave_points"]
 
 Floats = npt.NDArray[np.float64]
 
 #: Rows and columns of the stress components, in the order VTK has them.
 _SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
-
-
-class Collection:
-    """A `.pvd` file and the folder of the data sets it lists.
-
-    Args:
-        path: The `.pvd` file; its data sets go into the folder of the same name.
-        suffix: Of the data sets, ".vtu" or ".vtp".
-    """
-
-    def __init__(self, path: Path, suffix: str) -> None:
-        self._path = path
-        self._suffix = suffix
-        self._entries: list[tuple[float, str]] = []
-
-    def state(self) -> list[list[Any]]:
-        """What `resume` needs, as JSON can have it."""
-        return [list(entry) for entry in self._entries]
-
-    def resume(self, state: Iterable[Sequence[Any]]) -> None:
-        """Go on behind the data sets of a state; later ones are removed."""
-        self._entries = [(float(time), str(name)) for time, name in state]
-        listed = {Path(name).name for _, name in self._entries}
-        for path in self._path.with_suffix("").glob(f"*{self._suffix}"):
-            if path.name not in listed:
-                path.unlink()
-        if self._entries:
-            self._write_list()
-        else:
-            self._path.unlink(missing_ok=True)
-
-    def add(self, time: float, data: pyvista.DataSet) -> None:
-        """Write a data set and then the list with it."""
-        folder = self._path.with_suffix("")
-        folder.mkdir(exist_ok=True)
-        target = folder / f"{len(self._entries):04d}{self._suffix}"
-        with replacing(target) as draft:
-            try:
-                draft.write_bytes(_encoded(data))
-            except OSError as error:
-                raise OSError(error.errno, error.strerror, str(target)) from None
-        self._entries.append((time, f"{folder.name}/{target.name}"))
-        self._write_list()
-
-    def _write_list(self) -> None:
-        rows = "".join(
-            f'    <DataSet timestep="{t!r}" part="0" file={quoteattr(name)}/>\n'
-            for t, name in self._entries
-        )
-        write_text(
-            self._path,
-            '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
-            f"{rows}  </Collection>\n</VTKFile>\n",
-        )
-
-
-def _encoded(data: pyvista.DataSet) -> bytes:
-    """Content of the file of a data set.
-
-    VTK makes it in memory: where it writes itself, it loses the end of a file on a full disk
-    without a word, or ends the process.
-    """
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
-
-    grid = data.IsA("vtkUnstructuredGrid")
-    writer = vtkXMLUnstructuredGridWriter() if grid else vtkXMLPolyDataWriter()
-    writer.SetInputData(data)
-    writer.SetDataModeToBinary()
-    writer.SetWriteToOutputString(True)
-    writer.Write()
-    return str(writer.GetOutputString()).encode()
 
 
 class Bodies:
@@ -108,7 +34,6 @@ class Bodies:
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
         model = problem.model
-        self._comm = model.mesh.comm
         discontinuous = fem.functionspace(
             model.mesh, ("Discontinuous Lagrange", model.order, (len(_SYMMETRIC),))
         )
@@ -123,10 +48,11 @@ class Bodies:
         self._share = 1.0 / self._summed(ones).clip(1.0)
         cells, kinds, points = dolfinx.plot.vtk_mesh(model.space)
         cells = _turned_outwards(cells.reshape(len(kinds), -1), points).reshape(-1)
-        self._topology = self._comm.gather((cells, kinds, points, self._body_numbers(len(kinds))))
+        self._topology = cells, kinds, points
+        self._numbers = self._body_numbers(len(kinds))
 
-    def grid(self) -> pyvista.UnstructuredGrid | None:
-        """The accepted state; None but on the first rank.
+    def grid(self) -> pyvista.UnstructuredGrid:
+        """The accepted state of the cells of this rank.
 
         Point data: `displacement` (3) [length], `stress` (6: XX YY ZZ XY YZ XZ, mean of the cells
         at a node) and `von_mises` [stress]. Cell data: `body`, its number.
@@ -137,13 +63,10 @@ class Bodies:
         for expression, cells in self._expressions:
             self._stress.interpolate(expression, cells0=cells)
         stress = self._summed(np.asarray(self._stress.x.array, dtype=np.float64)) * self._share
-        values = self._comm.gather((u.copy(), stress.reshape(-1, len(_SYMMETRIC))))
-        if self._topology is None or values is None:
-            return None
-        grid = pyvista.UnstructuredGrid(*_joined(self._topology))
-        grid.cell_data["body"] = np.concatenate([part[3] for part in self._topology])
-        grid.point_data["displacement"] = np.concatenate([part[0] for part in values])
-        components = np.concatenate([part[1] for part in values])
+        components = stress.reshape(-1, len(_SYMMETRIC))
+        grid = pyvista.UnstructuredGrid(*self._topology)
+        grid.cell_data["body"] = self._numbers
+        grid.point_data["displacement"] = u.copy()
         grid.point_data["stress"] = components
         grid.point_data["von_mises"] = von_mises(components)
         return grid
@@ -176,12 +99,11 @@ def von_mises(stress: Floats) -> Floats:
     return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
 
 
-def slave_points(contacts: Iterable[AnyContact], comm: Any) -> pyvista.PolyData | None:
-    """The slave points of all contacts where they are now; None but on the first rank.
+def slave_points(contacts: Iterable[AnyContact]) -> pyvista.PolyData | None:
+    """The slave points of all contacts on this rank where they are now; None without a contact.
 
     Args:
         contacts: The contacts.
-        comm: Communicator of the mesh.
 
     Returns:
         Points with `contact` (its number), `pass` (1 on the master of two half passes, else 0),
@@ -194,8 +116,7 @@ def slave_points(contacts: Iterable[AnyContact], comm: Any) -> pyvista.PolyData 
     """
     import pyvista
 
-    local = [_point_data(i, contact) for i, contact in enumerate(contacts)]
-    parts = [part for rank in comm.gather(local) or [] for part in rank]
+    parts = [_point_data(i, contact) for i, contact in enumerate(contacts)]
     if not parts:
         return None
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
@@ -253,16 +174,3 @@ def _turned_outwards(rows: npt.NDArray[Any], points: Floats) -> npt.NDArray[Any]
     turned = rows.copy()
     turned[inside_out, 1:] = rows[inside_out][:, 1:][:, mirrored]
     return turned
-
-
-def _joined(parts: list[tuple[Any, ...]]) -> tuple[Any, Any, Any]:
-    """Cells, kinds and points of all ranks as one grid."""
-    starts = np.cumsum([0] + [len(points) for _, _, points, _ in parts])
-    cells = []
-    for (listed, kinds, _, _), start in zip(parts, starts[:-1], strict=True):
-        # VTK's list of cells: the number of nodes, the same for all of them, then the nodes.
-        rows = listed.reshape(len(kinds), -1).copy()
-        rows[:, 1:] += start
-        cells.append(rows.reshape(-1))
-    kinds = np.concatenate([part[1] for part in parts])
-    return np.concatenate(cells), kinds, np.concatenate([part[2] for part in parts])

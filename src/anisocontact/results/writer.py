@@ -6,6 +6,7 @@ import json
 import math
 import time
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -13,9 +14,10 @@ from typing import Any
 from anisocontact import __version__
 from anisocontact.contact import facet_size
 from anisocontact.results.checkpoint import gathered, save_checkpoint
+from anisocontact.results.collection import Collection
 from anisocontact.results.files import Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
-from anisocontact.results.paraview import Bodies, Collection, slave_points
+from anisocontact.results.paraview import Bodies, slave_points
 from anisocontact.results.report import write_report
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
@@ -29,7 +31,7 @@ __all__ = ["Writer"]
 class Writer:
     """Writes a run into a folder; every file in it is whole at any moment.
 
-    Only the first MPI rank writes; every rank makes the same calls.
+    Every rank makes the same calls and writes its own piece of the fields, the first one the rest.
 
     Args:
         folder: Where; what an earlier run left there is removed.
@@ -82,10 +84,11 @@ class Writer:
         ]
         self._history = History(self.folder / "history.csv")
         self._bodies = Bodies(problem)
-        self._fields = Collection(self.folder / "fields.pvd", ".vtu")
-        self._points = Collection(self.folder / "contact.pvd", ".vtp")
-        self._masters = Surfaces(problem.contacts, problem.model.mesh.comm)
-        self._surfaces = Collection(self.folder / "surfaces.pvd", ".vtp")
+        comm = problem.model.mesh.comm
+        self._fields = Collection(self.folder / "fields.pvd", ".vtu", comm)
+        self._points = Collection(self.folder / "contact.pvd", ".vtp", comm)
+        self._masters = Surfaces(problem.contacts, comm)
+        self._surfaces = Collection(self.folder / "surfaces.pvd", ".vtp", comm)
         self.summary: dict[str, Any] = self._head(title)
         if resumed is None:
             self._take(self._observer.numbers())
@@ -117,9 +120,12 @@ class Writer:
         self._at_start = list(state["at_start"])
         self._increments, self._written = state["increments"], state["written"]
         self._disk.write(lambda: self._history.resume(state["history"]))
-        self._disk.write(lambda: self._fields.resume(state["fields"]))
-        self._disk.write(lambda: self._points.resume(state["contact"]))
-        self._disk.write(lambda: self._surfaces.resume(state["surfaces"]))
+        self._fields.resume(state["fields"])
+        self._disk.write(self._fields.tidy)
+        self._points.resume(state["contact"])
+        self._disk.write(self._points.tidy)
+        self._surfaces.resume(state["surfaces"])
+        self._disk.write(self._surfaces.tidy)
         self.log(f"goes on after {self.summary['steps']} accepted increments")
 
     def state(self) -> dict[str, Any]:
@@ -223,6 +229,19 @@ class Writer:
         self._write_summary()
         self._disk.write(self._report)
 
+    def abandon(self, message: str, details: str = "") -> None:
+        """Note the end of a run in which the other processes are stuck; any of them may do it.
+
+        Args:
+            message: Why it stopped.
+            details: For the log.
+        """
+        self.summary["status"] = "stopped"
+        self.summary["message"] = message
+        with suppress(OSError):
+            self._append(details or message)
+            write_text(self.folder / "summary.json", self._text())
+
     def _report(self) -> None:
         for line in write_report(self.folder):
             self._append(line)
@@ -257,21 +276,18 @@ class Writer:
         self.summary.update(numbers, contacts=contacts)
 
     def _write_fields(self, at: float) -> None:
-        grid = self._bodies.grid()
-        points = slave_points(self._problem.contacts, self._problem.model.mesh.comm)
-        if grid is not None:
-            self._disk.write(lambda: self._fields.add(at, grid))
-        if points is not None:
-            self._disk.write(lambda: self._points.add(at, points))
-        masters = self._masters.mesh()
-        if masters is not None:
-            self._disk.write(lambda: self._surfaces.add(at, masters))
+        self._fields.add(self._disk, at, self._bodies.grid())
+        self._points.add(self._disk, at, slave_points(self._problem.contacts))
+        self._surfaces.add(self._disk, at, self._masters.mesh())
         self._written = at
 
     def _write_summary(self) -> None:
         self.summary["wall_time_s"] = round(time.perf_counter() - self._began, 3)
-        text = json.dumps(_finite(self.summary), indent=2, allow_nan=False)
-        self._disk.write(lambda: write_text(self.folder / "summary.json", text + "\n"))
+        text = self._text()
+        self._disk.write(lambda: write_text(self.folder / "summary.json", text))
+
+    def _text(self) -> str:
+        return json.dumps(_finite(self.summary), indent=2, allow_nan=False) + "\n"
 
 
 def _finite(value: Any) -> Any:

@@ -95,8 +95,12 @@ class Attempts:
                 problem.commit(x)
                 return result, []
             return result, find_culprits(problem, self._watch, self._newton.residual)
+        except (Exception, KeyboardInterrupt):
+            problem.together.met()
+            raise
         finally:
-            problem.roll_back()
+            if not problem.together.apart:
+                problem.roll_back()
 
     def _damping(self) -> float:
         unsettled = self._problem.comm.allreduce(self._watch.unsettled())

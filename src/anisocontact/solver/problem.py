@@ -13,6 +13,7 @@ from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
 from anisocontact.contact import AnyContact, Contact
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
+from anisocontact.processes import Together
 from anisocontact.solver.accepted import AcceptedState
 from anisocontact.solver.attached import Attachments, ElasticSupport, Spring
 from anisocontact.solver.cells import DeformedCells
@@ -57,6 +58,7 @@ class Problem:
         rigid: Rigid bodies of the contacts. The unknowns of free ones follow those of the mesh, on
             the last rank.
         layout: Where the unknowns are.
+        together: The processes of the run, when one of them fails.
         reduction: Who answers for the bulk; None where every state is one of all unknowns.
         force_scale: Norm of the forces at work in the last evaluation: of supports, contacts,
             loads or supports still to be moved, the largest.
@@ -95,6 +97,7 @@ class Problem:
         finite = [name for name, material in materials.items() if not material.linear]
         self._cells = DeformedCells(model, finite) if finite else None
         self._comm = model.mesh.comm
+        self.together = Together(self._comm)
         self.rigid = RigidBodies(self.contacts, self._comm)
         self.layout = Layout(model.space, self.rigid.size)
         self._analytic = [c for c in self.contacts if isinstance(c, Contact)]

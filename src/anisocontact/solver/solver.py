@@ -131,9 +131,13 @@ class Solver:
                 step = self.steps[self.place.step]
                 yield from self._step(attempts, step)
                 self.place = self._beginning(self.place.step + 1, self.place.time + step.duration)
+        except (Exception, KeyboardInterrupt):
+            self.problem.together.met()
+            raise
         finally:
             self._newton, self._kept = None, {}
-            newton.close()
+            if not self.problem.together.apart:
+                newton.close()
 
     def persistent(self) -> Persistent:
         """State of the problem and of the run after the last accepted part, of this rank."""

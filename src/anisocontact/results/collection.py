@@ -1,0 +1,149 @@
+"""Files for ParaView: data sets, in pieces on several ranks, and lists that put them in time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+from xml.sax.saxutils import quoteattr
+
+from anisocontact.results.files import Disk, replacing, write_text
+
+if TYPE_CHECKING:
+    import pyvista
+
+__all__ = ["Collection"]
+
+#: Element of the XML that names a data set, by suffix.
+_KINDS = {".vtu": "UnstructuredGrid", ".vtp": "PolyData"}
+#: Types of VTK by those of NumPy.
+_TYPES = {"float64": "Float64", "float32": "Float32", "int32": "Int32", "int64": "Int64"}
+
+
+class Collection:
+    """A `.pvd` file and the folder of the data sets it lists.
+
+    On one rank a data set is one file. On several each rank writes a piece of its own, and the
+    first one a file that names the pieces.
+
+    Args:
+        path: The `.pvd` file; its data sets go into the folder of the same name.
+        suffix: Of the data sets, ".vtu" or ".vtp".
+        comm: Communicator of the run.
+    """
+
+    def __init__(self, path: Path, suffix: str, comm: Any) -> None:
+        self._path = path
+        self._suffix = suffix
+        self._comm = comm
+        self._folder = path.with_suffix("")
+        self._entries: list[tuple[float, str]] = []
+
+    def state(self) -> list[list[Any]]:
+        """What `resume` needs, as JSON can have it."""
+        return [list(entry) for entry in self._entries]
+
+    def resume(self, state: Iterable[Sequence[Any]]) -> None:
+        """Go on behind the data sets of a state."""
+        self._entries = [(float(time), str(name)) for time, name in state]
+
+    def tidy(self) -> None:
+        """Remove data sets that are not listed, and write the list anew."""
+        listed = {Path(name).stem for _, name in self._entries}
+        for path in self._folder.glob(f"*{self._suffix.replace('.', '.*')}"):
+            if path.name.partition(".")[0] not in listed:
+                path.unlink()
+        if self._entries:
+            self._write_list()
+        else:
+            self._path.unlink(missing_ok=True)
+
+    def add(self, disk: Disk, time: float, data: pyvista.DataSet | None) -> None:
+        """Write a data set and then the list with it; all ranks call it.
+
+        Args:
+            disk: Where failures go.
+            time: Time of the data.
+            data: That of this rank, None for none; nothing is written where all have none.
+        """
+        sizes = self._comm.allgather(-1 if data is None else int(data.n_points))
+        if max(sizes) < 0:
+            return
+        number = f"{len(self._entries):04d}"
+        single = len(sizes) == 1 or sizes[1:] == [-1] * len(sizes[1:])
+        suffix = self._suffix if single else f".p{self._suffix[1:]}"
+        disk.write(lambda: self._folder.mkdir(exist_ok=True))
+        self._comm.Barrier()
+        if data is not None and single:
+            disk.write_each(lambda: _write(self._folder / f"{number}{suffix}", _encoded(data)))
+        elif data is not None:
+            own = self._folder / f"{number}.{self._comm.rank}{self._suffix}"
+            if data.n_points:
+                disk.write_each(lambda: _write(own, _encoded(data)))
+            names = [f"{number}.{i}{self._suffix}" for i, n in enumerate(sizes) if n > 0]
+            self._comm.Barrier()
+            text = _summary(data, self._suffix, names)
+            disk.write(lambda: _write(self._folder / f"{number}{suffix}", text.encode()))
+        self._entries.append((time, f"{self._folder.name}/{number}{suffix}"))
+        disk.write(self._write_list)
+
+    def _write_list(self) -> None:
+        rows = "".join(
+            f'    <DataSet timestep="{t!r}" part="0" file={quoteattr(name)}/>\n'
+            for t, name in self._entries
+        )
+        write_text(
+            self._path,
+            '<?xml version="1.0"?>\n<VTKFile type="Collection" version="0.1">\n  <Collection>\n'
+            f"{rows}  </Collection>\n</VTKFile>\n",
+        )
+
+
+def _write(target: Path, content: bytes) -> None:
+    with replacing(target) as draft:
+        try:
+            draft.write_bytes(content)
+        except OSError as error:
+            raise OSError(error.errno, error.strerror, str(target)) from None
+
+
+def _summary(data: pyvista.DataSet, suffix: str, names: Sequence[str]) -> str:
+    """Content of the file that names pieces like `data`."""
+    kind = f"P{_KINDS[suffix]}"
+    fields = {"PPointData": data.point_data, "PCellData": data.cell_data}
+    rows = [
+        '<?xml version="1.0"?>',
+        f'<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt32">',
+        f'  <{kind} GhostLevel="0">',
+    ]
+    for element, arrays in fields.items():
+        listed = [_array(name, arrays[name]) for name in arrays.keys()]  # noqa: SIM118 (pyvista's)
+        rows += [f"    <{element}>", *listed, f"    </{element}>"]
+    rows += ["    <PPoints>", _array("Points", data.points), "    </PPoints>"]
+    rows += [f"    <Piece Source={quoteattr(name)}/>" for name in names]
+    return "\n".join([*rows, f"  </{kind}>", "</VTKFile>", ""])
+
+
+def _array(name: str, values: Any) -> str:
+    width = values.shape[1] if values.ndim > 1 else 1
+    return (
+        f'      <PDataArray type="{_TYPES[values.dtype.name]}" Name={quoteattr(name)} '
+        f'NumberOfComponents="{width}"/>'
+    )
+
+
+def _encoded(data: pyvista.DataSet) -> bytes:
+    """Content of the file of a data set.
+
+    VTK makes it in memory: where it writes itself, it loses the end of a file on a full disk
+    without a word, or ends the process.
+    """
+    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
+
+    grid = data.IsA("vtkUnstructuredGrid")
+    writer = vtkXMLUnstructuredGridWriter() if grid else vtkXMLPolyDataWriter()
+    writer.SetInputData(data)
+    writer.SetDataModeToBinary()
+    writer.SetWriteToOutputString(True)
+    writer.Write()
+    return str(writer.GetOutputString()).encode()

@@ -1,0 +1,97 @@
+"""Runs on several processes that go wrong: one message, the right exit code, no hang."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+#: `anisocontact` with an error, or Ctrl-C, in the fourth evaluation on the ranks that are given.
+SCRIPT = """
+import os, signal, sys
+from anisocontact.cli import main
+where, what = sys.argv.pop(1), sys.argv.pop(1)
+
+def prepared():
+    from anisocontact.results import writer
+    from anisocontact.solver.problem import Problem
+
+    writer.write_report = lambda folder: []
+    evaluate, count = Problem.evaluate, [0]
+
+    def failing(self, x):
+        count[0] += 1
+        if count[0] == 4 and str(self.comm.rank) in where:
+            if what == "interrupt":
+                os.kill(os.getpid(), signal.SIGINT)
+            elif what == "raise":
+                raise ValueError("it failed")
+        return evaluate(self, x)
+
+    Problem.evaluate = failing
+
+from anisocontact.processes import started_together
+import anisocontact.cli.main as entry
+entry.started_together = lambda: (started_together(), prepared())[0]
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@pytest.fixture
+def case(tmp_path: Path, case_text: str) -> Path:
+    if shutil.which("mpirun") is None:
+        pytest.skip("no mpirun")
+    path = tmp_path / "case.toml"
+    path.write_text(case_text)
+    return path
+
+
+def run(case: Path, where: str, what: str) -> subprocess.CompletedProcess[str]:
+    """Two processes; a hang is a failure (exit code 124)."""
+    command = ["timeout", "-k", "5", "200", "mpirun", "-n", "2", sys.executable, "-c", SCRIPT]
+    command += [where, what, "run", str(case), "-o", str(case.parent / "out")]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.mpi
+def test_bad_input_is_told_once(case: Path) -> None:
+    case.write_text(case.read_text().replace("nu = ", "nu = 7"))
+    done = run(case, "", "")
+    assert done.returncode == 2
+    assert done.stderr.count("error:") == 1
+    assert "nu" in done.stderr
+
+
+@pytest.mark.mpi
+@pytest.mark.slow
+@pytest.mark.parametrize("where", ["1", "0", "01"])
+def test_an_error_on_some_ranks_ends_all(case: Path, where: str) -> None:
+    """What an error leaves others waiting for is not waited for."""
+    done = run(case, where, "raise")
+    assert done.returncode == 1, done.stderr
+    assert done.stderr.count("error: internal: ValueError: it failed") == 1
+    assert "Abort(" not in done.stderr
+    folder = case.parent / "out"
+    summary = json.loads((folder / "summary.json").read_text())
+    assert (summary["status"], summary["message"]) == (
+        "stopped",
+        "internal error: ValueError: it failed",
+    )
+    assert "it failed" in (folder / "run.log").read_text()
+
+
+@pytest.mark.mpi
+@pytest.mark.slow
+@pytest.mark.parametrize("where", ["1", "01"])
+def test_interrupt(case: Path, where: str) -> None:
+    """Ctrl-C, on one rank or on all, ends the run after the increment; it can go on."""
+    done = run(case, where, "interrupt")
+    assert done.returncode == 3, done.stderr
+    assert done.stderr.count("error: stopped: interrupted after step") == 1
+    assert (case.parent / "out" / "checkpoint.npz").is_file()
