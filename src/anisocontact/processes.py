@@ -60,7 +60,8 @@ class Together:
                 self.apart = True
                 return None
             time.sleep(_LOOK)
-        return found.tolist()
+        codes: list[int] = found.tolist()
+        return codes
 
     def quiet(self) -> None:
         """Let the first process speak for all: what others print is kept until `finish`."""

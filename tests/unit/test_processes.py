@@ -8,9 +8,13 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import main
+from anisocontact.results.read import Results
 
 #: `anisocontact` with an error, or Ctrl-C, in the fourth evaluation on the ranks that are given.
 SCRIPT = """
@@ -95,3 +99,30 @@ def test_interrupt(case: Path, where: str) -> None:
     assert done.returncode == 3, done.stderr
     assert done.stderr.count("error: stopped: interrupted after step") == 1
     assert (case.parent / "out" / "checkpoint.npz").is_file()
+
+
+@pytest.mark.mpi
+@pytest.mark.slow
+def test_files_in_pieces_are_those_of_one_process(case: Path) -> None:
+    """Volume, extremes of the fields, slave points and tables do not depend on the processes."""
+    case.write_text(case.read_text() + "\n[solver]\noptions = { snes_rtol = 1e-12 }\n")
+    two = Results((run(case, "", ""), case.parent / "out")[1])
+    assert main(["run", str(case), "-o", str(case.parent / "one")]) == 0
+    one = Results(case.parent / "one")
+    assert two.fields_file().suffix == ".pvtu"
+    assert len(two.times) == len(one.times) > 2
+    a, b = one.fields(), two.fields()
+    assert a.n_cells == b.n_cells
+    assert b.volume == pytest.approx(a.volume, rel=1e-12)
+    for name in ("displacement", "stress", "von_mises"):
+        low, high = a[name].min(axis=0), a[name].max(axis=0)
+        assert b[name].min(axis=0) == pytest.approx(low, abs=1e-9 * np.abs(a[name]).max())
+        assert b[name].max(axis=0) == pytest.approx(high, abs=1e-9 * np.abs(a[name]).max())
+    c, d = one.contact(), two.contact()
+    order = [np.lexsort(np.round(x.points, 6).T) for x in (c, d)]
+    assert np.allclose(c["traction"][order[0]], d["traction"][order[1]], rtol=1e-9)
+    assert two.surfaces().n_points == one.surfaces().n_points
+    for name, column in one.history.items():
+        if column.dtype.kind == "f" and name not in ("residual",):
+            scale = np.abs(column).max()
+            assert two.history[name] == pytest.approx(column, rel=1e-8, abs=1e-9 * scale), name

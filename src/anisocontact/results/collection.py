@@ -67,23 +67,22 @@ class Collection:
             data: That of this rank, None for none; nothing is written where all have none.
         """
         sizes = self._comm.allgather(-1 if data is None else int(data.n_points))
-        if max(sizes) < 0:
+        filled = [rank for rank, size in enumerate(sizes) if size > 0]
+        if not filled:
             return
+        rank = self._comm.rank
         number = f"{len(self._entries):04d}"
-        single = len(sizes) == 1 or sizes[1:] == [-1] * len(sizes[1:])
-        suffix = self._suffix if single else f".p{self._suffix[1:]}"
+        whole = all(size < 0 for size in sizes[1:])
+        suffix = self._suffix if whole else f".p{self._suffix[1:]}"
         disk.write(lambda: self._folder.mkdir(exist_ok=True))
         self._comm.Barrier()
-        if data is not None and single:
-            disk.write_each(lambda: _write(self._folder / f"{number}{suffix}", _encoded(data)))
-        elif data is not None:
-            own = self._folder / f"{number}.{self._comm.rank}{self._suffix}"
-            if data.n_points:
-                disk.write_each(lambda: _write(own, _encoded(data)))
-            names = [f"{number}.{i}{self._suffix}" for i, n in enumerate(sizes) if n > 0]
-            self._comm.Barrier()
-            text = _summary(data, self._suffix, names)
-            disk.write(lambda: _write(self._folder / f"{number}{suffix}", text.encode()))
+        if data is not None and rank in filled:
+            own = self._folder / f"{number}{'' if whole else f'.{rank}'}{self._suffix}"
+            disk.write_each(lambda: _write(own, _encoded(data)))
+        self._comm.Barrier()
+        if data is not None and rank == filled[0] and not whole:
+            text = _summary(data, self._suffix, [f"{number}.{i}{self._suffix}" for i in filled])
+            disk.write_each(lambda: _write(self._folder / f"{number}{suffix}", text.encode()))
         self._entries.append((time, f"{self._folder.name}/{number}{suffix}"))
         disk.write(self._write_list)
 

@@ -99,11 +99,12 @@ def von_mises(stress: Floats) -> Floats:
     return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
 
 
-def slave_points(contacts: Iterable[AnyContact]) -> pyvista.PolyData | None:
-    """The slave points of all contacts on this rank where they are now; None without a contact.
+def slave_points(contacts: Iterable[AnyContact], comm: Any) -> pyvista.PolyData | None:
+    """The slave points of all contacts where they are now; None but on the first rank.
 
     Args:
         contacts: The contacts.
+        comm: Communicator of the mesh.
 
     Returns:
         Points with `contact` (its number), `pass` (1 on the master of two half passes, else 0),
@@ -116,7 +117,8 @@ def slave_points(contacts: Iterable[AnyContact]) -> pyvista.PolyData | None:
     """
     import pyvista
 
-    parts = [_point_data(i, contact) for i, contact in enumerate(contacts)]
+    local = [_point_data(i, contact) for i, contact in enumerate(contacts)]
+    parts = [part for rank in comm.gather(local) or [] for part in rank]
     if not parts:
         return None
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
