@@ -86,6 +86,7 @@ class Together:
         codes = self.met(code, PATIENCE if code else float("inf"))
         if codes is None:
             self._speak()
+            os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # one line says why, MPI need not add one
             self._comm.Abort(code)
             return code
         failed = [rank for rank, one in enumerate(codes) if one]
@@ -108,8 +109,6 @@ def started_together() -> Together | None:
     """
     if not any(name in os.environ for name in _TOLD):
         return None
-    # one line says why it ended, MPICH need not say that it did
-    os.environ.setdefault("MPIR_CVAR_SUPPRESS_ABORT_MESSAGE", "1")
     from anisocontact._fenicsx import MPI
 
     return Together(MPI.COMM_WORLD)

@@ -268,13 +268,12 @@ def test_a_full_disk_loses_nothing(monkeypatch, capsys, case, whole, victim):
 
     The named file fails from the third accepted increment on.
     """
-    from anisocontact.results import writer
+    from anisocontact.results import collection, writer
     from anisocontact.results.history import History
-    from anisocontact.results.paraview import Collection
 
     owner, name = {
         "history": (History, "append"),
-        "fields": (Collection, "add"),
+        "fields": (collection, "_write"),
         "summary": (writer, "write_text"),
         "checkpoint": (writer, "save_checkpoint"),
         "log": (writer.Writer, "_append"),
