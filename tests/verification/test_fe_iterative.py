@@ -66,13 +66,14 @@ def _pair(
     upper = BoxSpec((0, 0, 0), (1, 1, 0.5), (n, n, n // 2), **shape)
     base = BoxSpec((-0.5, -0.5, -0.5), (2, 2, 0.5), (m, m, max(1, m // 4)), **shape)
     model = build_box({"block": upper, "base": base})
+    extra = {"augmentation": augmentation} if augmentation else {}
     contact = kind(
         model,
         "block.bottom",
         "base.top",
         law=PairLaw(*_laws(penalty)),
         current_area=False,
-        augmentation=augmentation,
+        **extra,
     )
     made = make_material(**(material or ELASTIC))
     return Problem(model, {"block": made, "base": made}, [contact], **options)

@@ -31,7 +31,7 @@ LOOSEST = 1e-4
 #: Share of Newton's tolerance that a last correction may leave.
 LAST = 0.1
 #: Residual of a correction where multipliers follow, over the forces out of balance; over all.
-FINE, FINEST = 1e-5, 1e-12
+FINE, FINEST = 1e-8, 1e-14
 #: Stands for a residual that is zero.
 TINY = 1e-300
 #: Solutions without convergence after which the log says what else there is.
