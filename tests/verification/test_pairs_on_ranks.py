@@ -128,7 +128,7 @@ def test_restart_on_others(folder: Path, before: int, after: int) -> None:
     """A run that was stopped goes on where the mesh is cut into another number of parts.
 
     Requirement: 1e-10. Source: the run that was not stopped. Tolerance 1e-11: sums in another
-    order; 2e-13 measured.
+    order.
     """
     names = ("two-half", "single", "folded")
     start(before, folder, "stop", *names)
