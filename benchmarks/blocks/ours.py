@@ -68,6 +68,7 @@ displacement = {{ "block.top" = {{ x = {ALONG} }} }}
 
 [output]
 every = {PRESSES + drags}
+pictures = false
 
 [solver]
 strategy = "{strategy}"

@@ -233,6 +233,17 @@ def test_report_is_made_again_from_the_folder(capsys, case, monkeypatch):
     assert (out / "pictures" / "pressure.png").is_file()
 
 
+def test_no_pictures_until_they_are_asked_for(capsys, case):
+    """`output.pictures = false`: the run draws nothing, `report` does."""
+    case.write_text(case.read_text().replace("[output]", "[output]\npictures = false"))
+    out = case.parent / "out"
+    assert main(["run", str(case), "-o", str(out)]) == 0
+    assert not (out / "report.html").exists()
+    assert not (out / "pictures").exists()
+    assert main(["report", str(out)]) == 0
+    assert (out / "report.html").is_file()
+
+
 @pytest.mark.parametrize("kind", ["none", "empty", "damaged", "trace"])
 def test_report_of_no_results_is_one_line(capsys, tmp_path, kind):
     folder = tmp_path / "out"

@@ -17,6 +17,7 @@ from anisocontact.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.augmentation import NEWTON, SCHEMES, UZAWA, Augmentation
 from anisocontact.case.bodies import Mesh, mesh_type
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
+from anisocontact.case.quantity import Quantity
 from anisocontact.case.quantity import number as _number
 from anisocontact.case.quantity import word as _word
 from anisocontact.case.registered import Key, OneOf, Registered, default_of
@@ -25,7 +26,7 @@ from anisocontact.case.section import Section
 from anisocontact.interface import Interface
 from anisocontact.laws import SIDES, Adhesion, Friction, NormalLaw
 from anisocontact.limits import Limits
-from anisocontact.registry import Entry
+from anisocontact.registry import Entry, Parameter
 from anisocontact.strategies import AUTO, STRATEGIES
 
 __all__ = [
@@ -71,6 +72,18 @@ class Output(Section):
         int,
         _number("integer", "1", "fields are written every so many increments", "positive"),
     ] = 1
+    pictures: Annotated[
+        bool,
+        Quantity(
+            Parameter(
+                "",
+                "flag",
+                "1",
+                "whether report.html and its pictures are made at the end; "
+                "`anisocontact report` makes them at any time",
+            )
+        ),
+    ] = True
 
 
 class Solver(Section):

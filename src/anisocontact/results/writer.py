@@ -40,6 +40,7 @@ class Writer:
         masters: Name of the master of each contact; the name of the contact if not given.
         title: Heading of the report.
         every: Fields are written every so many increments, and at the end of each step.
+        pictures: Whether the report with its pictures is made at the end.
         case: Text of the case file, kept beside the results.
         resumed: What `state` gave: the folder is that of a run which goes on.
 
@@ -60,6 +61,7 @@ class Writer:
         masters: Sequence[str] = (),
         title: str = "",
         every: int = 1,
+        pictures: bool = True,
         case: str = "",
         resumed: Mapping[str, Any] | None = None,
     ) -> None:
@@ -67,6 +69,7 @@ class Writer:
         self._problem = problem
         self._steps = list(steps)
         self._every = every
+        self._pictures = pictures
         self._increments = 0
         self._disk = Disk(problem.model.mesh.comm)
         self.folder = Path(folder)
@@ -227,7 +230,8 @@ class Writer:
         found = at_end(self._problem.contacts, self.summary["contacts"], self.summary["energy"])
         self.summary["warnings"] = [*self._at_start, *found]
         self._write_summary()
-        self._disk.write(self._report)
+        if self._pictures:
+            self._disk.write(self._report)
 
     def abandon(self, message: str, details: str = "") -> None:
         """Note the end of a run in which the other processes are stuck; any of them may do it.
