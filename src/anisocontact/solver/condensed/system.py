@@ -25,6 +25,8 @@ Flags = npt.NDArray[np.bool_]
 _SAMPLES = 8
 #: Residual of a correction over the right-hand side, far from the solution.
 _ROUGH = 1e-2
+#: The same where the last correction has not brought the forces nearer to balance.
+_CAREFUL = 1e-5
 #: The same where multipliers follow, over the forces out of balance, and over all.
 _FINE, _FINEST = 1e-5, 1e-13
 _TINY = float(np.finfo(np.float64).tiny)
@@ -83,6 +85,7 @@ class ContactSystem:
         self.tolerance = TOLERANCE
         self.outgrown = False
         self._norm = 0.0
+        self._before = np.inf
         self._dt, self._load_norm = 0.0, 0.0
         self._a, self._b, self._g = np.zeros(0), np.zeros(0), np.zeros(len(bulk.contact))
         self._evaluated: Floats | None = None
@@ -109,7 +112,7 @@ class ContactSystem:
         self._b = self.patterns.loads(free)
         self._g = self.patterns.load(self._a, self._b)
         self._load_norm = float(np.hypot(np.linalg.norm(load), np.linalg.norm(self._rigid.loads())))
-        self._dt = dt
+        self._dt, self._before = dt, np.inf
         self._v[self.bulk.prescribed] = supports
         self._values = self._rigid.prescribed()
         self._evaluated = None
@@ -233,8 +236,11 @@ class ContactSystem:
     def apply(self, pc: Any, b: Vec, x: Vec) -> None:
         """Newton correction, for PETSc: a preconditioner that is the solution."""
         relative = float(np.linalg.norm(b.array_r)) / max(self.force_scale, _TINY)
-        # Newton squares the residual: no correction has to be better than that or than asked for
-        rtol = max(min(_ROUGH, relative), 0.1 * self.tolerance / max(relative, _TINY))
+        # Newton squares the residual: no correction has to be better than that or than asked for;
+        # one that is rough takes points of a stiff contact from one status to another and back
+        rough = _ROUGH if relative < self._before else _CAREFUL
+        self._before = 0.5 * relative
+        rtol = max(min(rough, relative), 0.1 * self.tolerance / max(relative, _TINY))
         if self.follows:
             # forces that take violations away are large beside those that are out of balance
             size = max(float(np.linalg.norm(b.array_r)), _TINY)
