@@ -79,7 +79,7 @@ def count(problem: Problem, clock: Clock) -> None:
         for method in CONTACT:
             if hasattr(contact, method):
                 clock.count(contact, method, "contact")
-    coupled = problem._coupled
+    coupled = problem._tangent.coupled
     if coupled is not None:
         for method in ("make_room", "add"):
             clock.count(coupled, method, "contact")

@@ -1,9 +1,13 @@
-"""What a problem goes on from, but for the history of its contacts."""
+"""What a problem goes on from: the state of its bodies and the history of its contacts."""
 
 from __future__ import annotations
 
-import numpy as np
+from collections.abc import Sequence
 
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact import AnyContact
 from anisocontact.solver.accepted import AcceptedState
 from anisocontact.solver.attached import Attachments
 from anisocontact.solver.persistent import Arrays, Persistent
@@ -69,3 +73,25 @@ class Memory:
             "stabilisation": np.array([stabilisation.energy]),
         }
         return nodal, common | own | rigid.persistent()
+
+
+def persistent_points(contacts: Sequence[AnyContact]) -> list[Arrays]:
+    """History of every pass over slave points."""
+    return [part.persistent() for contact in contacts for part in contact.parts]
+
+
+def restore_points(
+    contacts: Sequence[AnyContact], kept: Sequence[Arrays], nodal: npt.NDArray[np.float64]
+) -> None:
+    """Go on from what `persistent_points` gave.
+
+    Args:
+        contacts: The contacts.
+        kept: The histories.
+        nodal: Displacement of the local nodes in that state, (nodes, 3), length.
+    """
+    points = iter(kept)
+    for contact in contacts:
+        for part in contact.parts:
+            part.restore(next(points), nodal)
+        contact.rejoin()

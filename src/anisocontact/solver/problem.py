@@ -8,34 +8,26 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, PETSc, Vec, fem
-from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
-from anisocontact.contact import AnyContact, Contact
-from anisocontact.errors import InputError
+from anisocontact._fenicsx import Mat, Vec, fem
+from anisocontact.bulk import LinearBulk, Material
+from anisocontact.contact import AnyContact
 from anisocontact.mesh import Model
 from anisocontact.processes import Together
 from anisocontact.solver.accepted import AcceptedState
-from anisocontact.solver.attached import Attachments, ElasticSupport, Spring
+from anisocontact.solver.attached import ElasticSupport, Spring
+from anisocontact.solver.balance import Balance, Place, balance, follow
 from anisocontact.solver.cells import DeformedCells
-from anisocontact.solver.constraints import Constraints
-from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.interior import PENDING, Interior
-from anisocontact.solver.layout import Layout
-from anisocontact.solver.loads import Loads
-from anisocontact.solver.memory import BEGUN, Memory
+from anisocontact.solver.memory import BEGUN, Memory, persistent_points, restore_points
+from anisocontact.solver.outcome import energies, reactions
+from anisocontact.solver.parts import make_parts
 from anisocontact.solver.persistent import Persistent, under
 from anisocontact.solver.reduction import Reduction
-from anisocontact.solver.rigid import RigidBodies
-from anisocontact.solver.stabilisation import Stabilisation
 from anisocontact.solver.steps import Step
 from anisocontact.solver.supports import Supports
+from anisocontact.solver.tangent import Tangent, led_unknowns
 
 Floats = npt.NDArray[np.float64]
-
-#: Share of `|diag(K) u|` and of `Contact.lever` that is round-off of the forces.
-ROUND_OFF = 16.0 * float(np.finfo(np.float64).eps)
-#: Share of the loads that may be left out of balance as round-off.
-LOAD_SHARE = 1e-6
 
 
 class Problem:
@@ -86,52 +78,28 @@ class Problem:
         symmetry: Sequence[str] = (),
         stabilised: bool = True,
     ) -> None:
-        _check(model, materials, contacts)
+        self._parts = parts = make_parts(model, materials, contacts, attached, symmetry, stabilised)
         self.model = model
         self.materials = dict(materials)
-        self.contacts = list(contacts)
-        linear = all(material.linear for material in materials.values())
-        self.bulk: LinearBulk | NonlinearBulk = (
-            LinearBulk(model, materials) if linear else NonlinearBulk(model, materials)
-        )
+        self.contacts, self.bulk, self.rigid = parts.contacts, parts.bulk, parts.rigid
+        self.layout, self.attached = parts.layout, parts.attached
+        self.supports, self.loads = parts.supports, parts.loads
+        self.constraints, self.stabilisation = parts.constraints, parts.stabilisation
         finite = [name for name, material in materials.items() if not material.linear]
         self._cells = DeformedCells(model, finite) if finite else None
         self._comm = model.mesh.comm
         self.together = Together(self._comm)
-        self.rigid = RigidBodies(self.contacts, self._comm)
-        self.layout = Layout(model.space, self.rigid.size)
-        self._analytic = [c for c in self.contacts if isinstance(c, Contact)]
-        self._meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
-        self.attached = Attachments(attached, model)
-        extra = self.rigid.size // 3
-        self._coupled = (
-            CoupledTangent(self.bulk.stiffness, model.space, extra)
-            if self._meshed or extra or self.attached.coupling
-            else None
-        )
-        self.supports = Supports(model)
-        self.loads = Loads(model, materials)
+        self._tangent = Tangent(parts, model.space)
         self._u: Any = fem.Function(model.space, name="displacement")
         self.reduction: Reduction | None = None
         self.force_scale = 0.0
         self.round_off = 0.0
-        self._norm = 0.0
-        self._load: Floats = np.zeros(self._owned)
+        self._balance = Balance.none(self._owned)
         self._level = 0.0
         self._dt = 0.0
-        self._outside: Floats = np.zeros(self._owned)
         self._evaluated: Floats | None = None
         self._of_mesh = self.bulk.stiffness.createVecRight()
         self._accepted = AcceptedState(self.layout)
-        self.constraints = Constraints(model, symmetry, self._accepted.x)
-        diagonal = self.bulk.diagonal
-        self._support_scale = diagonal.sum() / diagonal.getSize()
-        for contact in self.contacts:
-            contact.suit(np.array(diagonal.array_r).reshape(-1, 3))
-        holders = {model.body_of(group) for one in attached for group in one.groups}
-        self.stabilisation = Stabilisation(
-            model, self.contacts, self._support_scale, holders, stabilised
-        )
         self._memory = Memory(self._accepted, self.rigid, self.attached, self.stabilisation)
 
     @property
@@ -140,6 +108,11 @@ class Problem:
         if self.reduction is not None:
             self.reduction.recover()
         return self._u
+
+    @property
+    def _nodal(self) -> Floats:
+        """Displacement of the local nodes at the last state of all unknowns, (nodes, 3)."""
+        return np.asarray(self._u.x.array.reshape(-1, 3))
 
     @property
     def level(self) -> float:
@@ -153,7 +126,7 @@ class Problem:
 
     def dead_load(self) -> Floats:
         """Loads on the unknowns this rank owns where they do not depend on the state, force."""
-        return self.layout.assembled(self.loads.force(self._u.x.array.reshape(-1, 3)))
+        return self.layout.assembled(self.loads.force(self._nodal))
 
     @property
     def outside(self) -> Floats:
@@ -173,7 +146,7 @@ class Problem:
     @property
     def support_scale(self) -> float:
         """Force for a unit of length in the rows of given unknowns, force/length."""
-        return float(self._support_scale)
+        return float(self._parts.support_scale)
 
     @property
     def bulk_state(self) -> tuple[float, ...] | None:
@@ -182,12 +155,9 @@ class Problem:
 
     def given(self) -> npt.NDArray[np.int64]:
         """Unknowns whose row says what they are, prescribed or constrained: local numbers."""
-        held = np.flatnonzero(self.rigid.held()) if self.layout.last_rank else np.zeros(0, int)
-        return np.unique(
-            np.concatenate(
-                [self.supports.unknowns, self.constraints.followers(), self._owned + held]
-            )
-        ).astype(np.int64)
+        led = led_unknowns(self._parts)
+        found = [self.supports.unknowns, self.constraints.followers(), led]
+        return np.unique(np.concatenate(found)).astype(np.int64)
 
     @property
     def holding(self) -> list[str]:
@@ -204,11 +174,7 @@ class Problem:
 
     def new_tangent(self) -> Mat:
         """Matrix for `tangent`."""
-        if self._coupled is not None:
-            return self._coupled.new_matrix()
-        matrix = self.bulk.stiffness.duplicate()
-        matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
-        return matrix
+        return self._tangent.new_matrix()
 
     def begin(self, step: Step, again: bool = False) -> None:
         """Take over the loads of a step from the accepted state.
@@ -273,68 +239,20 @@ class Problem:
         Returns:
             Residual, force.
         """
-        moved_bodies = self._set_unknowns(x)
-        forces = np.zeros(len(self._u.x.array))
-        failed = False
-        for contact in self.contacts:
-            response = contact.update(self._u.x.array.reshape(-1, 3), self._dt)
-            failed = failed or bool(response.failed.any())
-            contact.add_force(forces.reshape(-1, 3))
-        nodal = self._u.x.array.reshape(-1, 3)
-        self.attached.add_force(nodal, forces.reshape(-1, 3))
-        contact_force = self.layout.assembled(forces)
-        self._load = self.layout.assembled(self.loads.force(nodal))
-        rigid_load = float(np.linalg.norm(self.rigid.loads()))
-        load_norm = float(np.hypot(self.layout.norm(self._load), rigid_load))
-        u = self._of_mesh
-        outside = self.bulk.force(u).array_r - contact_force
-        if self.stabilisation:
-            outside -= self.stabilisation.force(nodal).reshape(-1)[: self._owned]
-        self._outside = self.constraints.tied(outside)
-        self._load = self.constraints.tied(self._load)
-        residual = self._outside - self._load
-        residual = self.constraints.reduce(residual, x, self._support_scale)
-        rows = self.supports.unknowns
-        held = np.concatenate([rows, self.constraints.planes.slaves])
-        residual[rows] = self._support_scale * (u.array_r[rows] - self.supports.at(self._level))
-        of_bodies = self.rigid.residual(moved_bodies, self._support_scale)
-        at_work = (self._outside[held], contact_force, residual[rows])
-        self.force_scale = max(
-            load_norm,
-            *map(self.layout.norm, at_work),
-            float(np.linalg.norm(self.rigid.spring_forces())),
-            float(np.linalg.norm(of_bodies[self.rigid.held()])),
-        )
-        levers = np.array([contact.lever() for contact in self.contacts])
-        moved = np.abs(u.array_r) + self.bulk.rest_length
-        stiff = self.layout.norm(self.bulk.diagonal.array_r * moved) + self.layout.norm(levers)
-        self.round_off = ROUND_OFF * stiff
-        if load_norm > 0.0:
-            self.round_off = min(self.round_off, LOAD_SHARE * load_norm)
-        if self._comm.allreduce(failed):
-            residual[:] = np.nan
-        whole = np.append(residual, of_bodies) if self.layout.last_rank else residual
-        return whole - self._lag(whole) if self.follows else whole
-
-    def _lag(self, residual: Floats) -> Floats:
-        """Forces that a correction takes beyond those of the trial, see `ContactRecord.add_lag`."""
-        self._norm = float(np.sqrt(self._comm.allreduce(float(residual @ residual))))
-        forces = np.zeros(len(self._u.x.array))
-        for contact in self.contacts:
-            contact.add_lag(forces.reshape(-1, 3))
-        lag = self.constraints.handed(self.layout.assembled(forces))
-        lag[self.supports.unknowns] = 0.0
-        of_bodies = self.rigid.lag()
-        return np.append(lag, of_bodies) if self.layout.last_rank else lag
+        rigid = self._set_unknowns(x)
+        place = Place(x, self._of_mesh, self._nodal, rigid)
+        self._balance = found = balance(self._parts, place, self._level, self._dt)
+        self.force_scale, self.round_off = found.force_scale, found.round_off
+        return found.residual
 
     @property
     def follows(self) -> bool:
         """Whether multipliers follow every correction."""
-        return any(contact.follows for contact in self.contacts)
+        return follow(self._parts)
 
     def unbalanced(self, norm: float) -> float:
         """Norm of the residual with the multipliers as they are, see `System`."""
-        return self._norm if self.follows else norm
+        return self._balance.norm if self.follows else norm
 
     def held(self) -> bool:
         """Whether multipliers that follow are what the last evaluation answers to them."""
@@ -347,33 +265,13 @@ class Problem:
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown."""
-        grown = False
+        self._evaluate_at(x)
+        return self._tangent.write(out)
+
+    def _evaluate_at(self, x: Vec) -> None:
+        """Evaluate a state, unless it is that of the last evaluation."""
         if self._evaluated is None or not np.array_equal(self._evaluated, x.array_r):
             self.evaluate(x)
-        if self._coupled is not None:
-            couplings = [k for c in self._meshed for k in c.couplings()]
-            couplings += self.rigid.couplings(self._coupled.first_extra)
-            couplings += self.attached.couplings()
-            grown = self._coupled.make_room(out, couplings)
-        self.bulk.tangent(out)
-        for contact in self._analytic:
-            contact.add_tangent(out)
-        self.loads.add_tangent(out)
-        self.attached.add_tangent(out)
-        self.stabilisation.add_tangent(out)
-        out.assemble()
-        if self._coupled is not None:
-            self._coupled.add(out)
-        self.constraints.transform(out, self._support_scale)
-        held = (
-            np.flatnonzero(self.rigid.held())
-            if self.layout.last_rank
-            else np.zeros(0, dtype=np.int64)
-        )
-        rows = np.concatenate([self.supports.unknowns, self._owned + held])
-        first, _ = out.getOwnershipRange()
-        out.zeroRows((first + rows).astype(PETSc.IntType), self._support_scale)
-        return grown
 
     def improve(self, x: Vec) -> bool:
         """Better multipliers of contacts, weaker springs of stabilisation; whether any changed.
@@ -381,11 +279,10 @@ class Problem:
         Raises:
             NotHeldError: They do not converge.
         """
-        if self._evaluated is None or not np.array_equal(self._evaluated, x.array_r):
-            self.evaluate(x)
-        moved = self.stabilisation.improve(self._u.x.array.reshape(-1, 3), self.force_scale)
+        self._evaluate_at(x)
+        moved = self.stabilisation.improve(self._nodal, self.force_scale)
         if moved and self.stabilisation.untouched():
-            self._accepted.go_on(x, self._outside)
+            self._accepted.go_on(x, self._balance.outside)
         return any([contact.improve() for contact in self.contacts]) or moved
 
     def soften(self) -> bool:
@@ -442,10 +339,8 @@ class Problem:
         nodal, common = self._memory.persistent()
         if self.reduction is not None:
             nodal |= {f"{PENDING}{name}": v for name, v in self.reduction.pending().items()}
-        if self._coupled is not None and self._comm.size == 1:
-            common["couplings"] = self._coupled.pattern
-        points = [part.persistent() for contact in self.contacts for part in contact.parts]
-        return Persistent(nodal, points, common)
+        points = persistent_points(self.contacts)
+        return Persistent(nodal, points, common | self._tangent.persistent())
 
     def restore(self, kept: Persistent, steps: Sequence[Step]) -> None:
         """Go on from what `persistent` gave.
@@ -461,14 +356,8 @@ class Problem:
         for step in steps[-1:]:
             self.begin(step, again=True)
         self._put(kept, "")
-        # numbers of nodes are those of one process
-        if self._coupled is not None and self._comm.size == 1 and "couplings" in kept.common:
-            self._coupled.pattern = kept.common["couplings"]
-        points = iter(kept.points)
-        for contact in self.contacts:
-            for part in contact.parts:
-                part.restore(next(points), self._u.x.array.reshape(-1, 3))
-            contact.rejoin()
+        self._tangent.restore(kept.common)
+        restore_points(self.contacts, kept.points, self._nodal)
         pending = under(PENDING, kept.nodal)
         self.reduction = Interior(self, pending) if pending else None
 
@@ -485,7 +374,7 @@ class Problem:
         """
         if self._cells is None:
             return np.zeros((0, 3))
-        return self._cells.inverted(self._u.x.array.reshape(-1, 3))
+        return self._cells.inverted(self._nodal)
 
     def accepted(self) -> Vec:
         """Copy of the accepted displacements."""
@@ -500,12 +389,7 @@ class Problem:
             if not self.constraints.planes:
                 return self.reduction.reactions()
             self.reduction.recover()  # forces of the planes need all displacements on them
-        across, rest = self.constraints.planes.forces(self._accepted.reaction)
-        sums = self.supports.reactions(rest)
-        attached = self.attached.reactions(self._u.x.array.reshape(-1, 3))
-        for name, force in (*across.items(), *attached.items()):
-            sums[name] = sums.get(name, 0.0) + force
-        return sums
+        return reactions(self._parts, self._accepted.reaction, self._nodal)
 
     def mean_displacement(self, group: str, weights: Floats) -> Floats:
         """Mean displacement of a facet group in the accepted state, (3,), length.
@@ -516,7 +400,7 @@ class Problem:
         """
         if self.reduction is not None:
             return self.reduction.mean(group, weights)
-        return np.asarray(self._comm.allreduce(weights @ self._u.x.array.reshape(-1, 3)))
+        return np.asarray(self._comm.allreduce(weights @ self._nodal))
 
     def energies(self) -> dict[str, float]:
         """Energies of the accepted state, force times length.
@@ -530,20 +414,11 @@ class Problem:
             all others: first order in the size of the increments.
         """
         if self.reduction is not None:
-            stored = {"elastic": self.reduction.elastic()}
+            elastic = self.reduction.elastic()
         else:
             self._of_mesh.array[:] = self._accepted.x.array_r[: self._owned]
-            stored = {"elastic": self.bulk.energy(self._of_mesh)}
-        stored |= dict.fromkeys(("adhesion", "normal", "friction", "viscous", "stabilisation"), 0.0)
-        stored["stabilisation"] = self.stabilisation.energy
-        for contact in self.contacts:
-            for name, value in contact.energies().items():
-                stored[name] = stored.get(name, 0.0) + value
-        if self.attached or any(body.springs.any() for body in self.rigid.bodies):
-            now = self._u.x.array.reshape(-1, 3)
-            stored["springs"] = self.rigid.energy() + self.attached.energy(now)
-        residual = self._accepted.work - sum(stored.values())
-        return {"external": self._accepted.work} | stored | {"residual": residual}
+            elastic = self.bulk.energy(self._of_mesh)
+        return energies(self._parts, elastic, self._accepted.work, self._nodal)
 
     def _set_unknowns(self, x: Vec) -> Floats:
         """Bring all bodies to a state; on every rank the unknowns of rigid bodies."""
@@ -557,22 +432,6 @@ class Problem:
 
     def _commit_bulk(self, x: Vec) -> float:
         self.evaluate(x)
-        self._accepted.go_on(x, self._outside)
-        self._accepted.take(self._outside, self._load)
-        return self._accepted.way_work + self.attached.commit(self._u.x.array.reshape(-1, 3))
-
-
-def _check(
-    model: Model,
-    materials: Mapping[str, Material],
-    contacts: Sequence[AnyContact],
-) -> None:
-    for body in materials:
-        model.cells(body, f"material.{body}")
-    for body in model.body_names():
-        if body not in materials:
-            raise InputError(f"body {body!r} has no material", "material")
-    names = [contact.name for contact in contacts]
-    for name in names:
-        if names.count(name) > 1:
-            raise InputError(f"two contacts have the name {name!r}", "contact")
+        self._accepted.go_on(x, self._balance.outside)
+        self._accepted.take(self._balance.outside, self._balance.load)
+        return self._accepted.way_work + self.attached.commit(self._nodal)

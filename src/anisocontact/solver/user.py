@@ -22,9 +22,9 @@ from anisocontact._fenicsx import (
 )
 from anisocontact.contact import AnyContact, Contact
 from anisocontact.errors import InputError
+from anisocontact.solver.balance import ROUND_OFF
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.newton import Newton, OptionValue
-from anisocontact.solver.problem import ROUND_OFF
 
 Floats = npt.NDArray[np.float64]
 

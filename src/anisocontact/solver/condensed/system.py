@@ -12,11 +12,12 @@ import scipy.sparse
 from anisocontact._fenicsx import Mat, PETSc, Vec
 from anisocontact.contact import AnyContact, Contact
 from anisocontact.contact.transfer import Couplings
+from anisocontact.solver.balance import LOAD_SHARE, ROUND_OFF
 from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor
 from anisocontact.solver.condensed.parts import Condensation
 from anisocontact.solver.condensed.patterns import Patterns, State
 from anisocontact.solver.newton import TOLERANCE
-from anisocontact.solver.problem import LOAD_SHARE, ROUND_OFF, Problem
+from anisocontact.solver.problem import Problem
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
