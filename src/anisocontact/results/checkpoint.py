@@ -30,7 +30,7 @@ Ints = npt.NDArray[np.int64]
 
 NAME = "checkpoint.npz"
 #: Changes with the meaning of the file.
-FORMAT = 3
+FORMAT = 4
 #: Distance within which two positions are the same, over the size of the mesh.
 SAME = 1e-9
 

@@ -38,7 +38,8 @@ class Attempts:
     The first attempt starts from the extrapolated state with a line search, the second from the
     accepted state with full steps: a line search stops in front of a jump of the law. Where the
     status of points alternated, a third one takes a share of each correction: half as much as
-    before where it still alternates, twice as much where it does not.
+    before where it still alternates, twice as much where it does not. Where contact may hold free
+    bodies without springs, an attempt without them comes before all these.
 
     Args:
         problem: The problem.
@@ -70,6 +71,8 @@ class Attempts:
         ]
         if self._problem.follows and first is last:
             del ways[0]  # there is no line search, so both would be the same
+        if self._problem.stabilisation.trusts:
+            ways.insert(0, (first, False, None))
         for start, full_steps, damping in ways:
             result, culprits = self._attempt(start.copy(), full_steps, damping)
             spent += result.iterations
@@ -91,9 +94,13 @@ class Attempts:
             result = self._newton.solve(x, full_steps, damping)
             if not result.reason and problem.comm.allreduce(len(problem.inverted_cells())):
                 result = replace(result, reason="cells are turned inside out")
-            if not result.reason:
+            lets_go = not result.reason and problem.contact_lets_go(x)
+            if not result.reason and not lets_go:
                 problem.commit(x)
                 return result, []
+            problem.stabilisation.careful = True
+            if lets_go:
+                return replace(result, reason="contact alone does not hold all bodies"), []
             return result, find_culprits(problem, self._watch, self._newton.residual)
         except (Exception, KeyboardInterrupt):
             problem.together.met()

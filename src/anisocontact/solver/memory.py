@@ -61,7 +61,8 @@ class Memory:
             for values in (kept.nodal, kept.common)
         )
         accepted.restore(nodal, common)
-        stabilisation.energy = float(common["stabilisation"][0])
+        stabilisation.energy, careful = map(float, common["stabilisation"])
+        stabilisation.careful = bool(careful)
         rigid.restore(common)
         attached.restore(common["springs"])
 
@@ -70,7 +71,7 @@ class Memory:
         nodal, common = accepted.persistent()
         own = {
             "springs": attached.persistent(),
-            "stabilisation": np.array([stabilisation.energy]),
+            "stabilisation": np.array([stabilisation.energy, stabilisation.careful]),
         }
         return nodal, common | own | rigid.persistent()
 

@@ -285,6 +285,13 @@ class Problem:
             self._accepted.go_on(x, self._balance.outside)
         return any([contact.improve() for contact in self.contacts]) or moved
 
+    def contact_lets_go(self, x: Vec) -> bool:
+        """Whether a body without springs is doubtful in a state, see `Stabilisation.doubtful`."""
+        if not self.stabilisation.trusts:
+            return False
+        self._evaluate_at(x)
+        return self.stabilisation.doubtful(self._nodal)
+
     def soften(self) -> bool:
         """After a solution that failed: softer penalties of augmented contacts; whether any."""
         return any([contact.soften() for contact in self.contacts])

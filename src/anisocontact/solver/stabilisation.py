@@ -4,6 +4,9 @@ Springs of equal stiffness c at the nodes of such a body pull it to where it was
 becomes the anchor of the next one, and c fades as soon as the body is touched, until the springs
 carry next to nothing: the iteration of the proximal point [Rockafellar 1976]. So what is accepted
 is the equilibrium without springs.
+
+A body that sticks where an increment begins needs none as long as contact holds all its motions:
+the first attempt goes without, and those with springs follow where it fails.
 """
 
 from __future__ import annotations
@@ -17,6 +20,7 @@ from anisocontact._fenicsx import Mat, PETSc
 from anisocontact.contact import AnyContact, Contact, NotHeldError, facet_size
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
+from anisocontact.python_law import PythonInterface
 from anisocontact.solver.free_modes import Body, Held, bodies, free_modes, named
 
 Floats = npt.NDArray[np.float64]
@@ -29,6 +33,8 @@ FADE = 0.1
 WITHOUT_LOADS, LEAST = 1e-6, 1e-11
 #: Equilibria after which a body counts as one that flies off.
 MOST = 60
+#: Sticking points that can hold all motions of a body.
+ENOUGH = 3
 
 
 class _Free:
@@ -39,11 +45,20 @@ class _Free:
         modes: Its free motions in words.
         contacts: Contacts that can hold it.
         size: How far the springs let it move at once: a facet, length.
+        stiffness: Of the springs, force/length.
+        trusted: Whether contact alone is to hold it in this attempt.
     """
 
     def __init__(self, body: Body, modes: str, contacts: Sequence[AnyContact], size: float) -> None:
         self.body, self.modes, self.contacts, self.size = body, modes, contacts, size
         self.stiffness = 0.0
+        self.trusted = False
+
+    def sticks(self) -> bool:
+        """Whether enough points stick in the trial, with a known stiffness, to hold it."""
+        laws = ((c, c.interface) for c in self.contacts)
+        stiff = [c for c, i in laws if not isinstance(i, PythonInterface) and i.penalties()[1] > 0]
+        return sum(c.counts()["stick"] for c in stiff) >= ENOUGH
 
     def touched(self) -> bool:
         """Whether one of its contacts is closed in the trial."""
@@ -62,6 +77,7 @@ class Stabilisation:
 
     Attributes:
         energy: What the springs have taken up and dissipated since the start, force times length.
+        careful: Whether bodies get springs also where they stick, until the step ends.
         notes: What is stabilised since the last `begin`, a line for each body.
     """
 
@@ -75,6 +91,7 @@ class Stabilisation:
     ) -> None:
         self.enabled = enabled
         self.energy = 0.0
+        self.careful = False
         self.notes: list[str] = []
         self._model = model
         self._contacts = list(contacts)
@@ -83,7 +100,8 @@ class Stabilisation:
         attached = set(attached)
         self._bodies = [body for body in bodies(model) if body.name not in attached]
         self._free: list[_Free] = []
-        self._anchor: Floats = np.zeros((0, 3))
+        self._begun: Floats = np.zeros((0, 3))
+        self._anchor: Floats = self._begun
         self._spent = 0.0
         self._count = 0
 
@@ -95,9 +113,14 @@ class Stabilisation:
         """Stiffness at each node of every body that is kept in reach, force/length."""
         return tuple(free.stiffness for free in self._free)
 
+    @property
+    def trusts(self) -> bool:
+        """Whether contact alone is to hold a body in this attempt."""
+        return any(free.trusted for free in self._free)
+
     def clear(self) -> None:
         """Nothing is free."""
-        self._free, self.notes = [], []
+        self._free, self.notes, self.careful = [], [], False
 
     def begin(self, held: Sequence[Held], step: str, now: bool = True) -> None:
         """Find out what a step leaves free.
@@ -128,11 +151,13 @@ class Stabilisation:
             u: Accepted displacement of the local nodes, (nodes, 3), length.
             load: Forces on the nodes this rank owns, (owned, 3).
         """
-        self._anchor, self._spent, self._count = u.copy(), 0.0, 0
+        self._begun = self._anchor = u.copy()
+        self._spent, self._count = 0.0, 0
         for free in self._free:
             total = self._comm.allreduce(load[free.body.nodes].sum(axis=0))
             needed = float(np.linalg.norm(total)) / (free.body.count * free.size)
-            free.stiffness = max(needed, WITHOUT_LOADS * self._scale)
+            free.trusted = not self.careful and free.sticks()
+            free.stiffness = 0.0 if free.trusted else max(needed, WITHOUT_LOADS * self._scale)
 
     def force(self, u: Floats) -> Floats:
         """Force of the springs on the local nodes, (nodes, 3)."""
@@ -179,9 +204,24 @@ class Stabilisation:
             )
         self._anchor = u.copy()
         for free in self._free:
-            if free.touched():
+            if free.touched() and not free.trusted:
                 free.stiffness = max(FADE * free.stiffness, LEAST * self._scale)
         return True
+
+    def doubtful(self, u: Floats) -> bool:
+        """Whether a body without springs no longer sticks, or has moved by more than a facet.
+
+        Its motions may then meet no stiffness: springs have to say where it is.
+
+        Args:
+            u: Displacement of the local nodes in equilibrium, (nodes, 3), length.
+        """
+        return any([not free.sticks() or self._far(free, u) for free in self._free if free.trusted])
+
+    def _far(self, free: _Free, u: Floats) -> bool:
+        nodes = free.body.nodes
+        way = np.linalg.norm(u[nodes] - self._begun[nodes], axis=1).max(initial=0.0)
+        return bool(max(self._comm.allgather(float(way))) > free.size)
 
     def untouched(self) -> bool:
         """Whether a free body is touched by nothing in the trial."""
