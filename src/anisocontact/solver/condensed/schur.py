@@ -80,8 +80,8 @@ class PartialFactor:
 
     Example:
         >>> factor = PartialFactor([0, 2, 4], [0, 1, 0, 1], [2.0, -1.0, -1.0, 2.0], np.array([0]))
-        >>> factor.schur.tolist(), factor.interior(np.array([[7.0], [4.0]])).ravel().tolist()
-        ([[1.5]], [0.0, 2.0])
+        >>> factor.schur.tolist(), factor.interior(np.array([[7.0], [4.0]])).round(9).tolist()
+        ([[1.5]], [[0.0], [2.0]])
     """
 
     def __init__(
