@@ -82,9 +82,12 @@ PairResult update_pair(const InterfaceLaw& law, const PointState& state, const P
   const LawAxes axes = law_axes(law, axes_at);
   if (!axes.valid()) return fail(Failure::direction);
   put_axes(axes, out.adhesion_axes, out.friction_axes);
-  const auto before = surface::tangent_plane(p.before);
+  std::optional<surface::Geometry<double>> before;
   std::optional<CommittedPoint> history;
-  if (state.facet >= 0) history.emplace(plane, before, p.master.now.position);
+  if (state.facet >= 0) {
+    before = surface::tangent_plane(p.before);
+    history.emplace(plane, *before, p.master.now.position);
+  }
   const CommittedPoint* committed = history ? &*history : nullptr;
   const FrameInput in = frame_input(gap, dt, pressure, state, committed, axes, plane);
   const FrameReaction r = react_in_frame<tangent>(law, state, in);
