@@ -10,34 +10,21 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._core import FacetPairs
-from anisocontact._fenicsx import facet_keys, facet_sides
 from anisocontact.augmentation import Augmentation
 from anisocontact.contact.adjust import adjusted
-from anisocontact.contact.facet_mesh import (
-    SlavePoints,
-    facet_mesh,
-    facet_rule,
-    group_area,
-    near_facets,
-)
-from anisocontact.contact.master_surface import MasterSurface
+from anisocontact.contact.facet_answer import Question, ask
 from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.point_tangent import PointTangent
 from anisocontact.contact.quadrature import default_degree
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.contact.semismooth import Base, Semismooth
+from anisocontact.contact.sides import check_sides, initial_state, located, make_sides
 from anisocontact.contact.transfer import Couplings, Transfer
-from anisocontact.errors import InputError
-from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSets, FacetSurface
-from anisocontact.interface import STATE, PairLaw, Response, State, as_state, raw_state
+from anisocontact.contact.transfer_work import transfer_work
+from anisocontact.facets import FacetProjections
+from anisocontact.interface import PairLaw, Response, State
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
-from anisocontact.surfaces import default_threads
-
-#: Code of the kernel for a point without a facet below it.
-OFF = 3
-#: Gap up to which a point may be in contact, as a share of the size of the facets: rounding.
-NEAR = 1e-6
 
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]
@@ -96,7 +83,7 @@ class FacetContact(ContactRecord):
         apart: float | None = None,
         name: str = "",
     ) -> None:
-        _check(model, slave, master, apart)
+        check_sides(model, slave, master, apart)
         self.master = master
         self.interface = law
         self.current_area = current_area
@@ -106,50 +93,24 @@ class FacetContact(ContactRecord):
         self._linear: PointTangent | None = None
         self._lag: Floats = np.zeros((0, 0, 3))
         self._transferred = 0.0
-        self._gathered = MasterSurface(model.space, model.facets(master))
-        self._reference, self._master = self._gathered.reference, self._gathered.facets
-        own = facet_mesh(model.space, model.facets(slave))
-        self._sides = own, facet_mesh(model.space, model.facets(master))
         if degree is None:
             degree = default_degree(model.order, augmentation is not None)
-        rule = facet_rule(own.topology, degree)
-        comm = model.mesh.comm
-        self._points = SlavePoints(own, rule, self._reference, current_area, weight, comm)
-        self._surface = FacetSurface(
-            self._reference, self._master.nodes, self._master.topology, self._master.flip
+        self._sides = sides = make_sides(
+            model, (slave, master), degree, reach, apart, current_area, weight
         )
-        kind = list(TOPOLOGIES).index(self._master.topology)
-        self._kinds = np.full(len(self._master.nodes), kind, dtype=np.int8)
-        self._threads = default_threads()
-        self.reach = reach if reach is not None else 2.0 * self._points.size
-        self._excluded: FacetSets | None = None
-        near = None
-        if apart is not None:
-            numbers = self._gathered.number(facet_keys(model.mesh, np.sort(model.facets(slave))))
-            near = near_facets(own, numbers, self._surface, self._reference, apart)
-            self._excluded = near.take(self._points.facet)
+        self._points, self._surface = sides.points, sides.surface
+        self._gathered, self._master = sides.gathered, sides.master
+        self.reach = sides.reach
         self._multipliers = None
-        self._now = self._reference
-        x = self._points.positions(self._now)
-        self._hint = self._surface.project(x, max_distance=self.reach, exclude=self._excluded)
+        self._now = self._reference = sides.reference
+        self._hint = sides.project(self._now)
         self._answer: dict[str, Any] = {}
-        self._transfer = (
-            Transfer(own, rule, self._master, self._surface, self.reach, near, comm)
-            if overlaps
-            else None
-        )
+        self._transfer = self._new_transfer() if overlaps else None
         self._handed: Mask = np.zeros(len(self._points.nodes), dtype=bool)
-        state = adjusted(self._initial(), adjust)
+        state = adjusted(initial_state(self._hint), adjust)
         start = self._respond(state, self._reference, 1.0, tangent=False)
         self._committed = (self._now, self._hint)
-        super().__init__(
-            model.space,
-            slave,
-            name or slave,
-            state,
-            start,
-            self._points.facet,
-        )
+        super().__init__(model.space, slave, name or slave, state, start, self._points.facet)
         if self._transfer is not None:
             self._transfer.place(self._reference)
         self._augment(augmentation, self._points.size, law)
@@ -182,8 +143,7 @@ class FacetContact(ContactRecord):
     def feet(self) -> Ints:
         """Local nodes of the master facets that points of the trial have below them."""
         assert self._hint is not None
-        on = self._hint.status == FACET_STATUS.index("on")
-        return np.unique(self._master.nodes[self._hint.facet[on]])
+        return np.unique(self._master.nodes[self._hint.facet[located(self._hint)]])
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
@@ -207,7 +167,7 @@ class FacetContact(ContactRecord):
 
     def _linearised(self, semismooth: Semismooth, dt: float) -> Snapshot:
         """A trial to which the multipliers have followed, with the derivative of a Newton step."""
-        hit = self._project(self._now, self._points.positions(self._now))
+        hit = self._project(self._now)
         self._follow(semismooth, hit)
         trial = self._ask(self._law, self._start, hit, dt, tangent=False)
         step = self._step(trial)
@@ -228,8 +188,7 @@ class FacetContact(ContactRecord):
         if self._base is None or self._linear is None or self._linear.at(self._now):
             return
         there = self._start.copy()
-        on = hit.status == FACET_STATUS.index("on")
-        there["facet"], there["xi"] = np.where(on, hit.facet, -1), np.nan_to_num(hit.xi)
+        there["facet"], there["xi"] = np.where(located(hit), hit.facet, -1), np.nan_to_num(hit.xi)
         self._start = semismooth.advance(
             self._start,
             self._base.after(self._linear.change(self._now), semismooth.share),
@@ -243,7 +202,9 @@ class FacetContact(ContactRecord):
             lost = self._comm.allgather(self._lost_off_the_end(self._trial))
             self.ran_off = np.concatenate(lost)
             if self._transfer is not None:
-                self._transferred += self._comm.allreduce(self._transfer_work(self._transfer))
+                step, ends = self._now - self._committed[0], (self._accepted, self.current)
+                work = transfer_work(self._sides, self._transfer, self._handed, step, ends)
+                self._transferred += self._comm.allreduce(work)
                 self._transfer.place(self._now)
         super().commit()
         self._committed = (self._now, self._hint)
@@ -252,38 +213,6 @@ class FacetContact(ContactRecord):
         """As of `ContactRecord`; with overlaps also "transfer", see `Transfer`."""
         own = super().energies()
         return own if self._transfer is None else own | {"transfer": self._transferred}
-
-    def _transfer_work(self, transfer: Transfer) -> float:
-        """Work of the increment that gaps and slips of the points do not see, over this rank.
-
-        They are measured at the feet of the points, forces act on the master over the overlaps:
-        the work of the force, its mean over the increment, on the difference of displacements.
-        """
-        old, new = (a.areas[:, None] * a.response.traction for a in (self._accepted, self.current))
-        force = np.where(self._handed[:, None], 0.5 * (old + new), 0.0)
-        step = self._now - self._committed[0]
-        out = np.zeros_like(step)
-        transfer.add_force(out, force)
-        handed = np.flatnonzero(self._handed & (self.current.response.state["facet"] >= 0))
-        facet, xi = (self.current.response.state[name][handed] for name in ("facet", "xi"))
-        shape, _, _ = self._surface.shapes(facet, xi)
-        nodes = self._master.nodes[facet]
-        feet = np.einsum("nk,nki->ni", shape[:, : nodes.shape[1]], step[nodes])
-        work = -float(np.sum(out * step) + np.sum(force[handed] * feet))
-        return work + self._crossing_energy()
-
-    def _crossing_energy(self) -> float:
-        """Stored energy of points that went off the master less that of points that came onto it.
-
-        They come from beside it, pressed in at once, which nothing has worked for.
-        """
-        before, now = self._accepted, self.current
-        stored = [
-            a.areas * (a.response.state["energy_normal"] + a.response.state["energy_adhesion"])
-            for a in (before, now)
-        ]
-        was, on = (a.response.state["facet"] >= 0 for a in (before, now))
-        return float(stored[0][was & ~on].sum() - stored[1][on & ~was].sum())
 
     def roll_back(self) -> None:
         """Forget the trial; the surface goes back to where it was."""
@@ -408,8 +337,7 @@ class FacetContact(ContactRecord):
         return float(np.linalg.norm(stiff * np.linalg.norm(self.current.points, axis=1)))
 
     def _respond(self, state: State, now: Floats, dt: float, *, tangent: bool) -> Snapshot:
-        hit = self._project(now, self._points.positions(now))
-        return self._ask(self._law, state, hit, dt, tangent=tangent)
+        return self._ask(self._law, state, self._project(now), dt, tangent=tangent)
 
     @property
     def _by_points(self) -> bool:
@@ -420,45 +348,13 @@ class FacetContact(ContactRecord):
         self, law: FacetPairs, state: State, hit: FacetProjections, dt: float, *, tangent: bool
     ) -> Snapshot:
         """What a law answers where the points are; forces and blocks go to `_answer`."""
-        slave, now = self._points, self._now
-        ask = law.update if self._by_points else law.assemble
-        self._answer = answer = ask(
-            raw_state(state),
-            dt,
-            slave.nodes,
-            slave.shape,
-            slave.gradient,
-            slave.weight,
-            slave.current_area,
-            now,
-            self._reference,
-            self._master.nodes,
-            self._kinds,
-            self._master.flip,
-            np.maximum(hit.facet, 0),
-            np.nan_to_num(hit.xi),
-            np.where(hit.status == FACET_STATUS.index("on"), hit.feature, np.int8(OFF)),
-            hit.edge,
-            self._may_touch(state, hit),
-            tangent,
-            self._threads,
-        )
-        lost = hit.status == FACET_STATUS.index("failed")
-        response = Response(
-            traction=answer["traction"],
-            tangent=np.empty((0, 3, 3)),
-            state=as_state(answer["state"]),
-            normal=answer["normal"],
-            directions_adhesion=answer["adhesion_axes"],
-            directions_friction=answer["friction_axes"],
-            failure=np.where(lost, np.int8(1), answer["failure"]),
-        )
-        return Snapshot(slave.positions(now), answer["area"], response)
+        question = Question(state, hit, self._now, dt, tangent, self._by_points)
+        self._answer, snapshot = ask(self._sides, law, question)
+        return snapshot
 
-    def _may_touch(self, state: State, hit: FacetProjections) -> Mask:
-        """Points that may have a force, as far as rounding goes, (n,)."""
-        touches = hit.gap - state["offset"] <= NEAR * self._points.size
-        return np.asarray(touches | (state["multiplier"] > 0.0))
+    def _new_transfer(self) -> Transfer:
+        s = self._sides
+        return Transfer(s.slave, s.rule, s.master, s.surface, s.reach, s.near, s.comm)
 
     def _hand_over(self, transfer: Transfer) -> None:
         """Let the forces on the master act where the overlaps have them."""
@@ -469,14 +365,7 @@ class FacetContact(ContactRecord):
 
     def _stiffness(self, diagonal: Floats) -> float:
         """Of both surfaces, one behind the other."""
-        found = []
-        for side in self._sides:
-            nodes = np.unique(side.nodes)
-            owned = diagonal[nodes[nodes < len(diagonal)]]
-            local = np.array([owned.mean(axis=1).sum(), group_area(side, self._reference)])
-            total, area = self._comm.allreduce(local)
-            found.append(total / area)
-        return float(1.0 / sum(1.0 / k for k in found))
+        return self._sides.stiffness(diagonal)
 
     def _stiffen(self, factor: float) -> None:
         """Multiply the penalties of the law with a factor."""
@@ -494,46 +383,13 @@ class FacetContact(ContactRecord):
 
     def _tangents(self, state: State) -> Floats:
         """Tangents of the master of now, (n, 2, 3), length; any where a point has no facet."""
-        tangents = np.tile(np.eye(3)[:2], (len(state), 1, 1))
-        there = np.flatnonzero(state["facet"] >= 0)
-        tangents[there] = self._surface.jet(state["facet"][there], state["xi"][there]).d1
-        return tangents
+        return self._sides.tangents(state)
 
-    def _project(self, now: Floats, x: Floats) -> FacetProjections:
-        self._surface.update(now)
-        self._hint = self._surface.project(x, self._hint, self.reach, self._excluded)
+    def _project(self, now: Floats) -> FacetProjections:
+        self._hint = self._sides.project(now, self._hint)
         return self._hint
 
     def _lost_off_the_end(self, trial: Snapshot) -> Floats:
         """Points that had a facet below them and now lie beyond the border, (n, 3)."""
         left = np.flatnonzero((self.state["facet"] >= 0) & (trial.response.state["facet"] < 0))
-        excluded = None if self._excluded is None else self._excluded.take(left)
-        x = trial.points[left]
-        hit = self._surface.project(x, exclude=excluded)
-        return np.asarray(x[hit.status == FACET_STATUS.index("off")])
-
-    def _initial(self) -> State:
-        """Free of force; a point near the master knows its facet, coordinates and gap."""
-        hit = self._hint
-        near = hit.status == FACET_STATUS.index("on")
-        state = np.zeros(len(hit.facet), dtype=STATE)
-        state["facet"] = np.where(near, hit.facet, -1)
-        state["xi"][near] = hit.xi[near]
-        state["origin"] = state["xi"]
-        state["gap"][near] = hit.gap[near]
-        return state
-
-
-def _check(model: Model, slave: str, master: str, apart: float | None) -> None:
-    for name, field in ((slave, "slave"), (master, "master")):
-        model.facets(name, field)
-        if model.count_facets(name) == 0:
-            raise InputError(f"facet group {name!r} has no facets", field)
-    both = np.intersect1d(model.facets(slave), model.facets(master))
-    shared = model.mesh.comm.allreduce(len(facet_sides(model.mesh, both)[0]))
-    if apart is not None and not apart > 0.0:
-        raise InputError(f"{apart!r} given, must be > 0", "apart")
-    if shared and apart is None:
-        raise InputError(
-            f"{slave!r} and {master!r} share {shared} facets, they must not overlap", "master"
-        )
+        return self._sides.beyond_the_border(left, trial.points[left])
