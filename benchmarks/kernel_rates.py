@@ -39,6 +39,8 @@ RULES: dict[str, dict[str, object]] = {
     "radial": {},
     "explicit": {"history": "centre"},
 }
+#: Control points of x and of x^2 on a Bezier curve of degree 2 over [-1, 1].
+PARABOLA = ((-1.0, 1.0), (0.0, -1.0), (1.0, 1.0))
 # Surfaces that touch the plane z = 0 from below at the origin, but for the torus.
 SURFACES: dict[str, dict[str, object]] = {
     "plane": {"point": (0, 0, 0), "normal": (0, 0, 1)},
@@ -47,6 +49,12 @@ SURFACES: dict[str, dict[str, object]] = {
     "cone": {"apex": (-2, 0, 0), "axis": (1, 0, -0.5), "angle": 0.4636476090008061},
     "torus": {"centre": (0, 0, -0.5), "axis": (0, 0, 1), "radius": 1.5, "tube": 0.5},
     "ellipsoid": {"centre": (0, 0, -1), "semi_axes": (3, 2, 1), "axis": (1, 0, 0)},
+    "nurbs": {
+        "degrees": (2, 2),
+        "knots_1": (0, 0, 0, 1, 1, 1),
+        "knots_2": (0, 0, 0, 1, 1, 1),
+        "points": [c for x, a in PARABOLA for y, b in PARABOLA for c in (x, y, -0.25 * (a + b))],
+    },
 }
 
 
