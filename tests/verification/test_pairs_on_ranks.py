@@ -127,8 +127,8 @@ def test_processes_change_nothing(folder: Path) -> None:
 def test_restart_on_others(folder: Path, before: int, after: int) -> None:
     """A run that was stopped goes on where the mesh is cut into another number of parts.
 
-    Requirement: 1e-10. Source: the run that was not stopped. Tolerance 1e-11: sums in another
-    order.
+    Requirement and tolerance: 1e-10. Source: the run that was not stopped; sums in another order
+    leave 1.4e-11.
     """
     names = ("two-half", "single", "folded")
     start(before, folder, "stop", *names)
@@ -137,4 +137,4 @@ def test_restart_on_others(folder: Path, before: int, after: int) -> None:
         whole = read(folder, f"{name}-{before}-whole")
         whole["numbers"] = whole["numbers"][STOP:]
         on = read(folder, f"{name}-{after}-from-{before}")
-        assert worst(whole, on) < 1e-11, f"{name}: {difference(whole, on)}"
+        assert worst(whole, on) < 1e-10, f"{name}: {difference(whole, on)}"
