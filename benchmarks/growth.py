@@ -16,7 +16,7 @@ from pathlib import Path
 
 import measure
 from about import paths
-from blocks.ours import case_text
+from blocks.ours import RUN, case_text
 from blocks.problem import DRAGS, KINDS, PRESSES, lower, upper
 
 THREADS, LIMIT = 2, 1800.0
@@ -77,7 +77,7 @@ def run(varies: str, n: int, degree: int = 2, drags: int = DRAGS) -> Row:
         folder = Path(there)
         text = case_text(KINDS[1], n, degree=degree, drags=drags)
         (folder / "case.toml").write_text(text)
-        command = [sys.executable, "-m", "anisocontact", "run", "case.toml", "-o", "out"]
+        command = [*RUN, "case.toml", "-o", "out"]
         used = measure.run(command, folder, THREADS, LIMIT, {"PYTHONPATH": paths()})
         if used.status != 0:
             raise RuntimeError((folder / "stdout").read_text()[-500:])

@@ -75,10 +75,14 @@ strategy = "{strategy}"
 """
 
 
+#: The command as it is installed: it chooses the threads of OpenBLAS itself.
+RUN = ("env", "-u", "OPENBLAS_NUM_THREADS", sys.executable, "-m", "anisocontact", "run")
+
+
 def command(kind: str, n: int, folder: Path) -> list[str]:
     """Write the input and say how to run it."""
     (folder / "case.toml").write_text(case_text(kind, n))
-    return [sys.executable, "-m", "anisocontact", "run", "case.toml", "-o", "out", "--overwrite"]
+    return [*RUN, "case.toml", "-o", "out", "--overwrite"]
 
 
 def increments(folder: Path) -> list[Increment]:
