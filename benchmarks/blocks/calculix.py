@@ -13,21 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
+import blocks.problem as given
 from blocks.code import Increment
-from blocks.problem import (
-    ALONG,
-    DOWN,
-    DRAGS,
-    FRICTION,
-    KINDS,
-    PENALTY,
-    POISSON,
-    PRESSES,
-    YOUNG,
-    grid,
-    lower,
-    upper,
-)
+from blocks.problem import KINDS, grid
 
 kinds = KINDS
 
@@ -63,9 +51,9 @@ def increments(folder: Path) -> list[Increment]:
 
 
 def _lines(kind: str, n: int) -> Iterable[str]:
-    block = grid((0, 0, 0), (1, 1, 0.5), upper(n))
+    block = grid((0, 0, 0), (1, 1, 0.5), given.upper(n))
     # the rigid plane is one cell whose nodes are all held
-    cells = lower(n) if kind == KINDS[1] else (1, 1, 1)
+    cells = given.lower(n) if kind == KINDS[1] else (1, 1, 1)
     base = grid((-0.5, -0.5, -0.5), (2, 2, 0.5), cells)
     first_node, first_cell = len(block.points), len(block.cells)
     yield "*NODE"
@@ -88,8 +76,8 @@ def _lines(kind: str, n: int) -> Iterable[str]:
     last = first_cell + len(base.cells) - per_layer
     yield from (f"{last + i + 1}, S2" for i in range(per_layer))
     yield from _model()
-    yield from _step(PRESSES, 0.0)
-    yield from _step(DRAGS, ALONG)
+    yield from _step(given.PRESSES, 0.0)
+    yield from _step(given.DRAGS, given.ALONG)
 
 
 def _set(name: str, nodes: np.ndarray) -> Iterable[str]:
@@ -98,16 +86,16 @@ def _set(name: str, nodes: np.ndarray) -> Iterable[str]:
 
 
 def _model() -> Iterable[str]:
-    yield f"*MATERIAL, NAME=SOLID\n*ELASTIC\n{YOUNG}, {POISSON}"
+    yield f"*MATERIAL, NAME=SOLID\n*ELASTIC\n{given.YOUNG}, {given.POISSON}"
     yield from (f"*SOLID SECTION, ELSET={name}, MATERIAL=SOLID" for name in ("BLOCK", "BASE"))
     yield "*SURFACE INTERACTION, NAME=PAIR"
-    yield f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{PENALTY}, 1.e-3, 0.01"
-    yield f"*FRICTION\n{FRICTION}, {PENALTY}"
+    yield f"*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{given.PENALTY}, 1.e-3, 0.01"
+    yield f"*FRICTION\n{given.FRICTION}, {given.PENALTY}"
     yield "*CONTACT PAIR, INTERACTION=PAIR, TYPE=SURFACE TO SURFACE\nSLAVE, MASTER"
     yield "*BOUNDARY\nHELD, 1, 3, 0."
 
 
 def _step(increments: int, along: float) -> Iterable[str]:
     yield f"*STEP, INC=100\n*STATIC, DIRECT\n{1.0 / increments}, 1."
-    yield f"*BOUNDARY\nTOP, 1, 1, {along}\nTOP, 2, 2, 0.\nTOP, 3, 3, {-DOWN}"
+    yield f"*BOUNDARY\nTOP, 1, 1, {along}\nTOP, 2, 2, 0.\nTOP, 3, 3, {-given.DOWN}"
     yield "*NODE PRINT, NSET=TOP, TOTALS=ONLY\nRF\n*END STEP"

@@ -7,20 +7,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+from case_text import PLANE, box, coulomb, press_and_drag
+
+import blocks.problem as given
 from blocks.code import Increment
-from blocks.problem import (
-    ALONG,
-    DOWN,
-    DRAGS,
-    FRICTION,
-    KINDS,
-    PENALTY,
-    POISSON,
-    PRESSES,
-    YOUNG,
-    lower,
-    upper,
-)
+from blocks.problem import DRAGS, KINDS, PRESSES
 
 kinds = KINDS
 
@@ -37,42 +28,16 @@ def case_text(
         degree: Degree of the quadrature of the contact.
         drags: Increments of the drag.
     """
-    boxes = [("block", (0, 0, 0), (1, 1, 0.5), upper(n))]
-    if kind == KINDS[1]:
-        boxes.append(("base", (-0.5, -0.5, -0.5), (2, 2, 0.5), lower(n)))
-    bodies = "".join(
-        f"[mesh.box.{name}]\norigin = {list(at)}\nsize = {list(size)}\ncells = {list(cells)}\n"
-        f'[material.{name}]\nmodel = "linear-elastic"\nE = {YOUNG}\nnu = {POISSON}\n'
-        for name, at, size, cells in boxes
-    )
-    plane = '[surface.plane]\nshape = "plane"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n'
-    clamp = ', "base.bottom" = { x = 0, y = 0, z = 0 }' if kind == KINDS[1] else ""
-    return f"""{bodies}{plane if kind == KINDS[0] else ""}
-[[contact]]
-slave = "block.bottom"
-master = "{"plane" if kind == KINDS[0] else "base.top"}"
-degree = {degree}
-normal = {{ penalty = {PENALTY} }}
-adhesion = {{ stiffness = [{PENALTY}, {PENALTY}] }}
-friction = {{ coefficients = [{FRICTION}, {FRICTION}] }}
-
-[[step]]
-name = "press"
-increments = {PRESSES}
-displacement = {{ "block.top" = {{ x = 0, y = 0, z = {-DOWN} }}{clamp} }}
-
-[[step]]
-name = "drag"
-increments = {drags}
-displacement = {{ "block.top" = {{ x = {ALONG} }} }}
-
-[output]
-every = {PRESSES + drags}
-pictures = false
-
-[solver]
-strategy = "{strategy}"
-"""
+    pair = kind == KINDS[1]
+    material = f'model = "linear-elastic"\nE = {given.YOUNG}\nnu = {given.POISSON}'
+    bodies = box("block", (0, 0, 0), (1, 1, 0.5), given.upper(n), material)
+    if pair:
+        bodies += box("base", (-0.5, -0.5, -0.5), (2, 2, 0.5), given.lower(n), material)
+    surface = "" if pair else PLANE
+    below = coulomb(pair, given.PENALTY, given.FRICTION, f"degree = {degree}\n")
+    way = press_and_drag(pair, given.DOWN, given.ALONG, PRESSES, drags)
+    every = f"[output]\nevery = {PRESSES + drags}\npictures = false\n"
+    return f'{bodies}{surface}{below}{way}\n{every}\n[solver]\nstrategy = "{strategy}"\n'
 
 
 #: The command as it is installed: it chooses the threads of OpenBLAS itself.

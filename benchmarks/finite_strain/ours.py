@@ -11,23 +11,13 @@ import tempfile
 import time
 from pathlib import Path
 
+from case_text import PLANE, box, coulomb, press_and_drag
+
+import finite_strain.problem as given
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.solver import Problem
-from finite_strain.problem import (
-    ALONG,
-    DOWN,
-    DRAGS,
-    FRICTION,
-    KINDS,
-    PENALTY,
-    POISSON,
-    PRESSES,
-    SOFTER,
-    YOUNG,
-    Clock,
-    show,
-)
+from finite_strain.problem import KINDS, Clock, show
 
 from petsc4py import PETSc
 
@@ -39,38 +29,16 @@ CONTACT = ("update", "add_force", "add_tangent", "couplings", "lever", "commit",
 def case_text(kind: str, n: int) -> str:
     """The case file."""
     pair = kind == KINDS[1]
-    boxes = [("block", [0, 0, 0], [1, 1, 0.5], [n, n, n // 2], YOUNG)]
+    elastic = f'model = "neo-hookean"\nnu = {given.POISSON}\nE = '
+    bodies = box("block", (0, 0, 0), (1, 1, 0.5), (n, n, n // 2), f"{elastic}{given.YOUNG}")
     if pair:
-        m = 4 * n // 3
-        boxes.append(("base", [-0.5, -0.25, -0.5], [2, 1.5, 0.5], [m, m, max(1, n // 3)], SOFTER))
-    bodies = "".join(
-        f"[mesh.box.{name}]\norigin = {at}\nsize = {size}\ncells = {cells}\n"
-        f'[material.{name}]\nmodel = "neo-hookean"\nE = {young}\nnu = {POISSON}\n'
-        for name, at, size, cells, young in boxes
-    )
-    plane = '[surface.plane]\nshape = "plane"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n'
-    clamp = ', "base.bottom" = { x = 0, y = 0, z = 0 }' if pair else ""
-    return f"""{bodies}{"" if pair else plane}
-[[contact]]
-slave = "block.bottom"
-master = "{"base.top" if pair else "plane"}"
-normal = {{ penalty = {PENALTY} }}
-adhesion = {{ stiffness = [{PENALTY}, {PENALTY}] }}
-friction = {{ coefficients = [{FRICTION}, {FRICTION}] }}
-
-[[step]]
-name = "press"
-increments = {PRESSES}
-displacement = {{ "block.top" = {{ x = 0, y = 0, z = {-DOWN} }}{clamp} }}
-
-[[step]]
-name = "drag"
-increments = {DRAGS}
-displacement = {{ "block.top" = {{ x = {ALONG} }} }}
-
-[solver]
-strategy = "direct"
-"""
+        m, softer = 4 * n // 3, f"{elastic}{given.SOFTER}"
+        cells = (m, m, max(1, n // 3))
+        bodies += box("base", (-0.5, -0.25, -0.5), (2, 1.5, 0.5), cells, softer)
+    surface = "" if pair else PLANE
+    below = coulomb(pair, given.PENALTY, given.FRICTION)
+    way = press_and_drag(pair, given.DOWN, given.ALONG, given.PRESSES, given.DRAGS)
+    return f'{bodies}{surface}{below}{way}\n[solver]\nstrategy = "direct"\n'
 
 
 def count(problem: Problem, clock: Clock) -> None:
