@@ -15,8 +15,9 @@ from anisocontact.mesh import Model
 from anisocontact.processes import Together
 from anisocontact.solver.accepted import AcceptedState
 from anisocontact.solver.attached import ElasticSupport, Spring
-from anisocontact.solver.balance import Balance, Place, balance, follow
+from anisocontact.solver.balance import Balance, Place, balance
 from anisocontact.solver.cells import DeformedCells
+from anisocontact.solver.following import Following
 from anisocontact.solver.interior import PENDING, Interior
 from anisocontact.solver.memory import BEGUN, Memory, persistent_points, restore_points
 from anisocontact.solver.outcome import energies, reactions
@@ -30,7 +31,7 @@ from anisocontact.solver.tangent import Tangent, led_unknowns
 Floats = npt.NDArray[np.float64]
 
 
-class Problem:
+class Problem(Following):
     """Equilibrium `K u - contact - loads = 0` with prescribed displacements.
 
     A prescribed unknown has the row `s (u - g) = 0`, `s` the mean diagonal of K, and its column
@@ -243,25 +244,8 @@ class Problem:
         place = Place(x, self._of_mesh, self._nodal, rigid)
         self._balance = found = balance(self._parts, place, self._level, self._dt)
         self.force_scale, self.round_off = found.force_scale, found.round_off
+        self.norm_as_they_are = found.norm
         return found.residual
-
-    @property
-    def follows(self) -> bool:
-        """Whether multipliers follow every correction."""
-        return follow(self._parts)
-
-    def unbalanced(self, norm: float) -> float:
-        """Norm of the residual with the multipliers as they are, see `System`."""
-        return self._balance.norm if self.follows else norm
-
-    def held(self) -> bool:
-        """Whether multipliers that follow are what the last evaluation answers to them."""
-        return all([contact.held() for contact in self.contacts])
-
-    def take_share(self, share: float) -> None:
-        """Let multipliers take only a share of the next correction."""
-        for contact in self.contacts:
-            contact.take_share(share)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown."""

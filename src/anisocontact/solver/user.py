@@ -24,12 +24,13 @@ from anisocontact.contact import AnyContact, Contact
 from anisocontact.errors import InputError
 from anisocontact.solver.balance import ROUND_OFF
 from anisocontact.solver.coupled import CoupledTangent
+from anisocontact.solver.following import Following
 from anisocontact.solver.newton import Newton, OptionValue
 
 Floats = npt.NDArray[np.float64]
 
 
-class ContactProblem:
+class ContactProblem(Following):
     """Residual form of the user plus contact, solved by PETSc SNES.
 
     What `dolfinx.fem.petsc.NonlinearProblem` is without contact: the residual is
@@ -82,7 +83,7 @@ class ContactProblem:
                     f"rigid body {body.name!r} is free; a script can only move it", "contacts"
                 )
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
-        self.force_scale = self.round_off = self._balance = 0.0
+        self.force_scale = self.round_off = 0.0
         trial = ufl.TrialFunction(space)
         tangent = ufl.derivative(F, u, trial) if J is None else J
         self._residual = compiled(F, space.mesh.comm)
@@ -169,30 +170,12 @@ class ContactProblem:
         self.round_off = ROUND_OFF * stiff
         if self.comm.allreduce(any(failed)):
             residual[:] = np.nan
-        self._balance = self._norm(residual)
+        self.norm_as_they_are = self._norm(residual)
         if self.follows:
             lag = self._assembled([contact.add_lag for contact in self.contacts])
             lag[rows] = 0.0
             residual -= lag
         return residual
-
-    @property
-    def follows(self) -> bool:
-        """Whether multipliers follow every correction."""
-        return any(contact.follows for contact in self.contacts)
-
-    def unbalanced(self, norm: float) -> float:
-        """Norm of the residual with the multipliers as they are, see `System`."""
-        return self._balance if self.follows else norm
-
-    def held(self) -> bool:
-        """Whether multipliers that follow are what the last evaluation answers to them."""
-        return all([contact.held() for contact in self.contacts])
-
-    def take_share(self, share: float) -> None:
-        """Let multipliers take only a share of the next correction."""
-        for contact in self.contacts:
-            contact.take_share(share)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown."""

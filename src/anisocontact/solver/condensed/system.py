@@ -16,6 +16,7 @@ from anisocontact.solver.balance import LOAD_SHARE, ROUND_OFF
 from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor
 from anisocontact.solver.condensed.parts import Condensation
 from anisocontact.solver.condensed.patterns import Patterns, State
+from anisocontact.solver.following import Following
 from anisocontact.solver.newton import TOLERANCE
 from anisocontact.solver.problem import Problem
 
@@ -33,7 +34,7 @@ _FINE, _FINEST = 1e-5, 1e-13
 _TINY = float(np.finfo(np.float64).tiny)
 
 
-class ContactSystem:
+class ContactSystem(Following):
     """Residual `S u_c - g - contact forces` and its tangent; a `System` for Newton.
 
     Args:
@@ -85,7 +86,6 @@ class ContactSystem:
         self.force_scale = self.round_off = 0.0
         self.tolerance = TOLERANCE
         self.outgrown = False
-        self._norm = 0.0
         self._before = np.inf
         self._dt, self._load_norm = 0.0, 0.0
         self._a, self._b, self._g = np.zeros(0), np.zeros(0), np.zeros(len(bulk.contact))
@@ -167,7 +167,7 @@ class ContactSystem:
         self._measure(own)
         if failed or self.outgrown:
             residual[:] = np.nan
-        self._norm = float(np.linalg.norm(residual))
+        self.norm_as_they_are = float(np.linalg.norm(residual))
         if self.follows:
             lag = np.zeros((len(self._v) // 3, 3))
             for contact in self.contacts:
@@ -189,24 +189,6 @@ class ContactSystem:
         self.raw_forces = forces.reshape(-1)
         self.forces = self.handed(self.raw_forces)
         return failed
-
-    @property
-    def follows(self) -> bool:
-        """Whether multipliers follow every correction."""
-        return any(contact.follows for contact in self.contacts)
-
-    def unbalanced(self, norm: float) -> float:
-        """Norm of the residual with the multipliers as they are, see `System`."""
-        return self._norm if self.follows else norm
-
-    def held(self) -> bool:
-        """Whether multipliers that follow are what the last evaluation answers to them."""
-        return all([contact.held() for contact in self.contacts])
-
-    def take_share(self, share: float) -> None:
-        """Let multipliers take only a share of the next correction."""
-        for contact in self.contacts:
-            contact.take_share(share)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Take the tangent at x; `out` multiplies with it, and has no pattern that could grow."""
@@ -245,7 +227,7 @@ class ContactSystem:
         if self.follows:
             # forces that take violations away are large beside those that are out of balance
             size = max(float(np.linalg.norm(b.array_r)), _TINY)
-            rtol = max(_FINE * min(self._norm / size, 1.0), _FINEST)
+            rtol = max(_FINE * min(self.norm_as_they_are / size, 1.0), _FINEST)
         found = self.solver.solve(b.array_r, min(rtol, 0.1))
         if found is None:
             pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
