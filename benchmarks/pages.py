@@ -49,7 +49,7 @@ def write(records: Sequence[Record], tables: Path = KEPT.parent, figures: Path =
     marked = {record.key: marks[about(record)] for record in records}
     blocks = of(runs.PART, records)
     if blocks:
-        said = f"{show.versions(blocks)}; {runs.THREADS} threads.\n\n{legend(marks, blocks)}"
+        said = f"{show.versions(blocks)}; {runs.SAID}.\n\n{legend(marks, blocks)}"
         (tables / "blocks.md.in").write_text(f"{show.table(blocks, marked)}\n{said}")
         show.picture(blocks, figures / "benchmarks-blocks.png")
     for part in (finite.PART, finite.RANKS):

@@ -35,6 +35,8 @@ CODES: dict[str, Code] = {
     "GetFEM": Script("blocks.getfem_block", _GETFEM),
 }
 THREADS = 2
+#: The same in words; this code runs as it is installed.
+SAID = f"{THREADS} threads, {OURS} with one of OpenBLAS"
 #: Drag at which the tangential force is compared while part of the face still sticks.
 PARTLY = 0.006
 LIMIT = 3600.0

@@ -149,8 +149,8 @@ class ContactSection(Section):
         _number(
             "integer",
             "1",
-            "degree of the quadrature on slave facets, twice the order of the displacement if left "
-            "out",
+            "degree of the quadrature on slave facets; if left out, twice the order of the "
+            f'displacement, the order with the method "{AUGMENTED}"',
             "positive",
             most=30,
         ),
@@ -194,7 +194,7 @@ class ContactSection(Section):
         _word(
             f'how "{AUGMENTED}" finds its multipliers: "{NEWTON}" together with the displacements, '
             f'"{UZAWA}" in cycles around Newton\'s method; "{AUTO_MULTIPLIERS}" takes "{NEWTON}", '
-            f'"{UZAWA}" for the sliding rule "explicit"',
+            f'"{UZAWA}" for the sliding rule "explicit" and on a free rigid body',
             *SCHEMES,
         ),
     ] = AUTO_MULTIPLIERS
