@@ -15,9 +15,9 @@ from anisocontact.errors import InputError
 from anisocontact.solver import Problem, Solver, Step, strategy
 from anisocontact.solver.condensed import costs
 from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor, gmres
+from anisocontact.solver.condensed.eliminate import WAYS
 from anisocontact.solver.condensed.parts import Condensation
 from anisocontact.solver.condensed.patterns import Patterns, State
-from anisocontact.solver.condensed.schur import PartialFactor
 from anisocontact.solver.newton import SingularError
 
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
@@ -37,24 +37,44 @@ def _schur(a: np.ndarray, border: np.ndarray, inside: np.ndarray) -> np.ndarray:
     )
 
 
-def test_partial_factor() -> None:
+@pytest.fixture(params=WAYS, ids=[name for name, _, _ in WAYS])
+def way(request: pytest.FixtureRequest) -> Any:
+    """Each way to eliminate an interior that is there."""
+    name, there, way = request.param
+    if not there():
+        pytest.skip(f"no {name}")
+    return way
+
+
+def test_partial_factor(way: Any) -> None:
     matrix, border = _matrix(40), np.array([3, 7, 8, 20, 33])
     inside = np.setdiff1d(np.arange(40), border)
     dense = matrix.toarray()
-    factor = PartialFactor(matrix.indptr, matrix.indices, matrix.data, border)
+    factor = way(matrix.indptr, matrix.indices, matrix.data, border)
     np.testing.assert_allclose(factor.schur, _schur(dense, border, inside), atol=1e-13)
-    b = np.random.default_rng(1).random((40, 3))
-    x = factor.interior(b)
-    np.testing.assert_allclose(dense[np.ix_(inside, inside)] @ x[inside], b[inside], atol=1e-13)
-    assert not x[border].any()
+    assert np.array_equal(factor.schur, factor.schur.T)
+    for k in (1, 3):
+        b = np.random.default_rng(k).random((40, k))
+        x = factor.interior(b)
+        np.testing.assert_allclose(dense[np.ix_(inside, inside)] @ x[inside], b[inside], atol=1e-13)
+        assert not x[border].any()
     factor.close()
 
 
-def test_singular_interior() -> None:
+def test_singular_schur_complement(way: Any) -> None:
+    """A body that nothing holds: two springs in a row, of which only the middle is eliminated."""
+    springs = np.array([[1.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
+    matrix = scipy.sparse.csr_array(springs)
+    factor = way(matrix.indptr, matrix.indices, matrix.data, np.array([0, 2]))
+    np.testing.assert_allclose(factor.schur, [[0.5, -0.5], [-0.5, 0.5]], atol=1e-15)
+    factor.close()
+
+
+def test_singular_interior(way: Any) -> None:
     """A spring between two unknowns that nothing else holds."""
     matrix = scipy.sparse.csr_array(np.array([[1.0, 0.0, 0.0], [0.0, 1.0, -1.0], [0.0, -1.0, 1.0]]))
     with pytest.raises(SingularError):
-        PartialFactor(matrix.indptr, matrix.indices, matrix.data, np.array([0]))
+        way(matrix.indptr, matrix.indices, matrix.data, np.array([0]))
 
 
 def _condensation() -> Condensation:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from anisocontact._fenicsx import PETSc, Vec
 from anisocontact.bulk import LinearBulk
 from anisocontact.errors import InputError
-from anisocontact.solver.condensed import Condensed, CondensedNewton, contact_unknowns, reachable
+from anisocontact.solver.condensed import Condensed, CondensedNewton, contact_unknowns
 from anisocontact.solver.condensed.costs import free_memory, memory_needed
 from anisocontact.solver.iterative import IterativeNewton, Patch, factor_bytes
 from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
@@ -150,8 +150,6 @@ def _obstacles(
     if problem.check_held(steps):
         yield "a body is held by contact alone"
     yield from _asked_solver(prefix, options)
-    if not reachable():
-        yield "this PETSc has no MUMPS with a Schur complement"
 
 
 def _asked_solver(prefix: str, options: Mapping[str, OptionValue]) -> Iterator[str]:

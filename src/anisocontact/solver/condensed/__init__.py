@@ -3,6 +3,5 @@
 from anisocontact.solver.condensed.condensed import Condensed
 from anisocontact.solver.condensed.newton import CondensedNewton
 from anisocontact.solver.condensed.reach import contact_unknowns
-from anisocontact.solver.condensed.schur import reachable
 
-__all__ = ["Condensed", "CondensedNewton", "contact_unknowns", "reachable"]
+__all__ = ["Condensed", "CondensedNewton", "contact_unknowns"]

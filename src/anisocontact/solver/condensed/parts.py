@@ -11,7 +11,7 @@ import scipy.sparse
 from scipy.sparse.csgraph import connected_components
 
 from anisocontact.solver.condensed.dense import blocks_times
-from anisocontact.solver.condensed.schur import PartialFactor, WholeBorder
+from anisocontact.solver.condensed.eliminate import Eliminated, WholeBorder, chosen
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -30,7 +30,7 @@ class Part:
 
     free: Ints
     border: Ints
-    factor: PartialFactor | WholeBorder
+    factor: Eliminated
 
 
 def connected(nodes: int, cells: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
@@ -140,11 +140,13 @@ class Condensation:
             if np.array_equal(known.free, free) and np.array_equal(known.border, border):
                 return known
             known.factor.close()
-        self._note(f"condensing {len(free)} unknowns of a body on {len(border)} contact unknowns")
         matrix = self.stiffness[free][:, free].tocsr()
         matrix.sort_indices()
         inside = np.searchsorted(free, border)
         if len(border) == len(free):
             return Part(free, border, WholeBorder(matrix.toarray()))
-        factor = PartialFactor(matrix.indptr, matrix.indices, matrix.data, inside)
-        return Part(free, border, factor)
+        name, way = chosen()
+        self._note(
+            f"condensing {len(free)} unknowns of a body on {len(border)} contact unknowns ({name})"
+        )
+        return Part(free, border, way(matrix.indptr, matrix.indices, matrix.data, inside))

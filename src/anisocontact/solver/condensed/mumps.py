@@ -1,4 +1,4 @@
-"""Partial factorisation of a symmetric positive definite matrix: Schur complement, interior."""
+"""Partial factorisation by MUMPS: Schur complement and solutions with the interior."""
 
 from __future__ import annotations
 
@@ -34,31 +34,13 @@ def reachable() -> bool:
     if not has_petsc("MatFactorSetSchurIS", "MatFactorGetSchurComplement", "MatDenseGetArrayRead"):
         return False
     try:
-        PartialFactor([0, 2, 4], [0, 1, 0, 1], [2.0, -1.0, -1.0, 2.0], np.array([0])).close()
+        MumpsFactor([0, 2, 4], [0, 1, 0, 1], [2.0, -1.0, -1.0, 2.0], np.array([0])).close()
     except PETSc.Error:
         return False
     return True
 
 
-class WholeBorder:
-    """A matrix without interior, with the interface of `PartialFactor`.
-
-    Args:
-        matrix: The matrix, (c, c), which is its own Schur complement.
-    """
-
-    def __init__(self, matrix: Floats) -> None:
-        self.schur = matrix
-
-    def interior(self, b: Floats) -> Floats:
-        """Zero, as all unknowns are of the border."""
-        return np.zeros_like(b)
-
-    def close(self) -> None:
-        """Nothing to give back."""
-
-
-class PartialFactor:
+class MumpsFactor:
     """The interior of `A` eliminated, its border left.
 
     With the unknowns split into interior i and border c:
@@ -79,7 +61,7 @@ class PartialFactor:
         SingularError: The interior cannot be solved.
 
     Example:
-        >>> factor = PartialFactor([0, 2, 4], [0, 1, 0, 1], [2.0, -1.0, -1.0, 2.0], np.array([0]))
+        >>> factor = MumpsFactor([0, 2, 4], [0, 1, 0, 1], [2.0, -1.0, -1.0, 2.0], np.array([0]))
         >>> factor.schur.tolist(), factor.interior(np.array([[7.0], [4.0]])).round(9).tolist()
         ([[1.5]], [[0.0], [2.0]])
     """
