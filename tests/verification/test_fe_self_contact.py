@@ -83,7 +83,7 @@ def _close(model: Model, contact: Any, material: str, depth: float) -> list[np.n
 
 
 @pytest.mark.parametrize("material", ["linear-elastic", "neo-hookean"])
-def testhairpin_against_its_half(material: str) -> None:
+def test_hairpin_against_its_half(material: str) -> None:
     """The force that closes a hairpin is that of its half on a rigid plane.
 
     Requirement: every side of the fold carries half of the contact. Source: symmetry; where the
