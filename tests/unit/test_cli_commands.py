@@ -27,7 +27,7 @@ def case(tmp_path, case_text):
 @pytest.fixture
 def no_report(monkeypatch):
     """The pictures take longer than the run; most tests do not look at them."""
-    monkeypatch.setattr("anisocontact.results.writer.write_report", lambda folder: [])
+    monkeypatch.setattr("anisocontact.results.writer.Writer._report", lambda self: None)
 
 
 def test_help_names_every_command_and_the_exit_codes(capsys):
@@ -223,7 +223,7 @@ def test_report_is_made_again_from_the_folder(capsys, case, monkeypatch):
     """Also after a run that was killed: it needs nothing but the folder."""
     out = case.parent / "out"
     with monkeypatch.context() as patch:
-        patch.setattr("anisocontact.results.writer.write_report", lambda folder: [])
+        patch.setattr("anisocontact.results.writer.Writer._report", lambda self: None)
         assert main(["run", str(case), "-o", str(out)]) == 0
     assert not (out / "report.html").exists()
     capsys.readouterr()

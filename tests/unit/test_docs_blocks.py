@@ -169,7 +169,7 @@ def test_lines_of_python_run(page, supposed_files, case_text, monkeypatch):
     if page.stem == "results-folder":
         from anisocontact.cli import main
 
-        monkeypatch.setattr("anisocontact.results.writer.write_report", lambda folder: [])
+        monkeypatch.setattr("anisocontact.results.writer.Writer._report", lambda self: None)
         Path("first.toml").write_text(case_text)
         assert main(["run", "first.toml"]) == 0
     text = "\n".join([BEFORE[page.stem], *blocks(page, "python"), AFTER[page.stem]])

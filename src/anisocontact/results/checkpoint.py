@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy.spatial
 
 from anisocontact.contact.facet_mesh import node_positions
 from anisocontact.errors import InputError
@@ -186,13 +185,15 @@ def _matched(there: Floats, kind_there: Ints, here: Floats, kind_here: Ints, nea
     """
     if np.array_equal(there, here) and np.array_equal(kind_there, kind_here):
         return np.arange(len(here))
+    from scipy.spatial import cKDTree  # slow to import, and needed on other meshes only
+
     rows = np.full(len(here), -1, dtype=np.int64)
     for kind in np.unique(kind_here):
         mine = np.flatnonzero(kind_here == kind)
         theirs = np.flatnonzero(kind_there == kind)
         if not len(theirs):
             continue
-        distance, found = scipy.spatial.cKDTree(there[theirs]).query(here[mine])
+        distance, found = cKDTree(there[theirs]).query(here[mine])
         rows[mine] = np.where(distance <= near, theirs[found], -1)
     if (rows < 0).any():
         at = ", ".join(f"{v:.6g}" for v in here[np.flatnonzero(rows < 0)[0]])

@@ -4,20 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 from xml.sax.saxutils import quoteattr
 
+from anisocontact.results.dataset import DataSet
 from anisocontact.results.files import Disk, replacing, write_text
 
-if TYPE_CHECKING:
-    import pyvista
-
 __all__ = ["Collection"]
-
-#: Element of the XML that names a data set, by suffix.
-_KINDS = {".vtu": "UnstructuredGrid", ".vtp": "PolyData"}
-#: Types of VTK by those of NumPy.
-_TYPES = {"float64": "Float64", "float32": "Float32", "int32": "Int32", "int64": "Int64"}
 
 
 class Collection:
@@ -58,7 +51,7 @@ class Collection:
         else:
             self._path.unlink(missing_ok=True)
 
-    def add(self, disk: Disk, time: float, data: pyvista.DataSet | None) -> None:
+    def add(self, disk: Disk, time: float, data: DataSet | None) -> None:
         """Write a data set and then the list with it; all ranks call it.
 
         Args:
@@ -66,7 +59,7 @@ class Collection:
             time: Time of the data.
             data: That of this rank, None for none; nothing is written where all have none.
         """
-        sizes = self._comm.allgather(-1 if data is None else int(data.n_points))
+        sizes = self._comm.allgather(-1 if data is None else len(data.points))
         filled = [rank for rank, size in enumerate(sizes) if size > 0]
         if not filled:
             return
@@ -78,11 +71,11 @@ class Collection:
         self._comm.Barrier()
         if data is not None and rank in filled:
             own = self._folder / f"{number}{'' if whole else f'.{rank}'}{self._suffix}"
-            disk.write_each(lambda: _write(own, _encoded(data)))
+            disk.write_each(lambda: _write(own, data.encoded()))
         self._comm.Barrier()
         if data is not None and rank == filled[0] and not whole:
-            text = _summary(data, self._suffix, [f"{number}.{i}{self._suffix}" for i in filled])
-            disk.write_each(lambda: _write(self._folder / f"{number}{suffix}", text.encode()))
+            content = data.summary([f"{number}.{i}{self._suffix}" for i in filled])
+            disk.write_each(lambda: _write(self._folder / f"{number}{suffix}", content))
         self._entries.append((time, f"{self._folder.name}/{number}{suffix}"))
         disk.write(self._write_list)
 
@@ -104,45 +97,3 @@ def _write(target: Path, content: bytes) -> None:
             draft.write_bytes(content)
         except OSError as error:
             raise OSError(error.errno, error.strerror, str(target)) from None
-
-
-def _summary(data: pyvista.DataSet, suffix: str, names: Sequence[str]) -> str:
-    """Content of the file that names pieces like `data`."""
-    kind = f"P{_KINDS[suffix]}"
-    fields = {"PPointData": data.point_data, "PCellData": data.cell_data}
-    rows = [
-        '<?xml version="1.0"?>',
-        f'<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt32">',
-        f'  <{kind} GhostLevel="0">',
-    ]
-    for element, arrays in fields.items():
-        listed = [_array(name, arrays[name]) for name in arrays.keys()]  # noqa: SIM118 (pyvista's)
-        rows += [f"    <{element}>", *listed, f"    </{element}>"]
-    rows += ["    <PPoints>", _array("Points", data.points), "    </PPoints>"]
-    rows += [f"    <Piece Source={quoteattr(name)}/>" for name in names]
-    return "\n".join([*rows, f"  </{kind}>", "</VTKFile>", ""])
-
-
-def _array(name: str, values: Any) -> str:
-    width = values.shape[1] if values.ndim > 1 else 1
-    return (
-        f'      <PDataArray type="{_TYPES[values.dtype.name]}" Name={quoteattr(name)} '
-        f'NumberOfComponents="{width}"/>'
-    )
-
-
-def _encoded(data: pyvista.DataSet) -> bytes:
-    """Content of the file of a data set.
-
-    VTK makes it in memory: where it writes itself, it loses the end of a file on a full disk
-    without a word, or ends the process.
-    """
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
-
-    grid = data.IsA("vtkUnstructuredGrid")
-    writer = vtkXMLUnstructuredGridWriter() if grid else vtkXMLPolyDataWriter()
-    writer.SetInputData(data)
-    writer.SetDataModeToBinary()
-    writer.SetWriteToOutputString(True)
-    writer.Write()
-    return str(writer.GetOutputString()).encode()

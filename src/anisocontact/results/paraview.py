@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,10 +11,8 @@ import numpy.typing as npt
 from anisocontact._fenicsx import dolfinx, fem, ufl
 from anisocontact.bulk import cauchy_stress
 from anisocontact.contact import AnyContact
+from anisocontact.results.dataset import DataSet, vertices
 from anisocontact.solver import Problem
-
-if TYPE_CHECKING:
-    import pyvista
 
 __all__ = ["Bodies", "slave_points"]
 
@@ -46,30 +44,34 @@ class Bodies:
         self._mean = fem.Function(continuous)
         ones: Floats = np.ones(self._stress.x.array.shape)
         self._share = 1.0 / self._summed(ones).clip(1.0)
-        cells, kinds, points = dolfinx.plot.vtk_mesh(model.space)
-        cells = _turned_outwards(cells.reshape(len(kinds), -1), points).reshape(-1)
-        self._topology = cells, kinds, points
+        cells, kinds, self._points = dolfinx.plot.vtk_mesh(model.space)
+        nodes = _turned_outwards(cells.reshape(len(kinds), -1), self._points)[:, 1:]
+        ends = np.arange(len(kinds) + 1, dtype=np.int32) * np.int32(nodes.shape[1])
+        self._cells = {
+            "connectivity": nodes.astype(np.int32).reshape(-1),
+            "offsets": ends,
+            "types": kinds.astype(np.uint8),
+        }
         self._numbers = self._body_numbers(len(kinds))
 
-    def grid(self) -> pyvista.UnstructuredGrid:
+    def grid(self) -> DataSet:
         """The accepted state of the cells of this rank.
 
         Point data: `displacement` (3) [length], `stress` (6: XX YY ZZ XY YZ XZ, mean of the cells
         at a node) and `von_mises` [stress]. Cell data: `body`, its number.
         """
-        import pyvista
-
         u = self._problem.u.x.array.reshape(-1, 3)
         for expression, cells in self._expressions:
             self._stress.interpolate(expression, cells0=cells)
         stress = self._summed(np.asarray(self._stress.x.array, dtype=np.float64)) * self._share
         components = stress.reshape(-1, len(_SYMMETRIC))
-        grid = pyvista.UnstructuredGrid(*self._topology)
-        grid.cell_data["body"] = self._numbers
-        grid.point_data["displacement"] = u.copy()
-        grid.point_data["stress"] = components
-        grid.point_data["von_mises"] = von_mises(components)
-        return grid
+        at_nodes = {
+            "displacement": u.copy(),
+            "stress": components,
+            "von_mises": von_mises(components),
+        }
+        at_cells = {"body": self._numbers}
+        return DataSet("UnstructuredGrid", self._points, {"Cells": self._cells}, at_nodes, at_cells)
 
     def _summed(self, at_cells: Floats) -> Floats:
         """Sum over the cells at each node of values at the nodes of each cell."""
@@ -99,7 +101,7 @@ def von_mises(stress: Floats) -> Floats:
     return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
 
 
-def slave_points(contacts: Iterable[AnyContact], comm: Any) -> pyvista.PolyData | None:
+def slave_points(contacts: Iterable[AnyContact], comm: Any) -> DataSet | None:
     """The slave points of all contacts where they are now; None but on the first rank.
 
     Args:
@@ -115,17 +117,13 @@ def slave_points(contacts: Iterable[AnyContact], comm: Any) -> pyvista.PolyData 
         `dissipation` [stress length], `normal` of the master, and both axes of adhesion and
         friction, `direction_adhesion_1` and so on.
     """
-    import pyvista
-
     local = [_point_data(i, contact) for i, contact in enumerate(contacts)]
     parts = [part for rank in comm.gather(local) or [] for part in rank]
     if not parts:
         return None
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    cloud = pyvista.PolyData(joined.pop("points"))
-    for name, values in joined.items():
-        cloud.point_data[name] = values
-    return cloud
+    points = joined.pop("points")
+    return DataSet("PolyData", points, vertices(len(points)), joined)
 
 
 def _point_data(number: int, contact: AnyContact) -> dict[str, npt.NDArray[Any]]:

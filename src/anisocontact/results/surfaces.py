@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -11,9 +11,7 @@ import numpy.typing as npt
 from anisocontact.anisotropy import DirectionField
 from anisocontact.contact import AnyContact, Contact
 from anisocontact.python_law import PythonInterface
-
-if TYPE_CHECKING:
-    import pyvista
+from anisocontact.results.dataset import DataSet, polygons
 
 __all__ = ["Surfaces"]
 
@@ -44,28 +42,29 @@ class Surfaces:
             if isinstance(contact, Contact)
         ]
 
-    def mesh(self) -> pyvista.PolyData | None:
+    def mesh(self) -> DataSet | None:
         """The patches of the accepted state; None without one, and but on the first rank.
 
         Point data: `contact` (its number) and `direction_friction_1`, the first axis of friction,
         zero where there is none.
         """
-        import pyvista
-
         if not (self._first and self._patches):
             return None
         corners = np.arange(POINTS * POINTS).reshape(POINTS, POINTS)
         ring = (corners[:-1, :-1], corners[1:, :-1], corners[1:, 1:], corners[:-1, 1:])
-        faces = np.stack([np.full((POINTS - 1, POINTS - 1), 4), *ring], axis=-1).reshape(-1, 5)
-        meshes = []
-        for number, contact, drawn in self._patches:
-            points, directions = _moved(contact, *drawn)
-            mesh = pyvista.PolyData(points, faces.reshape(-1))
-            mesh.point_data["contact"] = np.full(len(points), number, dtype=np.int32)
-            mesh.point_data["direction_friction_1"] = directions
-            meshes.append(mesh)
-        joined: pyvista.PolyData = pyvista.merge(meshes, merge_points=False)
-        return joined
+        faces = np.stack(ring, axis=-1).reshape(-1, 4)
+        moved = [_moved(contact, *drawn) for _, contact, drawn in self._patches]
+        numbers = np.array([number for number, _, _ in self._patches], dtype=np.int32)
+        starts = POINTS * POINTS * np.arange(len(moved))
+        return DataSet(
+            "PolyData",
+            np.concatenate([points for points, _ in moved]),
+            polygons(np.concatenate([faces + start for start in starts])),
+            {
+                "contact": np.repeat(numbers, POINTS * POINTS),
+                "direction_friction_1": np.concatenate([axes for _, axes in moved]),
+            },
+        )
 
 
 def _moved(contact: Contact, points: Floats, directions: Floats) -> tuple[Floats, Floats]:

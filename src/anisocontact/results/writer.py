@@ -18,7 +18,6 @@ from anisocontact.results.collection import Collection
 from anisocontact.results.files import Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
 from anisocontact.results.paraview import Bodies, slave_points
-from anisocontact.results.report import write_report
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
 from anisocontact.results.warnings import at_end, at_start, worst
@@ -247,6 +246,9 @@ class Writer:
             write_text(self.folder / "summary.json", self._text())
 
     def _report(self) -> None:
+        # Matplotlib takes half a second to be imported, and only pictures need it
+        from anisocontact.results.report import write_report
+
         for line in write_report(self.folder):
             self._append(line)
 

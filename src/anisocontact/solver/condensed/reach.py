@@ -6,7 +6,6 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial import cKDTree
 
 from anisocontact.contact import AnyContact, Contact, FacetContact, SelfContact
 from anisocontact.mesh import Model
@@ -109,6 +108,8 @@ class Reach:
         return self._factor * (planned + _SLACK * half.facet_size)
 
     def _select_pass(self, half: FacetContact, x: Floats) -> None:
+        from scipy.spatial import cKDTree  # slow to import, and not needed for analytic masters
+
         motion = self._motion(half)
         facets, points = half.master_facets, half.points
         corners = x[facets]
