@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 from xml.sax.saxutils import quoteattr
@@ -62,18 +62,19 @@ class DataSet:
     def _in_vtk(self) -> Any:
         """The data set as an object of VTK, which uses the memory of the arrays."""
         from vtkmodules import vtkCommonDataModel
-        from vtkmodules.util.numpy_support import numpy_to_vtk
+        from vtkmodules.util import numpy_support
         from vtkmodules.vtkCommonCore import vtkPoints
 
+        to_vtk: Callable[[npt.NDArray[Any]], Any] = numpy_support.numpy_to_vtk
         out = getattr(vtkCommonDataModel, f"vtk{self.kind}")()
         points = vtkPoints()
-        points.SetData(numpy_to_vtk(np.ascontiguousarray(self.points)))
+        points.SetData(to_vtk(np.ascontiguousarray(self.points)))
         out.SetPoints(points)
         for name, part in self.cells.items():
             rows = vtkCommonDataModel.vtkCellArray()
-            rows.SetData(numpy_to_vtk(part["offsets"]), numpy_to_vtk(part["connectivity"]))
+            rows.SetData(to_vtk(part["offsets"]), to_vtk(part["connectivity"]))
             if name == "Cells":
-                out.SetCells(numpy_to_vtk(part["types"]), rows)
+                out.SetCells(to_vtk(part["types"]), rows)
             else:
                 getattr(out, f"Set{name}")(rows)
         for target, arrays in (
@@ -81,7 +82,7 @@ class DataSet:
             (out.GetCellData(), self.cell_data),
         ):
             for name, values in arrays.items():
-                array = numpy_to_vtk(np.ascontiguousarray(values))
+                array = to_vtk(np.ascontiguousarray(values))
                 array.SetName(name)
                 target.AddArray(array)
         return out
