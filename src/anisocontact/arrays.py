@@ -23,9 +23,12 @@ def points(x: npt.ArrayLike, columns: int, name: str = "x", rows: int | None = N
         The array, (n, columns).
 
     Raises:
-        InputError: Another shape was given.
+        InputError: Another shape was given, or something else than numbers.
     """
-    a = np.ascontiguousarray(np.atleast_2d(np.asarray(x, dtype=np.float64)))
+    try:
+        a = np.ascontiguousarray(np.atleast_2d(np.asarray(x, dtype=np.float64)))
+    except (TypeError, ValueError):
+        raise InputError(f"{x!r} given, an array of numbers needed", field=name) from None
     if a.ndim != 2 or a.shape[1] != columns or (rows is not None and a.shape[0] != rows):
         needed = "n" if rows is None else rows
         raise InputError(

@@ -138,10 +138,18 @@ class PairLaw:
         carried: Direction fields and the bodies that carry them.
 
     Raises:
-        InputError: A direction field that goes by coordinates of a surface.
+        InputError: A direction field that goes by coordinates of a surface, or a law in the place
+            of another one.
+
+    Example:
+        >>> adhesion, friction = Adhesion(stiffness=(1e5, 1e5)), Friction(coefficients=(0.3, 0.3))
+        >>> law = PairLaw(NormalLaw(penalty=1e5), adhesion, friction)
+        >>> law.stiffened(10.0, tangential=False).penalties()
+        (1000000.0, 100000.0)
     """
 
     def __init__(self, normal: NormalLaw, adhesion: Adhesion, friction: Friction) -> None:
+        _check_laws(normal, adhesion, friction)
         self.normal, self.adhesion, self.friction = normal, adhesion, friction
         self.carried = carried(adhesion, friction)
         for one in self.carried:
@@ -154,6 +162,9 @@ class PairLaw:
         Args:
             mirrored: Whether slave and master have swapped their parts: the master of the core
                 carries what is the slave's, and angles count about the normal of the core's slave.
+
+        Returns:
+            The law of the core.
         """
         second = self.friction.directions_second
         return _made(
@@ -170,7 +181,15 @@ class PairLaw:
         )
 
     def stiffened(self, factor: float, tangential: bool) -> PairLaw:
-        """The laws with penalties `factor` times as large, that of adhesion if it is one."""
+        """The laws with larger penalties.
+
+        Args:
+            factor: How many times as large they are.
+            tangential: Whether the stiffness of adhesion is a penalty, too.
+
+        Returns:
+            The laws; those given are unchanged.
+        """
         return PairLaw(*_stiffened(self, factor, tangential))
 
     def penalties(self) -> tuple[float, float]:
@@ -188,6 +207,9 @@ class Interface:
         friction: Yield ellipse and sliding rule.
         evolution: Name in `registry.evolution_forms()`: how the history enters the step.
         threads: Number of threads of a batch; all processors if left out.
+
+    Raises:
+        InputError: Parts that do not go together, or one in the place of another.
 
     Example:
         >>> from anisocontact.surfaces import make_surface
@@ -214,6 +236,8 @@ class Interface:
         evolution: str = "transport",
         threads: int | None = None,
     ) -> None:
+        _check_kind("surface", surface, Surface)
+        _check_laws(normal, adhesion, friction)
         registry.entry(registry.evolution_forms(), evolution, "evolution")
         if evolution == "total" and adhesion.named[0] != "elastic":
             raise InputError(
@@ -251,7 +275,15 @@ class Interface:
         )
 
     def stiffened(self, factor: float, tangential: bool) -> Interface:
-        """The interface with penalties `factor` times as large, that of adhesion if it is one."""
+        """The interface with larger penalties.
+
+        Args:
+            factor: How many times as large they are.
+            tangential: Whether the stiffness of adhesion is a penalty, too.
+
+        Returns:
+            The interface; the one given is unchanged.
+        """
         return Interface(
             self.surface,
             *_stiffened(self, factor, tangential),
@@ -319,9 +351,10 @@ class Interface:
             Tractions, tangent and trial state.
 
         Raises:
-            InputError: Directions lie on the slave, and it has points alone.
+            InputError: Directions lie on the slave, and it has points alone; or points that are
+                not those of the states.
         """
-        x = points(x, 3)
+        x = points(x, 3, rows=len(state))
         if slave is None and self.needs_slave:
             raise InputError("'slave' given, but slave points alone carry none", self.needs_slave)
         own = (slave or _POINTS_ALONE).arrays
@@ -336,6 +369,18 @@ class Interface:
             failure=r["failure"],
             tangent_slave=r["tangent_own"],
         )
+
+
+def _check_kind(name: str, given: object, needed: type) -> None:
+    if not isinstance(given, needed):
+        raise InputError(f"{type(given).__name__} given, {needed.__name__} needed", name)
+
+
+def _check_laws(normal: object, adhesion: object, friction: object) -> None:
+    """Refuse laws that stand in the place of another one."""
+    _check_kind("normal", normal, NormalLaw)
+    _check_kind("adhesion", adhesion, Adhesion)
+    _check_kind("friction", friction, Friction)
 
 
 def _stiffened(
@@ -367,10 +412,29 @@ def _made[T](kind: Callable[..., T], *arguments: object) -> T:
 
 
 def as_state(raw: npt.NDArray[np.uint8]) -> State:
-    """States from rows of bytes, without a copy."""
+    """States from rows of bytes, without a copy.
+
+    Args:
+        raw: Bytes, (n, bytes of a state).
+
+    Returns:
+        The states, (n,) of `STATE`.
+    """
     return raw.reshape(-1).view(STATE)
 
 
 def raw_state(state: State) -> npt.NDArray[np.uint8]:
-    """States as rows of bytes, as the core takes them."""
+    """States as rows of bytes, as the core takes them.
+
+    Args:
+        state: States, (n,) of `STATE`.
+
+    Returns:
+        Their bytes, (n, bytes of a state).
+
+    Raises:
+        InputError: It is no array of states.
+    """
+    if getattr(state, "dtype", None) != STATE:
+        raise InputError("no states given, those that a response has are needed", "state")
     return np.ascontiguousarray(state).view(np.uint8).reshape(len(state), STATE.itemsize)

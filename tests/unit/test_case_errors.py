@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
@@ -124,6 +126,46 @@ def test_wrong_value(tmp_path, capsys, case_text, old, new, field, says):
     assert all(line.startswith("error: ") for line in lines)
     # A name that is wrong in one place may be missed in another, such as a body without material.
     assert len(lines) == 1 or "material" in old or "other" in new
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("[[contact]]", "[contact]", ["contact: ", "a list needed, [[contact]]"]),
+        (
+            "every = 3",
+            "every = 3\n[solver]\noptions = { snes_max_it = [1] }",
+            ["solver.options.snes_max_it: [1] given, a text, a number, true or false needed"],
+        ),
+    ],
+)
+def test_wrong_form(tmp_path, capsys, case_text, old, new, says):
+    """What is no value at all, or one level too high, makes one line as well."""
+    lines = run_wrong(tmp_path, capsys, case_text.replace(old, new))
+    assert len(lines) == 1
+    for text in says:
+        assert text in lines[0]
+
+
+def test_no_step_in_the_list(tmp_path, capsys, case_text):
+    text = "step = []\n" + case_text[: case_text.index("[[step]]")]
+    assert run_wrong(tmp_path, capsys, text) == ["error: step: [] given, at least one entry needed"]
+
+
+def test_case_of_the_other_command(tmp_path, capsys, case_text):
+    """A case of `trace` given to `run`, and the other way round: one line, not one for each key."""
+    trace = (Path(__file__).parents[2] / "examples" / "point" / "sledge.toml").read_text()
+    lines = run_wrong(tmp_path, capsys, trace)
+    assert lines == ["error: load given and no mesh: this is a case of `anisocontact trace`"]
+    (tmp_path / "case.toml").write_text(case_text)
+    assert main(["trace", str(tmp_path / "case.toml"), "-o", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert said == "error: mesh given and no load: this is a case of `anisocontact run`\n"
+
+
+def test_mark_of_the_byte_order_is_passed_over(tmp_path, capsys, case_text):
+    (tmp_path / "case.toml").write_bytes(b"\xef\xbb\xbf" + case_text.encode())
+    assert main(["check", str(tmp_path / "case.toml")]) == 0
 
 
 def test_all_mistakes_of_a_file_are_listed(tmp_path, capsys, case_text):

@@ -10,14 +10,20 @@ from dataclasses import dataclass, replace
 from functools import cache
 from typing import Annotated, Any
 
-from pydantic import Field, create_model
+from pydantic import (
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WrapValidator,
+    create_model,
+)
 
 from anisocontact import registry
 from anisocontact.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.augmentation import NEWTON, SCHEMES, UZAWA, Augmentation
 from anisocontact.case.bodies import Mesh, mesh_type
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
-from anisocontact.case.quantity import Quantity
+from anisocontact.case.quantity import Quantity, line, shown
 from anisocontact.case.quantity import number as _number
 from anisocontact.case.quantity import word as _word
 from anisocontact.case.registered import Key, OneOf, Registered, default_of
@@ -86,6 +92,14 @@ class Output(Section):
     ] = True
 
 
+def _option(given: object, inner: ValidatorFunctionWrapHandler) -> Any:
+    """A value PETSc can have; one line where it is none, not one for each kind it could be."""
+    try:
+        return inner(given)
+    except ValidationError:
+        raise line(f"{shown(given)} given, a text, a number, true or false needed") from None
+
+
 class Solver(Section):
     """How it is solved."""
 
@@ -98,7 +112,7 @@ class Solver(Section):
             *STRATEGIES,
         ),
     ] = AUTO
-    options: dict[str, str | int | float | bool] = Field(
+    options: dict[str, Annotated[str | int | float | bool, WrapValidator(_option)]] = Field(
         default_factory=dict,
         description="PETSc options without the prefix `anisocontact_`, such as `snes_max_it = 50`",
     )

@@ -92,7 +92,7 @@ def validate(data: Mapping[str, Any]) -> Case:
         The checked case.
 
     Raises:
-        InputError: The finite-element level is not installed.
+        InputError: The finite-element level is not installed, or it is a case of the point driver.
         CaseError: Something in it is wrong.
     """
     registries = Registries.current()
@@ -101,6 +101,8 @@ def validate(data: Mapping[str, Any]) -> Case:
             "the finite-element level is not installed: pip install 'anisocontact[fem]', "
             "or fenics-dolfinx from conda-forge"
         )
+    if "load" in data and "mesh" not in data:
+        raise InputError("load given and no mesh: this is a case of `anisocontact trace`")
     try:
         case = case_type(registries).model_validate(data)
     except ValidationError as error:
@@ -138,9 +140,19 @@ def as_input(error: Any) -> InputError:
 
 
 def read_table(path: Path) -> dict[str, Any]:
-    """The tables of a TOML file."""
+    """The tables of a TOML file.
+
+    Args:
+        path: The file, in UTF-8; a mark of the byte order at its start is passed over.
+
+    Returns:
+        The tables, nested.
+
+    Raises:
+        InputError: It is missing, cannot be read or is not TOML.
+    """
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8"))
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except FileNotFoundError:
         raise InputError(f"case file '{path}' does not exist") from None
     except OSError as error:

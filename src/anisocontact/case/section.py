@@ -23,6 +23,7 @@ _NEEDED = {
     "dict_type": "a table",
     "model_type": "a table",
     "list_type": "a list",
+    "too_short": "at least one entry",
 }
 
 
@@ -77,7 +78,11 @@ class Section(BaseModel):
         if kind == "extra_forbidden":
             return f"unknown key; {near(name, list(cls.model_fields))}"
         if kind in _NEEDED:
-            return f"{shown(e['input'])} given, {_NEEDED[kind]} needed"
+            # one bracket too few makes a table of what is a list of tables
+            brackets = (
+                f", [[{name}]]" if kind == "list_type" and isinstance(e["input"], dict) else ""
+            )
+            return f"{shown(e['input'])} given, {_NEEDED[kind]} needed{brackets}"
         return f"{shown(e['input'])} given: {e['msg']}"
 
     @classmethod

@@ -172,6 +172,8 @@ class _Loads(OneOf):
 
 
 def _checked(kind: type[TraceCase], data: Mapping[str, Any]) -> TraceCase:
+    if "mesh" in data and "load" not in data:
+        raise InputError("mesh given and no load: this is a case of `anisocontact run`")
     try:
         return kind.model_validate(data)
     except ValidationError as error:

@@ -49,7 +49,8 @@ def command(arguments: argparse.Namespace) -> int:
     if outcome.status == "done":
         print(f"done      {folder}")
         return DONE
-    print(f"error: stopped: {outcome.message}; what converged is in {folder}", file=sys.stderr)
+    kept = f"; what converged is in {folder}" if folder.is_dir() else ""
+    print(f"error: stopped: {outcome.message}{kept}", file=sys.stderr)
     if outcome.goes_on:
         words = ["anisocontact", "run", str(arguments.case), "-o", str(folder), "--restart"]
         print(f"to go on: {shlex.join(words)}", file=sys.stderr)

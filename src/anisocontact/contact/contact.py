@@ -14,7 +14,7 @@ from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
 from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.penalty import facet_size
-from anisocontact.contact.quadrature import Surfaced, default_degree, facet_quadrature
+from anisocontact.contact.quadrature import Surfaced, chosen_degree, facet_quadrature
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.contact.semismooth import Base, Semismooth
 from anisocontact.contact.transfer import Couplings
@@ -58,7 +58,8 @@ class Contact(ContactRecord):
         last: Response of the accepted increment.
 
     Raises:
-        InputError: No such facet group, one without facets, or a degree below 1.
+        InputError: No such facet group, one without facets, a degree below 1, or laws without a
+            surface.
     """
 
     def __init__(
@@ -77,10 +78,10 @@ class Contact(ContactRecord):
         facets = model.facets(slave, "slave")
         if model.count_facets(slave) == 0:
             raise InputError(f"facet group {slave!r} has no facets", "slave")
-        if degree is None:
-            degree = default_degree(model.order, augmentation is not None)
-        if degree < 1:
-            raise InputError(f"{degree!r} given, must be >= 1", "degree")
+        if not hasattr(interface, "surface"):
+            text = f"{type(interface).__name__} given, Interface or PythonInterface needed"
+            raise InputError(text, "interface")
+        degree = chosen_degree(degree, model.order, augmentation is not None)
         self.interface = interface
         self.body = body
         self._master: Master = interface if body is None else MovingInterface(interface, body)

@@ -15,12 +15,13 @@ from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.facet_answer import Question, ask
 from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.point_tangent import PointTangent
-from anisocontact.contact.quadrature import default_degree
+from anisocontact.contact.quadrature import chosen_degree
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.contact.semismooth import Base, Semismooth
 from anisocontact.contact.sides import check_sides, initial_state, located, make_sides
 from anisocontact.contact.transfer import Couplings, Transfer
 from anisocontact.contact.transfer_work import transfer_work
+from anisocontact.errors import InputError
 from anisocontact.facets import FacetProjections
 from anisocontact.interface import PairLaw, Response, State
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -62,7 +63,8 @@ class FacetContact(ContactRecord):
         name: Name in output; the slave if not given.
 
     Raises:
-        InputError: No such facet group, one without facets, or the same for both.
+        InputError: No such facet group, one without facets, or the same for both; a degree below
+            1, or laws with a surface of their own.
     """
 
     def __init__(
@@ -84,6 +86,8 @@ class FacetContact(ContactRecord):
         name: str = "",
     ) -> None:
         check_sides(model, slave, master, apart)
+        if not hasattr(law, "pairs"):
+            raise InputError(f"{type(law).__name__} given, PairLaw needed", "law")
         self.master = master
         self.interface = law
         self.current_area = current_area
@@ -93,8 +97,7 @@ class FacetContact(ContactRecord):
         self._linear: PointTangent | None = None
         self._lag: Floats = np.zeros((0, 0, 3))
         self._transferred = 0.0
-        if degree is None:
-            degree = default_degree(model.order, augmentation is not None)
+        degree = chosen_degree(degree, model.order, augmentation is not None)
         self._sides = sides = make_sides(
             model, (slave, master), degree, reach, apart, current_area, weight
         )

@@ -11,6 +11,7 @@ import numpy.typing as npt
 import scipy.sparse
 
 from anisocontact._fenicsx import basix, facet_sides, geometry, scalar_element
+from anisocontact.errors import InputError
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
@@ -211,13 +212,33 @@ def _norm(vectors: Floats) -> Floats:
     return np.asarray(np.linalg.norm(vectors, axis=-1))
 
 
-def default_degree(order: int, augmented: bool = False) -> int:
-    """Degree that integrates the product of two basis functions: twice the order.
+def chosen_degree(given: int | None, order: int, augmented: bool) -> int:
+    """Degree of the quadrature: the one given, or one that suits the displacement.
 
-    Where every point carries a multiplier, the order: with more points than nodes the surfaces
-    would be held together where they cannot follow each other.
+    Twice the order integrates the product of two basis functions. Where every point carries a
+    multiplier, the order: with more points than nodes the surfaces would be held together where
+    they cannot follow each other.
+
+    Args:
+        given: What the user asks for, if anything.
+        order: Order of the displacement.
+        augmented: Whether every point carries a multiplier.
+
+    Returns:
+        The degree.
+
+    Raises:
+        InputError: It is below 1.
+
+    Example:
+        >>> chosen_degree(None, 2, False), chosen_degree(None, 2, True), chosen_degree(5, 2, True)
+        (4, 2, 5)
     """
-    return order if augmented else 2 * order
+    if given is None:
+        return order if augmented else 2 * order
+    if given < 1:
+        raise InputError(f"{given!r} given, must be >= 1", "degree")
+    return given
 
 
 def facet_quadrature(space: Any, facets: Ints, degree: int) -> FacetQuadrature:

@@ -82,7 +82,8 @@ class Model:
             The names on that space; every cell belongs to the body of the first group.
 
         Raises:
-            InputError: Not a vector Lagrange space of order 1 or 2 on cells of three dimensions.
+            InputError: Not a vector Lagrange space of order 1 or 2 on cells of three dimensions, or
+                a facet that its mesh does not have.
         """
         element = space.element.basix_element
         if space.dofmap.index_map_bs != 3 or element.degree not in (1, 2):
@@ -94,6 +95,13 @@ class Model:
         body = next(iter(facets), "body").partition(".")[0]
         cells = np.arange(space.mesh.topology.index_map(3).size_local, dtype=np.int32)
         named = {name: np.asarray(found, dtype=np.int32) for name, found in facets.items()}
+        space.mesh.topology.create_entities(2)
+        index_map = space.mesh.topology.index_map(2)
+        count = index_map.size_local + index_map.num_ghosts
+        for name, found in named.items():
+            outside = found[(found < 0) | (found >= count)]
+            if len(outside):
+                raise InputError(f"facet {outside[0]} given, the mesh has 0 to {count - 1}", name)
         model = cls(space.mesh, {body: cells}, named, element.degree)
         model.space = space
         return model

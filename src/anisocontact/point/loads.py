@@ -30,7 +30,7 @@ class Load:
         main: The load's own knots, which count the times where these are not given.
         times: Times of the knots [time]; 0, 1, 2, ... if left out.
         increments: Steps of each segment between knots, one number or a list.
-        pressure: N, over time [stress]; of a group the mean over its areas. The gap follows.
+        pressure: N >= 0, over time [stress]; of a group the mean over its areas. The gap follows.
         gap: xi^3 of the reference, negative in contact, over time [length].
 
     Raises:
@@ -56,11 +56,11 @@ class Load:
             raise InputError("given with a gap; either pressure or gap", field="pressure")
         if pressure is None and gap is None and not self.presses:
             raise InputError("missing; either pressure or gap is needed", field="pressure")
-        self.pressure = self._normal(pressure, "pressure")
-        self.gap = self._normal(gap, "gap")
+        self.pressure = self._normal(pressure, "pressure", 0.0)
+        self.gap = self._normal(gap, "gap", -np.inf)
 
-    def _normal(self, given: OverTime | None, field: str) -> Schedule | None:
-        return None if given is None else Schedule(given, self.times, (0,), field)
+    def _normal(self, given: OverTime | None, field: str, least: float) -> Schedule | None:
+        return None if given is None else Schedule(given, self.times, (0,), field, least)
 
     def start(self, surface: Surface) -> Floats:
         """Reference at the start, (3,)."""

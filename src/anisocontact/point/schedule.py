@@ -23,17 +23,26 @@ class Schedule:
         times: Times of the knots, (k,) [time].
         sizes: Allowed numbers of components; 0 stands for a plain number.
         field: Name for messages.
+        least: Smallest number allowed.
 
     Raises:
-        InputError: The form fits neither a constant nor the knots, or a number is not finite.
+        InputError: The form fits neither a constant nor the knots, or a number is not finite or
+            too small.
 
     Example:
         >>> float(Schedule([0.0, 4.0], np.array([0.0, 2.0]), (0,), "pressure")(0.5))
         1.0
     """
 
-    def __init__(self, given: OverTime, times: Floats, sizes: Sequence[int], field: str) -> None:
-        self.times, self.field, self.sizes = times, field, sizes
+    def __init__(
+        self,
+        given: OverTime,
+        times: Floats,
+        sizes: Sequence[int],
+        field: str,
+        least: float = -np.inf,
+    ) -> None:
+        self.times, self.field, self.sizes, self._least = times, field, sizes, least
         self._function = given if callable(given) else None
         self._knots = None if callable(given) else self._checked(given)
 
@@ -66,6 +75,8 @@ class Schedule:
             )
         if not np.isfinite(a).all():
             raise InputError("a number that is not finite given", field=self.field)
+        if (a < self._least).any():
+            raise InputError(f"{a.min():g} given, must be >= {self._least:g}", field=self.field)
         return a
 
     def _needed(self) -> str:
@@ -80,6 +91,9 @@ class Schedule:
             )
         if not np.isfinite(a).all():
             raise InputError(f"the function gives {a.tolist()} at time {t:g}", field=self.field)
+        if (a < self._least).any():
+            text = f"the function gives {a.min():g} at time {t:g}, must be >= {self._least:g}"
+            raise InputError(text, field=self.field)
         return a
 
 

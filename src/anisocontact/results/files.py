@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 from collections.abc import Callable
@@ -109,11 +110,16 @@ def check_folder(folder: Path, overwrite: bool = False) -> None:
         overwrite: Whether results of an earlier run may be replaced.
 
     Raises:
-        InputError: It is a file, or not empty and either not asked for or not that of a run.
+        InputError: It is a file, cannot be made, or is not empty and either not asked for or not
+            that of a run.
     """
     try:
         found = sorted(entry.name for entry in folder.iterdir())
     except FileNotFoundError:
+        there = next(parent for parent in folder.absolute().parents if parent.exists())
+        if not os.access(there, os.W_OK | os.X_OK):
+            text = f"results folder '{folder}' cannot be made: no permission to write in '{there}'"
+            raise InputError(text) from None
         return
     except OSError as error:
         raise InputError(f"results folder '{folder}': {error.strerror}") from None

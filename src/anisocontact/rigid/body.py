@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -119,9 +120,14 @@ class RigidBody:
 
         Args:
             **components: Translation `x`, `y`, `z`, length, and turn `rx`, `ry`, `rz`, radian.
+
+        Raises:
+            InputError: No such component, or no number for it.
         """
         values = self.trial.values
         for name, value in components.items():
+            if not math.isfinite(value):
+                raise InputError(f"{value!r} given, needs a finite number", name)
             values[component_number(name, name)] = value
         self.place(values)
 

@@ -81,7 +81,8 @@ def _inverted(problem: Problem) -> Iterator[Culprit]:
 def _worst(problem: Problem, residual: Floats) -> Iterator[tuple[float, Culprit]]:
     """The node of this rank with the largest residual, and how large it is."""
     x = problem.model.space.tabulate_dof_coordinates()
-    nodal = np.linalg.norm(residual[: 3 * (len(residual) // 3)].reshape(-1, 3), axis=1)
+    with np.errstate(over="ignore"):
+        nodal = np.linalg.norm(residual[: 3 * (len(residual) // 3)].reshape(-1, 3), axis=1)
     nodal = nodal[: problem.model.space.dofmap.index_map.size_local]
     if nodal.size and np.isfinite(nodal).any():
         node = int(np.nanargmax(nodal))

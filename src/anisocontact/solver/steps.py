@@ -104,6 +104,9 @@ class Step:
     def _check_vectors(self, kind: str) -> None:
         groups: Mapping[str, Mapping[str, float | None]] = getattr(self, kind)
         for group, values in groups.items():
+            if not isinstance(values, Mapping):
+                text = f'{values!r} given, values by axis needed, as in {{"x": 0.1}}'
+                raise self._error(f"{kind}.{group}", text)
             for axis, value in values.items():
                 self._check(kind, group, axis, value)
 

@@ -64,6 +64,8 @@ class SymmetryPlanes:
     """
 
     def __init__(self, model: Model, groups: Sequence[str], like: Vec, tied: Ints) -> None:
+        if isinstance(groups, str):
+            raise InputError(f"{groups!r} given, a list of facet groups needed", "symmetry")
         self._model = model
         #: The facet groups.
         self.groups = list(groups)

@@ -104,14 +104,17 @@ class ContactProblem(Following):
         """Bring `u` into equilibrium and accept the history of the contacts.
 
         Args:
-            dt: Time increment, for laws that have a time.
+            dt: Time increment > 0, for laws that have a time.
 
         Returns:
             Number of Newton iterations.
 
         Raises:
             RuntimeError: No convergence; `u` and the history are as before.
+            InputError: The time increment is not positive.
         """
+        if not dt > 0.0:
+            raise InputError(f"{dt!r} given, must be > 0", "dt")
         self._dt = dt
         before = self.u.x.array.copy()
         x = self.new_vector()

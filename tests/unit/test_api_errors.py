@@ -1,0 +1,108 @@
+"""Wrong arguments in a script: one line that names the argument, what was given, what is needed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.bulk import make_material
+from anisocontact.contact import Contact, FacetContact
+from anisocontact.errors import InputError
+from anisocontact.interface import Interface, PairLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.point import PrescribedPath
+from anisocontact.rigid import RigidBody
+from anisocontact.solver import Problem, Step
+from anisocontact.surfaces import make_surface
+
+PLANE = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+LAWS = (
+    NormalLaw(penalty=1e3),
+    Adhesion(stiffness=(10, 10)),
+    Friction(coefficients=(0.3, 0.3)),
+)
+INTERFACE, PAIR = Interface(PLANE, *LAWS), PairLaw(*LAWS)
+START = INTERFACE.initial_state([[0, 0, 0]])
+KNOTS = [(0, 0, 0), (1, 0, 0)]
+STEEL = make_material("linear-elastic", E=1.0, nu=0.3)
+
+
+@pytest.fixture(scope="module")
+def model() -> Model:
+    lower = BoxSpec((0, 0, -1), (1, 1, 1), (1, 1, 1))
+    return build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1)), "base": lower})
+
+
+WRONG = {
+    "another law": (
+        lambda m: Interface(PLANE, LAWS[1], LAWS[0], LAWS[2]),
+        "normal: Adhesion given, NormalLaw needed",
+    ),
+    "a name for a surface": (
+        lambda m: Interface("plane", *LAWS),
+        "surface: str given, Surface needed",
+    ),
+    "points of other states": (
+        lambda m: INTERFACE.update(START, [[0, 0, 0], [1, 0, 0]]),
+        r"x: an array of shape \(2, 3\) given, \(1, 3\) needed",
+    ),
+    "numbers for states": (
+        lambda m: INTERFACE.update(np.zeros((1, 4)), [[0, 0, 0]]),
+        "state: no states given",
+    ),
+    "words for points": (
+        lambda m: INTERFACE.update(START, [["a", 0, 0]]),
+        "x: .* given, an array of numbers needed",
+    ),
+    "pull on a point": (
+        lambda m: PrescribedPath(KNOTS, pressure=-1.0),
+        "pressure: -1 given, must be >= 0",
+    ),
+    "pull after a while": (
+        lambda m: PrescribedPath(KNOTS, pressure=lambda t: 1.0 - 2.0 * t).pressure(1.0),
+        "pressure: the function gives -1 at time 1, must be >= 0",
+    ),
+    "a list for a vector": (
+        lambda m: Step("a", 1, {"block.top": [1, 2, 3]}),
+        r"displacement.block.top: \[1, 2, 3\] given, values by axis needed",
+    ),
+    "a group for groups": (
+        lambda m: Problem(m, dict.fromkeys(m.body_names(), STEEL), symmetry="block.left"),
+        "symmetry: 'block.left' given, a list of facet groups needed",
+    ),
+    "laws without a surface": (
+        lambda m: Contact(m, "block.bottom", PAIR),
+        "interface: PairLaw given, Interface or PythonInterface needed",
+    ),
+    "laws with a surface": (
+        lambda m: FacetContact(m, "block.bottom", "base.top", law=INTERFACE),
+        "law: Interface given, PairLaw needed",
+    ),
+    "no degree on a plane": (
+        lambda m: Contact(m, "block.bottom", INTERFACE, degree=0),
+        "degree: 0 given, must be >= 1",
+    ),
+    "no degree on facets": (
+        lambda m: FacetContact(m, "block.bottom", "base.top", law=PAIR, degree=-1),
+        "degree: -1 given, must be >= 1",
+    ),
+    "a facet too far": (
+        lambda m: Model.of(m.space, {"pad.sole": np.array([0, 9999], dtype=np.int32)}),
+        r"pad.sole: facet 9999 given, the mesh has 0 to \d+",
+    ),
+    "no number for a motion": (
+        lambda m: RigidBody("die", reference=(0, 0, 0)).move(x=float("nan")),
+        "x: nan given, needs a finite number",
+    ),
+}
+
+
+@pytest.mark.parametrize("call", WRONG)
+def test_wrong_argument(model, call):
+    wrong, says = WRONG[call]
+    with pytest.raises(InputError, match=says) as caught:
+        wrong(model)
+    assert "\n" not in str(caught.value)
