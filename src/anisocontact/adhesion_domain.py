@@ -48,17 +48,38 @@ class Ellipse:
         return q @ np.diag([self.semi_axes[0] ** -2, self.semi_axes[1] ** -2]) @ q.T
 
     def at(self, centre: Pair) -> Ellipse:
-        """The same ellipse about another centre."""
+        """The same ellipse about another centre.
+
+        Args:
+            centre: The new centre, (2,).
+
+        Returns:
+            The ellipse there.
+        """
         return replace(self, centre=(float(centre[0]), float(centre[1])))
 
     def points(self, n: int = 181) -> Floats:
-        """Points of the boundary at equal steps of the parameter, closed, (n, 2)."""
+        """Points of the boundary at equal steps of the parameter, closed, (n, 2).
+
+        Args:
+            n: Number of points, the first once more at the end.
+
+        Returns:
+            The points, (n, 2).
+        """
         t = np.linspace(0.0, 2.0 * np.pi, n)
         unit = np.stack([np.cos(t), np.sin(t)], axis=1)
         return np.asarray(self.centre + (unit * self.semi_axes) @ _rotation(self.angle).T)
 
     def contains(self, x: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Whether points (n, 2) are inside or on the boundary, (n,)."""
+        """Whether points (n, 2) are inside or on the boundary, (n,).
+
+        Args:
+            x: Points, (n, 2).
+
+        Returns:
+            A flag for each, (n,).
+        """
         d = points(x, 2) - self.centre
         return np.asarray(np.einsum("ni,ij,nj->n", d, self.matrix, d) <= 1.0)
 
@@ -84,18 +105,39 @@ class Strip:
         return np.outer(n, n) / self.half_width**2
 
     def at(self, centre: Pair) -> Strip:
-        """The same strip about another point."""
+        """The same strip about another point.
+
+        Args:
+            centre: The new point, (2,).
+
+        Returns:
+            The strip there.
+        """
         return replace(self, centre=(float(centre[0]), float(centre[1])))
 
     def edges(self, length: float) -> Floats:
-        """A piece of the two lines: line, end, coordinate, (2, 2, 2)."""
+        """A piece of the two lines: line, end, coordinate, (2, 2, 2).
+
+        Args:
+            length: Length of the piece.
+
+        Returns:
+            Ends of both lines: line, end, coordinate, (2, 2, 2).
+        """
         along, across = _rotation(self.angle).T
         ends = np.array([[-0.5], [0.5]]) * length * along
         offsets = np.array([-1.0, 1.0])[:, None, None] * self.half_width * across
         return np.asarray(self.centre + ends[None] + offsets)
 
     def contains(self, x: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Whether points (n, 2) are inside or on the boundary, (n,)."""
+        """Whether points (n, 2) are inside or on the boundary, (n,).
+
+        Args:
+            x: Points, (n, 2).
+
+        Returns:
+            A flag for each, (n,).
+        """
         d = (points(x, 2) - self.centre) @ _rotation(self.angle)[:, 1]
         return np.asarray(np.abs(d) <= self.half_width)
 

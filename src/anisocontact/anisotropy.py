@@ -27,6 +27,14 @@ class DirectionField:
     Args:
         name: Name in the registry.
         core: The field of the core.
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> rays = make_directions("polar", axis=((0, 0, 0), (0, 0, 1)))
+        >>> axes, regular = rays.axes(plane, [[3.0, 4.0], [0.0, 0.0]])
+        >>> axes[0, 0].round(6).tolist(), regular.tolist()  # along the ray; none in the pole
+        ([0.6, 0.8, 0.0], [True, False])
     """
 
     def __init__(self, name: str, core: _core.Field) -> None:
@@ -145,6 +153,13 @@ def tensor_derivative(
 
     Raises:
         InputError: As `tensor`.
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> bar = make_surface("cylinder", point=(0, 0, 0), axis=(0, 0, 1), radius=2)
+        >>> along = make_directions("constant", vector=(0, 0, 1))
+        >>> tensor_derivative(bar, [[0.3, 1.0]], along, (2.0, 1.0)).shape
+        (1, 2, 2, 2)
     """
     if placement not in PLACEMENTS[:2]:
         raise InputError(f"{placement!r} given, allowed: co, contra", "placement")

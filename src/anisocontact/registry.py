@@ -94,32 +94,80 @@ def _entries(kind: str, describe: Callable[[], list[_core.Descriptor]]) -> tuple
 
 
 def surfaces() -> tuple[Entry, ...]:
-    """Analytic surfaces."""
+    """Analytic surfaces.
+
+    Returns:
+        An entry for each, in the order of registration.
+
+    Example:
+        >>> [entry.name for entry in surfaces()][:3]
+        ['plane', 'cylinder', 'sphere']
+    """
     return _entries("surface", _core.surfaces)
 
 
 def direction_fields() -> tuple[Entry, ...]:
-    """Fields of directions on a surface."""
+    """Fields of directions on a surface.
+
+    Returns:
+        An entry for each.
+
+    Example:
+        >>> "polar" in [entry.name for entry in direction_fields()]
+        True
+    """
     return _entries("direction field", _core.direction_fields)
 
 
 def normal_laws() -> tuple[Entry, ...]:
-    """Laws of the pressure."""
+    """Laws of the pressure.
+
+    Returns:
+        An entry for each.
+
+    Example:
+        >>> "penalty" in [entry.name for entry in normal_laws()]
+        True
+    """
     return _entries("normal law", _core.normal_laws)
 
 
 def adhesion_models() -> tuple[Entry, ...]:
-    """Laws of the tangential force inside the yield ellipse."""
+    """Laws of the tangential force inside the yield ellipse.
+
+    Returns:
+        An entry for each.
+
+    Example:
+        >>> "maxwell" in [entry.name for entry in adhesion_models()]
+        True
+    """
     return _entries("adhesion model", _core.adhesion_models)
 
 
 def friction_models() -> tuple[Entry, ...]:
-    """Friction tensors, which make the yield ellipse."""
+    """Friction tensors, which make the yield ellipse.
+
+    Returns:
+        An entry for each.
+
+    Example:
+        >>> "he-curnier" in [entry.name for entry in friction_models()]
+        True
+    """
     return _entries("friction model", _core.friction_models)
 
 
 def sliding_rules() -> tuple[Entry, ...]:
-    """Rules of the force in slip."""
+    """Rules of the force in slip.
+
+    Returns:
+        An entry for each.
+
+    Example:
+        >>> [entry.name for entry in sliding_rules()][0]
+        'maximum-dissipation'
+    """
     return _entries("sliding rule", _core.sliding_rules)
 
 
@@ -136,6 +184,10 @@ def entry(entries: Iterable[Entry], name: str, field: str = "") -> Entry:
 
     Raises:
         InputError: There is none of that name; the message lists those there are.
+
+    Example:
+        >>> [p.name for p in entry(surfaces(), "sphere").parameters][:2]
+        ['centre', 'radius']
     """
     found = tuple(entries)
     for e in found:
@@ -151,7 +203,15 @@ def entry(entries: Iterable[Entry], name: str, field: str = "") -> Entry:
 
 
 def evolution_forms() -> tuple[Entry, ...]:
-    """Discrete forms of the evolution of the tangential force along the path."""
+    """Discrete forms of the evolution of the tangential force along the path.
+
+    Returns:
+        An entry for each.
+
+    Example:
+        >>> [entry.name for entry in evolution_forms()]
+        ['transport', 'covariant', 'incremental', 'total']
+    """
     return _entries("evolution form", _core.evolution_forms)
 
 

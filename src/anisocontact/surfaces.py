@@ -69,7 +69,11 @@ class Projection:
 
 
 def default_threads() -> int:
-    """Number of processors this process may use."""
+    """Number of processors this process may use.
+
+    Returns:
+        Their number, at least 1.
+    """
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
@@ -79,6 +83,12 @@ class Surface:
     Args:
         name: Name in the registry.
         core: The surface of the core.
+
+    Example:
+        >>> ball = make_surface("sphere", centre=(0, 0, 0), radius=2)
+        >>> hit = ball.project([[0, 0, 3.0]])
+        >>> hit.gap.round(12).tolist()
+        [1.0]
     """
 
     def __init__(self, name: str, core: _core.Surface) -> None:
@@ -100,7 +110,14 @@ class Surface:
         return Jet(**self.core.jet(points(xi, 2, "xi")))
 
     def position(self, xi: npt.ArrayLike) -> Floats:
-        """Position rho, (n, 3), at coordinates (n, 2)."""
+        """Position rho, (n, 3), at coordinates (n, 2).
+
+        Args:
+            xi: Coordinates, (n, 2).
+
+        Returns:
+            Positions, (n, 3) [length].
+        """
         return self.jet(xi).position
 
     def geometry(self, xi: npt.ArrayLike) -> Geometry:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any
 
@@ -36,7 +37,7 @@ def cauchy_stress(material: Any, u: Any) -> Any:
     return material.piola(u) * gradient.T / ufl.det(gradient)
 
 
-class _Isotropic:
+class _Isotropic(ABC):
     """Two moduli at rest, from Young's modulus and Poisson's ratio."""
 
     linear = False
@@ -61,8 +62,9 @@ class _Isotropic:
         """Terms of the energy with the degree of the quadrature each asks for."""
         return self._terms(u, deformation_gradient(u))
 
+    @abstractmethod
     def _terms(self, u: Any, gradient: Any) -> list[Density]:
-        raise NotImplementedError
+        """Terms of the energy for a deformation gradient."""
 
 
 class StVenantKirchhoff(_Isotropic):

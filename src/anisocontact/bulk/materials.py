@@ -55,6 +55,11 @@ class LinearElastic:
 
     Raises:
         InputError: A value is out of range.
+
+    Example:
+        >>> steel = LinearElastic(E=200.0, nu=0.25)
+        >>> steel.shear, steel.lame
+        (80.0, 80.0)
     """
 
     linear = True

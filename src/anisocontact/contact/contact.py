@@ -60,6 +60,21 @@ class Contact(ContactRecord):
     Raises:
         InputError: No such facet group, one without facets, a degree below 1, or laws without a
             surface.
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> from anisocontact.surfaces import make_surface
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+        >>> interface = Interface(
+        ...     make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)),
+        ...     NormalLaw(penalty=100.0),
+        ...     Adhesion(stiffness=(100.0, 100.0)),
+        ...     Friction(coefficients=(0.3, 0.3)),
+        ... )
+        >>> contact = Contact(model, "block.bottom", interface)
+        >>> response = contact.update(np.tile([0.0, 0.0, -0.01], (8, 1)), 1.0)
+        >>> response.pressure.round(12).tolist()  # at the four points of the facet
+        [1.0, 1.0, 1.0, 1.0]
     """
 
     def __init__(

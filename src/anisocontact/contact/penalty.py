@@ -14,7 +14,21 @@ PENALTY_FACTOR = 10.0
 
 
 def facet_size(model: Model, facet_group: str) -> float:
-    """Length of a facet: square root of the mean facet area of a group."""
+    """Length of a facet: square root of the mean facet area of a group.
+
+    Args:
+        model: Mesh with the group.
+        facet_group: Its name, "body.group".
+
+    Returns:
+        The size [length].
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"a": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+        >>> round(facet_size(model, "a.top"), 12)
+        0.5
+    """
     quadrature = facet_quadrature(model.space, model.facets(facet_group), degree=2)
     local = np.array([quadrature.areas.sum(), len(quadrature.nodes)])
     area, count = model.mesh.comm.allreduce(local)
@@ -34,5 +48,13 @@ def auto_penalty(
 
     Returns:
         The penalty, stress/length.
+
+    Example:
+        >>> from anisocontact.bulk import make_material
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+        >>> steel = make_material("linear-elastic", E=50.0, nu=0.3)
+        >>> round(auto_penalty(model, "block.bottom", steel), 6)
+        1000.0
     """
     return factor * material.young / facet_size(model, slave)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Sequence
 
 import numpy as np
@@ -23,7 +24,7 @@ from anisocontact.point.schedule import OverTime, Schedule, instants, knot_times
 from anisocontact.surfaces import Floats, Surface
 
 
-class Load:
+class Load(ABC):
     """What all loads share: time, and the control of pressure or penetration.
 
     Args:
@@ -62,13 +63,32 @@ class Load:
     def _normal(self, given: OverTime | None, field: str, least: float) -> Schedule | None:
         return None if given is None else Schedule(given, self.times, (0,), field, least)
 
+    @abstractmethod
     def start(self, surface: Surface) -> Floats:
-        """Reference at the start, (3,)."""
-        raise NotImplementedError
+        """Reference at the start.
 
+        Args:
+            surface: The surface it is on.
+
+        Returns:
+            Its position, (3,) [length].
+        """
+
+    @abstractmethod
     def device(self, surface: Surface, before: Committed, t: float) -> Device:
-        """What acts in the step from `before` to time t."""
-        raise NotImplementedError
+        """What acts in the step from `before` to time t.
+
+        Args:
+            surface: The surface.
+            before: State at the beginning of the step.
+            t: Time at its end.
+
+        Returns:
+            What holds or pushes the reference.
+
+        Raises:
+            InputError: A value at that time has no meaning, such as a direction without length.
+        """
 
 
 class PrescribedPath(Load):
@@ -203,6 +223,11 @@ class DeadLoad(Load):
         increments: See `Load`.
         pressure: See `Load`.
         gap: See `Load`.
+
+    Example:
+        >>> load = DeadLoad((3.0, 0.0, 0.0), start=(0, 0, 0), times=[0, 1], pressure=10.0)
+        >>> len(load.instants) - 1
+        20
     """
 
     def __init__(
@@ -261,6 +286,11 @@ class Push(Load):
         increments: See `Load`.
         pressure: See `Load`.
         gap: See `Load`.
+
+    Example:
+        >>> push = Push((1, 0, 0), travel=[0, 1e-3], start=(0, 0, 0), pressure=10.0, increments=5)
+        >>> push.instants.round(3).tolist()
+        [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]
     """
 
     sized = True

@@ -12,7 +12,18 @@ _SMALL = 1e-2
 
 
 def skew(v: Floats) -> Floats:
-    """Matrices of the cross product, `skew(v) @ w = v x w`: (..., 3) -> (..., 3, 3)."""
+    """Matrices of the cross product, `skew(v) @ w = v x w`: (..., 3) -> (..., 3, 3).
+
+    Args:
+        v: Vectors v, (..., 3).
+
+    Returns:
+        The matrices, (..., 3, 3).
+
+    Example:
+        >>> (skew(np.array([0.0, 0.0, 1.0])) @ [1.0, 0.0, 0.0]).tolist()
+        [0.0, 1.0, 0.0]
+    """
     out = np.zeros((*v.shape, 3))
     out[..., 2, 1], out[..., 0, 2], out[..., 1, 0] = v[..., 0], v[..., 1], v[..., 2]
     return out - out.swapaxes(-1, -2)
@@ -56,7 +67,18 @@ def spin_of(vector: Floats) -> Floats:
 
 
 def rotation_vector(matrix: Floats) -> Floats:
-    """Rotation vector of an orthogonal matrix, its angle at most pi: (3, 3) -> (3,), radian."""
+    """Rotation vector of an orthogonal matrix, its angle at most pi: (3, 3) -> (3,), radian.
+
+    Args:
+        matrix: A rotation, (3, 3).
+
+    Returns:
+        Angle, at most pi, times the unit vector of the axis, (3,) [rad].
+
+    Example:
+        >>> rotation_vector(rotation(np.array([0.0, 0.0, 0.5]))).round(12).tolist()
+        [0.0, 0.0, 0.5]
+    """
     axial = np.array([matrix[2, 1], matrix[0, 2], matrix[1, 0]])
     axial -= np.array([matrix[1, 2], matrix[2, 0], matrix[0, 1]])
     # 2 sin(a) and 2 cos(a)

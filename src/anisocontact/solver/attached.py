@@ -87,6 +87,13 @@ class ElasticSupport:
 
     Raises:
         InputError: A stiffness is negative, or both are zero.
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> bed = ElasticSupport("a.bottom", normal=50.0)
+        >>> on = bed.on(build_box({"a": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))}))
+        >>> on.reaction(np.tile([0.0, 0.0, -0.1], (8, 1))).round(12).tolist()  # of a unit area
+        [0.0, 0.0, 5.0]
     """
 
     group: str
@@ -125,6 +132,13 @@ class Spring:
 
     Raises:
         InputError: A stiffness is negative, or all are zero.
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> pull = Spring("pull", "a.right", stiffness=(2e3, 0.0, 0.0))
+        >>> on = pull.on(build_box({"a": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))}))
+        >>> on.reaction(np.tile([0.001, 0.0, 0.0], (8, 1))).round(12).tolist()
+        [-2.0, 0.0, 0.0]
     """
 
     name: str

@@ -65,6 +65,17 @@ class Solver:
     Raises:
         InputError: A step names an unknown facet group, shared nodes get two values, or the
             strategy cannot solve the problem.
+
+    Example:
+        >>> from anisocontact.bulk import make_material
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 4), (1, 1, 1))})
+        >>> steel = {"bar": make_material("linear-elastic", E=200.0, nu=0.0)}
+        >>> held = {"bar.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
+        >>> pull = Step("pull", 1, held, traction={"bar.top": {"z": 5.0}})
+        >>> for accepted in Solver(Problem(model, steel), [pull]).run():
+        ...     print(accepted.increment, accepted.reactions["bar.bottom"].round(6)[2])
+        1 -5.0
     """
 
     def __init__(

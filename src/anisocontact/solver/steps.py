@@ -46,6 +46,12 @@ class Step:
 
     Raises:
         InputError: A value is out of range or no number.
+
+    Example:
+        >>> press = Step("press", 2, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+        >>> pull = Step("pull", 10, {"block.top": {"z": None}}, traction={"block.top": {"z": -1.0}})
+        >>> press.led(), pull.driven()
+        (['block.top'], ['block.top'])
     """
 
     name: str
@@ -102,7 +108,7 @@ class Step:
         return list(dict.fromkeys([*self.led(), *loaded, *self.rotation, *self.motion, *self.load]))
 
     def _check_vectors(self, kind: str) -> None:
-        groups: Mapping[str, Mapping[str, float | None]] = getattr(self, kind)
+        groups: Mapping[str, object] = getattr(self, kind)
         for group, values in groups.items():
             if not isinstance(values, Mapping):
                 text = f'{values!r} given, values by axis needed, as in {{"x": 0.1}}'

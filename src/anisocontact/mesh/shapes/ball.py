@@ -50,6 +50,12 @@ class BallSpec:
 
     Raises:
         InputError: A value is out of range.
+
+    Example:
+        >>> from anisocontact.mesh import Body, build_mesh
+        >>> ball = BallSpec(radius=1.0, cells=(8, 1), part="half")
+        >>> build_mesh([Body("ball", ball)]).facet_names()
+        ['ball.top', 'ball.outer']
     """
 
     radius: float

@@ -49,6 +49,11 @@ class BoxSpec:
 
     Raises:
         InputError: A value is out of range.
+
+    Example:
+        >>> box = BoxSpec(origin=(0, 0, 0), size=(2, 1, 1), cells=(4, 2, 2), ratio=(1, 1, 0.5))
+        >>> [len(planes) for planes in box.blocks()[0].planes]
+        [5, 3, 3]
     """
 
     origin: Sequence[float]

@@ -36,6 +36,12 @@ class CylinderSpec:
 
     Raises:
         InputError: A value is out of range.
+
+    Example:
+        >>> from anisocontact.mesh import Body, build_mesh
+        >>> roll = CylinderSpec(radius=0.5, length=2.0, cells=(8, 1, 2), order=2)
+        >>> build_mesh([Body("roll", roll)]).facet_names()
+        ['roll.bottom', 'roll.top', 'roll.outer']
     """
 
     radius: float

@@ -42,6 +42,10 @@ class DomeSpec:
 
     Raises:
         InputError: A value is out of range.
+
+    Example:
+        >>> len(DomeSpec(radius=5.0, rim=1.0, height=1.0, cells=(8, 2, 2)).blocks())
+        5
     """
 
     radius: float

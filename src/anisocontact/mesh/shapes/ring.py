@@ -38,6 +38,11 @@ class RingSpec:
 
     Raises:
         InputError: A value is out of range.
+
+    Example:
+        >>> quarter = RingSpec(inner=1.0, outer=2.0, length=1.0, cells=(1, 4, 1), end=math.pi / 2)
+        >>> sorted(quarter.blocks()[0].sides.values())
+        ['bottom', 'end', 'inner', 'outer', 'start', 'top']
     """
 
     inner: float
