@@ -137,7 +137,7 @@ class Spring:
         >>> from anisocontact.mesh import BoxSpec, build_box
         >>> pull = Spring("pull", "a.right", stiffness=(2e3, 0.0, 0.0))
         >>> on = pull.on(build_box({"a": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))}))
-        >>> on.reaction(np.tile([0.001, 0.0, 0.0], (8, 1))).round(12).tolist()
+        >>> (on.reaction(np.tile([0.001, 0.0, 0.0], (8, 1))) + 0.0).round(12).tolist()
         [-2.0, 0.0, 0.0]
     """
 
