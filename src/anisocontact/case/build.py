@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from anisocontact._fenicsx import PETSc
+from anisocontact._fenicsx import MPI, PETSc
 from anisocontact.case import objects
 from anisocontact.case.contacts import contact
 from anisocontact.case.model import Case
@@ -13,7 +13,8 @@ from anisocontact.case.read import CaseFile
 from anisocontact.errors import InputError
 from anisocontact.limits import Limits
 from anisocontact.mesh import GmshFile, Model
-from anisocontact.mesh.arrays import MeshArrays, merge
+from anisocontact.mesh.arrays import MeshArrays
+from anisocontact.mesh.merge import merge
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import ElasticSupport, Problem, Solver, Spring, Step
 
@@ -92,18 +93,19 @@ def _model(file: CaseFile) -> Model:
     if mesh.file is not None:
         shaped = {name for bodies in mesh.shaped().values() for name in bodies}
         wanted = [name for name in file.case.material if name not in shaped]
-        parts.append(GmshFile(file.resolve(mesh.file), None if mesh.files else wanted).arrays())
+        source = GmshFile(file.resolve(mesh.file), None if mesh.files else wanted)
+        parts.append(source.arrays(MPI.COMM_WORLD))
     for name, section in mesh.files.items():
         place = f"mesh.files.{name}"
         source = objects.mesh_file(section, file.resolve(section.path), place)
         with objects.within(place):
-            parts.append(source.arrays())
+            parts.append(source.arrays(MPI.COMM_WORLD))
     for shape, bodies in mesh.shaped().items():
         for name, table in bodies.items():
             place = f"mesh.{shape}.{name}"
             body = objects.body(table, name, place)
             with objects.within(place):
-                parts.append(body.arrays())
+                parts.append(body.arrays(MPI.COMM_WORLD))
     return Model.from_arrays(merge(parts))
 
 

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import cell_nodes, facet_nodes, middle_nodes
+from anisocontact._fenicsx import MPI
 from anisocontact.errors import InputError
+from anisocontact.mesh.split import Route, Split, share_of
 
 Nodes = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -34,15 +37,19 @@ CELL_FACETS: dict[str, Nodes] = {
 class MeshArrays:
     """Nodes, cells and named groups.
 
+    On several processes each has a share: a row of the nodes and one of the cells, those of the
+    first process first, and some of the facets. Nodes are numbered over all processes.
+
     Attributes:
         cell: "tetrahedron" or "hexahedron".
         degree: Degree of the geometry, 1 or 2.
         points: Coordinates, (nodes, 3), length.
         cells: Node numbers in DOLFINx order, (cells, nodes of a cell).
-        bodies: Body name -> cell numbers.
+        bodies: Body name -> rows of `cells`.
         facets: "body.group" -> node numbers, vertices first, (facets, nodes of a facet).
         order: Order of the displacement.
         linear: Bodies whose displacement is of order 1 in a mesh of order 2.
+        comm: Processes that share the mesh; properties and functions of it are collective.
     """
 
     cell: str
@@ -53,54 +60,109 @@ class MeshArrays:
     facets: dict[str, Nodes]
     order: int
     linear: tuple[str, ...] = ()
+    comm: Any = field(default_factory=lambda: MPI.COMM_SELF)
 
     @property
     def vertices_per_facet(self) -> int:
         """Corners of a facet: 3 or 4."""
         return int(CELL_FACETS[self.cell].shape[1])
 
+    @cached_property
+    def node_split(self) -> Split:
+        """Which process has which nodes."""
+        return Split(self.comm, len(self.points))
 
-def facet_owners(mesh_cell: str, cells: Nodes, facets: Nodes) -> tuple[Nodes, Nodes]:
+    @cached_property
+    def cell_split(self) -> Split:
+        """Which process has which cells."""
+        return Split(self.comm, len(self.cells))
+
+    @property
+    def labels(self) -> Nodes:
+        """Number of the body of each cell of this process, (cells,)."""
+        out = np.full(len(self.cells), -1, dtype=np.int64)
+        for number, rows in enumerate(self.bodies.values()):
+            out[rows] = number
+        return out
+
+    def with_points(self) -> MeshArrays:
+        """The cells of this process with all of their nodes, as a mesh of one process."""
+        if self.comm.size == 1:
+            return self
+        nodes, cells = np.unique(self.cells, return_inverse=True)
+        points = self.node_split.fetch(self.points, nodes)
+        cells = cells.reshape(self.cells.shape)
+        return replace(self, points=points, cells=cells, facets={}, comm=MPI.COMM_SELF)
+
+    def shared(self, comm: Any) -> MeshArrays:
+        """Shares of a mesh that each process of `comm` has as a whole; itself if it is shared."""
+        if self.comm.size == comm.size:
+            return self
+        nodes, cells = (slice(*share_of(comm, len(rows))) for rows in (self.points, self.cells))
+        labels = self.labels[cells]
+        facets = {
+            name: rows[slice(*share_of(comm, len(rows)))] for name, rows in self.facets.items()
+        }
+        return replace(
+            self,
+            points=self.points[nodes],
+            cells=self.cells[cells],
+            bodies={name: np.flatnonzero(labels == i) for i, name in enumerate(self.bodies)},
+            facets=facets,
+            comm=comm,
+        )
+
+    def sum(self, count: int) -> int:
+        """Sum of a number over the processes."""
+        return int(self.comm.allreduce(count))
+
+
+def facet_owners(mesh: MeshArrays, facets: Nodes) -> tuple[Nodes, Nodes]:
     """Which cell each facet bounds.
 
     Args:
-        mesh_cell: "tetrahedron" or "hexahedron".
-        cells: Node numbers of the cells, vertices first, (cells, nodes).
+        mesh: The cells.
         facets: Vertex numbers of the facets, (facets, 3 or 4).
 
     Returns:
-        A cell of each facet (-1: none) and the number of cells that have it.
+        A cell of each facet, numbered over all processes (-1: none), and the number of cells that
+        have it.
     """
-    local = CELL_FACETS[mesh_cell]
-    marked = np.zeros(max(cells.max(initial=0), facets.max(initial=0)) + 1, dtype=bool)
-    marked[facets] = True
+    local = CELL_FACETS[mesh.cell]
+    nodes = mesh.node_split
     # Only cells that touch marked vertices in a whole facet can own one.
-    near = np.flatnonzero(marked[cells[:, : local.max() + 1]].sum(axis=1) >= local.shape[1])
-    sides = np.sort(cells[near][:, local].reshape(-1, local.shape[1]), axis=1)
-    rows = np.concatenate([np.sort(facets, axis=1), sides])
+    touched = nodes.fetch(nodes.marked(facets), mesh.cells[:, : local.max() + 1])
+    near = np.flatnonzero(touched.sum(axis=1) >= local.shape[1])
+    sides = np.sort(mesh.cells[near][:, local].reshape(-1, local.shape[1]), axis=1)
+    wanted = np.sort(facets, axis=1)
+    # A facet is looked up on the process that has its first vertex.
+    question, known = (Route(mesh.comm, nodes.owner(rows[:, 0])) for rows in (wanted, sides))
+    cell = known.there(np.repeat(mesh.cell_split.first + near, len(local)))
+    rows = np.concatenate([question.there(wanted), known.there(sides)])
     _, inverse = np.unique(rows, axis=0, return_inverse=True)
     inverse = inverse.reshape(-1)
-    asked, found = inverse[: len(facets)], inverse[len(facets) :]
+    asked, found = inverse[: len(rows) - len(cell)], inverse[len(rows) - len(cell) :]
     owner = np.full(int(inverse.max(initial=-1)) + 1, -1, dtype=np.int64)
-    owner[found] = np.repeat(near, len(local))
+    owner[found] = cell
     count = np.bincount(found, minlength=len(owner))
-    return owner[asked], count[asked]
+    return question.back(owner[asked]), question.back(count[asked])
 
 
-def check_boundary(name: str, counts: Nodes) -> None:
+def check_boundary(mesh: MeshArrays, name: str, counts: Nodes) -> None:
     """Refuse a group with facets that do not bound exactly one cell.
 
     Raises:
         InputError: Names the group and says how many facets are wrong.
     """
-    loose, inner = int(np.sum(counts == 0)), int(np.sum(counts > 1))
+    loose, inner = mesh.sum(int(np.sum(counts == 0))), mesh.sum(int(np.sum(counts > 1)))
+    total = mesh.sum(len(counts))
     if loose:
         raise InputError(
-            f"facet group {name!r}: {loose} of {len(counts)} facets belong to no cell of a body"
+            f"facet group {name!r}: {loose} of {total} facets belong to no cell of a body"
         )
     if inner:
         raise InputError(
-            f"facet group {name!r}: {inner} of {len(counts)} facets lie inside the mesh; "
+            f"facet group {name!r}: {inner} of {total} facets lie inside the mesh; "
             "a group must lie on the boundary of a body (bodies in contact share no nodes)"
         )
 
@@ -129,72 +191,3 @@ def rename_bodies(mesh: MeshArrays, names: Mapping[str, str]) -> MeshArrays:
         body, _, group = name.partition(".")
         facets[f"{names.get(body, body)}.{group}"] = nodes
     return replace(mesh, bodies=bodies, facets=facets)
-
-
-def merge(parts: Sequence[MeshArrays]) -> MeshArrays:
-    """One mesh of several parts that share no nodes.
-
-    Where one part has curved cells, those of the others become cells of that degree with straight
-    edges; where one has order 2, the bodies of the others are noted as `linear`.
-
-    Raises:
-        InputError: The parts differ in their cells, or two bodies have one name.
-    """
-    first = parts[0]
-    for part in parts[1:]:
-        if part.cell != first.cell:
-            raise InputError(
-                f"bodies {', '.join(first.bodies)} and {', '.join(part.bodies)}: "
-                f"all bodies of a mesh need the same cell, not {first.cell} and {part.cell}",
-                "mesh",
-            )
-    names = [name for part in parts for name in part.bodies]
-    for name in names:
-        if names.count(name) > 1:
-            raise InputError(f"two bodies have the name {name!r}", "mesh")
-    degree, order = (max(getattr(p, which) for p in parts) for which in ("degree", "order"))
-    linear = [name for part in parts if part.order < order for name in part.bodies]
-    parts = [lift(part) if part.degree < degree else part for part in parts]
-    node = np.cumsum([0] + [len(p.points) for p in parts])
-    cell = np.cumsum([0] + [len(p.cells) for p in parts])
-    return MeshArrays(
-        cell=first.cell,
-        degree=degree,
-        points=np.concatenate([p.points for p in parts]),
-        cells=np.concatenate([p.cells + n for p, n in zip(parts, node[:-1], strict=True)]),
-        bodies={
-            k: v + c for p, c in zip(parts, cell[:-1], strict=True) for k, v in p.bodies.items()
-        },
-        facets={
-            k: v + n for p, n in zip(parts, node[:-1], strict=True) for k, v in p.facets.items()
-        },
-        order=order,
-        linear=tuple(linear),
-    )
-
-
-def lift(mesh: MeshArrays) -> MeshArrays:
-    """Cells of degree 1 as cells of degree 2 with straight edges: middle nodes are put in."""
-    corners = mesh.cells
-    cells = np.empty((len(corners), len(cell_nodes(mesh.cell, 2))), dtype=np.int64)
-    cells[:, : corners.shape[1]] = corners
-    points, count = [mesh.points], len(mesh.points)
-    for ends, place in middle_nodes(mesh.cell):
-        rows = np.sort(corners[:, ends].reshape(-1, ends.shape[1]), axis=1)
-        unique, number = np.unique(rows, axis=0, return_inverse=True)
-        cells[:, place] = count + number.reshape(len(corners), -1)
-        points.append(mesh.points[unique].mean(axis=1))
-        count += len(unique)
-    if mesh.cell == "hexahedron":
-        cells[:, -1] = count + np.arange(len(cells))
-        points.append(mesh.points[corners].mean(axis=1))
-    facets = {name: _with_middles(mesh, cells, nodes) for name, nodes in mesh.facets.items()}
-    return replace(mesh, degree=2, points=np.concatenate(points), cells=cells, facets=facets)
-
-
-def _with_middles(mesh: MeshArrays, lifted: Nodes, facets: Nodes) -> Nodes:
-    """All nodes of facets of which the corners are given, (facets, nodes)."""
-    owner, _ = facet_owners(mesh.cell, mesh.cells, facets)
-    sides = np.sort(mesh.cells[owner][:, CELL_FACETS[mesh.cell]], axis=2)
-    local = np.argmax(np.all(sides == np.sort(facets, axis=1)[:, None], axis=2), axis=1)
-    return np.asarray(lifted[owner[:, None], facet_nodes(mesh.cell, 2)[local]])

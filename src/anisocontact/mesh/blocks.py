@@ -1,77 +1,26 @@
-"""Blocks of cells: a lattice in a unit cube and the map that takes it into space."""
+"""Bodies of blocks: cells of their lattices, nodes of neighbours joined."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import product
+from typing import Any
 
 import numpy as np
-import scipy.sparse
-from scipy.spatial import cKDTree
 
-from anisocontact._fenicsx import cell_nodes, facet_nodes
+from anisocontact._fenicsx import MPI, cell_nodes, facet_nodes
 from anisocontact.errors import InputError
-from anisocontact.mesh.arrays import CELL_FACETS, Floats, MeshArrays, Nodes
+from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays, Nodes
+from anisocontact.mesh.lattice import Block, Lattice, Side, Weld
+from anisocontact.mesh.split import share_of
 
-#: A side of the unit cube: axis and end (0: low, 1: high).
-type Side = tuple[int, int]
-
-#: Distance of nodes of neighbouring blocks that are one, over the extent of the body.
-SAME_NODE = 1e-9
 _UNIT = np.array(list(product((0, 1), repeat=3)))[:, ::-1]
-
-
-@dataclass(frozen=True)
-class Block:
-    """Cells between planes of a unit cube, and where the cube lies in space.
-
-    Attributes:
-        planes: Positions of the planes along each axis, from 0 to 1, one more than cells.
-        place: Takes points of the cube, (n, 3), to points in space, (n, 3), length; right-handed.
-        sides: Sides of the cube that are facet groups, by name of the group.
-    """
-
-    planes: tuple[Floats, Floats, Floats]
-    place: Callable[[Floats], Floats]
-    sides: Mapping[Side, str] = field(default_factory=dict)
-
-    @property
-    def count(self) -> int:
-        """Number of hexahedra."""
-        return math.prod(len(p) - 1 for p in self.planes)
-
-
-def even(cells: int) -> Floats:
-    """Planes of cells of one size, from 0 to 1."""
-    return np.linspace(0.0, 1.0, cells + 1)
-
-
-def graded(cells: int, ratio: float) -> Floats:
-    """Planes of cells that grow geometrically, from 0 to 1.
-
-    Args:
-        cells: Number of cells.
-        ratio: Size of the last over that of the first.
-
-    Returns:
-        Positions of the planes, (cells + 1,).
-
-    Example:
-        >>> graded(2, 3.0).tolist()
-        [0.0, 0.25, 1.0]
-    """
-    if cells == 1 or ratio == 1.0:
-        return even(cells)
-    sizes = ratio ** (np.arange(cells) / (cells - 1))
-    ends = np.concatenate([[0.0], np.cumsum(sizes)])
-    return np.asarray(ends / ends[-1])
+SELF: Any = MPI.COMM_SELF
 
 
 def mesh_blocks(
-    name: str, blocks: Sequence[Block], cell: str, degree: int, order: int
+    name: str, blocks: Sequence[Block], cell: str, degree: int, order: int, comm: Any = SELF
 ) -> MeshArrays:
     """One body of blocks; nodes at the same place become one.
 
@@ -81,71 +30,42 @@ def mesh_blocks(
         cell: "hexahedron", or "tetrahedron" (six to each hexahedron).
         degree: Degree of the geometry, 1 or 2: curved cells have their middle nodes on the map.
         order: Order of the displacement.
+        comm: Processes that share the body: each makes its own nodes and cells.
 
     Returns:
         The mesh.
     """
-    lattices = [_lattice(block, degree) for block in blocks]
-    first = np.cumsum([0] + [len(points) for points, _, _ in lattices])
-    points = np.concatenate([points for points, _, _ in lattices])
-    number, points = _welded(points)
-    cells: list[Nodes] = []
+    lattices = [Lattice(block, degree) for block in blocks]
+    nodes = np.cumsum([0] + [lattice.count for lattice in lattices])
+    hexahedra = np.cumsum([0] + [block.count for block in blocks])
+    weld = Weld(lattices)
+    own_nodes, own = share_of(comm, int(nodes[-1])), share_of(comm, int(hexahedra[-1]))
+    points, cells = [np.zeros((0, 3))], [np.zeros((0, len(cell_nodes(cell, degree))), np.int64)]
     facets: dict[str, Nodes] = {}
-    for block, start, (_, places, local) in zip(blocks, first[:-1], lattices, strict=True):
-        own = _cells(local + start, number, cell, degree)
-        cells.append(number[own])
-        for side, group in block.sides.items():
-            on_side = _side(own - start, places, side, cell, degree)
-            found = number[on_side + start]
+    for lattice, start, first in zip(lattices, nodes[:-1], hexahedra[:-1], strict=True):
+        here = lattice.part(own_nodes, start, lattice.count)
+        kept = here[~np.isin(start + here, weld.removed)]
+        points.append(lattice.points(kept))
+        local = lattice.hexahedra(lattice.part(own, first, lattice.block.count))
+        made = _cells(local + start, weld.number, cell, degree)
+        cells.append(weld.number(made))
+        for side, group in lattice.block.sides.items():
+            found = weld.number(_side(made - start, lattice, side, cell, degree) + start)
             known = facets.get(f"{name}.{group}", found[:0])
             facets[f"{name}.{group}"] = np.concatenate([known, found])
     joined = np.concatenate(cells)
+    bodies = {name: np.arange(len(joined))}
     return MeshArrays(
-        cell, degree, points, joined, {name: np.arange(len(joined))}, facets, order=order
+        cell, degree, np.concatenate(points), joined, bodies, facets, order=order, comm=comm
     )
 
 
-def _lattice(block: Block, degree: int) -> tuple[Floats, Floats, Nodes]:
-    """Points of the nodes, their places in the cube, and the node numbers of each hexahedron.
-
-    A hexahedron has (degree + 1)^3 nodes, numbered with the last axis fastest.
-    """
-    planes = [_with_middles(p) if degree == 2 else p for p in block.planes]
-    places = np.stack(np.meshgrid(*planes, indexing="ij"), axis=-1).reshape(-1, 3)
-    shape = tuple(len(p) for p in planes)
-    corner = [degree * np.arange(len(p) - 1) for p in block.planes]
-    corners = np.stack(np.meshgrid(*corner, indexing="ij"), axis=-1).reshape(-1, 1, 3)
-    inside = np.array(list(product(range(degree + 1), repeat=3)))
-    strides = np.array([shape[1] * shape[2], shape[2], 1])
-    return block.place(places), places, ((corners + inside) @ strides).astype(np.int64)
-
-
-def _with_middles(planes: Floats) -> Floats:
-    out = np.empty(2 * len(planes) - 1)
-    out[::2], out[1::2] = planes, 0.5 * (planes[1:] + planes[:-1])
-    return out
-
-
-def _welded(points: Floats) -> tuple[Nodes, Floats]:
-    """Number of each point once points at one place are one, and what is left of the points."""
-    tolerance = SAME_NODE * float(np.ptp(points, axis=0).max())
-    pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
-    links = scipy.sparse.coo_array(
-        (np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2
-    )
-    _, labels = scipy.sparse.csgraph.connected_components(links, directed=False)
-    _, firsts, number = np.unique(labels, return_index=True, return_inverse=True)
-    # Numbers in the order in which the points come.
-    rank = np.argsort(np.argsort(firsts))
-    return rank[number].astype(np.int64), points[np.sort(firsts)]
-
-
-def _cells(local: Nodes, number: Nodes, cell: str, degree: int) -> Nodes:
-    """Cells in DOLFINx order from hexahedra as of `_lattice`."""
+def _cells(local: Nodes, number: Callable[[Nodes], Nodes], cell: str, degree: int) -> Nodes:
+    """Cells in DOLFINx order from hexahedra as of `Lattice`."""
     if cell == "hexahedron":
         return local[:, _place(cell_nodes(cell, degree), degree)]
     corners = local[:, _place(degree * _UNIT, degree)]
-    split = _splits()[_split_kind(number[corners])]
+    split = _splits()[_split_kind(number(corners))]
     # The nodes of a tetrahedron lie at whole places of the lattice: middles of corners.
     weights = cell_nodes(cell, degree)
     barycentric = np.column_stack([degree - weights.sum(axis=1), weights])
@@ -155,7 +75,7 @@ def _cells(local: Nodes, number: Nodes, cell: str, degree: int) -> Nodes:
 
 
 def _place(lattice: Nodes, degree: int) -> Nodes:
-    """Number of a node in a hexahedron as of `_lattice`, from whole places along the axes."""
+    """Number of a node in a hexahedron as of `Lattice`, from whole places along the axes."""
     return np.asarray(lattice @ np.array([(degree + 1) ** 2, degree + 1, 1]))
 
 
@@ -195,12 +115,11 @@ def _right_handed(corners: list[int]) -> list[int]:
     return corners if np.linalg.det(edges) > 0.0 else [*corners[:2], corners[3], corners[2]]
 
 
-def _side(cells: Nodes, places: Floats, side: Side, cell: str, degree: int) -> Nodes:
+def _side(cells: Nodes, lattice: Lattice, side: Side, cell: str, degree: int) -> Nodes:
     """Nodes of the facets on a side of the cube, vertices first, (facets, nodes)."""
-    axis, end = side
     facets = cells[:, facet_nodes(cell, degree)]
     facets = facets.reshape(-1, facets.shape[-1])
-    return np.asarray(facets[np.all(places[facets, axis] == end, axis=1)])
+    return np.asarray(facets[np.all(lattice.on(facets, side), axis=1)])
 
 
 def check_count(blocks: Sequence[Block], most: int = 10**8) -> None:

@@ -6,12 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Protocol
+from typing import Any, Protocol
 
+from anisocontact._fenicsx import MPI
 from anisocontact.errors import InputError
-from anisocontact.mesh.arrays import MeshArrays, merge, rename_bodies
+from anisocontact.mesh.arrays import MeshArrays, rename_bodies
 from anisocontact.mesh.blocks import mesh_blocks
 from anisocontact.mesh.gmsh import gmsh_arrays
+from anisocontact.mesh.merge import merge
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.placement import IN_PLACE, Placement
 from anisocontact.mesh.quality import check_cells
@@ -21,8 +23,8 @@ from anisocontact.mesh.shapes import BoxSpec, Shape, checked_blocks
 class Source(Protocol):
     """Where bodies come from."""
 
-    def arrays(self) -> MeshArrays:
-        """The bodies in place."""
+    def arrays(self, comm: Any = MPI.COMM_SELF) -> MeshArrays:
+        """The bodies in place; each process of `comm` gets its share."""
         ...
 
 
@@ -40,12 +42,12 @@ class Body:
     shape: Shape
     placement: Placement = IN_PLACE
 
-    def arrays(self) -> MeshArrays:
+    def arrays(self, comm: Any = MPI.COMM_SELF) -> MeshArrays:
         """The body in place; see `Source`."""
         shape = self.shape
         degree = shape.order if shape.curved else 1
         blocks = checked_blocks(shape)
-        mesh = mesh_blocks(self.name, blocks, shape.cell, degree, shape.order)
+        mesh = mesh_blocks(self.name, blocks, shape.cell, degree, shape.order, comm)
         check_cells(mesh)
         return self.placement.apply(mesh)
 
@@ -68,9 +70,9 @@ class GmshFile:
     placement: Placement = IN_PLACE
     field: str = "mesh.file"
 
-    def arrays(self) -> MeshArrays:
+    def arrays(self, comm: Any = MPI.COMM_SELF) -> MeshArrays:
         """The bodies in place; see `Source`."""
-        mesh = gmsh_arrays(Path(self.path), self.bodies, self.field)
+        mesh = gmsh_arrays(Path(self.path), self.bodies, self.field, comm)
         return self.placement.apply(rename_bodies(mesh, self.rename))
 
 
@@ -94,7 +96,7 @@ def build_mesh(sources: Iterable[Source]) -> Model:
         >>> build_mesh([Body("drum", drum, up), Body("plate", plate)]).body_names()
         ['drum', 'plate']
     """
-    parts = [source.arrays() for source in sources]
+    parts = [source.arrays(MPI.COMM_WORLD) for source in sources]
     if not parts:
         raise InputError("no body given, at least one needed", "mesh")
     return Model.from_arrays(merge(parts))

@@ -6,16 +6,19 @@ import difflib
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import cell_permutation
+from anisocontact._fenicsx import MPI, cell_permutation
 from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import MeshArrays, check_boundary, facet_owners
 from anisocontact.mesh.model import Model
-from anisocontact.mesh.msh import Block, MshError, MshFile, read_msh
+from anisocontact.mesh.msh import Block, MshFile, read_msh
 from anisocontact.mesh.quality import check_cells
+from anisocontact.mesh.split import Route, Split, arranged
+from anisocontact.mesh.stream import MshError
 
 Nodes = npt.NDArray[np.int64]
 
@@ -50,17 +53,23 @@ def read_gmsh(path: str | Path, bodies: Sequence[str] | None = None) -> Model:
         Traceback (most recent call last):
         anisocontact.errors.InputError: mesh.file: mesh file 'no-such-file.msh' does not exist
     """
-    return Model.from_arrays(gmsh_arrays(Path(path), bodies))
+    return Model.from_arrays(gmsh_arrays(Path(path), bodies, comm=MPI.COMM_WORLD))
 
 
 def gmsh_arrays(
-    path: Path, bodies: Sequence[str] | None = None, field: str = "mesh.file"
+    path: Path,
+    bodies: Sequence[str] | None = None,
+    field: str = "mesh.file",
+    comm: Any = MPI.COMM_SELF,
 ) -> MeshArrays:
-    """Plain arrays of a gmsh file, see `read_gmsh`; `field` is where the path was written."""
+    """Plain arrays of a gmsh file, see `read_gmsh`; `field` is where the path was written.
+
+    Each process of `comm` gets its share of them.
+    """
     if not path.is_file():
         raise InputError(f"mesh file {str(path)!r} does not exist", field)
     try:
-        return _arrays(read_msh(path), bodies)
+        return _arrays(read_msh(path, comm), bodies, comm)
     except (MshError, OSError) as problem:
         raise InputError(
             f"mesh file {str(path)!r} is not a readable gmsh file: {problem}", field
@@ -69,29 +78,35 @@ def gmsh_arrays(
         raise InputError(f"mesh file {str(path)!r}: {problem}", field) from None
 
 
-def _arrays(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:
+def _arrays(msh: MshFile, bodies: Sequence[str] | None, comm: Any) -> MeshArrays:
     volumes = _volumes(msh, bodies)
     cell, degree = _kind([block for _, block in volumes])
-    nodes: list[Nodes] = []
-    ranges: dict[str, Nodes] = {}
-    start = 0
-    for name, block in volumes:
-        place = np.arange(start, start + len(block.nodes))
-        ranges[name] = np.concatenate([ranges.get(name, place[:0]), place])
-        nodes.append(block.nodes)
-        start += len(place)
-    cells = np.concatenate(nodes)
-    _check_single(cells)
+    names = list(dict.fromkeys(name for name, _ in volumes))
+    firsts = np.cumsum([0] + [block.count for _, block in volumes])
+    numbers = np.concatenate([n + b.places for n, (_, b) in zip(firsts, volumes, strict=False)])
+    labels = np.concatenate([np.full(len(b.nodes), names.index(name)) for name, b in volumes])
+    cells = np.concatenate([block.nodes for _, block in volumes])
+    cells, labels = arranged(comm, int(firsts[-1]), numbers, cells, labels)
+    known = Split(comm, len(msh.points))
+    _check_single(cells, known, comm)
     cells = cells[:, cell_permutation(cell, cells.shape[1])]
-    used, compact = np.unique(cells, return_inverse=True)
-    cells = compact.reshape(cells.shape)
-    volumes_only = MeshArrays(cell, degree, msh.points[used], cells, ranges, {}, order=degree)
-    check_cells(volumes_only)
-    return replace(volumes_only, facets=_facet_groups(msh, volumes_only, used))
+    used = known.marked(cells)
+    kept = Split(comm, int(used.sum()))
+    # Numbers of the nodes that are used; -1 for the others.
+    compact = np.where(used, kept.first + np.cumsum(used) - 1, -1)
+    cells = known.fetch(compact, cells)
+    places = {name: np.flatnonzero(labels == i) for i, name in enumerate(names)}
+    mesh = MeshArrays(cell, degree, msh.points[used], cells, places, {}, degree, comm=comm)
+    check_cells(mesh)
+    surfaces: dict[str, list[Nodes]] = {}
+    for name, block in _named(msh, 2):
+        surfaces.setdefault(name, []).append(block.nodes)
+    groups = {name: known.fetch(compact, np.concatenate(parts)) for name, parts in surfaces.items()}
+    return replace(mesh, facets=_facet_groups(mesh, groups))
 
 
 def _volumes(msh: MshFile, bodies: Sequence[str] | None) -> list[tuple[str, Block]]:
-    named = [(name, block) for name, block in _named(msh, 3) if len(block.nodes)]
+    named = [(name, block) for name, block in _named(msh, 3) if block.count]
     if not named:
         raise InputError("no named volume group; give each body a physical volume with a name")
     if bodies is not None and not len(bodies):
@@ -107,7 +122,7 @@ def _volumes(msh: MshFile, bodies: Sequence[str] | None) -> list[tuple[str, Bloc
             raise InputError(f"no volume group {name!r}; {hint}")
     loose = [b for b in msh.blocks if b.dim == 3 and not any((3, g) in msh.names for g in b.groups)]
     if loose and bodies is None:
-        count = sum(len(b.nodes) for b in loose)
+        count = sum(b.count for b in loose)
         raise InputError(f"{count} cells are in no named volume group")
     return [(name, block) for name, block in named if bodies is None or name in bodies]
 
@@ -132,31 +147,27 @@ def _kind(blocks: list[Block]) -> tuple[str, int]:
     return VOLUMES[kinds.pop()]
 
 
-def _check_single(cells: Nodes) -> None:
-    unique = np.unique(np.sort(cells, axis=1), axis=0)
-    if len(unique) != len(cells):
-        raise InputError(f"{len(cells) - len(unique)} cells are in two volume groups")
+def _check_single(cells: Nodes, nodes: Split, comm: Any) -> None:
+    rows = np.sort(cells, axis=1)
+    rows = Route(comm, nodes.owner(rows[:, 0])).there(rows)
+    twice = comm.allreduce(len(rows) - len(np.unique(rows, axis=0)))
+    if twice:
+        raise InputError(f"{twice} cells are in two volume groups")
 
 
-def _facet_groups(msh: MshFile, mesh: MeshArrays, used: Nodes) -> dict[str, Nodes]:
-    """Surface groups by full name; `used` are the numbers that the nodes have in the file."""
-    body_of_cell = np.empty(len(mesh.cells), dtype=object)
-    for name, place in mesh.bodies.items():
-        body_of_cell[place] = name
-    groups: dict[str, list[Nodes]] = {}
-    for name, block in _named(msh, 2):
-        groups.setdefault(name, []).append(block.nodes)
+def _facet_groups(mesh: MeshArrays, groups: dict[str, Nodes]) -> dict[str, Nodes]:
+    """Surface groups by full name, from their nodes, -1 for one that no cell has."""
+    names, labels = list(mesh.bodies), mesh.labels
     facets: dict[str, Nodes] = {}
-    for name, parts in groups.items():
-        nodes = np.concatenate(parts)
+    for name, found in groups.items():
         # A group of a body that is not taken has nodes that are not used.
-        kept = np.isin(nodes, used).all(axis=1)
-        if not kept.any():
+        nodes = found[(found >= 0).all(axis=1)]
+        if not mesh.sum(len(nodes)):
             continue
-        nodes = np.searchsorted(used, nodes[kept])
-        owner, count = facet_owners(mesh.cell, mesh.cells, nodes[:, : mesh.vertices_per_facet])
-        check_boundary(name, count)
-        for full_name, mask in _prefixed(name, body_of_cell[owner], list(mesh.bodies)):
+        owner, count = facet_owners(mesh, nodes[:, : mesh.vertices_per_facet])
+        check_boundary(mesh, name, count)
+        bounded = mesh.cell_split.fetch(labels, owner)
+        for full_name, mask in _prefixed(mesh, name, bounded, names):
             if full_name in facets:
                 raise InputError(f"facet group {full_name!r} is given twice")
             facets[full_name] = nodes[mask]
@@ -164,19 +175,21 @@ def _facet_groups(msh: MshFile, mesh: MeshArrays, used: Nodes) -> dict[str, Node
 
 
 def _prefixed(
-    name: str, owners: npt.NDArray[np.object_], bodies: list[str]
+    mesh: MeshArrays, name: str, owners: Nodes, bodies: list[str]
 ) -> Iterator[tuple[str, npt.NDArray[np.bool_]]]:
+    """Full names of a group, and which of its facets have each; `owners` are bodies by number."""
     prefix, dot, _ = name.partition(".")
+    counts = [mesh.sum(int((owners == body).sum())) for body in range(len(bodies))]
     if dot and prefix in bodies:
-        wrong = owners != prefix
-        if wrong.any():
+        own = bodies.index(prefix)
+        wrong = [body for body, count in enumerate(counts) if count and body != own]
+        if wrong:
             raise InputError(
-                f"facet group {name!r}: {int(wrong.sum())} of {len(owners)} facets "
-                f"bound {owners[wrong][0]!r}, not {prefix!r}"
+                f"facet group {name!r}: {sum(counts) - counts[own]} of {sum(counts)} facets "
+                f"bound {bodies[wrong[0]]!r}, not {prefix!r}"
             )
-        yield name, ~wrong
+        yield name, owners == own
         return
-    for body in bodies:
-        mask = owners == body
-        if mask.any():
-            yield f"{body}.{name}", mask
+    for body, count in enumerate(counts):
+        if count:
+            yield f"{bodies[body]}.{name}", owners == body

@@ -56,18 +56,16 @@ class Model:
 
     @classmethod
     def from_arrays(cls, arrays: MeshArrays, comm: MPI.Comm = MPI.COMM_WORLD) -> Model:
-        """Distribute plain arrays (the same on every rank) and name what is in them."""
-        root = comm.rank == 0
-        own = slice(None) if root else slice(0, 0)
-        mesh = create_mesh(comm, arrays.cell, arrays.degree, arrays.cells[own], arrays.points[own])
-        bodies = {
-            name: _located(mesh, 3, arrays.cells[cells][own])
-            for name, cells in arrays.bodies.items()
-        }
-        facets = {
-            name: _located(mesh, 2, nodes[own].astype(np.int64))
-            for name, nodes in arrays.facets.items()
-        }
+        """Distribute plain arrays and name what is in them.
+
+        Args:
+            arrays: The mesh: a share of it on every process of `comm`, or all of it on each.
+            comm: Communicator of the mesh.
+        """
+        own = arrays.shared(comm)
+        mesh = create_mesh(comm, own.cell, own.degree, own.cells, own.points)
+        bodies = {name: _located(mesh, 3, own.cells[cells]) for name, cells in own.bodies.items()}
+        facets = {name: _located(mesh, 2, nodes) for name, nodes in own.facets.items()}
         return cls(mesh, bodies, facets, arrays.order, arrays.linear)
 
     @classmethod

@@ -9,14 +9,20 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+
+from anisocontact._fenicsx import MPI
+from anisocontact.mesh.split import Route, Split, share_of
+from anisocontact.mesh.stream import FLOAT, SIZE, MshError, Stream
 
 Nodes = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 # Dimension, physical tags of the entity -> nothing else is known of an element group.
 Entity = tuple[int, int]
+type Groups = dict[Entity, tuple[int, ...]]
 
 # gmsh element type -> (dimension, number of nodes)
 ELEMENTS = {
@@ -42,17 +48,27 @@ ELEMENTS = {
 }
 
 
-class MshError(ValueError):
-    """The file is not a mesh this reader understands; the text says why."""
+#: Elements of the old format that are taken apart at a time.
+PIECE = 1 << 14
 
 
 @dataclass
 class Block:
-    """Elements of one type with the same physical groups."""
+    """Elements of one type with the same physical groups.
+
+    Attributes:
+        kind: Type of the elements.
+        nodes: Nodes of those that this process has, (n, nodes of an element).
+        groups: Physical groups.
+        places: Which of the block they are, (n,).
+        count: Elements of the block on all processes.
+    """
 
     kind: int
     nodes: Nodes
     groups: tuple[int, ...]
+    places: Nodes
+    count: int
 
     @property
     def dim(self) -> int:
@@ -62,115 +78,53 @@ class Block:
 
 @dataclass
 class MshFile:
-    """Content of a file: nodes are numbered from 0 in `points`."""
+    """What a process has of a file: some elements of every block, and a row of nodes.
+
+    Nodes are numbered from 0, those of the first process first.
+    """
 
     points: Floats = field(default_factory=lambda: np.zeros((0, 3)))
     blocks: list[Block] = field(default_factory=list)
     names: dict[Entity, str] = field(default_factory=dict)
 
 
-class _Stream:
-    """Numbers of a file in the order they are written, text or binary alike."""
-
-    def __init__(self, data: bytes) -> None:
-        self.data = data
-        self.at = 0
-        self.binary = False
-        self._tokens: list[bytes] = []
-
-    def line(self) -> bytes:
-        end = self.data.find(b"\n", self.at)
-        end = len(self.data) if end < 0 else end
-        text = self.data[self.at : end].strip()
-        self.at = end + 1
-        return text
-
-    def count(self) -> int:
-        """A number on a line of its own."""
-        try:
-            return int(self.line())
-        except ValueError:
-            raise MshError("text where a number belongs") from None
-
-    def open_section(self, name: bytes) -> None:
-        """Make the numbers up to the closing line of a text section available."""
-        if not self.binary:
-            end = self._closing(name)
-            self._tokens = self.data[self.at : end].split()[::-1]
-            self.at = end
-
-    def close_section(self, name: bytes) -> None:
-        """Go behind the closing line; nothing may be left in between."""
-        if self._tokens or not self.data[self.at :].lstrip().startswith(b"$End" + name):
-            raise MshError(f"section ${name.decode()} holds more than it announces")
-        self.skip(name)
-
-    def skip(self, name: bytes) -> None:
-        self.at = self._closing(name)
-        self.line()
-
-    def ints(self, n: int = 1) -> Nodes:
-        return self._take(n, np.dtype("<i4")).astype(np.int64)
-
-    def sizes(self, n: int = 1) -> Nodes:
-        return self._take(n, np.dtype("<i8"))
-
-    def floats(self, n: int = 1) -> Floats:
-        return self._take(n, np.dtype("<f8"))
-
-    def records(self, n: int, dtype: np.dtype[np.void]) -> npt.NDArray[np.void]:
-        """Binary rows of mixed types."""
-        return self._raw(n, dtype)
-
-    def _take(self, n: int, dtype: np.dtype) -> npt.NDArray:  # type: ignore[type-arg]
-        if self.binary:
-            return self._raw(n, dtype)
-        if not 0 <= n <= len(self._tokens):
-            raise MshError("the file ends too early")
-        taken = self._tokens[len(self._tokens) - n :][::-1]
-        del self._tokens[len(self._tokens) - n :]
-        kind = np.float64 if dtype.kind == "f" else np.int64
-        try:
-            return np.array(taken).astype(kind) if n else np.zeros(0, kind)
-        except (ValueError, OverflowError):
-            raise MshError("text where a number belongs") from None
-
-    def _raw(self, n: int, dtype: np.dtype) -> npt.NDArray:  # type: ignore[type-arg]
-        size = int(n) * dtype.itemsize
-        if n < 0 or self.at + size > len(self.data):
-            raise MshError("the file ends too early")
-        out = np.frombuffer(self.data, dtype=dtype, count=int(n), offset=self.at)
-        self.at += size
-        return out
-
-    def _closing(self, name: bytes) -> int:
-        end = self.data.find(b"$End" + name, self.at)
-        if end < 0:
-            raise MshError(f"section ${name.decode()[:40]} is not closed")
-        return end
-
-
-def read_msh(path: Path) -> MshFile:
+def read_msh(path: Path, comm: Any = MPI.COMM_SELF) -> MshFile:
     """Nodes, elements and physical names of a gmsh file.
+
+    Every process goes through the file and keeps a share of the nodes and elements.
 
     Args:
         path: The file.
+        comm: Processes that share it; the call is collective.
 
     Returns:
-        Its content.
+        What this process has of it.
 
     Raises:
-        MshError: It is not a mesh in format 4.1 or 2.2, or it is damaged.
+        MshError: It is not a mesh in format 4.1 or 2.2, or it is damaged; on all processes.
         OSError: It cannot be read.
     """
-    stream = _Stream(path.read_bytes())
+    problem: MshError | OSError | None = None
+    try:
+        out, tags = _read(Stream(path), comm)
+    except (MshError, OSError) as error:
+        problem = error
+    found = next((p for p in comm.allgather(problem) if p is not None), None)
+    if found is not None:
+        raise found
+    _renumber(out, tags, comm)
+    return out
+
+
+def _read(stream: Stream, comm: Any) -> tuple[MshFile, Nodes]:
+    """Content with the tags of the file, and the tags of the nodes."""
     if stream.line() != b"$MeshFormat":
         raise MshError("it does not begin with $MeshFormat")
     sections = _format(stream)
     out = MshFile()
-    entities: dict[Entity, tuple[int, ...]] = {}
+    entities: Groups = {}
     tags = np.zeros(0, dtype=np.int64)
-    while stream.at < len(stream.data):
+    while not stream.ended:
         head = stream.line()
         name = head[1:]
         if not head:
@@ -185,27 +139,28 @@ def read_msh(path: Path) -> MshFile:
             stream.close_section(name)
         elif name == b"Nodes":
             stream.open_section(name)
-            tags, out.points = sections.nodes(stream)
+            tags, out.points = sections.nodes(stream, comm)
             stream.close_section(name)
         elif name == b"Elements":
             stream.open_section(name)
-            out.blocks = sections.elements(stream, entities)
+            out.blocks = sections.elements(stream, entities, comm)
             stream.close_section(name)
         else:
             stream.skip(name)
-    _renumber(out, tags)
-    return out
+    if not np.all(np.isfinite(out.points)):
+        raise MshError("a coordinate is not finite")
+    return out, tags
 
 
 @dataclass(frozen=True)
 class _Sections:
     """How a version of the format writes nodes and elements."""
 
-    nodes: Callable[[_Stream], tuple[Nodes, Floats]]
-    elements: Callable[[_Stream, dict[Entity, tuple[int, ...]]], list[Block]]
+    nodes: Callable[[Stream, Any], tuple[Nodes, Floats]]
+    elements: Callable[[Stream, Groups, Any], list[Block]]
 
 
-def _format(stream: _Stream) -> _Sections:
+def _format(stream: Stream) -> _Sections:
     words = stream.line().split()
     if len(words) != 3 or words[0] not in _VERSIONS:
         given = " ".join(w.decode("ascii", "replace")[:8] for w in words[:3]) or "none"
@@ -217,7 +172,7 @@ def _format(stream: _Stream) -> _Sections:
     return _VERSIONS[words[0]]
 
 
-def _physical_names(stream: _Stream) -> dict[Entity, str]:
+def _physical_names(stream: Stream) -> dict[Entity, str]:
     names: dict[Entity, str] = {}
     try:
         for _ in range(stream.count()):
@@ -229,9 +184,9 @@ def _physical_names(stream: _Stream) -> dict[Entity, str]:
     return names
 
 
-def _entities(stream: _Stream) -> dict[Entity, tuple[int, ...]]:
+def _entities(stream: Stream) -> Groups:
     """Physical tags of each elementary entity (4.1)."""
-    groups: dict[Entity, tuple[int, ...]] = {}
+    groups: Groups = {}
     for dim, count in enumerate(stream.sizes(4)):
         for _ in range(int(count)):
             tag = int(stream.ints()[0])
@@ -242,42 +197,54 @@ def _entities(stream: _Stream) -> dict[Entity, tuple[int, ...]]:
     return groups
 
 
-def _nodes_4(stream: _Stream) -> tuple[Nodes, Floats]:
-    blocks = int(stream.sizes(4)[0])
+def _nodes_4(stream: Stream, comm: Any) -> tuple[Nodes, Floats]:
+    blocks, total = (int(v) for v in stream.sizes(4)[:2])
+    own = share_of(comm, total)
     tags, points = [np.zeros(0, dtype=np.int64)], [np.zeros((0, 3))]
+    before = 0
     for _ in range(blocks):
         dim, _, parametric = stream.ints(3)
         count = int(stream.sizes()[0])
-        tags.append(stream.sizes(count))
+        some = _part(own, before, count, last=comm.rank == comm.size - 1)
+        tags.append(stream.rows(count, 1, SIZE, some)[:, 0])
         width = 3 + int(dim) * bool(parametric)
-        points.append(stream.floats(count * width).reshape(count, width)[:, :3])
+        points.append(stream.rows(count, width, FLOAT, some)[:, :3])
+        before += count
     return np.concatenate(tags), np.concatenate(points)
 
 
-def _elements_4(stream: _Stream, entities: dict[Entity, tuple[int, ...]]) -> list[Block]:
+def _part(own: tuple[int, int], before: int, count: int, last: bool) -> tuple[int, int]:
+    """What of a block behind others is one's own; the last process takes all that follows."""
+    first = min(max(own[0] - before, 0), count)
+    return first, count if last else min(max(own[1] - before, first), count)
+
+
+def _elements_4(stream: Stream, entities: Groups, comm: Any) -> list[Block]:
     blocks = []
     for _ in range(int(stream.sizes(4)[0])):
         dim, entity, kind = (int(v) for v in stream.ints(3))
         count = int(stream.sizes()[0])
-        width = 1 + _node_count(kind)
-        rows = stream.sizes(count * width).reshape(count, width)
-        blocks.append(Block(kind, rows[:, 1:], entities.get((dim, entity), ())))
+        own = share_of(comm, count)
+        rows = stream.rows(count, 1 + _node_count(kind), SIZE, own)
+        groups = entities.get((dim, entity), ())
+        blocks.append(Block(kind, rows[:, 1:], groups, np.arange(*own), count))
     return blocks
 
 
-def _nodes_2(stream: _Stream) -> tuple[Nodes, Floats]:
+def _nodes_2(stream: Stream, comm: Any) -> tuple[Nodes, Floats]:
     if stream.binary:
         count = stream.count()
-        rows = stream.records(count, np.dtype([("tag", "<i4"), ("x", "<f8", 3)]))
+        row = np.dtype([("tag", "<i4"), ("x", "<f8", 3)])
+        rows = stream.rows(count, 1, row, share_of(comm, count))[:, 0]
         return rows["tag"].astype(np.int64), rows["x"].astype(np.float64)
     count = int(stream.ints()[0])
-    table = stream.floats(4 * count).reshape(count, 4)
+    table = stream.rows(count, 4, FLOAT, share_of(comm, count))
     return table[:, 0].astype(np.int64), table[:, 1:]
 
 
-def _elements_2(stream: _Stream, entities: dict[Entity, tuple[int, ...]]) -> list[Block]:
+def _elements_2(stream: Stream, entities: Groups, comm: Any) -> list[Block]:
     """Elements of the old format: an element of several groups is listed once for each."""
-    rows: dict[tuple[int, int], list[Nodes]] = {}
+    rows: dict[tuple[int, int], _Growing] = {}
     left = stream.count() if stream.binary else int(stream.ints()[0])
     while left > 0:
         if stream.binary:
@@ -286,14 +253,39 @@ def _elements_2(stream: _Stream, entities: dict[Entity, tuple[int, ...]]) -> lis
             (_, kind, labels), count = (int(v) for v in stream.ints(3)), 1
         if count < 1 or labels < 0:
             raise MshError("section $Elements is damaged")
-        width = bool(stream.binary) + labels + _node_count(kind)
-        table = stream.ints(count * width).reshape(count, width)
-        label = table[:, int(stream.binary)] if labels else np.zeros(count, dtype=np.int64)
-        for group in np.unique(label):
-            nodes = table[label == group, width - _node_count(kind) :]
-            rows.setdefault((kind, int(group)), []).append(nodes)
+        nodes = _node_count(kind)
+        width = bool(stream.binary) + labels + nodes
+        for start in range(0, count, PIECE):
+            some = min(PIECE, count - start)
+            table = stream.ints(some * width).reshape(some, width)
+            label = table[:, int(stream.binary)] if labels else np.zeros(some, dtype=np.int64)
+            for group in np.unique(label):
+                growing = rows.setdefault((kind, int(group)), _Growing(comm))
+                growing.add(table[label == group, width - nodes :])
         left -= count
-    return [Block(kind, np.concatenate(n), (group,)) for (kind, group), n in rows.items()]
+    return [growing.block(kind, group) for (kind, group), growing in rows.items()]
+
+
+class _Growing:
+    """A block of which the number of elements is not known yet: every process takes its turn."""
+
+    def __init__(self, comm: Any) -> None:
+        self._rank, self._size = comm.rank, comm.size
+        self._count = 0
+        self._nodes: list[Nodes] = []
+        self._places: list[Nodes] = []
+
+    def add(self, nodes: Nodes) -> None:
+        places = np.arange(self._count, self._count + len(nodes))
+        own = places % self._size == self._rank
+        self._count += len(nodes)
+        if own.any() or not self._nodes:
+            self._nodes.append(nodes[own])
+            self._places.append(places[own])
+
+    def block(self, kind: int, group: int) -> Block:
+        places = np.concatenate(self._places)
+        return Block(kind, np.concatenate(self._nodes), (group,), places, self._count)
 
 
 _VERSIONS = {
@@ -308,16 +300,26 @@ def _node_count(kind: int) -> int:
     return ELEMENTS[kind][1]
 
 
-def _renumber(out: MshFile, tags: Nodes) -> None:
-    if not np.all(np.isfinite(out.points)):
-        raise MshError("a coordinate is not finite")
-    order = np.argsort(tags, kind="stable")
-    ranked = tags[order]
-    if np.any(ranked[1:] == ranked[:-1]):
+def _renumber(out: MshFile, tags: Nodes, comm: Any) -> None:
+    """Put the numbers of the nodes in the place of their tags.
+
+    A node is looked up on the process that its tag names, wherever it lives.
+    """
+    own = Split(comm, len(tags))
+    known = Route(comm, tags % comm.size)
+    ranked, numbers = known.there(tags), known.there(own.numbers)
+    order = np.argsort(ranked, kind="stable")
+    ranked, numbers = ranked[order], numbers[order]
+    if comm.allreduce(int(np.sum(ranked[1:] == ranked[:-1]))):
         raise MshError("a node number is used twice")
     for block in out.blocks:
-        place = np.searchsorted(ranked, block.nodes)
+        wanted = block.nodes.reshape(-1)
+        route = Route(comm, wanted % comm.size)
+        asked = route.there(wanted)
+        place = np.searchsorted(ranked, asked)
         place[place == len(ranked)] = 0
-        if not len(ranked) or np.any(ranked[place] != block.nodes):
+        missing = np.any(ranked[place] != asked) if len(ranked) else len(asked) > 0
+        if comm.allreduce(bool(missing), MPI.LOR):
             raise MshError("an element has a node that is not in the file")
-        block.nodes = order[place]
+        found = numbers[place] if len(ranked) else asked
+        block.nodes = route.back(found).reshape(block.nodes.shape)

@@ -8,6 +8,7 @@ import numpy.typing as npt
 from anisocontact._fenicsx import curved_gradients, middle_nodes
 from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
+from anisocontact.mesh.split import Route
 
 # Corners, each with its neighbours in an order that makes a right-handed frame in a sound cell.
 _CORNERS = {
@@ -41,15 +42,17 @@ def check_cells(mesh: MeshArrays) -> None:
     """
     # Sizes whose volumes overflow or underflow count as flat.
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        volumes = _corner_volumes(mesh)
+        here = mesh.with_points()
+        volumes = _corner_volumes(here)
         if mesh.degree == 2:
-            volumes = np.hstack([volumes, _inner_volumes(mesh)])
+            volumes = np.hstack([volumes, _inner_volumes(here)])
     for name, cells in mesh.bodies.items():
         own = volumes[cells]
-        sound = own.min(axis=1) > FLAT * np.abs(own).max()
-        bad = len(own) - int(sound.sum())
+        largest = np.max(mesh.comm.allgather(np.abs(own).max(initial=0.0)))
+        sound = own.min(axis=1) > FLAT * largest
+        bad, count = mesh.sum(len(own) - int(sound.sum())), mesh.sum(len(own))
         if bad:
-            raise InputError(f"body {name!r}: {bad} of {len(own)} cells are flat or inverted")
+            raise InputError(f"body {name!r}: {bad} of {count} cells are flat or inverted")
     shared = _facets_of_more_than_two(mesh)
     if shared:
         raise InputError(f"{shared} facets belong to more than two cells")
@@ -74,18 +77,23 @@ def _facets_of_more_than_two(mesh: MeshArrays) -> int:
     local = CELL_FACETS[mesh.cell]
     # The three lowest corners tell a facet from any other.
     rows = np.sort(mesh.cells[:, local].reshape(-1, local.shape[1]), axis=1)[:, :3]
+    rows = Route(mesh.comm, mesh.node_split.owner(rows[:, 0])).there(rows)
     rows = rows[np.lexsort(rows.T)]
-    return int(np.sum(np.all(rows[2:] == rows[:-2], axis=1)))
+    return mesh.sum(int(np.sum(np.all(rows[2:] == rows[:-2], axis=1))))
 
 
 def _is_conforming(mesh: MeshArrays) -> bool:
     """Whether every node inside an edge or face of quadratic cells belongs to it alone."""
-    groups = [np.unique(mesh.cells[:, np.unique(_CORNERS[mesh.cell])])]
+    nodes = mesh.node_split
+    uses = nodes.marked(mesh.cells[:, np.unique(_CORNERS[mesh.cell])]).astype(int)
     for corners, middle in middle_nodes(mesh.cell):
         entities = np.sort(mesh.cells[:, corners].reshape(-1, corners.shape[1]), axis=1)
-        nodes = mesh.cells[:, middle].reshape(-1)
-        pairs = np.unique(np.column_stack([entities, nodes]), axis=0)
-        groups.append(np.unique(nodes))
-        if not len(np.unique(entities, axis=0)) == len(groups[-1]) == len(pairs):
+        inside = mesh.cells[:, middle].reshape(-1)
+        pairs = np.unique(np.column_stack([entities, inside]), axis=0)
+        pairs = np.unique(Route(mesh.comm, nodes.owner(pairs[:, 0])).there(pairs), axis=0)
+        marked = nodes.marked(inside)
+        uses += marked
+        alike = len(np.unique(pairs[:, :-1], axis=0)), len(pairs), int(marked.sum())
+        if len({mesh.sum(count) for count in alike}) > 1:
             return False
-    return len(np.unique(np.concatenate(groups))) == sum(map(len, groups))
+    return mesh.sum(int(np.sum(uses > 1))) == 0

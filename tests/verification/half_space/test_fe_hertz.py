@@ -28,7 +28,7 @@ from anisocontact.contact import Contact, FacetContact, TwoHalfPass
 from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
-from anisocontact.mesh.arrays import merge
+from anisocontact.mesh.merge import merge
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.surfaces import make_surface
 

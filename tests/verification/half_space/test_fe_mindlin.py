@@ -35,7 +35,8 @@ from anisocontact.contact import FacetContact
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
-from anisocontact.mesh.arrays import MeshArrays, merge
+from anisocontact.mesh.arrays import MeshArrays
+from anisocontact.mesh.merge import merge
 from anisocontact.solver import Problem, Solver, Step
 
 RADIUS, E, NU, MU = 80.0, 1000.0, 0.3, 0.4

@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.blocks import Block, Side, even, graded
+from anisocontact.mesh.lattice import Block, Side, even, graded
 from anisocontact.mesh.shapes.shape import (
     cells_parameter,
     check_around,

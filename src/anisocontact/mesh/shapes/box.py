@@ -10,7 +10,7 @@ import numpy as np
 
 from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.blocks import Block, Side, graded
+from anisocontact.mesh.lattice import Block, Side, graded
 from anisocontact.mesh.shapes.shape import cells_parameter, check_shape, ratio_parameter
 from anisocontact.registry import Entry, Parameter
 

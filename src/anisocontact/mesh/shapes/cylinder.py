@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from anisocontact.mesh.blocks import Block
+from anisocontact.mesh.lattice import Block
 from anisocontact.mesh.shapes.disc import disc_blocks
 from anisocontact.mesh.shapes.shape import (
     cells_parameter,

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.blocks import Block, even, graded
+from anisocontact.mesh.lattice import Block, even, graded
 
 #: Facet groups of bodies made of discs.
 ENDS = {(2, 0): "bottom", (2, 1): "top"}

@@ -11,7 +11,7 @@ import numpy as np
 
 from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.blocks import Block
+from anisocontact.mesh.lattice import Block
 from anisocontact.mesh.shapes.disc import disc_blocks
 from anisocontact.mesh.shapes.shape import (
     cells_parameter,

@@ -8,7 +8,8 @@ from typing import ClassVar, Protocol
 
 from anisocontact import registry
 from anisocontact.errors import InputError
-from anisocontact.mesh.blocks import Block, check_count
+from anisocontact.mesh.blocks import check_count
+from anisocontact.mesh.lattice import Block
 from anisocontact.registry import Entry, Parameter
 
 CELLS = ("hexahedron", "tetrahedron")

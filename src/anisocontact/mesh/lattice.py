@@ -1,0 +1,171 @@
+"""A block of cells: a lattice in a unit cube and the map that takes it into space."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+from scipy.spatial import cKDTree
+
+from anisocontact.mesh.arrays import Floats, Nodes
+
+Mask = npt.NDArray[np.bool_]
+
+#: A side of the unit cube: axis and end (0: low, 1: high).
+type Side = tuple[int, int]
+
+#: Distance of nodes of neighbouring blocks that are one, over the extent of the body.
+SAME_NODE = 1e-9
+
+
+@dataclass(frozen=True)
+class Block:
+    """Cells between planes of a unit cube, and where the cube lies in space.
+
+    Attributes:
+        planes: Positions of the planes along each axis, from 0 to 1, one more than cells.
+        place: Takes points of the cube, (n, 3), to points in space, (n, 3), length; right-handed.
+        sides: Sides of the cube that are facet groups, by name of the group.
+    """
+
+    planes: tuple[Floats, Floats, Floats]
+    place: Callable[[Floats], Floats]
+    sides: Mapping[Side, str] = field(default_factory=dict)
+
+    @property
+    def count(self) -> int:
+        """Number of hexahedra."""
+        return math.prod(len(p) - 1 for p in self.planes)
+
+
+def even(cells: int) -> Floats:
+    """Planes of cells of one size, from 0 to 1."""
+    return np.linspace(0.0, 1.0, cells + 1)
+
+
+def graded(cells: int, ratio: float) -> Floats:
+    """Planes of cells that grow geometrically, from 0 to 1.
+
+    Args:
+        cells: Number of cells.
+        ratio: Size of the last over that of the first.
+
+    Returns:
+        Positions of the planes, (cells + 1,).
+
+    Example:
+        >>> graded(2, 3.0).tolist()
+        [0.0, 0.25, 1.0]
+    """
+    if cells == 1 or ratio == 1.0:
+        return even(cells)
+    sizes = ratio ** (np.arange(cells) / (cells - 1))
+    ends = np.concatenate([[0.0], np.cumsum(sizes)])
+    return np.asarray(ends / ends[-1])
+
+
+class Lattice:
+    """Nodes of a block, numbered with the last axis fastest; any of them without the others.
+
+    Args:
+        block: The block.
+        degree: Degree of the cells, 1 or 2.
+
+    Attributes:
+        block: The block.
+        count: Number of nodes.
+    """
+
+    def __init__(self, block: Block, degree: int) -> None:
+        self.block = block
+        self._degree = degree
+        self._planes = [_with_middles(p) if degree == 2 else p for p in block.planes]
+        self._shape = tuple(len(p) for p in self._planes)
+        self._strides = np.array([self._shape[1] * self._shape[2], self._shape[2], 1])
+        self.count = math.prod(self._shape)
+
+    def part(self, own: tuple[int, int], before: int, count: int) -> Nodes:
+        """Numbers in this block of what is one's own in a row of blocks.
+
+        Args:
+            own: First number of one's own and the one after the last.
+            before: Numbers in the blocks before this one.
+            count: Numbers in this one.
+        """
+        return np.arange(*np.clip(np.subtract(own, before), 0, count), dtype=np.int64)
+
+    def points(self, nodes: Nodes) -> Floats:
+        """Points in space of some nodes, (n, 3), length."""
+        shares = [p[self._along(axis, nodes)] for axis, p in enumerate(self._planes)]
+        return self.block.place(np.stack(shares, axis=-1))
+
+    def hexahedra(self, numbers: Nodes) -> Nodes:
+        """Nodes of some hexahedra, (n, (degree + 1)^3), the last axis fastest."""
+        cells = [len(p) - 1 for p in self.block.planes]
+        corner = self._degree * np.stack(np.unravel_index(numbers, cells), axis=-1)
+        inside = np.array(list(product(range(self._degree + 1), repeat=3)))
+        return np.asarray((corner[:, None] + inside) @ self._strides, dtype=np.int64)
+
+    def on(self, nodes: Nodes, side: Side) -> Mask:
+        """Whether nodes lie on a side of the cube."""
+        axis, end = side
+        return np.asarray(self._along(axis, nodes) == end * (self._shape[axis] - 1))
+
+    def shell(self) -> Nodes:
+        """Nodes on all sides of the cube."""
+        sides = []
+        for axis, end in product(range(3), (0, 1)):
+            index = list(np.ix_(*(np.arange(n) for n in self._shape)))
+            index[axis] = np.array(end * (self._shape[axis] - 1))
+            sides.append(sum(i * s for i, s in zip(index, self._strides, strict=True)).reshape(-1))
+        return np.unique(np.concatenate(sides))
+
+    def _along(self, axis: int, nodes: Nodes) -> Nodes:
+        return np.asarray(nodes // self._strides[axis] % self._shape[axis])
+
+
+def _with_middles(planes: Floats) -> Floats:
+    out = np.empty(2 * len(planes) - 1)
+    out[::2], out[1::2] = planes, 0.5 * (planes[1:] + planes[:-1])
+    return out
+
+
+class Weld:
+    """Nodes of several lattices, those at one place as one; only the sides of blocks can meet.
+
+    Args:
+        lattices: The lattices; their nodes are numbered one lattice behind the other.
+
+    Attributes:
+        removed: Nodes in the place of which there is an earlier one, sorted.
+    """
+
+    def __init__(self, lattices: Sequence[Lattice]) -> None:
+        starts = np.cumsum([0] + [lattice.count for lattice in lattices])
+        shells = [lattice.shell() for lattice in lattices]
+        points = np.concatenate([one.points(s) for one, s in zip(lattices, shells, strict=True)])
+        nodes = np.concatenate([s + n for s, n in zip(shells, starts[:-1], strict=True)])
+        tolerance = SAME_NODE * float(np.ptp(points, axis=0).max())
+        pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
+        links = scipy.sparse.coo_array(
+            (np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2
+        )
+        _, labels = scipy.sparse.csgraph.connected_components(links, directed=False)
+        _, firsts = np.unique(labels, return_index=True)
+        stays = nodes[firsts][labels]
+        gone = stays != nodes
+        self.removed = nodes[gone]
+        self._stays = stays[gone]
+
+    def number(self, nodes: Nodes) -> Nodes:
+        """Numbers of nodes once those at one place are one, in the order of the nodes."""
+        if not len(self.removed):
+            return nodes
+        place = np.minimum(np.searchsorted(self.removed, nodes), len(self.removed) - 1)
+        kept = np.where(self.removed[place] == nodes, self._stays[place], nodes)
+        return np.asarray(kept - np.searchsorted(self.removed, kept))
