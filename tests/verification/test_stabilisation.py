@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,7 @@ from anisocontact.contact import Contact, FacetContact
 from anisocontact.errors import InputError
 from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.mesh import Body, BoxSpec, Model, build_box
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.solver.free_modes import bodies, free_modes, named
 from anisocontact.surfaces import make_surface
@@ -183,3 +185,42 @@ def test_names_of_free_motions() -> None:
     assert left(corner) == "rotation about x, y and z"
     assert left(edge) == "rotation about z"
     assert left(places[:, 2] == 0.0) == ""
+
+
+def test_bodies_that_share_nodes_hold_each_other() -> None:
+    """Three layers in one mesh, the lowest held, the highest pulled: nothing needs springs.
+
+    Requirement: they stretch by `sum h p / E` without Poisson's ratio, to the tolerance of Newton.
+    """
+    column = Body("column", BoxSpec((0, 0, 0), (1, 1, 3), (1, 1, 3))).arrays()
+    modulus = {"low": 100.0, "mid": 1000.0, "top": 200.0}
+    layers = {name: np.array([cell]) for cell, name in enumerate(modulus)}
+    ends = {"low.bottom": column.facets["column.bottom"], "top.top": column.facets["column.top"]}
+    model = Model.from_arrays(replace(column, bodies=layers, facets=ends))
+    materials = {n: make_material("linear-elastic", E=e, nu=0.0) for n, e in modulus.items()}
+    problem = Problem(model, materials, [])
+    pull = Step("pull", 1, {"low.bottom": dict.fromkeys("xyz", 0.0)}, {"top.top": {"z": 2.0}})
+    (accepted,) = Solver(problem, [pull]).run()
+    assert accepted.energies["stabilisation"] == 0.0
+    stretch = problem.u.x.array.reshape(-1, 3)[:, 2].max()
+    assert stretch == pytest.approx(sum(2.0 / e for e in modulus.values()), rel=1e-9)
+
+
+def test_bodies_that_only_touch_each_other_are_refused_before_the_run() -> None:
+    """A block on a base that stands on nothing: contact does not hold what both do together."""
+    model = build_box(
+        {
+            "block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1)),
+            "base": BoxSpec((0, 0, -1), (1, 1, 1), (2, 2, 1)),
+        }
+    )
+    contact = FacetContact(model, "block.bottom", "base.top", law=PairLaw(*_laws()))
+    elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
+    problem = Problem(model, {"block": elastic, "base": elastic}, [contact])
+    step = Step("press", 1, {"base.bottom": {"z": 0.0}}, {"block.top": {"z": -1.0}})
+    said = (
+        r"step 'press': body 'block \+ base' is free to move: translation along x and y, "
+        r"rotation about z; its parts touch nothing but each other"
+    )
+    with pytest.raises(InputError, match=said):
+        Solver(problem, [step])

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse
+from scipy.sparse.csgraph import connected_components
 
 from anisocontact._fenicsx import fem
 from anisocontact.mesh import Model
@@ -26,36 +28,61 @@ type Held = tuple[Ints, Floats]
 
 @dataclass(frozen=True)
 class Body:
-    """Nodes of a body.
+    """Nodes that move together where nothing is strained: a body, or bodies that share nodes.
 
     Attributes:
-        name: Its name.
+        parts: Names of the bodies.
         nodes: Nodes this rank owns, (n,).
         arms: Their places relative to the centre over the size of the body, (n, 3).
         count: Number of nodes over all ranks.
     """
 
-    name: str
+    parts: tuple[str, ...]
     nodes: Ints
     arms: Floats
     count: int
 
+    @property
+    def name(self) -> str:
+        """Names of the bodies in one."""
+        return " + ".join(self.parts)
 
-def bodies(model: Model) -> list[Body]:
-    """All bodies of a model."""
+
+def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[Body]:
+    """All bodies of a model; those that share nodes are one.
+
+    Args:
+        model: The model.
+        links: Pairs of bodies that count as one beside these.
+    """
     space, comm = model.space, model.mesh.comm
     owned = space.dofmap.index_map.size_local
-    places = np.asarray(space.tabulate_dof_coordinates())
-    found = []
-    for name in model.body_names():
-        nodes = fem.locate_dofs_topological(space, 3, model.cells(name))
-        nodes = nodes[nodes < owned].astype(np.int64)
-        x = places[nodes]
-        count = comm.allreduce(len(nodes))
-        arms = x - comm.allreduce(x.sum(axis=0)) / count
-        size = np.sqrt(comm.allreduce(float((arms**2).sum())) / count)
-        found.append(Body(name, nodes, arms / size, count))
-    return found
+    names = list(model.body_names())
+    nodes = {}
+    for name in names:
+        found = fem.locate_dofs_topological(space, 3, model.cells(name))
+        nodes[name] = found[found < owned].astype(np.int64)
+    pairs = [(names.index(a), names.index(b)) for a, b in links]
+    for i, a in enumerate(names):
+        for j, b in enumerate(names[:i]):
+            if comm.allreduce(len(np.intersect1d(nodes[a], nodes[b]))):
+                pairs.append((i, j))
+    rows, columns = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
+    entries = (np.ones(len(rows)), (rows, columns))
+    graph = scipy.sparse.coo_array(entries, shape=(len(names), len(names)))
+    count, number = connected_components(graph, directed=False)
+    groups = [[n for n, k in zip(names, number, strict=True) if k == one] for one in range(count)]
+    return [_body(model, group, [nodes[name] for name in group]) for group in groups]
+
+
+def _body(model: Model, parts: list[str], nodes: list[Ints]) -> Body:
+    comm = model.mesh.comm
+    all_nodes = np.unique(np.concatenate(nodes))
+    x = np.asarray(model.space.tabulate_dof_coordinates())[all_nodes]
+    count = comm.allreduce(len(all_nodes))
+    arms = x - comm.allreduce(x.sum(axis=0)) / count
+    size = np.sqrt(comm.allreduce(float((arms**2).sum())) / count)
+    return Body(tuple(parts), all_nodes, arms / size, count)
 
 
 def free_modes(body: Body, held: Iterable[Held], comm: Any) -> Floats:

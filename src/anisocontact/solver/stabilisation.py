@@ -12,6 +12,7 @@ the first attempt goes without, and those with springs follow where it fails.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import NoReturn
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +23,7 @@ from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.python_law import PythonInterface
 from anisocontact.solver.free_modes import Body, Held, bodies, free_modes, named
+from anisocontact.solver.joined import joined
 
 Floats = npt.NDArray[np.float64]
 
@@ -98,7 +100,8 @@ class Stabilisation:
         self._scale = scale
         self._comm = model.mesh.comm
         attached = set(attached)
-        self._bodies = [body for body in bodies(model) if body.name not in attached]
+        self._bodies = [body for body in bodies(model) if not attached & set(body.parts)]
+        self._joined = joined(model, contacts, attached)
         self._free: list[_Free] = []
         self._begun: Floats = np.zeros((0, 3))
         self._anchor: Floats = self._begun
@@ -134,6 +137,10 @@ class Stabilisation:
             InputError: A body is free and nothing can hold it.
         """
         self.clear()
+        for body in self._joined:
+            modes = free_modes(body, held, self._comm)
+            if len(modes):
+                self._refuse(body, named(modes), step)
         for body in self._bodies:
             modes = free_modes(body, held, self._comm)
             if len(modes):
@@ -233,11 +240,9 @@ class Stabilisation:
         self._spent = 0.0
 
     def _add(self, body: Body, modes: str, step: str, now: bool) -> None:
-        contacts = [c for c in self._contacts if body.name in self._sides(c)]
+        contacts = self._of(body)
         field = f"step {step!r}"
         text = f"body {body.name!r} is free to move: {modes}"
-        if not contacts:
-            raise InputError(f"{text}; it is in no contact and needs a support", field)
         size = min(facet_size(self._model, c.slave) for c in contacts)
         free = _Free(body, modes, contacts, size)
         if not self.enabled:
@@ -246,6 +251,20 @@ class Stabilisation:
             return
         self._free.append(free)
         self.notes.append(f"{text}; stabilised until contact holds it")
+
+    def _refuse(self, body: Body, modes: str, step: str) -> NoReturn:
+        if not self._of(body):
+            why = "it is in no contact and needs a support"
+        elif len(body.parts) > 1:
+            why = "its parts touch nothing but each other, it needs a support"
+        else:
+            why = "it touches nothing but itself and needs a support"
+        text = f"body {body.name!r} is free to move: {modes}; {why}"
+        raise InputError(text, f"step {step!r}")
+
+    def _of(self, body: Body) -> list[AnyContact]:
+        """Contacts of a body."""
+        return [c for c in self._contacts if set(body.parts) & self._sides(c)]
 
     def _sides(self, contact: AnyContact) -> set[str]:
         groups = [contact.slave]

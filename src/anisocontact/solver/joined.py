@@ -1,0 +1,30 @@
+"""Bodies that are in contact with each other alone, and the motions that they can make together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from anisocontact.contact import AnyContact, Contact
+from anisocontact.mesh import Model
+from anisocontact.solver.free_modes import Body, bodies
+
+
+def joined(model: Model, contacts: Sequence[AnyContact], attached: Iterable[str]) -> list[Body]:
+    """Bodies that only supports can hold, those in contact with each other as one.
+
+    Contact between bodies resists what one does to the other, not what they do as one rigid body;
+    contact with itself resists nothing. Bodies in contact with a surface that is given, or held by
+    springs, are left out.
+
+    Args:
+        model: Mesh of the bodies.
+        contacts: The contacts.
+        attached: Bodies that springs or elastic supports hold.
+    """
+    others, links = set(attached), []
+    for contact in contacts:
+        if isinstance(contact, Contact):
+            others.add(model.body_of(contact.slave))
+        else:
+            links.append((model.body_of(contact.slave), model.body_of(contact.master)))
+    return [body for body in bodies(model, links) if not others & set(body.parts)]
