@@ -18,7 +18,7 @@ PRINTED = "printed"
 SCRIPTS = {
     "growth": "time and memory against contact unknowns, points and steps",
     "kernel_rates": "points per second and core of laws, projections and interfaces",
-    "pair_rates": "slave points per second and core of two meshed sheets",
+    "pair_rates": "million slave points per second and core of two meshed sheets",
     "search": "closest points per second and core on a sheet of facets",
 }
 
