@@ -275,7 +275,7 @@ def test_a_full_disk_loses_nothing(monkeypatch, capsys, case, whole, victim):
         "history": (History, "append"),
         "fields": (collection, "_write"),
         "summary": (writer, "write_text"),
-        "checkpoint": (writer, "save_checkpoint"),
+        "checkpoint": (checkpoint, "save_checkpoint"),
         "log": (writer.Writer, "_append"),
     }[victim]
     real, full = getattr(owner, name), {"now": False}
@@ -361,7 +361,7 @@ def test_another_order_of_nodes_finds_its_own(case, whole):
         "p": chance.permutation(len(stored.arrays["points/0/reference"])),
     }
     for name, values in stored.arrays.items():
-        shuffled[name] = values if name.startswith("common/") else values[order[name[0]]]
+        shuffled[name] = values[order[name[0]]] if name[0] in order else values
     found = checkpoint.distribute(
         checkpoint.Stored(shuffled, stored.facts), built.problem.model, like
     )
@@ -401,8 +401,8 @@ def test_every_state_counts(case, variant, at):
     for count, accepted in enumerate(first.solver.run()):
         if count == at:
             model = first.problem.model
-            arrays = checkpoint.gathered(model, first.solver.persistent())
-            checkpoint.save_checkpoint(case.parent, arrays, {})
+            own, common = checkpoint.own_arrays(model, first.solver.persistent())
+            checkpoint.save_checkpoint(case.parent, own | common, {})
         elif count > at:
             later.append(accepted)
     stored = checkpoint.load_checkpoint(case.parent)

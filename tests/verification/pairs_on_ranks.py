@@ -3,7 +3,7 @@
 Usage: `mpirun -n N python -m tests.verification.pairs_on_ranks FOLDER MODE CASE...`
 
 MODE "whole" writes what there is after all increments to `FOLDER/CASE-N-whole.npz`, "stop" also
-what there is after the second one to `FOLDER/CASE-N-stop.npz`; "from:M" goes on from where M
+a checkpoint after the second one to the folder `FOLDER/CASE-N-stop`; "from:M" goes on from where M
 processes have stopped and writes `FOLDER/CASE-N-from-M.npz`.
 """
 
@@ -25,7 +25,13 @@ from anisocontact.contact import Contact, FacetContact, SelfContact, TwoHalfPass
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
-from anisocontact.results.checkpoint import Stored, distribute, gathered
+from anisocontact.results.checkpoint import (
+    distribute,
+    keep_checkpoint,
+    load_checkpoint,
+    own_arrays,
+)
+from anisocontact.results.files import Disk
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import Problem, Solver, Step
 
@@ -156,8 +162,10 @@ def _facets(problem: Problem) -> np.ndarray:
 def _save(path: Path, solver: Solver, **more: Any) -> None:
     problem = solver.problem
     facets = _facets(problem)
-    arrays = gathered(problem.model, solver.persistent())
-    if problem.comm.rank == 0:
+    own, common = own_arrays(problem.model, solver.persistent())
+    parts = problem.comm.gather(own)
+    if parts is not None:
+        arrays = {name: np.concatenate([part[name] for part in parts]) for name in own} | common
         np.savez(path, facets=facets, **arrays, **more)
 
 
@@ -167,8 +175,9 @@ def run(name: str, folder: Path, mode: str) -> None:
     ranks = problem.comm.size
     solver = Solver(problem, steps, options={"snes_rtol": 1e-13}, strategy="direct")
     if mode.startswith("from:"):
-        with np.load(folder / f"{name}-{mode[5:]}-stop.npz") as file:
-            stored = Stored(dict(file), {})
+        stored = load_checkpoint(folder / f"{name}-{mode[5:]}-stop")
+        assert stored is not None
+        assert len(stored.pieces) == (int(mode[5:]) if mode[5:] != "1" else 0)
         solver.restore(distribute(stored, problem.model, solver.persistent()))
     rows = []
     for count, accepted in enumerate(solver.run(), 1):
@@ -177,7 +186,9 @@ def run(name: str, folder: Path, mode: str) -> None:
         energies = np.array(list(accepted.energies.values()))
         rows.append(np.concatenate([energies, *wrench, *reactions]))
         if mode == "stop" and count == STOP:
-            _save(folder / f"{name}-{ranks}-stop.npz", solver)
+            stop, disk = folder / f"{name}-{ranks}-stop", Disk(problem.comm)
+            disk.write(stop.mkdir)
+            keep_checkpoint(stop, disk, count, problem.model, solver.persistent(), {})
     kind = mode.replace(":", "-") if mode.startswith("from") else "whole"
     _save(folder / f"{name}-{ranks}-{kind}.npz", solver, numbers=np.array(rows))
 

@@ -1,7 +1,9 @@
 """`checkpoint.npz`: all that a run needs to go on, written after each accepted increment.
 
-Arrays are those of all ranks one after the other, with the positions in the reference configuration
-that they belong to, so that another number of ranks finds its own among them.
+On several processes each writes the arrays of its own nodes and points into a file of the folder
+`checkpoint`, and `checkpoint.npz` names these files and has what all have in common. Beside its
+arrays a file has the positions in the reference configuration that they belong to, so that another
+number of processes finds its own among them.
 """
 
 from __future__ import annotations
@@ -9,27 +11,40 @@ from __future__ import annotations
 import json
 import os
 import zipfile
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from numpy.lib.recfunctions import repack_fields
 
 from anisocontact.contact.facet_mesh import node_positions
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
-from anisocontact.results.files import replacing
+from anisocontact.results.files import Disk, replacing
 from anisocontact.solver.persistent import Arrays, Persistent, under
 
-__all__ = ["NAME", "Stored", "distribute", "gathered", "load_checkpoint", "save_checkpoint"]
+__all__ = [
+    "NAME",
+    "Stored",
+    "distribute",
+    "keep_checkpoint",
+    "load_checkpoint",
+    "own_arrays",
+    "save_checkpoint",
+]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 NAME = "checkpoint.npz"
+#: Folder of the pieces of several processes.
+PIECES = "checkpoint"
 #: Changes with the meaning of the file.
-FORMAT = 4
+FORMAT = 5
 #: Distance within which two positions are the same, over the size of the mesh.
 SAME = 1e-9
 
@@ -39,50 +54,126 @@ class Stored:
     """Content of a checkpoint.
 
     Attributes:
-        arrays: All arrays by name, those of all ranks joined.
+        arrays: Arrays by name; of a run on several processes those that they have in common.
         facts: Nested text and numbers beside them.
+        pieces: Files with the arrays of each process; none of a run on one.
     """
 
     arrays: Arrays
     facts: dict[str, Any]
+    pieces: tuple[Path, ...] = ()
+
+    def search(self, first: int, look: Callable[[Mapping[str, Any]], bool]) -> None:
+        """Go through the arrays of one process after the other, never all of them at a time.
+
+        Args:
+            first: The piece to begin with.
+            look: Takes the arrays of a piece; whether it has all it needs.
+
+        Raises:
+            InputError: A piece is missing or damaged.
+        """
+        if not self.pieces:
+            look(self.arrays)
+            return
+        first %= len(self.pieces)
+        for path in (*self.pieces[first:], *self.pieces[:first]):
+            with _readable(path), path.open("rb") as opened, np.load(opened) as file:
+                if look(file):
+                    return
 
 
-def gathered(model: Model, kept: Persistent) -> Arrays:
-    """Arrays of all ranks joined, under the names they have in the file.
+def own_arrays(model: Model, kept: Persistent) -> tuple[Arrays, Arrays]:
+    """What a checkpoint has of this process, and what all processes have in common.
 
     Args:
         model: The mesh.
-        kept: State of this rank; the call is collective.
+        kept: State of this process; the call is collective.
 
     Returns:
-        The arrays; none but on the first rank.
+        Both under the names they have in the file.
     """
-    local = _named(kept, _where(model))
-    parts = model.mesh.comm.gather(local)
-    if parts is None:
-        return {}
-    joined = {name: np.concatenate([part[name] for part in parts]) for name in local}
-    joined |= {f"common/{name}": values for name, values in kept.common.items()}
-    return joined | {f"strategy/{name}": values for name, values in kept.strategy.items()}
+    position, body = _where(model)
+    comm = model.mesh.comm
+    ends = [position.min(axis=0, initial=np.inf), -position.max(axis=0, initial=-np.inf)]
+    low, high = np.min(comm.allgather(ends), axis=0) * [[1.0], [-1.0]]
+    common = {f"common/{name}": values for name, values in kept.common.items()}
+    common |= {f"strategy/{name}": values for name, values in kept.strategy.items()}
+    counts = np.array([model.space.dofmap.index_map.size_global, len(kept.points)])
+    common |= {"mesh/counts": counts, "mesh/extent": high - low}
+    return _named(kept, (position, body)), common
 
 
-def save_checkpoint(folder: Path, arrays: Arrays, facts: dict[str, Any]) -> None:
-    """Write a checkpoint at once: a reader finds the old one or this one.
+def keep_checkpoint(
+    folder: Path, disk: Disk, number: int, model: Model, kept: Persistent, facts: dict[str, Any]
+) -> None:
+    """Write a checkpoint, whenever the run is killed there is the one before or this one.
+
+    The pieces have names of their own; they count from when `checkpoint.npz` names them.
 
     Args:
         folder: Results folder.
-        arrays: As of `gathered`.
+        disk: Where failures go.
+        number: A number that the checkpoint before does not have.
+        model: The mesh.
+        kept: State of this process; the call is collective.
+        facts: What else is to be kept, as JSON can have it.
+
+    Raises:
+        WriteError: It cannot be written; the one before is still there.
+    """
+    comm = model.mesh.comm
+    own, common = own_arrays(model, kept)
+    pieces: list[str] = []
+    if comm.size > 1:
+        pieces = [f"{number:06d}.{rank}.npz" for rank in range(comm.size)]
+        disk.write(lambda: (folder / PIECES).mkdir(exist_ok=True))
+        disk.check()
+        disk.write_each(lambda: _save(folder / PIECES / pieces[comm.rank], own))
+        disk.check()
+    arrays = common if pieces else own | common
+    disk.write(lambda: save_checkpoint(folder, arrays, facts | {"pieces": pieces}))
+    disk.write(lambda: _tidy(folder / PIECES, pieces))
+    disk.check()
+
+
+def save_checkpoint(folder: Path, arrays: Arrays, facts: dict[str, Any]) -> None:
+    """Write the file of a checkpoint at once: a reader finds the old one or this one.
+
+    Args:
+        folder: Results folder.
+        arrays: As of `own_arrays`.
         facts: What else is to be kept, as JSON can have it.
 
     Raises:
         OSError: It cannot be written; the old one is still there.
     """
     text = json.dumps(facts | {"format": FORMAT})
-    named = arrays | {"facts": np.frombuffer(text.encode(), dtype=np.uint8)}
-    with replacing(folder / NAME) as draft, draft.open("wb") as file:
-        np.savez(file, **named)  # type: ignore[arg-type]
+    _save(folder / NAME, arrays | {"facts": np.frombuffer(text.encode(), dtype=np.uint8)})
+
+
+def _save(path: Path, arrays: Arrays) -> None:
+    with replacing(path) as draft, draft.open("wb") as file:
+        np.savez(file, **arrays)  # type: ignore[arg-type]
         file.flush()
         os.fsync(file.fileno())
+
+
+def _tidy(folder: Path, pieces: Sequence[str]) -> None:
+    """Remove pieces that no checkpoint names."""
+    for path in folder.glob("*.npz"):
+        if path.name not in pieces:
+            path.unlink()
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"'{path}' cannot be read: {error}") from None
 
 
 def load_checkpoint(folder: Path) -> Stored | None:
@@ -100,24 +191,23 @@ def load_checkpoint(folder: Path) -> Stored | None:
     path = folder / NAME
     if not path.is_file():
         return None
-    try:
+    with _readable(path):
         with path.open("rb") as opened, np.load(opened) as file:
             arrays = dict(file)
         facts = json.loads(arrays.pop("facts").tobytes())
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
-        raise InputError(f"'{path}' cannot be read: {error}") from None
     if facts.get("format") != FORMAT:
         raise InputError(
             f"'{path}' has format {facts.get('format')!r}, this version reads {FORMAT}"
         )
-    return Stored(arrays, facts)
+    pieces = tuple(folder / PIECES / name for name in facts.get("pieces", ()))
+    return Stored(arrays, facts, pieces)
 
 
 def distribute(stored: Stored, model: Model, like: Persistent) -> Persistent:
-    """The part of a checkpoint that belongs to this rank.
+    """The part of a checkpoint that belongs to this process.
 
     Args:
-        stored: The checkpoint, the same on every rank.
+        stored: The checkpoint, the same on every process.
         model: The mesh.
         like: State of the problem as it was built.
 
@@ -125,37 +215,108 @@ def distribute(stored: Stored, model: Model, like: Persistent) -> Persistent:
         The state to go on from.
 
     Raises:
-        InputError: The mesh or a contact is not that of the checkpoint.
+        InputError: The mesh or a contact is not that of the checkpoint, or a piece is damaged.
     """
-    where = _where(model)
-    arrays = stored.arrays
-    size = float(np.ptp(arrays["node/position"], axis=0).max(initial=0.0))
     nodes = model.space.dofmap.index_map.size_global
-    passes = {name.split("/")[1] for name in arrays if name.startswith("points/")}
-    if len(arrays["node/position"]) != nodes or len(passes) != len(like.points):
+    if stored.arrays["mesh/counts"].tolist() != [nodes, len(like.points)]:
         raise InputError("the mesh or the contacts are not those of the run that is to go on")
-    rows = _matched(arrays["node/position"], arrays["node/body"], *where, SAME * size)
-    nodal = {name: values[rows] for name, values in under("nodal/", arrays).items()}
+    near = SAME * float(stored.arrays["mesh/extent"].max())
+    nodal = _Rows("nodal/", *_where(model), near)
     points = [
-        _points_of(arrays, f"points/{i}/", part, SAME * size) for i, part in enumerate(like.points)
+        _Rows(f"points/{i}/", part["reference"], np.zeros(len(part["reference"])), near, part)
+        for i, part in enumerate(like.points)
     ]
+
+    def look(part: Mapping[str, Any]) -> bool:
+        nodal.look("node/position", part, part["node/body"])
+        for rows in points:
+            rows.look(f"{rows.prefix}reference", part)
+        return not any(len(rows.missing) for rows in (nodal, *points))
+
+    stored.search(model.mesh.comm.rank, look)
+    for rows in (nodal, *points):
+        rows.check()
     # numbers of unknowns mean something only where they are those of the run that wrote them
-    same = model.mesh.comm.size == 1 and np.array_equal(rows, np.arange(nodes))
-    strategy = under("strategy/", arrays) if same else {}
-    return Persistent(nodal, points, under("common/", arrays), strategy)
+    same = model.mesh.comm.size == 1 and nodal.in_order
+    return Persistent(
+        nodal.values,
+        [rows.values for rows in points],
+        under("common/", stored.arrays),
+        under("strategy/", stored.arrays) if same else {},
+    )
 
 
-def _points_of(arrays: Arrays, prefix: str, like: Arrays, near: float) -> Arrays:
-    """Values of this rank's slave points of one pass."""
-    stored = under(prefix, arrays)
-    for name, values in like.items():
-        if name not in stored or stored[name].dtype.names != values.dtype.names:
+class _Rows:
+    """Rows of nodes or points, found by their positions.
+
+    Args:
+        prefix: Of the names of the arrays.
+        position: Where the rows are that are wanted, (n, 3), length.
+        kind: Only rows of the same kind are the same, (n,).
+        near: Distance within which two positions are the same, length.
+        like: Arrays of the types that are wanted, where it matters.
+
+    Attributes:
+        prefix: As given.
+        values: Arrays of the rows by name.
+        missing: Rows that have not been found.
+        in_order: Whether all were found at once, in the order in which they are wanted.
+    """
+
+    def __init__(
+        self, prefix: str, position: Floats, kind: Any, near: float, like: Arrays | None = None
+    ) -> None:
+        self.prefix = prefix
+        self.values: Arrays = {}
+        self.missing = np.arange(len(position))
+        self.in_order = False
+        self._position, self._kind, self._near = position, kind, near
+        self._like = like or {}
+
+    def look(self, name: str, part: Mapping[str, Any], kind: Ints | None = None) -> None:
+        """Take what is missing from a part of the checkpoint.
+
+        Args:
+            name: Its array of positions.
+            part: Its arrays.
+            kind: Kind of its rows; all of one kind if not given.
+
+        Raises:
+            InputError: Arrays have other fields than those of this version.
+        """
+        names = [n for n in part if n.startswith(self.prefix)]
+        absent = {self.prefix + n for n in self._like}.difference(names)
+        if absent:
             raise InputError("the states of points are not those of this version")
-    here, there = like["reference"], stored["reference"]
-    one = [np.zeros(len(x), dtype=np.int64) for x in (there, here)]
-    rows = _matched(there, one[0], here, one[1], near)
-    # Joining records packs them; the core wants its own layout.
-    return {name: values[rows].astype(like[name].dtype) for name, values in stored.items()}
+        there = part[name]
+        kind = np.zeros(len(there), dtype=np.int64) if kind is None else kind
+        wanted = self.missing
+        rows = _matched(there, kind, self._position[wanted], self._kind[wanted], self._near)
+        found = rows >= 0
+        self.in_order = not self.values and np.array_equal(rows, np.arange(len(there)))
+        if not self.values or found.any():
+            for full in names:
+                self._put(full.removeprefix(self.prefix), part[full], wanted[found], rows[found])
+        self.missing = wanted[~found]
+
+    def _put(self, name: str, values: npt.NDArray[Any], at: Ints, rows: Ints) -> None:
+        # Records are packed in the file; the core wants its own layout.
+        dtype = self._like[name].dtype if name in self._like else values.dtype
+        if dtype.names != values.dtype.names:
+            raise InputError("the states of points are not those of this version")
+        if name not in self.values:
+            self.values[name] = np.zeros((len(self._position), *values.shape[1:]), dtype)
+        self.values[name][at] = values[rows].astype(dtype)
+
+    def check(self) -> None:
+        """Refuse to go on without some of the rows.
+
+        Raises:
+            InputError: Names one that was not found.
+        """
+        if len(self.missing):
+            at = ", ".join(f"{v:.6g}" for v in self._position[self.missing[0]])
+            raise InputError(f"the mesh is not that of the run that is to go on: nothing at ({at})")
 
 
 def _named(kept: Persistent, where: tuple[Floats, Ints]) -> Arrays:
@@ -163,7 +324,8 @@ def _named(kept: Persistent, where: tuple[Floats, Ints]) -> Arrays:
     named: Arrays = {"node/position": where[0], "node/body": where[1]}
     named |= {f"nodal/{name}": values for name, values in kept.nodal.items()}
     for i, part in enumerate(kept.points):
-        named |= {f"points/{i}/{name}": values for name, values in part.items()}
+        # records have gaps in memory, which a file cannot have
+        named |= {f"points/{i}/{name}": repack_fields(values) for name, values in part.items()}
     return named
 
 
@@ -178,11 +340,7 @@ def _where(model: Model) -> tuple[Floats, Ints]:
 
 
 def _matched(there: Floats, kind_there: Ints, here: Floats, kind_here: Ints, near: float) -> Ints:
-    """Rows of `there` with the positions `here`, both of the same kind.
-
-    Raises:
-        InputError: A position is not among them.
-    """
+    """Rows of `there` with the positions `here`, both of the same kind; -1 for none."""
     if np.array_equal(there, here) and np.array_equal(kind_there, kind_here):
         return np.arange(len(here))
     from scipy.spatial import cKDTree  # slow to import, and needed on other meshes only
@@ -195,7 +353,4 @@ def _matched(there: Floats, kind_there: Ints, here: Floats, kind_here: Ints, nea
             continue
         distance, found = cKDTree(there[theirs]).query(here[mine])
         rows[mine] = np.where(distance <= near, theirs[found], -1)
-    if (rows < 0).any():
-        at = ", ".join(f"{v:.6g}" for v in here[np.flatnonzero(rows < 0)[0]])
-        raise InputError(f"the mesh is not that of the run that is to go on: nothing at ({at})")
     return rows

@@ -38,6 +38,7 @@ OWN = (
     "report.html",
     "case.toml",
     "checkpoint.npz",
+    "checkpoint",
     "run.log",
 )
 #: Name of a file that is being written.

@@ -13,7 +13,7 @@ from typing import Any
 
 from anisocontact import __version__
 from anisocontact.contact import facet_size
-from anisocontact.results.checkpoint import gathered, save_checkpoint
+from anisocontact.results.checkpoint import keep_checkpoint
 from anisocontact.results.collection import Collection
 from anisocontact.results.files import Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
@@ -70,6 +70,7 @@ class Writer:
         self._every = every
         self._pictures = pictures
         self._increments = 0
+        self._kept = 0
         self._disk = Disk(problem.model.mesh.comm)
         self.folder = Path(folder)
         self._disk.write(lambda: self._open(case, resumed is not None))
@@ -121,6 +122,7 @@ class Writer:
         self._began -= state["summary"]["wall_time_s"]
         self._at_start = list(state["at_start"])
         self._increments, self._written = state["increments"], state["written"]
+        self._kept = state["kept"]
         self._disk.write(lambda: self._history.resume(state["history"]))
         self._fields.resume(state["fields"])
         self._disk.write(self._fields.tidy)
@@ -136,6 +138,7 @@ class Writer:
             "summary": self.summary,
             "at_start": self._at_start,
             "increments": self._increments,
+            "kept": self._kept,
             "written": self._written,
             "history": self._history.state(),
             "fields": self._fields.state(),
@@ -153,10 +156,9 @@ class Writer:
         Raises:
             WriteError: It cannot be written; the one before is still there.
         """
-        joined = gathered(self._problem.model, kept)
+        self._kept += 1
         content = {"writer": _finite(self.state()), **facts}
-        self._disk.write(lambda: save_checkpoint(self.folder, joined, content))
-        self._disk.check()
+        keep_checkpoint(self.folder, self._disk, self._kept, self._problem.model, kept, content)
 
     def strategy(self, name: str, reason: str) -> None:
         """Say how the equations are solved, and why."""
