@@ -20,9 +20,9 @@ from anisocontact.results.read import Results
 SCRIPT = """
 import os, signal, sys
 from anisocontact.cli import main
-from anisocontact.results import checkpoint, writer
+from anisocontact.results import checkpoint, report
 when, name, where, left = sys.argv.pop(1), sys.argv.pop(1), sys.argv.pop(1), [int(sys.argv.pop(1))]
-writer.write_report = lambda folder: []
+report.write_report = lambda folder: []
 real = getattr(checkpoint, name)
 
 def dying(*arguments):

@@ -23,10 +23,10 @@ from anisocontact.cli import main
 where, what = sys.argv.pop(1), sys.argv.pop(1)
 
 def prepared():
-    from anisocontact.results import writer
+    from anisocontact.results import report
     from anisocontact.solver.problem import Problem
 
-    writer.write_report = lambda folder: []
+    report.write_report = lambda folder: []
     evaluate, count = Problem.evaluate, [0]
 
     def failing(self, x):

@@ -72,8 +72,8 @@ options = { snes_max_it = MOST }
 MAIN = """
 import sys
 from anisocontact.cli import main
-from anisocontact.results import writer
-writer.write_report = lambda folder: []
+from anisocontact.results import report
+report.write_report = lambda folder: []
 sys.exit(main(sys.argv[1:]))
 """
 

@@ -386,4 +386,4 @@ def mutated(tmp_path_factory: pytest.TempPathFactory, capsys: Any) -> Mutated:
 @pytest.fixture(autouse=True)
 def no_report(monkeypatch: pytest.MonkeyPatch) -> None:
     """The pictures take longer than the run."""
-    monkeypatch.setattr("anisocontact.results.writer.write_report", lambda folder: [])
+    monkeypatch.setattr("anisocontact.results.report.write_report", lambda folder: [])
