@@ -21,7 +21,7 @@ Floats = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]
 Block = tuple[slice, Floats]
 
-#: Krylov iterations after which the factor is renewed: a new one costs as much as some thirty.
+#: Krylov iterations after which the factor is renewed: a new one costs as much as some fifty.
 PATIENCE = 16
 #: Residual that Krylov iterations in single precision reach before they begin anew.
 _SINGLE = 1e-4
@@ -65,7 +65,6 @@ class ContactTangent:
         self.count, self._spread = count, spread
         self.scale = max((float(np.abs(np.diagonal(b)).max()) for _, b in blocks), default=1.0)
         self._blocks = blocks
-        self._single = [(place, _single(block, self.scale)) for place, block in blocks]
         self._places = Places(number if spread is None else np.arange(len(number)))
         self._contact = scipy.sparse.csr_array((count, count))
         self.summed = self._contact.astype(np.float32)
@@ -84,13 +83,6 @@ class ContactTangent:
         """The product with a vector, (c,)."""
         return np.asarray(self._contact @ x + blocks_times(self._blocks, x))
 
-    def times_single(self, x: Singles) -> Singles:
-        """The product over `scale` with a vector, in single precision, (c,)."""
-        out: Singles = self.summed @ x
-        for place, block in self._single:
-            out[place] += scipy.linalg.blas.ssymv(1.0, block, x[place], lower=1)
-        return out
-
     def factor(self, contact: scipy.sparse.csr_array) -> Callable[[Singles], Singles]:
         """LU of `S` over `scale` plus a matrix, as a function that solves with it.
 
@@ -102,8 +94,8 @@ class ContactTangent:
         """
         n = self.count
         matrix = np.zeros((n, n), dtype=np.float32, order="F")
-        for place, block in self._single:
-            matrix[place, place] = block
+        for place, block in self._blocks:
+            np.divide(block, self.scale, out=matrix[place, place], casting="same_kind")
         entries = contact.tocoo()
         matrix[entries.row, entries.col] += entries.data
         lu, pivots, info = scipy.linalg.lapack.sgetrf(matrix, overwrite_a=1)
@@ -162,11 +154,6 @@ class Places:
         there = (rows >= 0) & (columns >= 0)
         entry = np.arange(there.size).reshape(shape)[there]
         self._entry = scipy.sparse.csr_array((entry, (rows[there], columns[there])), (size, size))
-
-
-def _single(block: Floats, scale: float) -> Singles:
-    """A symmetric block over a number, by columns: a copy would turn it."""
-    return np.asarray((block.T / scale).astype(np.float32, order="C").T)
 
 
 def _pairs(values: Floats, r: int, c: int) -> Floats:
@@ -238,16 +225,26 @@ class KeptFactor:
     def _improved(self, x: Floats, b: Floats, rtol: float, most: int) -> tuple[Floats, float]:
         """Krylov iterations from `x` on; the norm of the residual over that of `b` comes with it.
 
-        In single precision, begun anew with the residual in double precision.
+        In single precision, begun anew with the residual in double precision. With the kept factor
+        of M the tangent is `A = M + D`, D what contacts have changed since, so that
+        `A M^-1 v = v + D M^-1 v`: the product with the dense S is not needed.
         """
-        assert self._solve is not None
+        solve, made_of = self._solve, self._made_of
+        assert solve is not None and made_of is not None
+        change = self._tangent.summed - made_of
+        change.eliminate_zeros()
+
+        def step(v: Singles) -> tuple[Singles, Singles]:
+            direction = solve(v)
+            return direction, v + change @ direction
+
         norm = float(np.linalg.norm(b)) or 1.0
         rest, left = b - self._tangent.times(x) if x.any() else b, 1.0
         for _ in range(_ROUNDS):
             size = float(np.linalg.norm(rest)) or 1.0
             goal = max(rtol * norm / size, _SINGLE)
             unit = (rest / size).astype(np.float32)
-            y, _, used = gmres(self._tangent.times_single, self._solve, unit, 0.9 * goal, most)
+            y, _, used = gmres(step, unit, 0.9 * goal, most)
             self.iterations += used
             better = x + y.astype(np.float64) * (size / self._tangent.scale)
             rest = b - self._tangent.times(better)
@@ -261,8 +258,7 @@ class KeptFactor:
 
 
 def gmres(
-    times: Callable[[Singles], Singles],
-    precondition: Callable[[Singles], Singles],
+    step: Callable[[Singles], tuple[Singles, Singles]],
     b: Singles,
     rtol: float,
     most: int,
@@ -270,8 +266,7 @@ def gmres(
     """Generalised minimal residuals, preconditioned from the right, without restart.
 
     Args:
-        times: Product with the matrix.
-        precondition: Approximate solution with the matrix.
+        step: Approximate solution with the matrix, and the product of the matrix with it.
         b: Right-hand side, (n,); its precision is that of the vectors.
         rtol: Norm of the residual over that of `b` at which to stop.
         most: Most iterations.
@@ -280,7 +275,7 @@ def gmres(
         Solution, norm of its residual over that of `b`, number of iterations.
 
     Example:
-        >>> gmres(lambda x: 2.0 * x, lambda x: x, np.array([4.0]), 1e-12, 5)
+        >>> gmres(lambda v: (v, 2.0 * v), np.array([4.0]), 1e-12, 5)
         (array([2.]), 0.0, 1)
     """
     norm = float(np.linalg.norm(b))
@@ -298,8 +293,7 @@ def gmres(
     while used < most:
         j = used
         used += 1
-        directions[:, j] = precondition(basis[:, j])
-        w = times(directions[:, j])
+        directions[:, j], w = step(basis[:, j])
         for _ in range(2):  # twice is enough for orthogonality to rounding
             shares = product(1.0, basis[:, :used], w, trans=1)
             hessenberg[:used, j] += shares
