@@ -1,9 +1,8 @@
 """DOLFINx, PETSc and MPI as the finite-element level uses them.
 
 Every call whose name or signature differs between DOLFINx releases sits here, and so does the
-order of the imports: the wheel `dolfinx-solver-real` brings its own PETSc, which has to be
-loaded before `dolfinx` and `petsc4py`. Installations from conda-forge or Debian have no such
-package and need none.
+order of the imports: in the wheel `dolfinx-solver-real` the compiled modules need mpi4py's MPI to
+be loaded before them.
 """
 
 from __future__ import annotations
@@ -19,14 +18,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-with contextlib.suppress(ImportError):
-    import dolfinx_solver  # noqa: F401
-
 try:
+    from mpi4py import MPI  # isort: skip
+
     import basix
     import basix.ufl
     import ufl as _ufl
-    from mpi4py import MPI
 
     import dolfinx
     from dolfinx import cpp, fem, graph, io

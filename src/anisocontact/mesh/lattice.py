@@ -10,7 +10,6 @@ from itertools import product
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse
-from scipy.spatial import cKDTree
 
 from anisocontact.mesh.arrays import Floats, Nodes
 
@@ -116,10 +115,10 @@ class Lattice:
         axis, end = side
         return np.asarray(self._along(axis, nodes) == end * (self._shape[axis] - 1))
 
-    def shell(self) -> Nodes:
-        """Nodes on all sides of the cube."""
-        sides = []
-        for axis, end in product(range(3), (0, 1)):
+    def seams(self) -> Nodes:
+        """Nodes on the sides that are no facet groups: what meets another side is none."""
+        sides = [np.zeros(0, dtype=np.int64)]
+        for axis, end in set(product(range(3), (0, 1))) - set(self.block.sides):
             index = list(np.ix_(*(np.arange(n) for n in self._shape)))
             index[axis] = np.array(end * (self._shape[axis] - 1))
             sides.append(sum(i * s for i, s in zip(index, self._strides, strict=True)).reshape(-1))
@@ -136,7 +135,7 @@ def _with_middles(planes: Floats) -> Floats:
 
 
 class Weld:
-    """Nodes of several lattices, those at one place as one; only the sides of blocks can meet.
+    """Nodes of several lattices, those at one place as one; only sides that are no facet groups can meet.
 
     Args:
         lattices: The lattices; their nodes are numbered one lattice behind the other.
@@ -147,9 +146,14 @@ class Weld:
 
     def __init__(self, lattices: Sequence[Lattice]) -> None:
         starts = np.cumsum([0] + [lattice.count for lattice in lattices])
-        shells = [lattice.shell() for lattice in lattices]
-        points = np.concatenate([one.points(s) for one, s in zip(lattices, shells, strict=True)])
-        nodes = np.concatenate([s + n for s, n in zip(shells, starts[:-1], strict=True)])
+        seams = [lattice.seams() for lattice in lattices]
+        points = np.concatenate([one.points(s) for one, s in zip(lattices, seams, strict=True)])
+        nodes = np.concatenate([s + n for s, n in zip(seams, starts[:-1], strict=True)])
+        self.removed = self._stays = np.zeros(0, dtype=np.int64)
+        if not len(points):
+            return
+        from scipy.spatial import cKDTree  # slow to import, and a box does without
+
         tolerance = SAME_NODE * float(np.ptp(points, axis=0).max())
         pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
         links = scipy.sparse.coo_array(
