@@ -85,7 +85,7 @@ def at_end(
     if share > STABILISED:
         found.append(
             f"stabilisation took up {share:.0%} of the work from outside: bodies moved while "
-            "nothing held them; let them touch at the start, or support them"
+            "nothing held them, or jumped; let them touch at the start, or support them"
         )
     return found
 

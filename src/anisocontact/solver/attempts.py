@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from anisocontact._fenicsx import Vec
@@ -32,14 +31,32 @@ class Outcome:
     culprits: tuple[Culprit, ...] = ()
 
 
+@dataclass(frozen=True)
+class _Way:
+    """One attempt.
+
+    Attributes:
+        start: State that it starts from.
+        full_steps: Whether there is no line search.
+        damped: Whether corrections are taken in shares while the status of points alternates.
+        flowing: Whether the bodies flow.
+    """
+
+    start: Vec
+    full_steps: bool = True
+    damped: bool = False
+    flowing: bool = False
+
+
 class Attempts:
     """Solves for given loads and commits what converges.
 
     The first attempt starts from the extrapolated state with a line search, the second from the
     accepted state with full steps: a line search stops in front of a jump of the law. Where the
     status of points alternated, a third one takes a share of each correction: half as much as
-    before where it still alternates, twice as much where it does not. Where contact may hold free
-    bodies without springs, an attempt without them comes before all these.
+    before where it still alternates, twice as much where it does not. Where that does not help
+    either and the part is small, the last one lets the bodies flow, see `Flow`. Where contact may
+    hold free bodies without springs, an attempt without them comes before all these.
 
     Args:
         problem: The problem.
@@ -53,45 +70,55 @@ class Attempts:
         self._watch = watch
         self._share = 1.0
 
-    def solve(self, first: Vec, last: Vec) -> Outcome:
+    def solve(self, first: Vec, last: Vec, small: bool = False) -> Outcome:
         """Solve and commit, or roll back.
 
         Args:
             first: Extrapolated state.
             last: Accepted state.
+            small: Whether a smaller part is not likely to help.
 
         Returns:
             Whether one converged, and what kept the others from it.
         """
         spent = 0
         found: list[Culprit] = []
-        ways: list[tuple[Vec, bool, Callable[[], float] | None]] = [
-            (first, False, None),
-            (last, True, None),
-        ]
-        if self._problem.follows and first is last:
-            del ways[0]  # there is no line search, so both would be the same
-        if self._problem.stabilisation.trusts:
-            ways.insert(0, (first, False, None))
-        for start, full_steps, damping in ways:
-            result, culprits = self._attempt(start.copy(), full_steps, damping)
+        ways = self._ways(first, last)
+        for way in ways:
+            result, culprits = self._attempt(way)
             spent += result.iterations
             if not result.reason:
                 return Outcome(replace(result, iterations=spent))
             found = _graver(found, culprits)
-            if damping is None and full_steps and found[:1] and found[0].kind == "flipping":
-                ways.append((last, True, self._damping))
+            if way is ways[-1] and found[:1] and found[0].kind == "flipping":
+                ways += self._against_flipping(way, small)
         reason = _reason(result.reason, found)
         return Outcome(replace(result, iterations=spent, reason=reason), tuple(found))
 
-    def _attempt(
-        self, x: Vec, full_steps: bool, damping: Callable[[], float] | None
-    ) -> tuple[NewtonResult, list[Culprit]]:
+    def _ways(self, first: Vec, last: Vec) -> list[_Way]:
+        searching, full = _Way(first, full_steps=False), _Way(last)
+        # without line search both would be the same
+        ways = [full] if self._problem.follows and first is last else [searching, full]
+        return [searching, *ways] if self._problem.stabilisation.trusts else ways
+
+    def _against_flipping(self, failed: _Way, small: bool) -> list[_Way]:
+        """What is left to be tried where the status of points alternates."""
+        if not failed.damped and not failed.flowing:
+            return [replace(failed, damped=True)]
+        can_flow = self._problem.stabilisation.enabled and self._problem.reduction is None
+        if small and can_flow and not failed.flowing:
+            return [_Way(failed.start, flowing=True)]
+        return []
+
+    def _attempt(self, way: _Way) -> tuple[NewtonResult, list[Culprit]]:
         problem = self._problem
         self._watch.clear()
         self._share = 1.0
+        x = way.start.copy()
         try:
-            result = self._newton.solve(x, full_steps, damping)
+            if way.flowing:
+                problem.flow()
+            result = self._newton.solve(x, way.full_steps, self._damping if way.damped else None)
             if not result.reason and problem.comm.allreduce(len(problem.inverted_cells())):
                 result = replace(result, reason="cells are turned inside out")
             lets_go = not result.reason and problem.contact_lets_go(x)
@@ -106,6 +133,7 @@ class Attempts:
             problem.together.met()
             raise
         finally:
+            problem.stabilisation.flow.stop()
             if not problem.together.apart:
                 problem.roll_back()
 

@@ -13,6 +13,8 @@ CUT = 0.25
 GROWTH = 2.0
 #: Parts in a row that have to converge before the next one grows.
 STREAK = 2
+#: Share of an increment at which smaller parts are not likely to help.
+SMALL = 0.01
 #: Newton iterations beyond which a part was hard enough not to grow.
 HARD = 15
 
@@ -62,6 +64,11 @@ class Pace:
     def part(self) -> float:
         """Size of the next part."""
         return self.end - self.done
+
+    @property
+    def small(self) -> bool:
+        """Whether a smaller part than the next one is not allowed, or not likely to help."""
+        return self.part <= max(SMALL, self.limits.smallest) or self.cuts >= self.limits.cuts
 
     def advance(self, iterations: int) -> None:
         """Go on behind a part that has converged.

@@ -267,6 +267,8 @@ class Problem(Following):
         moved = self.stabilisation.improve(self._nodal, self.force_scale)
         if moved and self.stabilisation.untouched():
             self._accepted.go_on(x, self._balance.outside)
+        if moved and self.stabilisation.flow.flows:
+            return True
         return any([contact.improve() for contact in self.contacts]) or moved
 
     def contact_lets_go(self, x: Vec) -> bool:
@@ -277,8 +279,17 @@ class Problem(Following):
         return self.stabilisation.doubtful(self._nodal)
 
     def soften(self) -> bool:
-        """After a solution that failed: softer penalties of augmented contacts; whether any."""
+        """After a solution that failed: softer penalties of augmented contacts; whether any.
+
+        Bodies that flow take a shorter step instead.
+        """
+        if self.stabilisation.flow.flows:
+            return self.stabilisation.flow.soften()
         return any([contact.soften() for contact in self.contacts])
+
+    def flow(self) -> None:
+        """Let the bodies flow to the next equilibrium in this attempt, see `Flow`."""
+        self.stabilisation.flow.start(self._nodal)
 
     def _stabilise(self) -> None:
         """Put the springs of stabilisation back to where they start from."""

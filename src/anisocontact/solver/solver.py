@@ -208,7 +208,7 @@ class Solver:
         if before is not None:
             ratio = pace.part / pace.last
             first = (1.0 + ratio) * last - ratio * before
-        return attempts.solve(first, last)
+        return attempts.solve(first, last, pace.small)
 
     def _cut(self, step: Step, outcome: Outcome) -> None:
         """Make the next part smaller, or give up."""

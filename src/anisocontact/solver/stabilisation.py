@@ -22,6 +22,7 @@ from anisocontact.contact import AnyContact, Contact, NotHeldError, facet_size
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.python_law import PythonInterface
+from anisocontact.solver.flow import Flow
 from anisocontact.solver.free_modes import Body, Held, bodies, free_modes, named
 from anisocontact.solver.joined import joined
 
@@ -80,6 +81,7 @@ class Stabilisation:
     Attributes:
         energy: What the springs have taken up and dissipated since the start, force times length.
         careful: Whether bodies get springs also where they stick, until the step ends.
+        flow: What carries the bodies on where their equilibrium is lost.
         notes: What is stabilised since the last `begin`, a line for each body.
     """
 
@@ -95,6 +97,7 @@ class Stabilisation:
         self.energy = 0.0
         self.careful = False
         self.notes: list[str] = []
+        self.flow = Flow(model, scale)
         self._model = model
         self._contacts = list(contacts)
         self._scale = scale
@@ -109,12 +112,12 @@ class Stabilisation:
         self._count = 0
 
     def __bool__(self) -> bool:
-        return bool(self._free)
+        return bool(self._free) or self.flow.flows
 
     @property
     def stiffnesses(self) -> tuple[float, ...]:
-        """Stiffness at each node of every body that is kept in reach, force/length."""
-        return tuple(free.stiffness for free in self._free)
+        """Stiffness at each node of every body that is kept in reach, then of the flow."""
+        return *(free.stiffness for free in self._free), self.flow.stiffness
 
     @property
     def trusts(self) -> bool:
@@ -168,14 +171,15 @@ class Stabilisation:
 
     def force(self, u: Floats) -> Floats:
         """Force of the springs on the local nodes, (nodes, 3)."""
-        force = np.zeros_like(u)
+        force = self.flow.force(u)
         for free in self._free:
             nodes = free.body.nodes
-            force[nodes] = -free.stiffness * (u[nodes] - self._anchor[nodes])
+            force[nodes] -= free.stiffness * (u[nodes] - self._anchor[nodes])
         return force
 
     def add_tangent(self, matrix: Mat) -> None:
         """Add the stiffness of the springs."""
+        self.flow.add_tangent(matrix)
         for free in self._free:
             nodes = free.body.nodes.astype(PETSc.IntType)[:, None]
             blocks = np.tile(free.stiffness * np.eye(3), (len(nodes), 1, 1))
@@ -194,6 +198,8 @@ class Stabilisation:
         Raises:
             NotHeldError: Nothing holds a body.
         """
+        if self.flow.improve(u, at_work):
+            return True
         if not self._free:
             return False
         force = self.force(u)
@@ -236,8 +242,12 @@ class Stabilisation:
 
     def commit(self) -> None:
         """Count what the springs took up on the way to the accepted state."""
-        self.energy += self._spent
+        self.energy += self._spent + self.flow.spent
         self._spent = 0.0
+        if self.flow.flows:
+            steps = self.flow.steps
+            self.notes.append(f"equilibrium was lost: {steps} steps of viscous flow to the next")
+            self.flow.stop()
 
     def _add(self, body: Body, modes: str, step: str, now: bool) -> None:
         contacts = self._of(body)

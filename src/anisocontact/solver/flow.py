@@ -1,0 +1,130 @@
+"""Equilibrium that is lost: the bodies flow on to the next one.
+
+At a limit point, such as an edge that digs in and lets go, the path of equilibria ends: no part of
+an increment is small enough, and points alternate between stick and slip. The bodies would jump.
+Here they flow as in a viscous medium, in implicit steps of pseudo-time [Kelley Keyes 1998],
+
+    R(x) + c (x - x_k) = 0 ,
+
+c the viscosity over the step of time. Steps grow where they are easy and shrink where Newton's
+method cannot follow. Friction goes from the accepted state to where the flow is, so that what is
+accepted is equilibrium without viscosity.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import Mat, PETSc
+from anisocontact.contact import NotHeldError
+from anisocontact.mesh import Model
+
+Floats = npt.NDArray[np.float64]
+
+#: Viscosity over the first step, and the largest, shares of the mean diagonal of the bulk.
+FIRST, MOST_VISCOUS = 0.03, 1e3
+#: What it is multiplied with after a step that was easy, and after one that failed.
+LONGER, SHORTER = 0.25, 4.0
+#: Corrections up to which a step was easy.
+EASY = 8
+#: Steps between two that may be longer, or between two searches for rest.
+PATIENCE = 3
+#: Viscous force over the forces at work below which the flow may be near its end.
+SLOW = 0.1
+#: Steps after which the flow is given up.
+MOST_STEPS = 60
+
+
+class Flow:
+    """Viscous flow of all bodies from the accepted state to an equilibrium.
+
+    Args:
+        model: Mesh of the bodies.
+        scale: Mean diagonal of the stiffness of the bulk, force/length.
+
+    Attributes:
+        stiffness: Viscosity over the step of time, of each node, force/length; 0 at rest.
+        spent: What viscous forces have dissipated since the start, force times length.
+        steps: Number of steps since then.
+        flows: Whether this is one of the attempts that flow.
+    """
+
+    def __init__(self, model: Model, scale: float) -> None:
+        self._comm: Any = model.mesh.comm
+        owned = model.space.dofmap.index_map.size_local
+        self._nodes = np.arange(owned, dtype=PETSc.IntType)[:, None]
+        self._scale = scale
+        self.stop()
+
+    def stop(self) -> None:
+        """Nothing flows."""
+        self.stiffness = self._last = self.spent = self._speed = 0.0
+        self.steps = self._corrections = self._waits = self._tried = 0
+        self.flows = False
+        self._from: Floats = np.zeros((0, 3))
+
+    def start(self, u: Floats) -> None:
+        """Let the bodies flow from a state, (nodes, 3), length."""
+        self.stop()
+        self.flows = True
+        self._from = u.copy()
+        self.stiffness = self._last = FIRST * self._scale
+
+    def force(self, u: Floats) -> Floats:
+        """Viscous force on the local nodes, (nodes, 3)."""
+        return -self.stiffness * (u - self._from) if self.stiffness else np.zeros_like(u)
+
+    def add_tangent(self, matrix: Mat) -> None:
+        """Add what the viscous force changes with the displacement."""
+        self._corrections += 1
+        if self.stiffness:
+            blocks = np.tile(self.stiffness * np.eye(3), (len(self._nodes), 1, 1))
+            add = PETSc.InsertMode.ADD_VALUES
+            matrix.setValuesBlockedLocalRCV(self._nodes, self._nodes, blocks, add)
+
+    def improve(self, u: Floats, at_work: float) -> bool:
+        """Take the next step from a balance of forces.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+            at_work: Norm of the forces at work.
+
+        Returns:
+            Whether the bodies still flow.
+
+        Raises:
+            NotHeldError: They do not come to rest.
+        """
+        if not self.stiffness:
+            return False
+        if self.steps == MOST_STEPS:
+            raise NotHeldError(f"the bodies do not come to rest in {MOST_STEPS} steps of flow")
+        moved = (u - self._from)[: len(self._nodes)]
+        squared = self._comm.allreduce(float((moved**2).sum()))
+        self.spent += self.stiffness * squared
+        self.steps += 1
+        self._waits -= 1
+        self._from = u.copy()
+        speed, before = self.stiffness * float(np.sqrt(squared)), self._speed
+        self._speed = speed
+        easy = self._corrections <= EASY and self._waits <= 0
+        self._last = self.stiffness * (LONGER if easy else 1.0)
+        calms = speed < before and speed <= SLOW * at_work and self.steps >= self._tried + PATIENCE
+        self._tried = self.steps if calms else self._tried
+        self.stiffness = 0.0 if calms else self._last
+        self._corrections = 0
+        return True
+
+    def soften(self) -> bool:
+        """After a step that failed: take a shorter one; whether there is one."""
+        if not self.flows:
+            return False
+        if self.stiffness:
+            self._last *= SHORTER
+            self._waits = PATIENCE
+        self.stiffness = self._last
+        self._corrections = 0
+        return self._last <= MOST_VISCOUS * self._scale

@@ -1,0 +1,122 @@
+"""Viscous flow to the next equilibrium."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.contact import NotHeldError
+from anisocontact.limits import Limits
+from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.solver import Solver, Step, StoppedError, attempts, flow
+from anisocontact.solver.attempts import Attempts
+from anisocontact.solver.flow import Flow
+
+PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
+DRAG = {"block.top": {"x": 0.02, "y": 0.01}}
+STEPS = (Step("press", 1, PRESS), Step("drag", 2, DRAG))
+
+
+def _always_flows(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every attempt starts from the accepted state and flows."""
+
+    def ways(self: Attempts, first: Any, last: Any) -> list[Any]:
+        return [attempts._Way(last, flowing=True)]
+
+    monkeypatch.setattr(Attempts, "_ways", ways)
+
+
+@pytest.mark.parametrize("strategy", ["direct", "iterative"])
+def test_flow_ends_where_newton_ends(
+    fe: Any, monkeypatch: pytest.MonkeyPatch, strategy: str
+) -> None:
+    """Where there is one equilibrium only, a block that sticks and slips, flow finds it.
+
+    Requirement: what is accepted is in balance without viscosity. Source: Newton's method without
+    flow. Tolerance: both leave 1e-8 of the forces out of balance.
+    """
+    plain = fe.block(fe.interface(), cells=(3, 3, 2))
+    wanted = list(Solver(plain.problem, STEPS, strategy="direct").run())
+    _always_flows(monkeypatch)
+    block = fe.block(fe.interface(), cells=(3, 3, 2))
+    found = list(Solver(block.problem, STEPS, strategy=strategy).run())
+    assert [a.done for a in found] == [1.0] * 3
+    for one, other in zip(found, wanted, strict=True):
+        forces = [a.resultants["block.bottom"][0] for a in (one, other)]
+        assert np.abs(forces[0] - forces[1]).max() < 1e-6 * np.abs(forces[1]).max()
+        assert one.contacts == other.contacts
+    moved = np.abs(block.problem.u.x.array - plain.problem.u.x.array).max()
+    assert moved < 1e-6 * np.abs(plain.problem.u.x.array).max()
+    assert found[-1].energies["stabilisation"] > 0.0 == wanted[-1].energies["stabilisation"]
+
+
+def test_flow_is_told_and_switched_off(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A line for every increment that flowed; nothing of it is left in the next attempt."""
+    _always_flows(monkeypatch)
+    block = fe.block(fe.interface(), cells=(2, 2, 1))
+    springs = block.problem.stabilisation
+    for _ in Solver(block.problem, STEPS[:1], strategy="direct").run():
+        (line,) = springs.told()
+        assert line.startswith("equilibrium was lost: ")
+        assert not springs
+        assert springs.flow.stiffness == 0.0
+
+
+def test_flow_comes_last_and_where_it_may(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Only small parts flow, after the damped attempt, and not with `stabilisation = false`."""
+    tried: list[str] = []
+    attempt = Attempts._attempt
+
+    def alternating(self: Attempts, way: Any) -> Any:
+        tried.append("flow" if way.flowing else "damped" if way.damped else "plain")
+        result, _ = attempt(self, way)
+        return result, [attempts.Culprit("flipping", (0.0, 0.0, 0.0), "")]
+
+    monkeypatch.setattr(Attempts, "_attempt", alternating)
+    three = ["plain", "plain", "damped"]
+    for stabilised, ways in ((True, [*three, *three, "flow"]), (False, [*three, *three])):
+        tried.clear()
+        block = fe.block(fe.interface(), cells=(2, 2, 1))
+        block.problem.stabilisation.enabled = stabilised
+        limits = Limits(smallest=0.25)
+        options = {"snes_max_it": 0}
+        run = Solver(block.problem, STEPS[:1], "", options, limits, strategy="direct").run()
+        with pytest.raises(StoppedError, match="alternates"):
+            list(run)
+        assert tried == ways
+
+
+def _flow() -> tuple[Flow, np.ndarray]:
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    u = np.zeros((8, 3))
+    carried = Flow(model, 10.0)
+    carried.start(u)
+    return carried, u
+
+
+def test_steps_grow_and_shrink() -> None:
+    """An easy step is followed by a longer one, a failed one by shorter ones up to a limit."""
+    carried, u = _flow()
+    first = carried.stiffness
+    assert carried.improve(u + 0.1, at_work=0.0)
+    assert carried.stiffness == flow.LONGER * first
+    assert carried.spent == pytest.approx(first * 24 * 0.1**2)
+    assert carried.force(u + 0.1) == pytest.approx(0.0)
+    assert carried.soften()
+    assert carried.stiffness == flow.LONGER * flow.SHORTER * first
+    while carried.soften():
+        pass
+    assert carried.stiffness > flow.MOST_VISCOUS * 10.0
+
+
+def test_flow_without_end_is_given_up() -> None:
+    """Bodies that never come to rest: no more than so many steps, then the attempt has failed."""
+    carried, u = _flow()
+    for count in range(flow.MOST_STEPS):
+        assert carried.improve(u + count, at_work=0.0)
+    with pytest.raises(NotHeldError, match=f"do not come to rest in {flow.MOST_STEPS} steps"):
+        carried.improve(u, at_work=0.0)
