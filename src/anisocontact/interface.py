@@ -238,19 +238,9 @@ class Interface:
     ) -> None:
         _check_kind("surface", surface, Surface)
         _check_laws(normal, adhesion, friction)
-        registry.entry(registry.evolution_forms(), evolution, "evolution")
-        if evolution == "total" and adhesion.named[0] != "elastic":
-            raise InputError(
-                f"'total' needs the adhesion model 'elastic', {adhesion.named[0]!r} given",
-                field="evolution",
-            )
-        self.evolution = evolution
-        self.surface, self.normal, self.adhesion, self.friction = (
-            surface,
-            normal,
-            adhesion,
-            friction,
-        )
+        _check_evolution(evolution, adhesion)
+        self.evolution, self.surface = evolution, surface
+        self.normal, self.adhesion, self.friction = normal, adhesion, friction
         self.threads = threads or default_threads()
         self.carried: tuple[Carried, ...] = carried(adhesion, friction)
         if evolution != "transport" and self.needs_slave:
@@ -381,6 +371,14 @@ def _check_laws(normal: object, adhesion: object, friction: object) -> None:
     _check_kind("normal", normal, NormalLaw)
     _check_kind("adhesion", adhesion, Adhesion)
     _check_kind("friction", friction, Friction)
+
+
+def _check_evolution(evolution: str, adhesion: Adhesion) -> None:
+    """Refuse a form of evolution that there is not, or not with the adhesion."""
+    registry.entry(registry.evolution_forms(), evolution, "evolution")
+    if evolution == "total" and adhesion.named[0] != "elastic":
+        text = f"'total' needs the adhesion model 'elastic', {adhesion.named[0]!r} given"
+        raise InputError(text, field="evolution")
 
 
 def _stiffened(

@@ -38,6 +38,15 @@ def test_check_folder(tmp_path):
         check_folder(tmp_path / "run.log")
 
 
+def test_a_folder_that_cannot_be_made(tmp_path, monkeypatch):
+    """Known before anything is meshed; a superuser may write everywhere, so the answer is given."""
+    monkeypatch.setattr("anisocontact.results.files.os.access", lambda *_: False)
+    with pytest.raises(InputError, match="cannot be made: no permission to write in") as caught:
+        check_folder(tmp_path / "new" / "results")
+    assert str(tmp_path) in str(caught.value)
+    assert not (tmp_path / "new").exists()
+
+
 def test_clear_removes_what_a_run_wrote_and_nothing_else(tmp_path):
     for name in OWN:
         (tmp_path / name).mkdir() if "." not in name else (tmp_path / name).touch()

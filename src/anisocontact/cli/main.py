@@ -36,17 +36,7 @@ def build_parser() -> argparse.ArgumentParser:
 
     run = _command(commands, "run", "solve a case and write its results")
     _case_argument(run)
-    run.add_argument(
-        "-o",
-        "--output",
-        metavar="DIR",
-        help="results folder; results/<name of the case> if left out",
-    )
-    earlier = run.add_mutually_exclusive_group()
-    earlier.add_argument(
-        "--overwrite", action="store_true", help="replace the results of an earlier run"
-    )
-    earlier.add_argument(
+    _output_arguments(run).add_argument(
         "--restart",
         action="store_true",
         help="go on with a run that was stopped or killed, from its last accepted increment",
@@ -60,15 +50,7 @@ def build_parser() -> argparse.ArgumentParser:
 
     trace = _command(commands, "trace", "move a point over a surface and write what it meets")
     _case_argument(trace)
-    trace.add_argument(
-        "-o",
-        "--output",
-        metavar="DIR",
-        help="results folder; results/<name of the case> if left out",
-    )
-    trace.add_argument(
-        "--overwrite", action="store_true", help="replace the results of an earlier run"
-    )
+    _output_arguments(trace)
 
     schema = _command(commands, "schema", "print the JSON Schema of the case file")
     schema.add_argument("--trace", action="store_true", help="of the case file of `trace`")
@@ -131,6 +113,21 @@ def _command(
 ) -> argparse.ArgumentParser:
     description = f"{text[0].upper()}{text[1:]}."
     return commands.add_parser(name, help=text, description=description, allow_abbrev=False)
+
+
+def _output_arguments(parser: argparse.ArgumentParser) -> argparse._MutuallyExclusiveGroup:
+    """Where results go; returns the group of what may be done about an earlier run there."""
+    parser.add_argument(
+        "-o",
+        "--output",
+        metavar="DIR",
+        help="results folder; results/<name of the case> if left out",
+    )
+    earlier = parser.add_mutually_exclusive_group()
+    earlier.add_argument(
+        "--overwrite", action="store_true", help="replace the results of an earlier run"
+    )
+    return earlier
 
 
 def _case_argument(parser: argparse.ArgumentParser) -> None:

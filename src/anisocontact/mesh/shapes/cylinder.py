@@ -9,15 +9,7 @@ from typing import ClassVar
 import numpy as np
 
 from anisocontact.mesh.lattice import Block
-from anisocontact.mesh.shapes.disc import disc_blocks
-from anisocontact.mesh.shapes.shape import (
-    cells_parameter,
-    check_around,
-    check_core,
-    check_shape,
-    core_parameter,
-    ratio_parameter,
-)
+from anisocontact.mesh.shapes.disc import check_disc, disc_blocks, disc_parameters
 from anisocontact.registry import Entry, Parameter
 
 
@@ -61,18 +53,12 @@ class CylinderSpec:
         (
             Parameter("radius", "scalar", "length", "radius", "positive"),
             Parameter("length", "scalar", "length", "length along z", "positive"),
-            cells_parameter(
-                "around (a multiple of 4)", "from the inner square outwards", "along z"
-            ),
-            ratio_parameter("outwards", "along z"),
-            core_parameter(),
+            *disc_parameters(),
         ),
     )
 
     def __post_init__(self) -> None:
-        check_shape(self)
-        check_around(self.cells, 4)
-        check_core(self.core)
+        check_disc(self, self.cells, self.core)
 
     def blocks(self) -> list[Block]:
         """A square and four blocks around it; see `Shape`."""

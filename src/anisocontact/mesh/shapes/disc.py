@@ -9,9 +9,44 @@ import numpy as np
 
 from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block, even, graded
+from anisocontact.mesh.shapes.shape import (
+    Shape,
+    cells_parameter,
+    check_around,
+    check_core,
+    check_shape,
+    core_parameter,
+    ratio_parameter,
+)
+from anisocontact.registry import Parameter
 
 #: Facet groups of bodies made of discs.
 ENDS = {(2, 0): "bottom", (2, 1): "top"}
+
+
+def disc_parameters() -> tuple[Parameter, ...]:
+    """Parameters of the cells of bodies made of discs: `cells`, `ratio` and `core`."""
+    return (
+        cells_parameter("around (a multiple of 4)", "from the inner square outwards", "along z"),
+        ratio_parameter("outwards", "along z"),
+        core_parameter(),
+    )
+
+
+def check_disc(shape: Shape, cells: Sequence[int], core: float) -> None:
+    """Check the parameters of a body made of discs.
+
+    Args:
+        shape: The body.
+        cells: Number around, and others.
+        core: Size of the square in the middle.
+
+    Raises:
+        InputError: A value is of the wrong form or out of range.
+    """
+    check_shape(shape)
+    check_around(cells, 4)
+    check_core(core)
 
 
 def disc_blocks(

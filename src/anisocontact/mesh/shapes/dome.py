@@ -12,15 +12,7 @@ import numpy as np
 from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block
-from anisocontact.mesh.shapes.disc import disc_blocks
-from anisocontact.mesh.shapes.shape import (
-    cells_parameter,
-    check_around,
-    check_core,
-    check_shape,
-    core_parameter,
-    ratio_parameter,
-)
+from anisocontact.mesh.shapes.disc import check_disc, disc_blocks, disc_parameters
 from anisocontact.registry import Entry, Parameter
 
 
@@ -67,18 +59,12 @@ class DomeSpec:
             Parameter("radius", "scalar", "length", "radius of the ball", "positive"),
             Parameter("rim", "scalar", "length", "radius of the wall", "positive"),
             Parameter("height", "scalar", "length", "height on the axis", "positive"),
-            cells_parameter(
-                "around (a multiple of 4)", "from the inner square outwards", "along z"
-            ),
-            ratio_parameter("outwards", "along z"),
-            core_parameter(),
+            *disc_parameters(),
         ),
     )
 
     def __post_init__(self) -> None:
-        check_shape(self)
-        check_around(self.cells, 4)
-        check_core(self.core)
+        check_disc(self, self.cells, self.core)
         if not self.rim < self.radius:
             raise InputError(f"{self.rim:g} given, must be < radius, {self.radius:g}", "rim")
         segment = self.radius - math.sqrt(self.radius**2 - self.rim**2)

@@ -70,30 +70,23 @@ def domain(run: RunData, contact: int) -> Figure:
     figure = new_figure(11.0, 6.4)
     left, right = figure.subplots(1, 2)
     ellipse = _friction_ellipse(run, contact)
-    first, second = frame.names()
     if ellipse is not None:
         left.plot(*ellipse.T, color=ACCENT, label="friction ellipse T.FT = N²")
+        _adhesion_domains(run, contact, right, pressing, ellipse)
     _path(run, left, ratio)
-    _centre_view(left)
-    _axis_lines(left, view.mean_axes("friction"), "axes of friction and of adhesion")
-    left.set_title("resultant tangential force over normal force")
-    left.set_xlabel(f"T/N along {first} [1]")
-    left.set_ylabel(f"T/N along {second} [1]")
-    softness = _softness(run, contact)
-    if ellipse is not None and softness is not None:
-        area = run.history[f"contacts.{contact}.area"]
-        mean = pressing / np.where(area > 0.0, area, np.inf)
-        for (_, rows), colour in zip(run.steps, cycle(STEP_COLOURS)):
-            around = mean[rows[-1]] * ellipse @ softness
-            right.plot(*around.T, color=colour, lw=1.0, ls="-.", label=_DOMAIN)
     _path(run, right, slip)
     right.plot(0.0, 0.0, "+", color="black", ms=10, label="centre")
-    _centre_view(right)
-    _axis_lines(right, view.mean_axes("adhesion"), "axes of friction and of adhesion")
+    left.set_title("resultant tangential force over normal force")
     right.set_title("mean elastic slip of the points in contact")
-    right.set_xlabel(f"elastic slip along {first} [length]")
-    right.set_ylabel(f"elastic slip along {second} [length]")
-    for axes in (left, right):
+    first, second = frame.names()
+    for axes, kind, what, unit in (
+        (left, "friction", "T/N", "1"),
+        (right, "adhesion", "elastic slip", "length"),
+    ):
+        _centre_view(axes)
+        _axis_lines(axes, view.mean_axes(kind), "axes of friction and of adhesion")
+        axes.set_xlabel(f"{what} along {first} [{unit}]")
+        axes.set_ylabel(f"{what} along {second} [{unit}]")
         axes.set_aspect("equal")
         axes.grid(alpha=0.3)
         for axis in (axes.xaxis, axes.yaxis):
@@ -106,6 +99,20 @@ def domain(run: RunData, contact: int) -> Figure:
     }
     figure.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=3)
     return figure
+
+
+def _adhesion_domains(
+    run: RunData, contact: int, axes: Axes, pressing: Floats, ellipse: Floats
+) -> None:
+    """The domain at the end of each step, where it is the same for all points."""
+    softness = _softness(run, contact)
+    if softness is None:
+        return
+    area = run.history[f"contacts.{contact}.area"]
+    mean = pressing / np.where(area > 0.0, area, np.inf)
+    for (_, rows), colour in zip(run.steps, cycle(STEP_COLOURS)):
+        around = mean[rows[-1]] * ellipse @ softness
+        axes.plot(*around.T, color=colour, lw=1.0, ls="-.", label=_DOMAIN)
 
 
 def _friction_ellipse(run: RunData, contact: int) -> Floats | None:
