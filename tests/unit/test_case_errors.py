@@ -147,6 +147,24 @@ def test_wrong_form(tmp_path, capsys, case_text, old, new, says):
         assert text in lines[0]
 
 
+def test_choosing_key_written_wrong(tmp_path, capsys, case_text):
+    lines = run_wrong(tmp_path, capsys, case_text.replace("shape =", "shap ="))
+    assert lines[0].startswith('error: surface.plate.shape: missing, "shap" given; allowed: plane')
+
+
+@pytest.mark.parametrize("given", ["nan", "inf", "[]", "2.5", "0"])
+def test_increments_of_a_trace(tmp_path, capsys, given):
+    case = tmp_path / "case.toml"
+    trace = (
+        Path(__file__).parents[2] / "examples" / "point" / "orthotropic_plane.toml"
+    ).read_text()
+    case.write_text(trace.replace("increments = 80", f"increments = {given}"))
+    assert main(["trace", str(case), "-o", str(tmp_path / "out")]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"error: load.increments: {given} given, a number or a list of numbers")
+    assert said.endswith("needed, whole numbers > 0\n")
+
+
 def test_no_step_in_the_list(tmp_path, capsys, case_text):
     text = "step = []\n" + case_text[: case_text.index("[[step]]")]
     assert run_wrong(tmp_path, capsys, text) == ["error: step: [] given, at least one entry needed"]

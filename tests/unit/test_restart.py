@@ -244,13 +244,15 @@ def test_killed_before_the_first_increment(capsys, case, whole):
     assert not (out / ".summary-123.json").exists()
 
 
-@pytest.mark.parametrize("kind", ["cut", "noise", "format"])
+@pytest.mark.parametrize("kind", ["cut", "noise", "text", "format"])
 def test_a_damaged_checkpoint_is_one_line(capsys, case, whole, kind):
     path = whole / "checkpoint.npz"
     if kind == "cut":
         path.write_bytes(path.read_bytes()[:-100])
     elif kind == "noise":
         path.write_bytes(b"PK" + bytes(range(256)))
+    elif kind == "text":
+        path.write_text("no archive")
     else:
         stored = checkpoint.load_checkpoint(whole)
         assert stored is not None
@@ -260,6 +262,7 @@ def test_a_damaged_checkpoint_is_one_line(capsys, case, whole, kind):
     error = capsys.readouterr().err
     assert len(error.splitlines()) == 1
     assert "checkpoint.npz" in error
+    assert "pickle" not in error  # what NumPy says of files that it does not know
 
 
 @pytest.mark.parametrize("victim", ["history", "fields", "summary", "checkpoint", "log"])

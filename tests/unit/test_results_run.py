@@ -15,6 +15,7 @@ pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
 from anisocontact import __version__
 from anisocontact.case import load
 from anisocontact.case.build import build
+from anisocontact.errors import InputError
 from anisocontact.results import Results
 from anisocontact.results.paraview import Bodies, von_mises
 from anisocontact.results.report import maps, shape, write_report
@@ -57,6 +58,13 @@ def run(tmp_path_factory, case_text):
     done.writer.close("done")
     done.results = Results(folder / "out")
     return done
+
+
+def test_a_time_that_was_not_written(run):
+    times = len(run.results.times)
+    for index in (times, -times - 1):
+        with pytest.raises(InputError, match=f"index: {index} given, .* lists {times} times"):
+            run.results.fields(index)
 
 
 def test_summary_has_the_promised_keys(run):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import inspect
 import itertools
 import math
@@ -146,7 +147,9 @@ class OneOf:
         if name in known:
             return str(name)
         if key.name not in data:
-            raise _at(key.name, f"missing; {near('', known)}")
+            meant = difflib.get_close_matches(key.name, map(str, data), 1)
+            instead = f', "{meant[0]}" given' if meant else ""
+            raise _at(key.name, f"missing{instead}; {near('', known)}")
         raise _at(key.name, f"{shown(name)} given; {near(str(name), known)}")
 
     def __get_pydantic_core_schema__(

@@ -41,11 +41,21 @@ class Numbers:
     whole: bool = False
 
     def check(self, given: object) -> Any:
-        """The value as it stands, if it is of an allowed form and finite."""
+        """The value as it stands.
+
+        Args:
+            given: What is written.
+
+        Returns:
+            The same.
+
+        Raises:
+            PydanticCustomError: It is of another form, or a number is not finite or not whole.
+        """
         if _depth(given) not in self.depths or not self._good(given):
             forms = " or ".join(_FORMS[d] for d in self.depths)
-            kind = forms.replace("number", "whole number > 0") if self.whole else forms
-            raise line(f"{shown(given)} given, {kind} needed")
+            kind = "whole numbers > 0" if self.whole else "finite numbers"
+            raise line(f"{shown(given)} given, {forms} needed, {kind}")
         return given
 
     def _good(self, given: object) -> bool:
@@ -53,9 +63,9 @@ class Numbers:
             return bool(given) and all(self._good(v) for v in given)
         if isinstance(given, bool) or not isinstance(given, int | float):
             return False
-        if self.whole:
-            return given == int(given) and 0 < given <= _MOST_STEPS
-        return math.isfinite(given)
+        if not math.isfinite(given):
+            return False
+        return not self.whole or (given == int(given) and 0 < given <= _MOST_STEPS)
 
     def __get_pydantic_core_schema__(self, source: object, handler: object) -> CoreSchema:
         """Pydantic asks: every check is ours."""

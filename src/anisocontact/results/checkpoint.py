@@ -192,6 +192,8 @@ def load_checkpoint(folder: Path) -> Stored | None:
     if not path.is_file():
         return None
     with _readable(path):
+        if not zipfile.is_zipfile(path):
+            raise ValueError("it is no archive of arrays")
         with path.open("rb") as opened, np.load(opened) as file:
             arrays = dict(file)
         facts = json.loads(arrays.pop("facts").tobytes())

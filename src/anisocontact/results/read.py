@@ -29,7 +29,8 @@ class Results:
         folder: The results folder.
 
     Raises:
-        InputError: It holds no `summary.json`; reading raises it where a file is damaged.
+        InputError: It holds no `summary.json`; reading raises it where a file is damaged, or has
+            no such time.
 
     Example:
         >>> Results("no-such-folder")
@@ -105,7 +106,11 @@ class Results:
         return self._file("fields.pvd", index)
 
     def _file(self, name: str, index: int) -> Path:
-        return self.folder / self._listed(name)[index][1]
+        listed = self._listed(name)
+        if not -len(listed) <= index < len(listed):
+            text = f"{index} given, '{self.folder / name}' lists {len(listed)} times"
+            raise InputError(text, "index")
+        return self.folder / listed[index][1]
 
     def _listed(self, name: str) -> list[tuple[float, str]]:
         path = self.folder / name
