@@ -135,7 +135,9 @@ def _with_middles(planes: Floats) -> Floats:
 
 
 class Weld:
-    """Nodes of several lattices, those at one place as one; only sides that are no facet groups can meet.
+    """Nodes of several lattices, those at one place as one.
+
+    Only sides that are no facet groups can meet.
 
     Args:
         lattices: The lattices; their nodes are numbered one lattice behind the other.
