@@ -129,6 +129,20 @@ def test_known_patterns_cost_no_solution(monkeypatch: pytest.MonkeyPatch) -> Non
     bulk.close()
 
 
+def test_groups_of_supports_cost_one_solution(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Groups moved as a whole are known from the start; they give what other patterns give."""
+    bulk = _condensation()
+    moved = np.array([0.3, -2.0, -2.0])
+    known, other = Patterns(bulk), Patterns(bulk)
+    marks = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1.0, 0.0]])
+    assert known.add_groups(marks) == [0, 1, 2]
+    expected = other.load(other.supports(moved), np.zeros(0))
+    monkeypatch.setattr(bulk, "interior", None)
+    np.testing.assert_allclose(known.load(known.supports(moved), np.zeros(0)), expected, rtol=1e-12)
+    assert known.persistent()["supports"].shape == (3, 0)
+    bulk.close()
+
+
 def test_contact_tangent_and_its_factor() -> None:
     """Products and solutions with blocks of nodes, some of them without unknown."""
     bulk = _condensation()

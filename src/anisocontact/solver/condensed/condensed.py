@@ -281,7 +281,7 @@ class Condensed:
         marks = np.zeros((len(self._bulk.prescribed), len(held)))
         for column, unknowns in enumerate(held.values()):
             marks[np.searchsorted(self._bulk.prescribed, unknowns), column] = 1.0
-        numbers = system.patterns.add_displacements(marks)
+        numbers = system.patterns.add_groups(marks)
         self._held = dict(zip(held, numbers, strict=True))
         return system
 

@@ -118,6 +118,8 @@ class Patterns:
         )
         self._supports, self._loads = Span(p), Span(n)
         self._support_columns: list[int] = []
+        self._support_sizes: list[float] = []
+        self._groups = 0
         self._load_columns: list[int] = []
         self._lifts, self._forces, self._answers = (np.zeros((n, 0)) for _ in range(3))
         self._lift_force, self._passed_on = np.zeros((c, 0)), np.zeros((c, 0))
@@ -130,7 +132,8 @@ class Patterns:
         found = self._supports.coefficients(u)
         if len(found) > known:
             self._meet_supports()
-        return _scattered(found, self._support_columns, self._lifts.shape[1])
+        shares = found / self._support_sizes
+        return _scattered(shares, self._support_columns, self._lifts.shape[1])
 
     def loads(self, force: Floats) -> Floats:
         """Coefficients b of forces on all unknowns, (n,), zero where prescribed."""
@@ -142,7 +145,8 @@ class Patterns:
 
     def persistent(self) -> Arrays:
         """What supports and loads have been met so far, in order."""
-        return {"supports": self._supports.vectors, "loads": self._loads.vectors}
+        met = self._supports.vectors[:, self._groups :]
+        return {"supports": met, "loads": self._loads.vectors}
 
     def restore(self, kept: Arrays) -> None:
         """Meet again what `persistent` gave, one by one, so that rounding is the same."""
@@ -155,9 +159,27 @@ class Patterns:
 
     def _meet_supports(self) -> None:
         self._support_columns += self.add_displacements(self._supports.vectors[:, -1:])
+        self._support_sizes.append(1.0)
 
     def _meet_loads(self) -> None:
         self._load_columns += self.add_forces(self._loads.vectors[:, -1:])
+
+    def add_groups(self, marks: Floats) -> list[int]:
+        """Add displacements by one of groups of prescribed unknowns; their numbers are returned.
+
+        What supports prescribe is mostly combined of these, and then costs nothing when it is met.
+
+        Args:
+            marks: One where an unknown belongs to a group, none to two of them, (p, k).
+        """
+        numbers = self.add_displacements(marks)
+        sizes = np.linalg.norm(marks, axis=0)
+        for k in np.flatnonzero(sizes):
+            self._supports.add(marks[:, k] / sizes[k])
+            self._support_columns.append(numbers[k])
+            self._support_sizes.append(float(sizes[k]))
+        self._groups = self._supports.vectors.shape[1]
+        return numbers
 
     def add_displacements(self, patterns: Floats) -> list[int]:
         """Add displacements of the prescribed unknowns, (p, k); their numbers are returned."""
