@@ -3,127 +3,41 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core, registry
+from anisocontact._states import (
+    FAILURE,
+    STATE,
+    STATUS,
+    Response,
+    SlaveSurface,
+    State,
+    as_state,
+    raw_state,
+)
 from anisocontact.errors import InputError
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw, carried
-from anisocontact.surfaces import Floats, Surface, default_threads, points
+from anisocontact.surfaces import Surface, default_threads, points
 
-#: Names of the codes of a point's status.
-STATUS = ("open", "stick", "slip")
-#: What could not be done at a point, by its failure code.
-FAILURE = (
-    "",
-    "no closest point on the surface",
-    "the direction field has no direction there: singular, along the normal or out of its table",
-    "the sliding rule found no force",
-)
-
-
-def _state_dtype() -> np.dtype[np.void]:
-    names, formats, offsets = [], [], []
-    for name, offset, count, kind in _core.state_layout():
-        names.append(name)
-        formats.append((kind, (count,)) if count > 1 else kind)
-        offsets.append(offset)
-    return np.dtype(
-        {"names": names, "formats": formats, "offsets": offsets, "itemsize": _core.state_size}
-    )
-
-
-#: Structured type of the state of a point; an array of it is one block that can be copied whole.
-STATE = _state_dtype()
-
-State = npt.NDArray[np.void]
-
-
-@dataclass(frozen=True)
-class SlaveSurface:
-    """The slave at n points, for directions that it carries.
-
-    Args:
-        reference: Positions in the reference configuration, (n, 3) [length].
-        reference_tangents: Two tangents there, (n, 2, 3) [length].
-        tangents: The same material tangents now, (n, 2, 3) [length].
-    """
-
-    reference: Floats
-    reference_tangents: Floats
-    tangents: Floats
-
-    @property
-    def arrays(self) -> tuple[Floats, Floats, Floats]:
-        """All of it as the core takes it."""
-        a, b, c = (
-            np.ascontiguousarray(v)
-            for v in (self.reference, self.reference_tangents, self.tangents)
-        )
-        return a, b, c
-
+__all__ = [
+    "FAILURE",
+    "STATE",
+    "STATUS",
+    "Interface",
+    "PairLaw",
+    "Response",
+    "SlaveSurface",
+    "State",
+    "as_state",
+    "raw_state",
+]
 
 #: No surface of the slave.
 _POINTS_ALONE = SlaveSurface(np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 2, 3)))
-
-
-@dataclass(frozen=True)
-class Response:
-    """What an interface answers to positions of n slave points.
-
-    Args:
-        traction: t = N n + T on the slave, (n, 3) [stress].
-        tangent: dt/dx, exact and in general unsymmetric, (n, 3, 3) [stress/length]; empty where it
-            was not asked for.
-        state: Trial state, (n,) of `STATE`; it is committed by keeping it.
-        normal: Outward normal of the master, (n, 3).
-        directions_adhesion: Axes of the adhesion tensor, (n, 2, 3); zero at open points.
-        directions_friction: Axes of the friction tensor, (n, 2, 3); zero at open points.
-        failure: Why a point could not be updated, a code of `FAILURE`, (n,).
-        tangent_slave: Change of t with the two tangents of the slave, (n, 2, 3, 3) [stress/length];
-            empty where the slave carries no directions.
-    """
-
-    traction: Floats
-    tangent: Floats
-    state: State
-    normal: Floats
-    directions_adhesion: Floats
-    directions_friction: Floats
-    failure: npt.NDArray[np.int8]
-    tangent_slave: Floats = field(default_factory=lambda: np.empty((0, 2, 3, 3)))
-
-    @property
-    def pressure(self) -> Floats:
-        """N, (n,) [stress]."""
-        return self.state["pressure"]
-
-    @property
-    def gap(self) -> Floats:
-        """xi^3, (n,) [length]."""
-        return self.state["gap"]
-
-    @property
-    def status(self) -> npt.NDArray[np.int8]:
-        """0 open, 1 stick, 2 slip, (n,)."""
-        return self.state["status"].astype(np.int8)
-
-    @property
-    def failed(self) -> npt.NDArray[np.bool_]:
-        """Whether a point could not be updated, (n,)."""
-        return np.asarray(self.failure != 0)
-
-    @property
-    def traction_t(self) -> Floats:
-        """Tangential traction T on the slave, (n, 3) [stress]."""
-        return self.traction - self.pressure[:, None] * self.normal
-
-    @property
-    def traction_principal(self) -> Floats:
-        """Components of T along the friction axes, (n, 2) [stress]."""
-        return np.asarray(np.einsum("nij,nj->ni", self.directions_friction, self.traction_t))
 
 
 class PairLaw:
@@ -407,32 +321,3 @@ def _made[T](kind: Callable[..., T], *arguments: object) -> T:
         if any(name in named[1] for named in arguments if isinstance(named, tuple)):
             raise InputError(line, field=f"adhesion.{name}") from None
         raise InputError(str(error)) from None
-
-
-def as_state(raw: npt.NDArray[np.uint8]) -> State:
-    """States from rows of bytes, without a copy.
-
-    Args:
-        raw: Bytes, (n, bytes of a state).
-
-    Returns:
-        The states, (n,) of `STATE`.
-    """
-    return raw.reshape(-1).view(STATE)
-
-
-def raw_state(state: State) -> npt.NDArray[np.uint8]:
-    """States as rows of bytes, as the core takes them.
-
-    Args:
-        state: States, (n,) of `STATE`.
-
-    Returns:
-        Their bytes, (n, bytes of a state).
-
-    Raises:
-        InputError: It is no array of states.
-    """
-    if getattr(state, "dtype", None) != STATE:
-        raise InputError("no states given, those that a response has are needed", "state")
-    return np.ascontiguousarray(state).view(np.uint8).reshape(len(state), STATE.itemsize)
