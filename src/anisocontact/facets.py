@@ -66,7 +66,14 @@ class FacetProjections:
     edge: Floats
 
     def take(self, which: npt.NDArray[np.int64]) -> FacetProjections:
-        """Projections of some of the points, (k,)."""
+        """Projections of some of the points, (k,).
+
+        Args:
+            which: Numbers or flags of points.
+
+        Returns:
+            Their projections.
+        """
         return FacetProjections(**{name: value[which] for name, value in vars(self).items()})
 
 

@@ -196,7 +196,11 @@ class Interface:
         )
 
     def penalties(self) -> tuple[float, float]:
-        """Normal penalty and least stiffness of adhesion, stress/length."""
+        """Normal penalty and least stiffness of adhesion, stress/length.
+
+        Returns:
+            The two stiffnesses.
+        """
         return _penalties(self)
 
     @property

@@ -17,7 +17,14 @@ _MODULI = (
 
 
 def deformation_gradient(u: Any) -> Any:
-    """`F = I + grad(u)`, UFL."""
+    """`F = I + grad(u)`, UFL.
+
+    Args:
+        u: UFL displacement.
+
+    Returns:
+        F, (3, 3), UFL.
+    """
     return ufl.Identity(3) + ufl.grad(u)
 
 

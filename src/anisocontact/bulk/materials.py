@@ -87,7 +87,14 @@ class LinearElastic:
         return self.young * self.nu / ((1.0 + self.nu) * (1.0 - 2.0 * self.nu))
 
     def stress(self, u: Any) -> Any:
-        """UFL stress of the displacement `u`; the moduli are constants of the form."""
+        """UFL stress of the displacement `u`; the moduli are constants of the form.
+
+        Args:
+            u: UFL displacement.
+
+        Returns:
+            Stress, (3, 3), UFL.
+        """
         domain = ufl.domain.extract_unique_domain(u)
         lame, shear = fem.Constant(domain, self.lame), fem.Constant(domain, self.shear)
         strain = ufl.sym(ufl.grad(u))

@@ -94,6 +94,11 @@ def validate(data: Mapping[str, Any]) -> Case:
     Raises:
         InputError: The finite-element level is not installed, or it is a case of the point driver.
         CaseError: Something in it is wrong.
+
+    Example:
+        >>> validate({"title": "Nothing"})
+        Traceback (most recent call last):
+        anisocontact.case.read.CaseError: mesh: missing; ...
     """
     registries = Registries.current()
     if not registries.materials:
@@ -114,7 +119,15 @@ def validate(data: Mapping[str, Any]) -> Case:
 
 
 def json_schema() -> dict[str, Any]:
-    """JSON Schema of the case file: every key with its description, unit, bounds and default."""
+    """JSON Schema of the case file: every key with its description, unit, bounds and default.
+
+    Returns:
+        The schema as nested tables, for `json.dumps`.
+
+    Example:
+        >>> sorted(json_schema()["required"])
+        ['material', 'mesh', 'step']
+    """
     schema = case_type(Registries.current()).model_json_schema()
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",

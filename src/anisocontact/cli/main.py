@@ -70,6 +70,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     Returns:
         The exit code: 0 done, 1 internal error, 2 bad input, 3 stopped before the end.
+
+    Example:
+        >>> main(["--version"])
+        anisocontact ...
+        0
     """
     try:
         arguments = build_parser().parse_args(argv)

@@ -65,6 +65,18 @@ class FacetContact(ContactRecord):
     Raises:
         InputError: No such facet group, one without facets, or the same for both; a degree below
             1, or laws with a surface of their own.
+
+    Example:
+        >>> from anisocontact.laws import Adhesion, Friction, NormalLaw
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> upper = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
+        >>> lower = BoxSpec((-1, -1, -1), (3, 3, 1), (2, 2, 1))
+        >>> model = build_box({"block": upper, "base": lower})
+        >>> adhesion, friction = Adhesion(stiffness=(100, 100)), Friction(coefficients=(0.3, 0.3))
+        >>> law = PairLaw(NormalLaw(penalty=100.0), adhesion, friction)
+        >>> pair = FacetContact(model, "block.bottom", "base.top", law=law)
+        >>> len(pair.areas), round(float(pair.areas.sum()), 12), len(pair.master_facets)
+        (4, 1.0, 4)
     """
 
     def __init__(

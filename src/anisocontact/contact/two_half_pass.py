@@ -41,6 +41,18 @@ class TwoHalfPass(ContactRecord):
 
     Raises:
         InputError: As of `FacetContact`.
+
+    Example:
+        >>> from anisocontact.laws import Adhesion, Friction, NormalLaw
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> upper = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
+        >>> lower = BoxSpec((-1, -1, -1), (3, 3, 1), (2, 2, 1))
+        >>> model = build_box({"block": upper, "base": lower})
+        >>> adhesion, friction = Adhesion(stiffness=(100, 100)), Friction(coefficients=(0.3, 0.3))
+        >>> law = PairLaw(NormalLaw(penalty=100.0), adhesion, friction)
+        >>> pair = TwoHalfPass(model, "block.bottom", "base.top", law=law)
+        >>> [half.slave for half in pair.passes]
+        ['block.bottom', 'base.top']
     """
 
     def __init__(

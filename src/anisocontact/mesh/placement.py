@@ -47,6 +47,12 @@ class Rotation:
         """Rotation matrix of a share of the angle, (3, 3).
 
         `R = I + sin(a) N + (1 - cos(a)) N^2` with `N x = n x x` (Rodrigues).
+
+        Args:
+            share: Share of the angle.
+
+        Returns:
+            The matrix, (3, 3).
         """
         n = np.asarray(self.axis, dtype=float)
         n = n / np.linalg.norm(n)
@@ -56,7 +62,15 @@ class Rotation:
         return np.asarray(np.eye(3) + turned)
 
     def apply(self, points: Floats, share: float = 1.0) -> Floats:
-        """Points turned by a share of the angle, (n, 3)."""
+        """Points turned by a share of the angle, (n, 3).
+
+        Args:
+            points: Points, (n, 3), length.
+            share: Share of the angle.
+
+        Returns:
+            The points turned, (n, 3), length.
+        """
         centre = np.asarray(self.point, dtype=float)
         return np.asarray(centre + (points - centre) @ self.matrix(share).T)
 
@@ -72,6 +86,13 @@ class Placement:
 
     Raises:
         InputError: The scale is not > 0, or a number is not finite.
+
+    Example:
+        >>> from anisocontact.mesh import Body, BoxSpec
+        >>> box = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
+        >>> placed = Body("block", box, Placement(scale=2.0, move=(0.0, 0.0, 5.0)))
+        >>> placed.arrays().points.max(axis=0).tolist()
+        [2.0, 2.0, 7.0]
     """
 
     scale: float = 1.0

@@ -102,7 +102,14 @@ class Results:
         return patches
 
     def fields_file(self, index: int = -1) -> Path:
-        """File that `fields` reads."""
+        """File that `fields` reads.
+
+        Args:
+            index: Which of `times`, the last one if not given.
+
+        Returns:
+            Its path.
+        """
         return self._file("fields.pvd", index)
 
     def _file(self, name: str, index: int) -> Path:

@@ -106,7 +106,11 @@ class RigidBody:
         return np.asarray(self.reference + self.trial.translation)
 
     def place(self, values: Floats) -> None:
-        """Bring the trial to a translation and a turn, (6,), from the accepted state."""
+        """Bring the trial to a translation and a turn, (6,), from the accepted state.
+
+        Args:
+            values: Translation, length, and turn, radian, (6,).
+        """
         step = values[3:] - self.accepted.turn
         self.trial = Pose(
             values[:3].copy(),
@@ -138,15 +142,36 @@ class RigidBody:
         self.trial = self.accepted
 
     def to_body(self, points: Floats) -> Floats:
-        """Points of space where the body has them in its first configuration, (n, 3)."""
+        """Points of space where the body has them in its first configuration, (n, 3).
+
+        Args:
+            points: Points in space, (n, 3), length.
+
+        Returns:
+            The points in the body, (n, 3), length.
+        """
         return np.asarray((points - self.position) @ self.trial.rotation + self.reference)
 
     def out_of_body(self, points: Floats) -> Floats:
-        """Points of the first configuration where they are in space, (n, 3)."""
+        """Points of the first configuration where they are in space, (n, 3).
+
+        Args:
+            points: Points in the body, (n, 3), length.
+
+        Returns:
+            The points in space, (n, 3), length.
+        """
         return np.asarray(self.to_space(points - self.reference) + self.position)
 
     def to_space(self, vectors: Floats) -> Floats:
-        """Vectors of the first configuration as they are in space, (..., 3)."""
+        """Vectors of the first configuration as they are in space, (..., 3).
+
+        Args:
+            vectors: Vectors in the body, (..., 3).
+
+        Returns:
+            The vectors in space, (..., 3).
+        """
         return np.asarray(vectors @ self.trial.rotation.T)
 
 

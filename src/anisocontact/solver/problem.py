@@ -248,7 +248,15 @@ class Problem(Following):
         return found.residual
 
     def tangent(self, x: Vec, out: Mat) -> bool:
-        """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown."""
+        """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown.
+
+        Args:
+            x: All unknowns, see `evaluate`.
+            out: The matrix.
+
+        Returns:
+            Whether entries were added to its pattern.
+        """
         self._evaluate_at(x)
         return self._tangent.write(out)
 
@@ -300,7 +308,11 @@ class Problem(Following):
             self.stabilisation.start(nodal, load.reshape(-1, 3))
 
     def commit(self, x: Vec) -> None:
-        """Accept a state: the history of the contacts advances and energies are summed."""
+        """Accept a state: the history of the contacts advances and energies are summed.
+
+        Args:
+            x: All unknowns of a state in equilibrium.
+        """
         work = self.reduction.commit(x) if self.reduction is not None else self._commit_bulk(x)
         self._accepted.work += work + self.rigid.commit()
         x.copy(self._accepted.x)

@@ -48,5 +48,13 @@ class Turn(Rotation):
         return np.asarray(self.angle * n / np.linalg.norm(n))
 
     def path(self, start: Floats, share: float) -> Floats:
-        """Positions at a share of the step, (n, 3), of points that began it at `start`, (n, 3)."""
+        """Positions at a share of the step, (n, 3), of points that began it at `start`, (n, 3).
+
+        Args:
+            start: Positions at the beginning of the step, (n, 3), length.
+            share: Share of the step.
+
+        Returns:
+            Positions, (n, 3), length.
+        """
         return self.apply(start, share) + share * np.asarray(self.move, dtype=float)

@@ -181,7 +181,15 @@ class ContactProblem(Following):
         return residual
 
     def tangent(self, x: Vec, out: Mat) -> bool:
-        """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown."""
+        """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown.
+
+        Args:
+            x: Displacements.
+            out: The matrix.
+
+        Returns:
+            Whether entries were added to its pattern.
+        """
         grown = False
         if not np.array_equal(self.u.x.array[: self._owned], x.array_r):
             self.evaluate(x)
