@@ -91,6 +91,20 @@ def _two_half() -> Made:
     return _dragged(model, [TwoHalfPass(model, "block.bottom", "mat.top", law=_law())])
 
 
+def _far() -> Made:
+    """A block that is drawn along a strip: it meets facets that were far away at the start."""
+    model = build_box(
+        {
+            "block": BoxSpec((-4.9, -1.05, GAP_BELOW), (2, 2, 1), (2, 3, 1)),
+            "mat": BoxSpec((-6, -1.5, -1), (12, 3, 1), (12, 3, 1)),
+        }
+    )
+    pair = TwoHalfPass(model, "block.bottom", "mat.top", law=_law(), reach=0.4)
+    problem, steps = _dragged(model, [pair])
+    along = steps[0].displacement | {"block.top": {"x": 6.0, "y": 0.2, "z": -0.2}}
+    return problem, [steps[0], Step("drag", 5, along)]
+
+
 def _augmented() -> Made:
     model = _bodies(gap=0.0)
     exact = Augmentation(tangential=False, multipliers="uzawa")
@@ -142,6 +156,7 @@ CASES: dict[str, Callable[[], Made]] = {
     "single": _single,
     "second-order": _second_order,
     "two-half": _two_half,
+    "far": _far,
     "augmented": _augmented,
     "under-a-lid": _under_a_lid,
     "folded": _folded,
@@ -159,14 +174,21 @@ def _facets(problem: Problem) -> np.ndarray:
     return np.array(problem.comm.allgather(own))
 
 
+def _had(problem: Problem) -> np.ndarray:
+    """Facets of the master that every rank has, of every pass, (ranks, passes)."""
+    passes = [half for pair in problem.contacts if pair.parts for half in pair.parts]
+    own = [len(half.had_facets) for half in passes if isinstance(half, FacetContact)]
+    return np.array(problem.comm.allgather(own))
+
+
 def _save(path: Path, solver: Solver, **more: Any) -> None:
     problem = solver.problem
-    facets = _facets(problem)
+    facets, had = _facets(problem), _had(problem)
     own, common = own_arrays(problem.model, solver.persistent())
     parts = problem.comm.gather(own)
     if parts is not None:
         arrays = {name: np.concatenate([part[name] for part in parts]) for name in own} | common
-        np.savez(path, facets=facets, **arrays, **more)
+        np.savez(path, facets=facets, had=had, **arrays, **more)
 
 
 def run(name: str, folder: Path, mode: str) -> None:

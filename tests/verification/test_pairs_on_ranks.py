@@ -104,7 +104,7 @@ def test_two_processes(folder: Path) -> None:
 @pytest.mark.mpi
 @pytest.mark.slow
 def test_processes_change_nothing(folder: Path) -> None:
-    """One pass and two, order 2, augmented, beside a free rigid body, and a body on itself.
+    """One pass and two, order 2, far, augmented, beside a free rigid body, and a body on itself.
 
     Requirement: 1e-8, also where a rank has no slave facets. Source: the same equations. Tolerance
     1e-10: sums in another order; 4e-12 measured, in the gaps of the augmented contact.
@@ -119,6 +119,9 @@ def test_processes_change_nothing(folder: Path) -> None:
             assert len(other["facets"]) == ranks
             assert worst(one, other) < 1e-10, f"{name} on {ranks}: {difference(one, other)}"
     assert (read(folder, "single-3-whole")["facets"][:, 0] == 0).any()
+    # no rank has the whole surface along which the block is drawn
+    every, some = (read(folder, f"far-{ranks}-whole")["had"][:, 0] for ranks in (1, 3))
+    assert some.max() <= 0.6 * every.max()
 
 
 @pytest.mark.mpi
@@ -130,7 +133,7 @@ def test_restart_on_others(folder: Path, before: int, after: int) -> None:
     Requirement and tolerance: 1e-10. Source: the run that was not stopped; sums in another order
     leave 1.4e-11.
     """
-    names = ("two-half", "single", "folded")
+    names = ("two-half", "far", "single", "folded")
     start(before, folder, "stop", *names)
     start(after, folder, f"from:{before}", *names)
     for name in names:

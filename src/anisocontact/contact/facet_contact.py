@@ -13,6 +13,7 @@ from anisocontact._core import FacetPairs
 from anisocontact.augmentation import Augmentation
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.facet_answer import Question, ask
+from anisocontact.contact.gathering import gather, gather_named
 from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.point_tangent import PointTangent
 from anisocontact.contact.quadrature import chosen_degree
@@ -113,27 +114,31 @@ class FacetContact(ContactRecord):
         self._sides = sides = make_sides(
             model, (slave, master), degree, reach, apart, current_area, weight
         )
-        self._points, self._surface = sides.points, sides.surface
-        self._gathered, self._master = sides.gathered, sides.master
+        self._points, self._gathered = sides.points, sides.gathered
         self.reach = sides.reach
         self._multipliers = None
-        self._now = self._reference = sides.reference
+        self._now = sides.reference
         self._hint = sides.project(self._now)
         self._answer: dict[str, Any] = {}
-        self._transfer = self._new_transfer() if overlaps else None
+        self._transfer = Transfer(sides) if overlaps else None
         self._handed: Mask = np.zeros(len(self._points.nodes), dtype=bool)
         state = adjusted(initial_state(self._hint), adjust)
-        start = self._respond(state, self._reference, 1.0, tangent=False)
-        self._committed = (self._now, self._hint)
+        start = self._respond(state, sides.reference, 1.0, tangent=False)
+        self._committed = (self._gathered.local(self._now), self._hint)
         super().__init__(model.space, slave, name or slave, state, start, self._points.facet)
         if self._transfer is not None:
-            self._transfer.place(self._reference)
+            self._transfer.place(sides.reference)
         self._augment(augmentation, self._points.size, law)
 
     @property
     def passes(self) -> tuple[FacetContact, ...]:
         """The passes over slave points this contact is made of: itself."""
         return (self,)
+
+    @property
+    def had_facets(self) -> npt.NDArray[np.int64]:
+        """Facets of the master that this rank has, numbers in the whole group."""
+        return self._gathered.numbers
 
     @property
     def slave_facets(self) -> Ints:
@@ -143,12 +148,11 @@ class FacetContact(ContactRecord):
     @property
     def master_facets(self) -> Ints:
         """Local nodes of each master facet, (m, k)."""
-        return self._master.nodes
+        return self._sides.master.nodes
 
     def couplable(self) -> Ints:
-        """Nodes of slave and master, as `couplings` names them."""
-        nodes = np.union1d(self._points.nodes, self._master.nodes)
-        return self._gathered.coupled(nodes.astype(np.int32))
+        """Local nodes of slave and master; all ranks together have all of them."""
+        return np.union1d(self._points.nodes, self._gathered.own.nodes).astype(np.int32)
 
     @property
     def facet_size(self) -> float:
@@ -158,7 +162,7 @@ class FacetContact(ContactRecord):
     def feet(self) -> Ints:
         """Local nodes of the master facets that points of the trial have below them."""
         assert self._hint is not None
-        return np.unique(self._master.nodes[self._hint.facet[located(self._hint)]])
+        return np.unique(self._sides.master.nodes[self._hint.facet[located(self._hint)]])
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
@@ -170,7 +174,8 @@ class FacetContact(ContactRecord):
         Returns:
             The response; the committed history is unchanged.
         """
-        self._now = self._reference + self._gathered.everywhere(u)
+        self._keep_up(u)
+        self._now = self._sides.reference + self._gathered.everywhere(u)
         semismooth = self._semismooth
         if semismooth is None:
             self._trial = self._respond(self._start, self._now, dt, tangent=True)
@@ -214,15 +219,16 @@ class FacetContact(ContactRecord):
     def commit(self) -> None:
         """Make the trial the history."""
         if self._trial is not None:
-            lost = self._comm.allgather(self._lost_off_the_end(self._trial))
+            lost = self._comm.allgather(self._sides.lost(self.state, self._trial))
             self.ran_off = np.concatenate(lost)
             if self._transfer is not None:
-                step, ends = self._now - self._committed[0], (self._accepted, self.current)
+                step = self._now - self._gathered.everywhere(self._committed[0])
+                ends = (self._accepted, self.current)
                 work = transfer_work(self._sides, self._transfer, self._handed, step, ends)
                 self._transferred += self._comm.allreduce(work)
                 self._transfer.place(self._now)
         super().commit()
-        self._committed = (self._now, self._hint)
+        self._committed = (self._gathered.local(self._now), self._hint)
 
     def energies(self) -> dict[str, float]:
         """As of `ContactRecord`; with overlaps also "transfer", see `Transfer`."""
@@ -232,8 +238,9 @@ class FacetContact(ContactRecord):
     def roll_back(self) -> None:
         """Forget the trial; the surface goes back to where it was."""
         if self._trial is not None:
-            self._now, self._hint = self._committed
-            self._surface.update(self._now)
+            place, self._hint = self._committed
+            self._now = self._gathered.everywhere(place)
+            self._sides.surface.update(self._now)
         if self._transfer is not None:
             self._transfer.roll_back()
         super().roll_back()
@@ -243,23 +250,38 @@ class FacetContact(ContactRecord):
         kept = super().persistent()
         hint = self._committed[1]
         kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
+        for facets in (kept["state"]["facet"], kept["projection.facet"]):
+            facets[:] = self._gathered.globally(facets)
         everywhere = np.full(len(self._points.nodes), self._transferred)
         return kept | {
-            "reference": self._points.positions(self._reference),
+            "reference": self._points.positions(self._sides.reference),
             "transferred": everywhere,
         }
 
     def restore(self, kept: Mapping[str, npt.NDArray[Any]], u: Floats) -> None:
         """Go on from what `persistent` gave."""
+        kept = {name: values.copy() for name, values in kept.items()}
+        named = kept["state"]["facet"], kept["projection.facet"]
+        now = self._gathered.local(self._sides.reference) + u
+        self._sides = gather_named(self._sides, now, named, self._transfer)
         super().restore(kept, u)
         self._transferred = self.extreme(kept["transferred"]) - self.extreme(-kept["transferred"])
         names = [f.name for f in fields(FacetProjections)]
         self._hint = FacetProjections(*(np.array(kept[f"projection.{n}"]) for n in names))
-        self._now = self._reference + self._gathered.everywhere(u)
-        self._committed = (self._now, self._hint)
-        self._surface.update(self._now)
+        self._now = self._sides.reference + self._gathered.everywhere(u)
+        self._committed = (self._gathered.local(self._now), self._hint)
+        self._sides.surface.update(self._now)
         if self._transfer is not None:
             self._transfer.place(self._now)
+
+    def _keep_up(self, u: Floats) -> None:
+        """Have all facets of the master that the points can reach at these displacements."""
+        now = self._gathered.local(self._sides.reference) + u
+        if self._sides.outrun(now):
+            histories = (self.state, self._start, self.last.state)
+            hints = (self._hint, self._committed[1])
+            self._sides = gather(self._sides, now, histories, hints, self._transfer)
+            self._linear = None
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
@@ -342,7 +364,7 @@ class FacetContact(ContactRecord):
         """Why other laws would fail in the reference configuration, codes of `FAILURE`, (n,)."""
         kept = self._law, self._answer
         self._law = PairLaw(*laws).pairs(self._mirrored)
-        answer = self._respond(state, self._reference, 1.0, tangent=False).response
+        answer = self._respond(state, self._sides.reference, 1.0, tangent=False).response
         self._law, self._answer = kept
         return answer.failure
 
@@ -366,10 +388,6 @@ class FacetContact(ContactRecord):
         question = Question(state, hit, self._now, dt, tangent, self._by_points)
         self._answer, snapshot = ask(self._sides, law, question)
         return snapshot
-
-    def _new_transfer(self) -> Transfer:
-        s = self._sides
-        return Transfer(s.slave, s.rule, s.master, s.surface, s.reach, s.near, s.comm)
 
     def _hand_over(self, transfer: Transfer) -> None:
         """Let the forces on the master act where the overlaps have them."""
@@ -403,8 +421,3 @@ class FacetContact(ContactRecord):
     def _project(self, now: Floats) -> FacetProjections:
         self._hint = self._sides.project(now, self._hint)
         return self._hint
-
-    def _lost_off_the_end(self, trial: Snapshot) -> Floats:
-        """Points that had a facet below them and now lie beyond the border, (n, 3)."""
-        left = np.flatnonzero((self.state["facet"] >= 0) & (trial.response.state["facet"] < 0))
-        return self._sides.beyond_the_border(left, trial.points[left])

@@ -1,4 +1,4 @@
-"""Facets of a master on every rank, wherever their nodes live."""
+"""Facets of a master near the slave points of a process, wherever their nodes live."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import facet_keys
 from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
+from anisocontact.mesh.split import Route, Split, arranged
 
 Ints = npt.NDArray[np.int32]
 Keys = npt.NDArray[np.int64]
@@ -16,109 +17,144 @@ Floats = npt.NDArray[np.float64]
 
 
 class MasterSurface:
-    """All facets of a group, in an order that does not depend on how the mesh is distributed.
+    """Facets of a group, in an order that does not depend on how the mesh is distributed.
 
-    On one process its nodes are those of the mesh and nothing is copied. On several the surface is
-    gathered: every rank knows all facets and the positions of their nodes, which are numbered after
-    its local nodes. A node of the surface that a rank has itself has two numbers there.
+    On one process these are all of them, with the nodes of the mesh, and nothing is copied. On
+    several each has those that it has gathered: their nodes are numbered after its local nodes, and
+    a node that it has itself has two numbers there. Facets are then numbered twice as well: among
+    those of the process, in the same order, and in the whole group.
 
     Args:
         space: Vector Lagrange space of the displacement.
         facets: Local facets on the boundary.
 
     Attributes:
-        facets: All facets of the group; their nodes are numbered as in `reference`.
+        own: Facets of the group on this process, with its local nodes.
+        facets: Facets that it has of the group; their nodes are numbered as in `reference`.
+        numbers: Number of each in the whole group, ascending.
         reference: Positions in the reference configuration of the local nodes, then of those
             gathered, (nodes, 3), length.
+        comm: Communicator of the mesh.
+        distributed: Whether there are several processes.
     """
 
     def __init__(self, space: Any, facets: Ints) -> None:
-        own = facet_mesh(space, facets)
-        self._comm = space.mesh.comm
-        keys = facet_keys(space.mesh, np.sort(facets))
-        self._keys = np.concatenate(self._comm.allgather(keys))
-        order = np.argsort(self._keys)
-        self._keys = self._keys[order]
-        self.reference = node_positions(space)
-        self._local = len(self.reference)
-        self._distributed = self._comm.size > 1
-        flip = np.concatenate(self._comm.allgather(own.flip))[order]
-        nodes = self._gather(space, own, order) if self._distributed else own.nodes[order]
-        self.facets = FacetMesh(own.topology, np.ascontiguousarray(nodes), flip)
-        if self._distributed:
-            self.reference = self.everywhere(self.reference)
+        self.own = own = facet_mesh(space, facets)
+        self.comm = comm = space.mesh.comm
+        self.distributed = bool(comm.size > 1)
+        self._start = self.reference = node_positions(space)
+        self._keys = facet_keys(space.mesh, np.sort(facets))
+        self._own_numbers = _ranked(comm, self._keys)
+        self._order = np.argsort(self._keys)
+        if self.distributed:
+            # All facets, an even share of them on every process, for those who ask.
+            index_map = space.dofmap.index_map
+            nodes = index_map.local_to_global(own.nodes.reshape(-1)).reshape(own.nodes.shape)
+            total = comm.allreduce(len(nodes))
+            self._table = arranged(comm, total, self._own_numbers, nodes, own.flip)
+            self._rows = Split(comm, len(self._table[0]))
+            self._owners = Split(comm, index_map.size_local)
+            self.gather(np.zeros(0, dtype=np.int64))
+        else:
+            self.numbers = np.arange(len(own.nodes))
+            nodes = np.ascontiguousarray(own.nodes[self._order])
+            self.facets = FacetMesh(own.topology, nodes, own.flip[self._order])
 
-    def _gather(self, space: Any, own: FacetMesh, order: Keys) -> Ints:
-        """Number the nodes of the surface by the facets they come with; who sends which of them."""
-        comm, index_map = self._comm, space.dofmap.index_map
-        mine = np.unique(own.nodes)
-        globally = index_map.local_to_global
-        each = comm.allgather(globally(own.nodes.reshape(-1)).reshape(own.nodes.shape))
-        by_facet = np.concatenate(each)[order]
-        numbers, first, node = np.unique(by_facet, return_index=True, return_inverse=True)
-        rank = np.argsort(first)
-        place = np.empty(len(rank), dtype=np.int64)
-        place[rank] = np.arange(len(rank))
-        #: Global number of each node of the surface.
-        self._numbers = numbers[rank]
-        had = place[np.searchsorted(numbers, globally(mine))]
-        sender = np.full(len(numbers), comm.size, dtype=np.int64)
-        for other, places in enumerate(comm.allgather(had)):
-            np.minimum.at(sender, places, other)
-        sent = sender[had] == comm.rank
-        #: Local nodes that this rank sends, and their places in the surface.
-        self._sent, self._places = mine[sent], had[sent]
-        self._counts = np.bincount(sender, minlength=comm.size)
-        self._received = np.concatenate(comm.allgather(self._places))
-        return (self._local + place[node]).reshape(by_facet.shape).astype(np.int32)
+    def gather(self, numbers: Keys) -> None:
+        """Have these facets instead of those before; collective.
+
+        Args:
+            numbers: Numbers in the whole group, ascending, (n,).
+        """
+        nodes, flip = (self._rows.fetch(values, numbers) for values in self._table)
+        self._ids, node = np.unique(nodes, return_inverse=True)
+        self._route = Route(self.comm, self._owners.owner(self._ids))
+        #: Local nodes that other processes have gathered.
+        self._asked = self._route.there(self._ids) - self._owners.first
+        self.numbers = numbers
+        named = (len(self._start) + node.reshape(nodes.shape)).astype(np.int32)
+        self.facets = FacetMesh(self.own.topology, named, flip)
+        self.reference = self.everywhere(self._start)
+
+    def within(self, low: Floats, high: Floats, now: Floats) -> Keys:
+        """Facets that may reach into a box; collective.
+
+        Args:
+            low: Lowest corner of the box of this process, (3,), length; infinite for none.
+            high: Its highest corner.
+            now: Positions of the local nodes, (nodes, 3), length.
+
+        Returns:
+            Their numbers in the whole group, ascending.
+        """
+        x = now[self.own.nodes]
+        ends = x.min(axis=1), x.max(axis=1)
+        # The interior of a curved facet goes beyond its nodes, by less than its size.
+        more = ends[1] - ends[0] if self.own.nodes.shape[1] > 4 else 0.0
+        ends = ends[0] - more, ends[1] + more
+        to, found = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+        for rank, (first, last) in enumerate(self.comm.allgather((low, high))):
+            inside = np.all((ends[0] <= last) & (ends[1] >= first), axis=1)
+            found.append(self._own_numbers[inside])
+            to.append(np.full(len(found[-1]), rank))
+        return np.unique(Route(self.comm, np.concatenate(to)).there(np.concatenate(found)))
 
     def number(self, facets: Keys) -> Ints:
-        """Numbers on this surface of facets that are part of it.
+        """Numbers among those of this process of local facets that it has gathered.
 
         Args:
             facets: Facets of `facet_keys`, (n,).
-
-        Returns:
-            Numbers, (n,).
         """
-        return np.searchsorted(self._keys, facets).astype(np.int32)
+        place = np.searchsorted(self._keys, facets, sorter=self._order)
+        return self.renumbered(self._own_numbers[self._order[place]])
 
-    def everywhere(self, nodal: Floats) -> Floats:
-        """Vectors of the local nodes, then those of the surface's nodes of all ranks.
+    def renumbered(self, numbers: npt.NDArray[Any]) -> Ints:
+        """Numbers among those of this process of facets that it has; -1 for others.
 
         Args:
-            nodal: Of the local nodes, ghosts up to date, (local nodes, 3).
+            numbers: In the whole group, -1 for none, (n,).
+        """
+        if not len(self.numbers):
+            return np.full(len(numbers), -1, dtype=np.int32)
+        place = np.minimum(np.searchsorted(self.numbers, numbers), len(self.numbers) - 1)
+        return np.where(self.numbers[place] == numbers, place, -1).astype(np.int32)
+
+    def globally(self, facets: npt.NDArray[Any]) -> Ints:
+        """Numbers in the whole group of facets of this process, -1 for none, (n,)."""
+        return np.asarray(np.append(self.numbers, -1)[facets], dtype=np.int32)
+
+    def everywhere(self, nodal: Floats) -> Floats:
+        """Vectors of the local nodes, then those of the nodes that were gathered.
+
+        Args:
+            nodal: Of the local nodes, (local nodes, 3).
 
         Returns:
             Numbered as `reference`, (nodes, 3); on one process the same array.
         """
-        if not self._distributed:
+        if not self.distributed:
             return nodal
-        out = np.empty((self._local + len(self._numbers), 3))
-        out[: self._local] = nodal
-        got = np.empty((len(self._numbers), 3))
-        counts = (3 * self._counts).tolist()
-        self._comm.Allgatherv(np.ascontiguousarray(nodal[self._sent]), [got, counts])
-        out[self._local + self._received] = got
-        return out
+        return np.concatenate([nodal, self._route.back(nodal[self._asked])])
+
+    def local(self, nodal: Floats) -> Floats:
+        """Of what `everywhere` gave, that of the local nodes."""
+        return nodal[: len(self._start)]
 
     def zeros(self, out: Floats) -> Floats:
         """Where to add forces, numbered as `reference`; on one process `out` itself."""
-        return np.zeros(self.reference.shape) if self._distributed else out
+        return np.zeros(self.reference.shape) if self.distributed else out
 
     def hand_back(self, forces: Floats, out: Floats) -> None:
-        """Add forces that all ranks have for the nodes of the surface where these nodes live.
+        """Add forces that all processes have for nodes they gathered where these nodes live.
 
         Args:
-            forces: What `zeros` gave, with forces of this rank, (nodes, 3).
-            out: Forces of the local nodes, whose sum over the ranks counts, (local nodes, 3).
+            forces: What `zeros` gave, with forces of this process, (nodes, 3).
+            out: Forces of the local nodes, whose sum over the processes counts, (local nodes, 3).
         """
-        if not self._distributed:
+        if not self.distributed:
             return
-        out += forces[: self._local]
-        total = np.empty((len(self._numbers), 3))
-        self._comm.Allreduce(np.ascontiguousarray(forces[self._local :]), total)
-        out[self._sent] += total[self._places]
+        out += self.local(forces)
+        np.add.at(out, self._asked, self._route.there(forces[len(self._start) :]))
 
     def coupled(self, nodes: Ints) -> Ints:
         """Nodes as `Couplings` name them: gathered ones by their number in the whole mesh.
@@ -129,9 +165,20 @@ class MasterSurface:
         Returns:
             The same for local nodes, the number of local nodes plus the global number for others.
         """
-        if not self._distributed:
+        if not self.distributed:
             return nodes
-        far = nodes >= self._local
+        local = len(self._start)
+        far = nodes >= local
         named = nodes.copy()
-        named[far] = self._local + self._numbers[nodes[far] - self._local]
+        named[far] = local + self._ids[nodes[far] - local]
         return named
+
+
+def _ranked(comm: Any, keys: Keys) -> Keys:
+    """Place of each key in the order of those of all processes, (n,)."""
+    end = max(comm.allgather(int(keys.max(initial=-1)))) + 1
+    route = Route(comm, keys * comm.size // max(end, 1))
+    there = route.there(keys)
+    numbers = np.empty(len(there), dtype=np.int64)
+    numbers[np.argsort(there)] = Split(comm, len(there)).numbers
+    return route.back(numbers)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,8 +18,11 @@ from anisocontact.contact.facet_mesh import (
     facet_rule,
     group_area,
     near_facets,
+    node_positions,
 )
 from anisocontact.contact.master_surface import MasterSurface
+from anisocontact.contact.overlap import largest_radius
+from anisocontact.contact.record import Snapshot
 from anisocontact.errors import InputError
 from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSets, FacetSurface
 from anisocontact.interface import STATE, State
@@ -38,13 +41,15 @@ class Sides:
         slave: Facets of the slave on this rank.
         rule: Quadrature on them.
         points: Its points.
-        gathered: The master on every rank.
-        own_master: Facets of the master on this rank.
-        surface: The master where it is now.
+        gathered: The master as this rank has it.
+        surface: The same where it is now.
         reach: Distance within which the master is searched, length.
-        near: Facets that each facet of the slave cannot meet; None where it can meet all.
+        apart: Numbers in the whole group of facets that each facet of the slave cannot meet; None
+            where it can meet all.
+        near: Those of them that this rank has.
         excluded: The same for each point.
         kinds: Code of the topology of each facet of the master, (m,).
+        at: Where the local nodes were when facets were gathered, (nodes, 3), length.
         threads: Threads of the kernel.
         comm: Communicator of the mesh.
     """
@@ -53,12 +58,13 @@ class Sides:
     rule: FacetRule
     points: SlavePoints
     gathered: MasterSurface
-    own_master: FacetMesh
     surface: FacetSurface
     reach: float
+    apart: FacetSets | None
     near: FacetSets | None
     excluded: FacetSets | None
     kinds: npt.NDArray[np.int8]
+    at: Floats
     threads: int
     comm: Any
 
@@ -69,7 +75,7 @@ class Sides:
 
     @property
     def master(self) -> FacetMesh:
-        """All facets of the master."""
+        """Facets of the master that this rank has: all of them on one process."""
         return self.gathered.facets
 
     def project(self, now: Floats, hint: FacetProjections | None = None) -> FacetProjections:
@@ -82,10 +88,14 @@ class Sides:
         self.surface.update(now)
         return self.surface.project(self.points.positions(now), hint, self.reach, self.excluded)
 
-    def beyond_the_border(self, which: npt.NDArray[np.int64], x: Floats) -> Floats:
-        """Of positions of some slave points, (m, 3), those beyond the border, (n, 3)."""
+    def lost(self, before: State, now: Snapshot) -> Floats:
+        """Points that had a facet below them and now lie beyond the border, (n, 3)."""
+        which = np.flatnonzero((before["facet"] >= 0) & (now.response.state["facet"] < 0))
+        x = now.points[which]
         excluded = None if self.excluded is None else self.excluded.take(which)
-        hit = self.surface.project(x, exclude=excluded)
+        # What this rank has ends somewhere: beyond that nothing is said.
+        far = 2.0 * self.reach if self.gathered.distributed else np.inf
+        hit = self.surface.project(x, max_distance=far, exclude=excluded)
         return np.asarray(x[hit.status == FACET_STATUS.index("off")])
 
     def tangents(self, state: State) -> Floats:
@@ -103,13 +113,81 @@ class Sides:
                 (nodes, 3), force/length.
         """
         found = []
-        for side in (self.slave, self.own_master):
+        for side in (self.slave, self.gathered.own):
             nodes = np.unique(side.nodes)
             owned = diagonal[nodes[nodes < len(diagonal)]]
             local = np.array([owned.mean(axis=1).sum(), group_area(side, self.reference)])
             total, area = self.comm.allreduce(local)
             found.append(total / area)
         return float(1.0 / sum(1.0 / k for k in found))
+
+    def outrun(self, now: Floats) -> bool:
+        """Whether points may reach facets that this rank has not gathered; the same on all ranks.
+
+        Facets are gathered as far as twice the reach. A slave facet that moves comes nearer, its
+        middle with it, and it may grow by twice the way.
+
+        Args:
+            now: Positions of the local nodes, (nodes, 3), length.
+        """
+        if not self.gathered.distributed:
+            return False
+        with np.errstate(over="ignore"):
+            moved = np.linalg.norm(now - self.at, axis=1)
+        most = [moved[m.nodes].max(initial=0.0) for m in (self.slave, self.gathered.own)]
+        slave, master = np.max(self.comm.allgather(most), axis=0).tolist()
+        # where the way is not finite, nothing is found anyway
+        return bool(self.reach < 3.0 * slave + master < np.inf)
+
+    def gather(self, now: Floats, more: npt.NDArray[np.int64]) -> Sides:
+        """Both sides with the facets of the master that are near now; collective.
+
+        Args:
+            now: Positions of the local nodes, (nodes, 3), length.
+            more: Facets to have as well, numbers in the whole group.
+        """
+        _collect(self.gathered, self.slave, now, 2.0 * self.reach, more)
+        near = None if self.apart is None else _there(self.apart, self.gathered)
+        return replace(
+            self,
+            surface=_surface(self.gathered, now),
+            near=near,
+            excluded=None if near is None else near.take(self.points.facet),
+            kinds=_kinds(self.gathered.facets),
+            at=now.copy(),
+        )
+
+
+def _collect(
+    gathered: MasterSurface, slave: FacetMesh, now: Floats, far: float, more: npt.NDArray[np.int64]
+) -> None:
+    """Gather what is near a slave, and more; all is there on one process."""
+    if not gathered.distributed:
+        return
+    margin = far + max(gathered.comm.allgather(largest_radius(slave, now)))
+    x = now[np.unique(slave.nodes)]
+    low = x.min(axis=0, initial=np.inf) - margin
+    high = x.max(axis=0, initial=-np.inf) + margin
+    gathered.gather(np.union1d(gathered.within(low, high, now), more))
+
+
+def _surface(gathered: MasterSurface, now: Floats) -> FacetSurface:
+    """Facets that a rank has, at positions of the local nodes, (nodes, 3), length."""
+    facets = gathered.facets
+    x = gathered.everywhere(now)
+    return FacetSurface(x, facets.nodes, facets.topology, facets.flip)
+
+
+def _kinds(facets: FacetMesh) -> npt.NDArray[np.int8]:
+    return np.full(len(facets.nodes), list(TOPOLOGIES).index(facets.topology), dtype=np.int8)
+
+
+def _there(sets: FacetSets, gathered: MasterSurface) -> FacetSets:
+    """Sets of facets of the whole group as sets of those that a rank has."""
+    facets = gathered.renumbered(sets.facets)
+    there = facets >= 0
+    count = np.concatenate([[0], np.cumsum(there)])
+    return FacetSets(count[sets.offsets].astype(np.int64), facets[there])
 
 
 def make_sides(
@@ -135,28 +213,31 @@ def make_sides(
     slave, master = (model.facets(group) for group in groups)
     comm = model.mesh.comm
     gathered = MasterSurface(model.space, master)
-    reference, facets = gathered.reference, gathered.facets
+    reference = node_positions(model.space)
     own = facet_mesh(model.space, slave)
     rule = facet_rule(own.topology, degree)
     points = SlavePoints(own, rule, reference, current_area, weight, comm)
-    surface = FacetSurface(reference, facets.nodes, facets.topology, facets.flip)
-    kind = list(TOPOLOGIES).index(facets.topology)
-    near = excluded = None
+    reach = reach if reach is not None else 2.0 * points.size
+    _collect(gathered, own, reference, max(reach, apart or 0.0) + reach, np.zeros(0, np.int64))
+    surface = _surface(gathered, reference)
+    named = near = excluded = None
     if apart is not None:
         numbers = gathered.number(facet_keys(model.mesh, np.sort(slave)))
         near = near_facets(own, numbers, surface, reference, apart)
+        named = FacetSets(near.offsets, gathered.globally(near.facets))
         excluded = near.take(points.facet)
     return Sides(
         slave=own,
         rule=rule,
         points=points,
         gathered=gathered,
-        own_master=facet_mesh(model.space, master),
         surface=surface,
-        reach=reach if reach is not None else 2.0 * points.size,
+        reach=reach,
+        apart=named,
         near=near,
         excluded=excluded,
-        kinds=np.full(len(facets.nodes), kind, dtype=np.int8),
+        kinds=_kinds(gathered.facets),
+        at=reference,
         threads=default_threads(),
         comm=comm,
     )

@@ -18,7 +18,8 @@ master. Both are errors of the discretisation and fall with the size of the face
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -26,9 +27,10 @@ import numpy.typing as npt
 from scipy.sparse import csr_array
 
 from anisocontact.contact.couples import Couples
-from anisocontact.contact.facet_mesh import FacetMesh, FacetRule, FacetShapes
+from anisocontact.contact.facet_mesh import FacetShapes
 from anisocontact.contact.overlap import Overlaps, largest_radius, overlaps
-from anisocontact.facets import FEATURES, FacetProjections, FacetSets, FacetSurface
+from anisocontact.contact.sides import Sides
+from anisocontact.facets import FEATURES, FacetProjections
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
@@ -61,33 +63,24 @@ class Transfer:
     exact. A facet that the master does not cover hands its forces over at its own points.
 
     Args:
-        slave: Slave facets.
-        rule: Quadrature on them.
-        master: Master facets.
-        surface: The same as a surface.
-        reach: Distance within which the master is searched, length.
-        excluded: Master facets that do not count, for each slave facet.
-        comm: Communicator of the mesh.
+        sides: Slave and master.
     """
 
-    def __init__(
-        self,
-        slave: FacetMesh,
-        rule: FacetRule,
-        master: FacetMesh,
-        surface: FacetSurface,
-        reach: float,
-        excluded: FacetSets | None,
-        comm: Any,
-    ) -> None:
-        self._slave, self._rule, self._master = slave, rule, master
-        self._comm = comm
-        self._surface, self._reach, self._excluded = surface, reach, excluded
+    def __init__(self, sides: Sides) -> None:
+        self._slave, self._rule = slave, rule = sides.slave, sides.rule
+        self._comm, self._reach = sides.comm, sides.reach
+        self._master, self._surface, self._excluded = sides.master, sides.surface, sides.near
         self._shapes = FacetShapes(slave.topology)
         self._degree = min(rule.degree // 2, self._shapes.order)
         self._at_points = self._shapes.moments(rule.points, self._degree)
         self._trial: _Trial | None = None
         self._parts: Overlaps | None = None
+
+    def facets(self) -> Ints:
+        """Facets of the master that the overlaps lie on."""
+        if self._parts is None:
+            return np.zeros(0, dtype=np.int32)
+        return np.concatenate([self._parts.facet, self._facet])
 
     def place(self, now: Floats) -> None:
         """Put the overlaps where the facets are; the surface has to be there already.
@@ -114,6 +107,19 @@ class Transfer:
         np.add.at(mean, parts.owner, self._share[:, :, None] * self._shape[:, None])
         self._off = self._rule.shape - mean
         self._facet = parts.facet.copy()
+
+    def gathered(self, sides: Sides, renumbered: Callable[[Ints], Ints]) -> None:
+        """Go on with other facets of the master; the trial is forgotten.
+
+        Args:
+            sides: Slave and master.
+            renumbered: Numbers of facets from those that they had before.
+        """
+        self._master, self._surface, self._excluded = sides.master, sides.surface, sides.near
+        self._trial = None
+        if self._parts is not None:
+            self._parts = replace(self._parts, facet=renumbered(self._parts.facet))
+            self._facet = renumbered(self._facet)
 
     def roll_back(self) -> None:
         """Forget the trial: the next one starts from the overlaps, whatever was tried before."""
