@@ -23,7 +23,7 @@ def start(ranks: int, folder: Path, mode: str, *cases: str) -> None:
     """Solve on so many processes; one that hangs fails."""
     script = [sys.executable, "-m", "tests.verification.pairs_on_ranks"]
     command = ["mpirun", "-n", str(ranks), *script, str(folder), mode, *cases]
-    command = ["timeout", "-k", "5", "300", *command]
+    command = ["timeout", "-k", "5", "600", *command]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
 

@@ -276,6 +276,8 @@ class FacetContact(ContactRecord):
 
     def _keep_up(self, u: Floats) -> None:
         """Have all facets of the master that the points can reach at these displacements."""
+        if not self._gathered.distributed:
+            return
         now = self._gathered.local(self._sides.reference) + u
         if self._sides.outrun(now):
             histories = (self.state, self._start, self.last.state)

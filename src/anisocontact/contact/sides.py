@@ -130,8 +130,6 @@ class Sides:
         Args:
             now: Positions of the local nodes, (nodes, 3), length.
         """
-        if not self.gathered.distributed:
-            return False
         with np.errstate(over="ignore"):
             moved = np.linalg.norm(now - self.at, axis=1)
         most = [moved[m.nodes].max(initial=0.0) for m in (self.slave, self.gathered.own)]
