@@ -76,15 +76,7 @@ class Writer:
         self._disk.write(lambda: self._open(case, resumed is not None))
         names = masters or [contact.name for contact in problem.contacts]
         self._observer = Observer(problem, self._steps)
-        self._constants = [
-            {
-                "slave": contact.slave,
-                "master": name,
-                "facet_size": facet_size(problem.model, contact.slave),
-                "laws": laws(contact),
-            }
-            for contact, name in zip(problem.contacts, names, strict=True)
-        ]
+        self._constants = _constants(problem, names)
         self._history = History(self.folder / "history.csv")
         self._bodies = Bodies(problem)
         comm = problem.model.mesh.comm
@@ -94,11 +86,7 @@ class Writer:
         self._surfaces = Collection(self.folder / "surfaces.pvd", ".vtp", comm)
         self.summary: dict[str, Any] = self._head(title)
         if resumed is None:
-            self._take(self._observer.numbers())
-            self._at_start = at_start(problem.contacts, self.summary["contacts"])
-            for warning in self._at_start:
-                self.log(f"warning: {warning}")
-            self._write_fields(0.0)
+            self._begin()
         else:
             self._resume(resumed)
         self._write_summary()
@@ -113,6 +101,14 @@ class Writer:
             write_text(self.folder / "run.log", f"anisocontact {__version__}\n")
         if case:
             write_text(self.folder / "case.toml", case)
+
+    def _begin(self) -> None:
+        """Write the state before the first increment, and what is to be said of it."""
+        self._take(self._observer.numbers())
+        self._at_start = at_start(self._problem.contacts, self.summary["contacts"])
+        for warning in self._at_start:
+            self.log(f"warning: {warning}")
+        self._write_fields(0.0)
 
     def _resume(self, state: Mapping[str, Any]) -> None:
         """Take up the files where they were at a checkpoint."""
@@ -297,6 +293,19 @@ class Writer:
 
     def _text(self) -> str:
         return json.dumps(_finite(self.summary), indent=2, allow_nan=False) + "\n"
+
+
+def _constants(problem: Problem, masters: Sequence[str]) -> list[dict[str, Any]]:
+    """What stays the same of each contact for the whole run."""
+    return [
+        {
+            "slave": contact.slave,
+            "master": master,
+            "facet_size": facet_size(problem.model, contact.slave),
+            "laws": laws(contact),
+        }
+        for contact, master in zip(problem.contacts, masters, strict=True)
+    ]
 
 
 def _finite(value: Any) -> Any:
