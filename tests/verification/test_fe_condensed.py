@@ -87,10 +87,15 @@ def _on_surface(surface: str = "plane", **parameters: Any) -> Problem:
 
 
 def _run(
-    problem: Problem, steps: Sequence[Step], strategy: str, notes: list[str] | None = None
+    problem: Problem,
+    steps: Sequence[Step],
+    strategy: str,
+    notes: list[str] | None = None,
+    iterations: int = 25,
 ) -> tuple[list[Accepted], list[Any], np.ndarray]:
     """What was accepted, means over the loaded groups, and all displacements at the end."""
-    solver = Solver(problem, steps, options={"snes_rtol": 1e-11}, strategy=strategy)
+    options = {"snes_rtol": 1e-11, "snes_max_it": iterations}
+    solver = Solver(problem, steps, options=options, strategy=strategy)
     weights = np.random.default_rng(2).random(len(problem.u.x.array) // 3)
     accepted, means = [], []
     for one in solver.run(on_note=None if notes is None else notes.append):
@@ -103,11 +108,11 @@ def _close(a: Any, b: Any, scale: float) -> None:
     np.testing.assert_allclose(a, b, rtol=0.0, atol=1e-8 * scale)
 
 
-def _same(make: Callable[[], Problem], steps: Sequence[Step]) -> list[str]:
+def _same(make: Callable[[], Problem], steps: Sequence[Step], iterations: int = 25) -> list[str]:
     """Run both ways, compare everything that is reported, return the notes of `condensed`."""
     notes: list[str] = []
-    ours, our_means, our_u = _run(make(), steps, "condensed", notes)
-    theirs, their_means, their_u = _run(make(), steps, "direct")
+    ours, our_means, our_u = _run(make(), steps, "condensed", notes, iterations)
+    theirs, their_means, their_u = _run(make(), steps, "direct", None, iterations)
     force = max(float(np.abs(r).max()) for a in theirs for r in a.reactions.values())
     energy = max(abs(value) for a in theirs for value in a.energies.values())
     size = float(np.abs(their_u).max())
@@ -193,16 +198,19 @@ def test_slides_out_of_reach(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(reach, "_prescribed_range", lambda *_: np.zeros(3))
     away = Step("away", 6, {"block.top": {"x": 0.9}})
     model = _model(length=3.0)
-    notes = _same(lambda: _pair(model, reach=0.2), [PRESS, away])
+    notes = _same(lambda: _pair(model, reach=0.2), [PRESS, away], 60)
     assert sum("condensing" in note for note in notes) > 4
 
 
 def test_large_increments_leave_the_reach_within_newton(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A point that meets a facet out of reach during iterations: the increment begins anew."""
+    """A point that meets a facet out of reach during iterations: the increment begins anew.
+
+    Friction depends on the path: 60 iterations are allowed so that neither run cuts the increment.
+    """
     monkeypatch.setattr(reach, "_prescribed_range", lambda *_: np.zeros(3))
-    away = Step("away", 1, {"block.top": {"x": 0.9}})
+    away = Step("away", 1, {"block.top": {"x": 0.5}})
     model = _model(length=3.0)
-    notes = _same(lambda: _pair(model, reach=0.2), [PRESS, away])
+    notes = _same(lambda: _pair(model, reach=0.2), [PRESS, away], 60)
     assert any("widened" in note for note in notes)
 
 
