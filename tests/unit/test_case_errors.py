@@ -165,6 +165,23 @@ def test_increments_of_a_trace(tmp_path, capsys, given):
     assert said.endswith("needed, whole numbers > 0\n")
 
 
+@pytest.mark.parametrize(
+    ("displacement", "says"),
+    [
+        (
+            '"block.top" = { x = 0.02 }, "block.left" = { x = 0.5 }',
+            "step 'drag'.displacement: 'block.top' prescribes 0.02 and 'block.left' 0.5 for x on ",
+        ),
+        ('"block.tpo" = { x = 0.02 }', "step[1].displacement: no facet group 'block.tpo'"),
+    ],
+)
+def test_mistake_of_a_step_names_the_step(tmp_path, capsys, case_text, displacement, says):
+    text = case_text.replace('"block.top" = { x = 0.02, y = 0.01 }', displacement)
+    lines = run_wrong(tmp_path, capsys, text)
+    assert len(lines) == 1
+    assert lines[0].startswith(f"error: {says}")
+
+
 def test_no_step_in_the_list(tmp_path, capsys, case_text):
     text = "step = []\n" + case_text[: case_text.index("[[step]]")]
     assert run_wrong(tmp_path, capsys, text) == ["error: step: [] given, at least one entry needed"]

@@ -134,7 +134,7 @@ class NeoHookeanIncompressible(_Isotropic):
 
     Args:
         E: Young's modulus at rest, > 0, stress.
-        nu: Poisson's ratio at rest, up to 0.49999.
+        nu: Poisson's ratio at rest, -1 < nu < 0.5; its stiffness grows as 1 / (1 - 2 nu).
         field: Where the material was written, for messages.
 
     Raises:

@@ -78,13 +78,20 @@ def build(file: CaseFile) -> Built:
         case.symmetry,
         stabilised=case.solver.stabilisation,
     )
+    return Built(file, problem, steps, _solver(case, problem, steps))
+
+
+def _solver(case: Case, problem: Problem, steps: list[Step]) -> Solver:
+    given = case.solver
     with objects.within("solver"):
-        given = case.solver
         limits = Limits(given.smallest_increment, given.largest_increment, given.cuts)
-        solver = Solver(
-            problem, steps, options=given.options, limits=limits, strategy=given.strategy
-        )
-    return Built(file, problem, steps, solver)
+    try:
+        return Solver(problem, steps, options=given.options, limits=limits, strategy=given.strategy)
+    except InputError as error:
+        if error.field.startswith("step "):  # a step is no part of the table of the solver
+            raise
+        with objects.within("solver"):
+            raise
 
 
 def _model(file: CaseFile) -> Model:
