@@ -141,6 +141,13 @@ class RigidBody:
         self.accepted = Pose(now.translation, now.turn, orthonormal(now.rotation), np.eye(3))
         self.trial = self.accepted
 
+    def farthest(self, points: Floats) -> float:
+        """Farthest that the last motion can have carried one of the points, (n, 3), length."""
+        shift = self.trial.translation - self.accepted.translation
+        turn = np.linalg.norm(self.trial.rotation - self.accepted.rotation, ord=2)
+        lever = np.linalg.norm(points - self.position, axis=1).max(initial=0.0)
+        return float(np.linalg.norm(shift) + turn * lever)
+
     def to_body(self, points: Floats) -> Floats:
         """Points of space where the body has them in its first configuration, (n, 3).
 

@@ -121,13 +121,13 @@ class Attempts:
             result = self._newton.solve(x, way.full_steps, self._damping if way.damped else None)
             if not result.reason and problem.comm.allreduce(len(problem.inverted_cells())):
                 result = replace(result, reason="cells are turned inside out")
-            lets_go = not result.reason and problem.contact_lets_go(x)
+            lets_go = "" if result.reason else problem.contact_lets_go(x)
             if not result.reason and not lets_go:
                 problem.commit(x)
                 return result, []
             problem.stabilisation.careful = True
             if lets_go:
-                return replace(result, reason="contact alone does not hold all bodies"), []
+                return replace(result, reason=lets_go), []
             return result, find_culprits(problem, self._watch, self._newton.residual)
         except (Exception, KeyboardInterrupt):
             problem.together.met()

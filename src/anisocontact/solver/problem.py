@@ -279,12 +279,17 @@ class Problem(Following):
             return True
         return any([contact.improve() for contact in self.contacts]) or moved
 
-    def contact_lets_go(self, x: Vec) -> bool:
-        """Whether a body without springs is doubtful in a state, see `Stabilisation.doubtful`."""
-        if not self.stabilisation.trusts:
-            return False
+    def contact_lets_go(self, x: Vec) -> str:
+        """Why contact does not hold the free bodies in equilibrium; empty if it does.
+
+        See `Stabilisation.doubtful` and `Stabilisation.lost`.
+        """
+        if not self.stabilisation.watches or self.reduction is not None:
+            return ""
         self._evaluate_at(x)
-        return self.stabilisation.doubtful(self._nodal)
+        if self.stabilisation.trusts and self.stabilisation.doubtful(self._nodal):
+            return "contact alone does not hold all bodies"
+        return self.stabilisation.lost(self._nodal)
 
     def soften(self) -> bool:
         """After a solution that failed: softer penalties of augmented contacts; whether any.
@@ -302,7 +307,7 @@ class Problem(Following):
     def _stabilise(self) -> None:
         """Put the springs of stabilisation back to where they start from."""
         self._accepted.begin_way()
-        if self.stabilisation:
+        if self.stabilisation.watches:
             nodal = self.u.x.array.reshape(-1, 3)
             load = self.layout.assembled(self.loads.force(nodal))
             self.stabilisation.start(nodal, load.reshape(-1, 3))

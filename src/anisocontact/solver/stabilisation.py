@@ -34,6 +34,8 @@ SHARE = 1e-7
 FADE = 0.1
 #: Stiffness without loads, and the least one, shares of the mean diagonal of the bulk.
 WITHOUT_LOADS, LEAST = 1e-6, 1e-11
+#: Force of contact over the stiffness and the size of a facet that is none.
+NOTHING = 1e-9
 #: Equilibria after which a body counts as one that flies off.
 MOST = 60
 #: Sticking points that can hold all motions of a body.
@@ -49,12 +51,13 @@ class _Free:
         contacts: Contacts that can hold it.
         size: How far the springs let it move at once: a facet, length.
         stiffness: Of the springs, force/length.
+        load: Norm of the sum of all loads on it, force.
         trusted: Whether contact alone is to hold it in this attempt.
     """
 
     def __init__(self, body: Body, modes: str, contacts: Sequence[AnyContact], size: float) -> None:
         self.body, self.modes, self.contacts, self.size = body, modes, contacts, size
-        self.stiffness = 0.0
+        self.stiffness = self.load = 0.0
         self.trusted = False
 
     def sticks(self) -> bool:
@@ -106,6 +109,8 @@ class Stabilisation:
         self._bodies = [body for body in bodies(model) if not attached & set(body.parts)]
         self._joined = joined(model, contacts, attached)
         self._free: list[_Free] = []
+        self._loose: list[_Free] = []
+        self._held: list[Held] = []
         self._begun: Floats = np.zeros((0, 3))
         self._anchor: Floats = self._begun
         self._spent = 0.0
@@ -120,13 +125,18 @@ class Stabilisation:
         return *(free.stiffness for free in self._free), self.flow.stiffness
 
     @property
+    def watches(self) -> bool:
+        """Whether there is a body that only contact can hold, with springs or without."""
+        return bool(self._loose)
+
+    @property
     def trusts(self) -> bool:
         """Whether contact alone is to hold a body in this attempt."""
         return any(free.trusted for free in self._free)
 
     def clear(self) -> None:
         """Nothing is free."""
-        self._free, self.notes, self.careful = [], [], False
+        self._free, self._loose, self.notes, self.careful = [], [], [], False
 
     def begin(self, held: Sequence[Held], step: str, now: bool = True) -> None:
         """Find out what a step leaves free.
@@ -140,6 +150,7 @@ class Stabilisation:
             InputError: A body is free and nothing can hold it.
         """
         self.clear()
+        self._held = list(held)
         for body in self._joined:
             modes = free_modes(body, held, self._comm)
             if len(modes):
@@ -163,9 +174,11 @@ class Stabilisation:
         """
         self._begun = self._anchor = u.copy()
         self._spent, self._count = 0.0, 0
-        for free in self._free:
+        for free in self._loose:
             total = self._comm.allreduce(load[free.body.nodes].sum(axis=0))
-            needed = float(np.linalg.norm(total)) / (free.body.count * free.size)
+            free.load = float(np.linalg.norm(total))
+        for free in self._free:
+            needed = free.load / (free.body.count * free.size)
             free.trusted = not self.careful and free.sticks()
             free.stiffness = 0.0 if free.trusted else max(needed, WITHOUT_LOADS * self._scale)
 
@@ -231,10 +244,43 @@ class Stabilisation:
         """
         return any([not free.sticks() or self._far(free, u) for free in self._free if free.trusted])
 
-    def _far(self, free: _Free, u: Floats) -> bool:
+    def lost(self, u: Floats) -> str:
+        """Bodies that contact has thrown off, with their free motions in words; empty if none is.
+
+        Without any force a body is in balance wherever it is. That is no state to accept where the
+        body has moved by more than a facet beyond all that prescribed motions can explain.
+
+        Args:
+            u: Displacement of the local nodes in equilibrium, (nodes, 3), length.
+        """
+        gone = [one for one in self._loose if self._far(one, u)]
+        explained = self._prescribed(u) if gone else 0.0
+        gone = [g for g in gone if self._far(g, u, explained) and self._carries_nothing(g, u)]
+        return "; ".join(f"body {g.body.name!r} has lost all contact: {g.modes}" for g in gone)
+
+    def _carries_nothing(self, free: _Free, u: Floats) -> bool:
+        """Whether contact carries neither the loads on a body nor more than round-off."""
+        force = np.zeros_like(u)
+        for contact in free.contacts:
+            contact.add_force(force)
+        carried = np.sqrt(self._comm.allreduce(float((force[free.body.nodes] ** 2).sum())))
+        if free.load > 0.0 and carried > 0.5 * free.load:
+            return False
+        return bool(carried <= NOTHING * self._scale * free.size)
+
+    def _far(self, free: _Free, u: Floats, explained: float = 0.0) -> bool:
         nodes = free.body.nodes
         way = np.linalg.norm(u[nodes] - self._begun[nodes], axis=1).max(initial=0.0)
-        return bool(max(self._comm.allgather(float(way))) > free.size)
+        return bool(max(self._comm.allgather(float(way))) > free.size + explained)
+
+    def _prescribed(self, u: Floats) -> float:
+        """Farthest that supports and rigid bodies have moved since the attempt began, length."""
+        moved = u - self._begun
+        ways = [np.abs(moved[nodes] @ axis).max(initial=0.0) for nodes, axis in self._held]
+        for contact in self._contacts:
+            if isinstance(contact, Contact) and contact.body is not None:
+                ways.append(contact.body.farthest(contact.current.points))
+        return float(np.sqrt(3.0) * max(self._comm.allgather(float(max(ways, default=0.0)))))
 
     def untouched(self) -> bool:
         """Whether a free body is touched by nothing in the trial."""
@@ -255,6 +301,7 @@ class Stabilisation:
         text = f"body {body.name!r} is free to move: {modes}"
         size = min(facet_size(self._model, c.slave) for c in contacts)
         free = _Free(body, modes, contacts, size)
+        self._loose.append(free)
         if not self.enabled:
             if now and not free.touched():
                 raise InputError(f"{text}; nothing touches it and stabilisation is off", field)
