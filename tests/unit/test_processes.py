@@ -119,6 +119,8 @@ def test_files_in_pieces_are_those_of_one_process(case: Path) -> None:
         assert b[name].min(axis=0) == pytest.approx(low, abs=1e-9 * np.abs(a[name]).max())
         assert b[name].max(axis=0) == pytest.approx(high, abs=1e-9 * np.abs(a[name]).max())
     c, d = one.contact(), two.contact()
+    assert list((two.folder / "contact").glob("*.pvtp"))
+    assert set(c.point_data.keys()) == set(d.point_data.keys())
     order = [np.lexsort(np.round(x.points, 6).T) for x in (c, d)]
     assert np.allclose(c["traction"][order[0]], d["traction"][order[1]], rtol=1e-9)
     assert two.surfaces().n_points == one.surfaces().n_points

@@ -101,12 +101,11 @@ def von_mises(stress: Floats) -> Floats:
     return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
 
 
-def slave_points(contacts: Iterable[AnyContact], comm: Any) -> DataSet | None:
-    """The slave points of all contacts where they are now; None but on the first rank.
+def slave_points(contacts: Iterable[AnyContact]) -> DataSet | None:
+    """The slave points of this rank of all contacts where they are now; None without a contact.
 
     Args:
         contacts: The contacts.
-        comm: Communicator of the mesh.
 
     Returns:
         Points with `contact` (its number), `pass` (1 on the master of two half passes, else 0),
@@ -117,8 +116,7 @@ def slave_points(contacts: Iterable[AnyContact], comm: Any) -> DataSet | None:
         `dissipation` [stress length], `normal` of the master, and both axes of adhesion and
         friction, `direction_adhesion_1` and so on.
     """
-    local = [_point_data(i, contact) for i, contact in enumerate(contacts)]
-    parts = [part for rank in comm.gather(local) or [] for part in rank]
+    parts = [_point_data(i, contact) for i, contact in enumerate(contacts)]
     if not parts:
         return None
     joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}

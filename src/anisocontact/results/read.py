@@ -132,10 +132,21 @@ class Results:
 
         path = self._file(name, index)
         with _whole(path):
-            data = pyvista.read(path)
+            data = _pieces(path) if path.suffix == ".pvtp" else pyvista.read(path)
             if not data.n_points:  # VTK says nothing of a file that is cut off
                 raise ValueError("no points")
         return data
+
+
+def _pieces(path: Path) -> Any:
+    """Points or surfaces of several processes, which pyvista has no reader for."""
+    import pyvista
+    from vtkmodules.vtkIOXML import vtkXMLPPolyDataReader
+
+    reader = vtkXMLPPolyDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    return pyvista.wrap(reader.GetOutput())
 
 
 @contextmanager

@@ -30,7 +30,8 @@ __all__ = ["Writer"]
 class Writer:
     """Writes a run into a folder; every file in it is whole at any moment.
 
-    Every rank makes the same calls and writes its piece of the bodies, the first one the rest.
+    Every rank makes the same calls and writes its pieces of bodies, slave points and checkpoints,
+    the first one the rest.
 
     Args:
         folder: Where; what an earlier run left there is removed.
@@ -281,8 +282,7 @@ class Writer:
 
     def _write_fields(self, at: float) -> None:
         self._fields.add(self._disk, at, self._bodies.grid())
-        points = slave_points(self._problem.contacts, self._problem.comm)
-        self._points.add(self._disk, at, points)
+        self._points.add(self._disk, at, slave_points(self._problem.contacts))
         self._surfaces.add(self._disk, at, self._masters.mesh())
         self._written = at
 
