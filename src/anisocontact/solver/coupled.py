@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csr_array
+from scipy.sparse import bsr_array, csr_array
 
 from anisocontact._fenicsx import Mat, PETSc
 from anisocontact.contact.transfer import Couplings
@@ -68,10 +68,19 @@ class CoupledTangent:
         self._given = np.full(1, -1, dtype=np.int64)
 
     @cached_property
+    def _of_bulk(self) -> csr_array:
+        """Pattern of the bulk in the rows of this rank, columns of the whole system."""
+        starts, columns, _ = self._stiffness.getValuesCSR()
+        starts = np.append(starts, [starts[-1]] * (self._size[0] + 1 - len(starts)))
+        shape = (self._size[0], self._size[1])
+        return csr_array((np.ones(len(columns), dtype=bool), columns, starts), shape=shape)
+
+    @cached_property
     def _entries(self) -> tuple[Keys, Keys]:
         """Rows and columns of the entries of the bulk on this rank."""
-        starts, columns, _ = self._stiffness.getValuesCSR()
-        return np.repeat(np.arange(len(starts) - 1) + self._first, np.diff(starts)), columns
+        pattern = self._of_bulk
+        rows = np.arange(pattern.shape[0]) + self._first
+        return np.repeat(rows, np.diff(pattern.indptr)), pattern.indices
 
     def new_matrix(self) -> Mat:
         """Matrix for `make_room` and `add`, with the pattern of the bulk for now."""
@@ -112,7 +121,7 @@ class CoupledTangent:
     def _locate(self, keys: Keys, out: Mat) -> bool:
         """Places of the blocks of `keys`; whether the pattern grows by some that are new."""
         there = np.flatnonzero(keys >= 0)
-        unknown = np.setdiff1d(keys[there], self._keys)
+        unknown = np.unique(keys[there][~_found(self._keys, keys[there])])
         grown = bool(self._comm.allreduce(unknown.size) > 0)
         if grown:
             self._keys = np.union1d(self._keys, unknown)
@@ -125,14 +134,19 @@ class CoupledTangent:
 
     def _preallocate(self, matrix: Mat) -> None:
         row, column = self._places()
-        component = np.arange(3)
-        rows = 3 * row[:, None, None] + component[:, None]
-        columns = 3 * column[:, None, None] + component
-        shape = (len(self._keys), 3, 3)
-        matrix.setPreallocationCOO(
-            _joined(self._entries[0], np.broadcast_to(rows, shape)),
-            _joined(self._entries[1], np.broadcast_to(columns, shape)),
-        )
+        if self._comm.size == 1:  # a quarter of the time of the way for several
+            whole = self._of_bulk + _entries_of(row, column, self._size[0])
+            sides = (a.astype(PETSc.IntType) for a in (whole.indptr, whole.indices))
+            matrix.setPreallocationCSR(tuple(sides))
+        else:
+            component = np.arange(3)
+            rows = 3 * row[:, None, None] + component[:, None]
+            columns = 3 * column[:, None, None] + component
+            shape = (len(self._keys), 3, 3)
+            matrix.setPreallocationCOO(
+                _joined(self._entries[0], np.broadcast_to(rows, shape)),
+                _joined(self._entries[1], np.broadcast_to(columns, shape)),
+            )
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         matrix.assemble()
 
@@ -147,6 +161,22 @@ class CoupledTangent:
         local = found < 0
         found[local] = self._global[nodes[local]]
         return found
+
+
+def _found(known: Keys, keys: Keys) -> npt.NDArray[np.bool_]:
+    """Whether each key is among those that are known, which are sorted."""
+    if not len(known):
+        return np.zeros(len(keys), dtype=bool)
+    places = np.minimum(np.searchsorted(known, keys), len(known) - 1)
+    return np.asarray(known[places] == keys)
+
+
+def _entries_of(row: Keys, column: Keys, unknowns: int) -> csr_array:
+    """Pattern of the unknowns of pairs of nodes, (unknowns, unknowns)."""
+    nodes = unknowns // 3
+    pairs = csr_array((np.ones(len(row), dtype=bool), (row, column)), shape=(nodes, nodes))
+    blocks = np.ones((pairs.nnz, 3, 3), dtype=bool)
+    return bsr_array((blocks, pairs.indices, pairs.indptr), shape=(unknowns, unknowns)).tocsr()
 
 
 def _joined(bulk: Any, contact: Any) -> Any:
