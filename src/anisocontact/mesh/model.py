@@ -64,8 +64,8 @@ class Model:
         """
         own = arrays.shared(comm)
         mesh = create_mesh(comm, own.cell, own.degree, own.cells, own.points)
-        bodies = {name: _located(mesh, 3, own.cells[cells]) for name, cells in own.bodies.items()}
-        facets = {name: _located(mesh, 2, nodes) for name, nodes in own.facets.items()}
+        bodies = _located(mesh, 3, {name: own.cells[cells] for name, cells in own.bodies.items()})
+        facets = _located(mesh, 2, own.facets)
         return cls(mesh, bodies, facets, arrays.order, arrays.linear)
 
     @classmethod
@@ -153,9 +153,18 @@ class Model:
         return int(self.mesh.comm.allreduce(owned))
 
 
-def _located(mesh: Any, dim: int, nodes: npt.NDArray[np.int64]) -> Ints:
-    found, _ = locate_entities(mesh, dim, nodes, np.zeros(len(nodes), dtype=np.int32))
-    return found
+def _located(mesh: Any, dim: int, groups: Mapping[str, npt.NDArray[np.int64]]) -> dict[str, Ints]:
+    """Local entities of each group, from the nodes of each of its entities."""
+    if mesh.comm.size == 1 and groups:
+        rows = np.concatenate(list(groups.values()))
+        numbers = np.repeat(np.arange(len(groups), dtype=np.int32), [*map(len, groups.values())])
+        found, of_group = locate_entities(mesh, dim, rows, numbers)
+        if len(found) == len(rows):  # none is in two groups
+            return {name: found[of_group == i] for i, name in enumerate(groups)}
+    return {
+        name: locate_entities(mesh, dim, nodes, np.zeros(len(nodes), dtype=np.int32))[0]
+        for name, nodes in groups.items()
+    }
 
 
 def _looked_up(known: dict[str, Ints], name: str, kind: str, field: str) -> Ints:

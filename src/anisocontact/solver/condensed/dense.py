@@ -22,7 +22,7 @@ Singles = npt.NDArray[np.float32]
 Block = tuple[slice, Floats]
 
 #: Krylov iterations after which the factor is renewed: a new one costs as much as some fifty.
-PATIENCE = 16
+PATIENCE = 24
 #: Residual that Krylov iterations in single precision reach before they begin anew.
 _SINGLE = 1e-4
 #: Most of such beginnings with one factor.
@@ -135,18 +135,22 @@ class Places:
             self._locate(key, size)
         if not len(key):
             return scipy.sparse.csr_array((size, size))
-        sums = np.add.reduceat(np.concatenate(blocks)[self._order], self._first, axis=0)
+        sums = self._sum @ np.concatenate(blocks)
         parts = (sums.ravel()[self._entry.data], self._entry.indices, self._entry.indptr)
         return scipy.sparse.csr_array(parts, shape=(size, size))
 
     def _locate(self, key: Ints, size: int) -> None:
         """Sort pairs of nodes, each of them a number."""
         self._keys = key
-        self._order = np.argsort(key, kind="stable")
-        self._first = np.flatnonzero(np.diff(key[self._order], prepend=-1))
-        pairs = np.divmod(key[self._order][self._first], len(self._number))
+        order = np.argsort(key, kind="stable")
+        first = np.flatnonzero(np.diff(key[order], prepend=-1))
+        starts = np.append(first, len(key))
+        self._sum = scipy.sparse.csr_array(
+            (np.ones(len(key)), order, starts), shape=(len(first), len(key))
+        )
+        pairs = np.divmod(key[order][first], len(self._number))
         row, column = (self._number[node] for node in pairs)
-        shape = (len(self._first), 3, 3)
+        shape = (len(first), 3, 3)
         rows, columns = (
             np.broadcast_to(row[:, :, None], shape),
             np.broadcast_to(column[:, None, :], shape),
