@@ -6,6 +6,7 @@ bound by the memory that they read.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
@@ -290,24 +291,57 @@ def gmres(
     basis = np.empty((len(b), most + 1), dtype=b.dtype, order="F")
     directions = np.empty((len(b), most), dtype=b.dtype, order="F")
     basis[:, 0] = b / norm
-    hessenberg = np.zeros((most + 1, most))
-    right = np.zeros(most + 1)
-    right[0] = norm
-    y, left, used = np.zeros(0), 1.0, 0
+    reduced = _Reduced(norm, most)
+    left, used = 1.0, 0
     while used < most:
-        j = used
+        directions[:, used], w = step(basis[:, used])
         used += 1
-        directions[:, j], w = step(basis[:, j])
+        column = np.zeros(used + 1)
         for _ in range(2):  # twice is enough for orthogonality to rounding
             shares = product(1.0, basis[:, :used], w, trans=1)
-            hessenberg[:used, j] += shares
+            column[:used] += shares
             w = product(-1.0, basis[:, :used], shares, beta=1.0, y=w)
         length = float(np.linalg.norm(w))
-        hessenberg[used, j] = length
-        h = hessenberg[: used + 1, :used]
-        y = np.linalg.lstsq(h, right[: used + 1])[0]
-        left = float(np.linalg.norm(h @ y - right[: used + 1])) / norm
+        column[used] = length
+        left = reduced.add(column) / norm
         if left <= rtol or length == 0.0 or not np.isfinite(left):
             break
         basis[:, used] = w / length
-    return product(1.0, directions[:, :used], y.astype(b.dtype)), left, used
+    y = reduced.solution().astype(b.dtype)
+    return product(1.0, directions[:, :used], y), left, used
+
+
+class _Reduced:
+    """Small problem of least squares in GMRES, made triangular by rotations as columns come.
+
+    Source: Saad, Iterative methods for sparse linear systems, 6.5.3.
+
+    Args:
+        norm: Norm of the right-hand side.
+        most: Most columns.
+    """
+
+    def __init__(self, norm: float, most: int) -> None:
+        self._triangle = np.zeros((most, most))
+        self._right = [norm]
+        self._turns: list[tuple[float, float]] = []
+
+    def add(self, column: Floats) -> float:
+        """Take the next column of the Hessenberg matrix; the norm of the residual with it."""
+        values = column.tolist()
+        for i, (c, s) in enumerate(self._turns):
+            upper, lower = values[i : i + 2]
+            values[i : i + 2] = c * upper + s * lower, c * lower - s * upper
+        upper, lower = values[-2:]
+        size = math.hypot(upper, lower)
+        c, s = (upper / size, lower / size) if size != 0.0 else (0.0, 1.0)
+        self._turns.append((c, s))
+        last = len(self._turns)
+        self._triangle[:last, last - 1] = [*values[:-2], size]
+        self._right[-1:] = [c * self._right[-1], -s * self._right[-1]]
+        return abs(self._right[-1])
+
+    def solution(self) -> Floats:
+        """The coefficients that make the residual smallest."""
+        count = len(self._turns)
+        return np.linalg.lstsq(self._triangle[:count, :count], self._right[:-1])[0]
