@@ -145,6 +145,19 @@ struct Compared {
   double relative() const { return size > 0.0 ? most / size : most; }
 };
 
+/// Derivative of what acts by an input.
+Eigen::Matrix3d matrix(const kernel::PairSlopes& d, std::size_t acts, std::size_t input) {
+  using kernel::PairSlopes;
+  Eigen::Matrix3d m = Eigen::Matrix3d::Zero();
+  for (std::size_t a = 0; a < 2; ++a)
+    m += d.along_friction[acts][a] * d.friction[a].by[input].transpose();
+  if (input >= kernel::Near::inputs) return m;
+  for (const std::size_t f : PairSlopes::terms(acts))
+    if (f < (d.interior ? PairSlopes::first_beside : PairSlopes::near_forms))
+      m += d.along[acts][f] * d.near[f].by[input].transpose();
+  return m;
+}
+
 double difference(const kernel::PairResult& a, const kernel::PairSlopes& d,
                   const oracle::Result& b) {
   Compared traction, shift, couple;
@@ -155,15 +168,17 @@ double difference(const kernel::PairResult& a, const kernel::PairSlopes& d,
       if (q > 0) couple.add(a.couple[q - 1][i], b.couple[q - 1][i].v);
       const oracle::S& exact = q == 0 ? b.traction[i] : b.couple[q - 1][i];
       for (std::size_t j = 0; j < oracle::variables; ++j)
-        slopes[q].add(d.matrix(q, j / 3)(i, static_cast<Eigen::Index>(j % 3)), exact.d[j]);
+        slopes[q].add(matrix(d, q, j / 3)(i, static_cast<Eigen::Index>(j % 3)), exact.d[j]);
     }
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < oracle::variables; ++j) {
       const double mine = j < 12 ? d.near[i].by[j / 3][static_cast<Eigen::Index>(j % 3)] : 0.0;
       shift.add(mine, b.xi[i].d[j]);
     }
+  Compared sizes;
+  sizes.add(d.size(), matrix(d, 0, kernel::index(kernel::Input::slave)).norm());
   return std::max({traction.relative(), shift.relative(), couple.relative(), slopes[0].relative(),
-                   slopes[1].relative(), slopes[2].relative()});
+                   slopes[1].relative(), slopes[2].relative(), sizes.relative()});
 }
 
 double difference(const kernel::PointState& a, const kernel::PointState& b) {

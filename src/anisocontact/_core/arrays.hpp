@@ -9,9 +9,14 @@
 #include <cstdint>
 #include <initializer_list>
 #include <memory>
+#include <new>
 #include <type_traits>
 #include <utility>
 #include <vector>
+
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
 
 #include "anisocontact/tensor/dual.hpp"
 
@@ -29,16 +34,19 @@ using Bytes = nb::ndarray<const std::uint8_t, nb::shape<-1, -1>, nb::c_contig, n
 /// has gone. Fresh memory costs more than what is written to it. Only with Python's lock held.
 class Pool {
  public:
+  struct Free {
+    void operator()(double* p) const { ::operator delete[](p, line); }
+  };
   struct Block {
     std::size_t size;
-    std::unique_ptr<double[]> data;
+    std::unique_ptr<double[], Free> data;
   };
 
   /// A block of at least n numbers, not initialised.
   Block take(std::size_t n) {
     const auto fits =
         std::find_if(free_.begin(), free_.end(), [&](const Block& b) { return b.size >= n; });
-    if (fits == free_.end()) return {n, std::unique_ptr<double[]>(new double[n])};
+    if (fits == free_.end()) return fresh(n);
     Block b = std::move(*fits);
     free_.erase(fits);
     return b;
@@ -50,6 +58,21 @@ class Pool {
   }
 
  private:
+  static constexpr std::align_val_t line{64};  ///< of the cache, for stores past it
+
+  static Block fresh(std::size_t n) {
+    Block b{n, {static_cast<double*>(::operator new[](n * sizeof(double), line)), {}}};
+#if defined(MADV_HUGEPAGE)
+    // large pages where there is room for them: their addresses are found sooner
+    constexpr std::uintptr_t page = std::uintptr_t{1} << 21U;
+    const auto begin = reinterpret_cast<std::uintptr_t>(b.data.get());
+    const std::uintptr_t first = (begin + page - 1) / page * page,
+                         last = (begin + n * sizeof(double)) / page * page;
+    if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+#endif
+    return b;
+  }
+
   std::vector<Block> free_;
 };
 

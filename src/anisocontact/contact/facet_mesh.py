@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy.sparse
 
 from anisocontact._fenicsx import basix, facet_sides, scalar_element
 from anisocontact.facets import FacetSets, FacetSurface, outward_flips
@@ -232,6 +233,11 @@ class SlavePoints:
         self.nodes = np.repeat(facets.nodes, q, axis=0)
         self.shape = np.tile(rule.shape, (count, 1))
         self.gradient = np.tile(rule.gradient, (count, 1, 1))
+        first = np.arange(0, self.nodes.size + 1, self.nodes.shape[1])
+        self._interpolation = scipy.sparse.csr_array(
+            (self.shape.ravel(), self.nodes.ravel(), first),
+            shape=(len(self.nodes), int(self.nodes.max(initial=-1)) + 1),
+        )
         tangents = np.einsum("pkd,pki->pdi", self.gradient, reference[self.nodes])
         stretch = np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
         weights = np.tile(rule.weights, count)
@@ -252,4 +258,4 @@ class SlavePoints:
 
     def positions(self, now: Floats) -> Floats:
         """Positions of the points, (n, 3), from those of the nodes, (nodes, 3), length."""
-        return np.ascontiguousarray(np.einsum("pk,pki->pi", self.shape, now[self.nodes]))
+        return np.asarray(self._interpolation @ now[: self._interpolation.shape[1]])

@@ -39,7 +39,7 @@ class Turn {
   template <class S>
   Vec3<S> operator()(const Vec3<S>& normal, const Vec3<S>& e) const {
     const Vec3<S> f = normal.cross(e);
-    return S(c_) * e + S(s_) * f;
+    return c_ * e + s_ * f;
   }
 
  private:

@@ -109,9 +109,8 @@ struct ReferencePlane {
 
   /// `orientation`: on which side of the reference the normal is about which directions turn.
   ReferencePlane(const Carrier& b, double orientation)
-      : body(b),
-        plane(surface::tangent_plane(detail::beside<S>(b.reference))),
-        xi(detail::beside<S>(b.xi)) {
+      : body(b), plane{.jet = detail::beside<S>(b.reference)}, xi(detail::beside<S>(b.xi)) {
+    surface::put_tangent_plane(plane);
     if (orientation < 0.0) plane.normal = -plane.normal;
   }
 };
@@ -134,7 +133,7 @@ PlaneAxes carried(const anisotropy::AnyField& field, const ReferencePlane<S>& re
   return r;
 }
 
-/// Axes of adhesion and friction at a point.
+/// Axes of adhesion and friction at a point; those of the second surface where it has a field.
 struct LawAxes {
   PlaneAxes adhesion, friction, second;
 
@@ -145,8 +144,7 @@ struct LawAxes {
 template <class AxesAt>
 LawAxes law_axes(const InterfaceLaw& l, AxesAt&& axes_at) {
   LawAxes a{axes_at(l.adhesion_directions), axes_at(l.friction_directions), {}};
-  const auto& second = l.friction_directions_second;
-  a.second = second.field ? axes_at(second) : a.friction;
+  if (const auto& second = l.friction_directions_second; second.field) a.second = axes_at(second);
   return a;
 }
 

@@ -38,6 +38,12 @@ struct PairShapes {
   SlaveArea area;
 };
 
+/// A block that a point is added to; a fresh one holds nothing yet.
+struct Block {
+  double* values{nullptr};
+  bool fresh{false};
+};
+
 namespace detail {
 
 using Row = std::array<double, 3 * 2 * most_nodes>;
@@ -60,13 +66,12 @@ constexpr std::array<std::size_t, 2> bends(std::size_t masters) {
 
 /// out = sum of factors times rows.
 template <std::size_t K, class Length>
-void combine(Length length, const std::array<double, K>& c,
-             const std::array<const double*, K>& rows, double* out) noexcept {
-  for (std::size_t j = 0; j < length; ++j) {
-    double sum = c[0] * rows[0][j];
-    for (std::size_t k = 1; k < K; ++k) sum += c[k] * rows[k][j];
-    out[j] = sum;
-  }
+ANISOCONTACT_INLINE void combine(Length length, const std::array<double, K>& c,
+                                 const std::array<const double*, K>& rows, double* out) noexcept {
+  const auto sum = [&]<std::size_t... I>(std::index_sequence<I...>) ANISOCONTACT_INLINE_LAMBDA {
+    for (std::size_t j = 0; j < length; ++j) out[j] = (... + (c[I] * rows[I][j]));
+  };
+  sum(std::make_index_sequence<K>{});
 }
 
 /// Writes the columns of one point: its linear forms in the displacements of nodes, and from them what
@@ -79,7 +84,8 @@ class Columns {
   /// Columns of the nodes of the slave and of the master; `merged` where the history was committed
   /// on the same facet.
   template <class Slaves, class Masters, class Length>
-  void own(Slaves slaves, Masters masters, Length length, bool merged, ColumnRows& out) noexcept {
+  ANISOCONTACT_INLINE void own(Slaves slaves, Masters masters, Length length, bool merged,
+                               ColumnRows& out) noexcept {
     for (std::size_t f = 0; f < 2; ++f) {
       const auto& by = d_.friction[f].by;
       double* to = friction_[f].data();
@@ -111,7 +117,7 @@ class Columns {
 
   /// Columns of the nodes of the facet on which the history was committed.
   template <class Masters, class Length>
-  void before(Masters masters, Length length, ColumnRows& out) noexcept {
+  ANISOCONTACT_INLINE void before(Masters masters, Length length, ColumnRows& out) noexcept {
     for (std::size_t f = 0; f < 2; ++f) {
       std::fill_n(friction_[f].data(), 3 * masters, 0.0);
       add_before(masters, d_.friction[f].by, friction_[f].data());
@@ -125,21 +131,23 @@ class Columns {
   }
 
  private:
-  static double part(const Vec3<double>& v, std::size_t i) {
+  ANISOCONTACT_INLINE static double part(const Vec3<double>& v, std::size_t i) {
     return v[static_cast<Eigen::Index>(i)];
   }
 
   /// A form in value and derivatives of a displacement, by the nodes; returns the end.
   template <class Count>
-  static double* spread(Count count, const NodalShape& s, const Vec3<double>& v,
-                        const Vec3<double>& v1, const Vec3<double>& v2, double* to) {
+  ANISOCONTACT_INLINE static double* spread(Count count, const NodalShape& s, const Vec3<double>& v,
+                                            const Vec3<double>& v1, const Vec3<double>& v2,
+                                            double* to) {
     for (std::size_t a = 0; a < count; ++a)
       for (Eigen::Index j = 0; j < 3; ++j)
         *to++ = s.n[a] * v[j] + s.dn[a][0] * v1[j] + s.dn[a][1] * v2[j];
     return to;
   }
   template <class Count>
-  void add_before(Count count, const std::array<Vec3<double>, inputs>& by, double* to) const {
+  ANISOCONTACT_INLINE void add_before(Count count, const std::array<Vec3<double>, inputs>& by,
+                                      double* to) const {
     const auto& s = s_.before;
     const auto &v = by[index(Input::before_position)], &v1 = by[before_input(0)],
                &v2 = by[before_input(1)];
@@ -150,7 +158,7 @@ class Columns {
 
   /// Change of the area with the nodes of the slave.
   template <class Slaves, class Length>
-  void put_growth(Slaves slaves, Length length) {
+  ANISOCONTACT_INLINE void put_growth(Slaves slaves, Length length) {
     std::fill_n(growth_.data(), length, 0.0);
     if (!s_.area.current) return;
     const Vec3<double> m = s_.area.cross().normalized(), zero = Vec3<double>::Zero();
@@ -160,7 +168,7 @@ class Columns {
   }
 
   template <class Length>
-  void force(Length length, Rows& out) {
+  ANISOCONTACT_INLINE void force(Length length, Rows& out) {
     const auto& f = d_.along_friction[0];
     const auto& n = d_.along[0];
     for (std::size_t i = 0; i < 3; ++i)
@@ -174,7 +182,7 @@ class Columns {
 
   /// d (A m_j) - A t d xi^j, with the first `Terms` of its forms.
   template <std::size_t Terms, class Length>
-  void lever(Length length, std::size_t j, Rows& out) {
+  ANISOCONTACT_INLINE void lever(Length length, std::size_t j, Rows& out) {
     constexpr std::size_t K = Terms + 4;
     const auto& to = d_.along_friction[1 + j];
     const auto terms = PairSlopes::terms(1 + j);
@@ -191,7 +199,7 @@ class Columns {
 
   /// m_j d xi^k M_,jk, the mixed derivative once.
   template <class Length>
-  void bend(Length length, std::size_t k, Rows& out) {
+  ANISOCONTACT_INLINE void bend(Length length, std::size_t k, Rows& out) {
     const std::size_t a = k / 2, b = k - a;  // 11, 12, 22
     for (std::size_t i = 0; i < 3; ++i)
       combine<2>(length,
@@ -208,31 +216,77 @@ class Columns {
   Row growth_;
 };
 
-/// Adds rows times columns, or writes them where the block is `fresh`; `length` is the number of
+/// Adds rows times columns, or writes them where the block is `Fresh`; `length` is the number of
 /// entries in a row. Without `bent` nothing in these columns moves the projection.
-template <class Slaves, class Masters, class Length>
-void add_rows(Slaves slaves, Masters masters, Length length, const PairShapes& s,
-              const ColumnRows& columns, bool bent, bool fresh, double* out) noexcept {
-  if (fresh) std::fill_n(out, 3 * (slaves + masters) * length, 0.0);
+template <bool Fresh, class Slaves, class Masters, class Length>
+ANISOCONTACT_INLINE void add_rows(Slaves slaves, Masters masters, Length length,
+                                  const PairShapes& s, const ColumnRows& columns, bool bent,
+                                  double* out) noexcept {
+  const auto old = [&](std::size_t j) ANISOCONTACT_INLINE_LAMBDA { return Fresh ? 0.0 : out[j]; };
   for (std::size_t a = 0; a < slaves; ++a)
     for (std::size_t i = 0; i < 3; ++i, out += length) {
       const double* const force = columns.acting[0][i].data();
-      for (std::size_t j = 0; j < length; ++j) out[j] -= s.slave.n[a] * force[j];
+      for (std::size_t j = 0; j < length; ++j) out[j] = old(j) - s.slave.n[a] * force[j];
     }
+  const auto [first_bend, last_bend] = bends(masters);
   for (std::size_t b = 0; b < masters; ++b) {
     const double n = s.master.n[b], n1 = s.master.dn[b][0], n2 = s.master.dn[b][1];
     for (std::size_t i = 0; i < 3; ++i, out += length) {
       const double *const force = columns.acting[0][i].data(),
                           *const first = columns.acting[1][i].data(),
                           *const second = columns.acting[2][i].data();
+      if (bent && last_bend == first_bend + 1) {
+        const double bend = s.bend[b][first_bend];
+        const double* const moved = columns.bend[first_bend][i].data();
+        for (std::size_t j = 0; j < length; ++j)
+          out[j] = old(j) + n * force[j] - n1 * first[j] - n2 * second[j] - bend * moved[j];
+        continue;
+      }
       for (std::size_t j = 0; j < length; ++j)
-        out[j] += n * force[j] - n1 * first[j] - n2 * second[j];
-      for (std::size_t k = bends(masters)[0]; bent && k < bends(masters)[1]; ++k) {
-        const double* const bend = columns.bend[k][i].data();
-        for (std::size_t j = 0; j < length; ++j) out[j] -= s.bend[b][k] * bend[j];
+        out[j] = old(j) + n * force[j] - n1 * first[j] - n2 * second[j];
+      for (std::size_t k = first_bend; bent && k < last_bend; ++k) {
+        const double* const moved = columns.bend[k][i].data();
+        for (std::size_t j = 0; j < length; ++j) out[j] -= s.bend[b][k] * moved[j];
       }
     }
   }
+}
+template <class Slaves, class Masters, class Length>
+ANISOCONTACT_INLINE void add_rows(Slaves slaves, Masters masters, Length length,
+                                  const PairShapes& s, const ColumnRows& columns, bool bent,
+                                  Block block) noexcept {
+  if (block.fresh)
+    add_rows<true>(slaves, masters, length, s, columns, bent, block.values);
+  else
+    add_rows<false>(slaves, masters, length, s, columns, bent, block.values);
+}
+
+/// Three times a number of nodes, constant where that is.
+template <std::size_t N>
+constexpr auto entries(std::integral_constant<std::size_t, N>) {
+  return std::integral_constant<std::size_t, 3 * N>{};
+}
+constexpr std::size_t entries(std::size_t n) { return 3 * n; }
+template <std::size_t N, std::size_t M>
+constexpr auto total(std::integral_constant<std::size_t, N>,
+                     std::integral_constant<std::size_t, M>) {
+  return std::integral_constant<std::size_t, N + M>{};
+}
+constexpr std::size_t total(std::size_t n, std::size_t m) { return n + m; }
+
+template <class Slaves, class Masters>
+ANISOCONTACT_INLINE void add_tangent_of(Slaves slaves, Masters masters, const PairResult& r,
+                                        const PairSlopes& d, const PairShapes& s, Block own,
+                                        Block earlier) noexcept {
+  ColumnRows rows;
+  Columns columns(r, d, s);
+  const auto length = entries(total(slaves, masters));
+  columns.own(slaves, masters, length, earlier.values == nullptr && s.before.count > 0, rows);
+  add_rows(slaves, masters, length, s, rows, true, own);
+  if (earlier.values == nullptr) return;
+  const auto part = entries(masters);
+  columns.before(masters, part, rows);
+  add_rows(slaves, masters, part, s, rows, false, earlier);
 }
 
 /// Calls f with both numbers of nodes, as constants for the usual facets.
@@ -252,19 +306,6 @@ void with_counts(std::size_t slaves, std::size_t masters, const F& f) {
   f(slaves, masters);
 }
 
-/// Three times a number of nodes, constant where that is.
-template <std::size_t N>
-constexpr auto entries(std::integral_constant<std::size_t, N>) {
-  return std::integral_constant<std::size_t, 3 * N>{};
-}
-constexpr std::size_t entries(std::size_t n) { return 3 * n; }
-template <std::size_t N, std::size_t M>
-constexpr auto total(std::integral_constant<std::size_t, N>,
-                     std::integral_constant<std::size_t, M>) {
-  return std::integral_constant<std::size_t, N + M>{};
-}
-constexpr std::size_t total(std::size_t n, std::size_t m) { return n + m; }
-
 }  // namespace detail
 
 /// Adds the residual of a point: three components for each node of the slave, then of the master.
@@ -279,27 +320,15 @@ inline void add_residual(const PairResult& r, const PairShapes& s, double* out) 
         s.master.dn[b][1] * r.couple[1]);
 }
 
-/// A block that a point is added to; a fresh one holds nothing yet.
-struct Block {
-  double* values{nullptr};
-  bool fresh{false};
-};
-
 /// Adds the tangent of a point. Rows of both blocks: nodes of the slave, then of the master.
 /// Columns of `own`: the same; of `earlier`: the nodes of the facet on which the history was
 /// committed. Without `earlier` that is the master's, or there is none.
 inline void add_tangent(const PairResult& r, const PairSlopes& d, const PairShapes& s, Block own,
                         Block earlier) noexcept {
   detail::with_counts(s.slave.count, s.master.count, [&](auto slaves, auto masters) {
-    detail::ColumnRows rows;
-    detail::Columns columns(r, d, s);
-    const auto length = detail::entries(detail::total(slaves, masters));
-    columns.own(slaves, masters, length, earlier.values == nullptr && s.before.count > 0, rows);
-    detail::add_rows(slaves, masters, length, s, rows, true, own.fresh, own.values);
-    if (earlier.values == nullptr) return;
-    const auto part = detail::entries(masters);
-    columns.before(masters, part, rows);
-    detail::add_rows(slaves, masters, part, s, rows, false, earlier.fresh, earlier.values);
+    with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
+      detail::add_tangent_of(slaves, masters, r, d, s, own, earlier);
+    });
   });
 }
 

@@ -82,14 +82,11 @@ PairResult update_pair(const InterfaceLaw& law, const PointState& state, const P
   const LawAxes axes = law_axes(law, axes_at);
   if (!axes.valid()) return fail(Failure::direction);
   put_axes(axes, out.adhesion_axes, out.friction_axes);
-  std::optional<surface::Geometry<double>> before;
   std::optional<CommittedPoint> history;
-  if (state.facet >= 0) {
-    before = surface::tangent_plane(p.before);
-    history.emplace(plane, *before, p.master.now.position);
-  }
+  if (state.facet >= 0)
+    history.emplace(plane, surface::tangent_plane(p.before), p.master.now.position, state);
   const CommittedPoint* committed = history ? &*history : nullptr;
-  const FrameInput in = frame_input(gap, dt, pressure, state, committed, axes, plane);
+  const FrameInput in = frame_input(gap, dt, pressure, committed, axes, plane);
   const FrameReaction r = react_in_frame<tangent>(law, state, in);
   if (r.failure != Failure::none) return fail(r.failure);
   out.state = in_basis(r, state, p.master.xi, plane, foot.facet());
@@ -101,7 +98,7 @@ PairResult update_pair(const InterfaceLaw& law, const PointState& state, const P
   if constexpr (tangent) {
     foot.follow(p);
     foot.follow(*d);
-    d->friction = friction_forms(r, axes, plane, state, committed);
+    put_friction_forms(r, axes, plane, committed, d->friction);
     for (Form& f : d->friction) foot.expand(f, *d);
     d->along_friction[0] = plane.t;
     d->direction(0, NearForm::gap) = pressure.d[0] * plane.n;

@@ -29,9 +29,12 @@ constexpr std::size_t slave_input(std::size_t i) { return index(Input::slave_tan
 /// the turn of the normal, nu_a = t_a . dn, which follow from them.
 struct Form {
   std::array<Vec3<double>, inputs> by;
-  Flat xi{}, turn{};
+  Flat xi, turn;
 
-  Form() { by.fill(Vec3<double>::Zero()); }
+  void clear() {
+    by.fill(Vec3<double>::Zero());
+    xi = turn = {};
+  }
   Vec3<double>& operator[](Input i) { return by[index(i)]; }
 };
 
@@ -56,15 +59,16 @@ struct ContactPlane {
       f.turn[i] += k * side[i];
     }
   }
-  /// Adds the change of an angle.
-  void add_angle(double k, const PlaneAxis& a, Side side, Form& f) const {
+  /// Adds the change of an angle to both forms, times k.
+  void add_angle(const Flat& k, const PlaneAxis& a, Side side, std::array<Form, 2>& f) const {
     const std::size_t first = side == Side::master ? tangent_input(0) : slave_input(0);
     const Flat mu = along(a.mu);
-    for (std::size_t i = 0; i < 2; ++i) {
-      f.by[first + i] += k * a.c[i] * a.mu;
-      f.xi[i] += k * a.by_xi[i];
-      f.turn[i] -= k * a.lift * mu[i];
-    }
+    for (std::size_t b = 0; b < 2; ++b)
+      for (std::size_t i = 0; i < 2; ++i) {
+        f[b].by[first + i] += k[b] * a.c[i] * a.mu;
+        f[b].xi[i] += k[b] * a.by_xi[i];
+        f[b].turn[i] -= k[b] * a.lift * mu[i];
+      }
   }
 };
 
@@ -73,89 +77,102 @@ struct ContactPlane {
 class CommittedPoint {
  public:
   CommittedPoint(const ContactPlane& plane, const surface::Geometry<double>& before,
-                 const Vec3<double>& now)
-      : before_(before),
+                 const Vec3<double>& now, const PointState& state)
+      : plane_(plane),
+        normal_(before.normal),
         dual_{before.dual_basis(0), before.dual_basis(1)},
         share_(1.0 / (1.0 + before.normal.dot(plane.n))),
         n0_(plane.along(before.normal)),
         way_(now - before.jet.position),
-        rise_(way_.dot(plane.n)) {
+        remembers_(kernel::remembers(state)) {
     for (std::size_t a = 0; a < 2; ++a) lean_[a] = plane.t[a] - n0_[a] * share_ * plane.n;
+    if (!remembers_) return;
+    stored_ = remembered((before.a_contra * Covector<double>{state.stored}).c, before);
+    elastic_ = remembered(state.elastic, before);
   }
 
-  /// A vector of the committed tangent plane.
-  struct Remembered {
-    Vec3<double> w;
-    Flat upper;  ///< w . b^i
-  };
-  Remembered vector(const Flat& upper) const {
-    return {upper[0] * before_.jet.d1[0] + upper[1] * before_.jet.d1[1], upper};
-  }
-  Remembered covector(const Flat& lower) const {
-    return vector((before_.a_contra * Covector<double>{lower}).c);
-  }
-
-  Flat increment(const ContactPlane& p) const { return p.along(way_); }
-  Flat turned(const Remembered& m, const ContactPlane& p) const {
-    const Flat w = p.along(m.w);
-    const double c = share_ * m.w.dot(p.n);
-    return {w[0] - c * n0_[0], w[1] - c * n0_[1]};
-  }
+  /// Whether there is more to remember than the place.
+  bool remembers() const { return remembers_; }
+  Flat increment() const { return plane_.along(way_); }
+  Flat stored() const { return turned(stored_); }
+  Flat elastic() const { return turned(elastic_); }
 
   /// Adds k_a d(increment_a).
-  void add_increment(const Flat& k, const ContactPlane& p, Form& f) const {
-    const Vec3<double> tau = p.spatial(k);
+  void add_increment(const Flat& k, Form& f) const {
+    const Vec3<double> tau = plane_.spatial(k);
+    const double rise = way_.dot(plane_.n);
     f[Input::position] += tau;
     f[Input::before_position] -= tau;
     for (std::size_t i = 0; i < 2; ++i) {
-      f.xi[i] += tau.dot(p.r[i]);
-      f.turn[i] -= rise_ * k[i];
+      f.xi[i] += tau.dot(plane_.r[i]);
+      f.turn[i] -= rise * k[i];
     }
   }
-  /// Adds k_a d(turned_a) of m = upper^i b_i, the components kept.
-  void add_vector(const Flat& k, const Remembered& m, const ContactPlane& p, Form& f) const {
-    const Vec3<double> y = add_turn(k, m, p, f);
-    for (std::size_t j = 0; j < 2; ++j) f.by[before_input(j)] += m.upper[j] * y;
-  }
-  /// Adds k_a d(turned_a) of m = lower_i b^i, the components kept:
+  /// Adds k_a d(stored_a) of w = lower_i b^i, the components kept:
   /// d b^i = - (b^i . d b_j) b^j + a^ij (n_0 . d b_j) n_0.
-  void add_covector(const Flat& k, const Remembered& m, const ContactPlane& p, Form& f) const {
-    const Vec3<double> y = add_turn(k, m, p, f);
-    const double up = y.dot(before_.normal);
+  void add_stored(const Flat& k, Form& f) const {
+    const Remembered& m = stored_;
+    const Vec3<double> y = add_turn(k, m, f);
+    const double up = y.dot(normal_);
+    for (std::size_t j = 0; j < 2; ++j) {
+      const double stretch = y.dot(dual_[j]);
+      f.by[before_input(j)] += (m.fall * stretch + m.upper[j] * up) * normal_ - stretch * m.w;
+    }
+  }
+  /// Adds k_a d(elastic_a) of w = upper^i b_i, the components kept.
+  void add_elastic(const Flat& k, Form& f) const {
+    const Remembered& m = elastic_;
+    const Vec3<double> y = add_turn(k, m, f);
     for (std::size_t j = 0; j < 2; ++j)
-      f.by[before_input(j)] += m.upper[j] * up * before_.normal - y.dot(dual_[j]) * m.w;
+      f.by[before_input(j)] += m.fall * y.dot(dual_[j]) * normal_ + m.upper[j] * y;
   }
 
  private:
-  /// What both kinds have in common: dn and dn_0 = - b^j (n_0 . d b_j). Returns the vector that dw
-  /// is multiplied by.
-  Vec3<double> add_turn(const Flat& k, const Remembered& m, const ContactPlane& p, Form& f) const {
-    const Vec3<double> y = k[0] * lean_[0] + k[1] * lean_[1];
-    const double c = share_ * m.w.dot(p.n), side = share_ * (k[0] * n0_[0] + k[1] * n0_[1]);
-    const Flat w = p.along(m.w);
-    for (std::size_t a = 0; a < 2; ++a) f.turn[a] -= c * k[a] + side * (w[a] - c * n0_[a]);
-    for (std::size_t j = 0; j < 2; ++j)
-      f.by[before_input(j)] += c * y.dot(dual_[j]) * before_.normal;
-    return y;
+  /// A vector of the committed tangent plane.
+  struct Remembered {
+    Vec3<double> w;
+    Flat upper;   ///< w . b^i
+    Flat along;   ///< w . t_a
+    double fall;  ///< c
+  };
+  Remembered remembered(const Flat& upper, const surface::Geometry<double>& before) const {
+    const Vec3<double> w = upper[0] * before.jet.d1[0] + upper[1] * before.jet.d1[1];
+    return {w, upper, plane_.along(w), share_ * w.dot(plane_.n)};
+  }
+  Flat turned(const Remembered& m) const {
+    return {m.along[0] - m.fall * n0_[0], m.along[1] - m.fall * n0_[1]};
   }
 
-  const surface::Geometry<double>& before_;
+  /// What both kinds have in common besides dn_0 = - b^j (n_0 . d b_j), which adds c (y . b^j) n_0.
+  /// Returns y, the vector that dw is multiplied by.
+  Vec3<double> add_turn(const Flat& k, const Remembered& m, Form& f) const {
+    const double side = share_ * (k[0] * n0_[0] + k[1] * n0_[1]);
+    const Flat there = turned(m);
+    for (std::size_t a = 0; a < 2; ++a) f.turn[a] -= m.fall * k[a] + side * there[a];
+    return k[0] * lean_[0] + k[1] * lean_[1];
+  }
+
+  const ContactPlane& plane_;
+  Vec3<double> normal_;
   std::array<Vec3<double>, 2> dual_;
   double share_;
   Flat n0_;
   Vec3<double> way_;
-  double rise_;
+  bool remembers_;
   std::array<Vec3<double>, 2> lean_;
+  Remembered stored_, elastic_;
 };
 
 inline std::array<Flat, 2> in_frame(const ContactPlane& p, const PlaneAxes& a) {
   return {p.along(a.axis[0].e), p.along(a.axis[1].e)};
 }
 
-/// Adds the changes of both angles of a field.
-inline void add_angles(const FrameReaction& r, Slope s, const PlaneAxes& axes, std::size_t a,
-                       const ContactPlane& p, Form& f) {
-  for (std::size_t k = 0; k < 2; ++k) p.add_angle(r.slope(s, k)[a], axes.axis[k], axes.side, f);
+/// Adds the changes of both angles of a field, if they change anything.
+inline void add_angles(const FrameReaction& r, Slope s, const PlaneAxes& axes,
+                       const ContactPlane& p, std::array<Form, 2>& f) {
+  for (std::size_t k = 0; k < 2; ++k)
+    if (const Flat& slope = r.slope(s, k); slope != Flat{})
+      p.add_angle(slope, axes.axis[k], axes.side, f);
 }
 
 /// The slopes of T_a by the two components of a vector.
@@ -165,8 +182,8 @@ inline Flat slopes_of(const FrameReaction& r, Slope s, std::size_t a) {
 
 /// What the law sees of a point. Without a committed point there is no history and no slip.
 inline FrameInput frame_input(double gap, double dt, const Dual<1>& pressure,
-                              const PointState& state, const CommittedPoint* committed,
-                              const LawAxes& axes, const ContactPlane& p) {
+                              const CommittedPoint* committed, const LawAxes& axes,
+                              const ContactPlane& p) {
   FrameInput in{gap,
                 dt,
                 pressure.v,
@@ -178,32 +195,31 @@ inline FrameInput frame_input(double gap, double dt, const Dual<1>& pressure,
                 in_frame(p, axes.friction),
                 in_frame(p, axes.second)};
   if (committed == nullptr) return in;
-  in.increment = committed->increment(p);
-  if (!remembers(state)) return in;
-  in.stored = committed->turned(committed->covector(state.stored), p);
-  in.elastic = committed->turned(committed->vector(state.elastic), p);
+  in.increment = committed->increment();
+  if (!committed->remembers()) return in;
+  in.stored = committed->stored();
+  in.elastic = committed->elastic();
   return in;
 }
 
-/// The forms of t_1 . dT and t_2 . dT for T = T_a t_a.
-inline std::array<Form, 2> friction_forms(const FrameReaction& r, const LawAxes& axes,
-                                          const ContactPlane& p, const PointState& state,
-                                          const CommittedPoint* committed) {
-  std::array<Form, 2> f;
+/// Writes the forms of t_1 . dT and t_2 . dT for T = T_a t_a.
+inline void put_friction_forms(const FrameReaction& r, const LawAxes& axes, const ContactPlane& p,
+                               const CommittedPoint* committed, std::array<Form, 2>& f) {
   for (std::size_t a = 0; a < 2; ++a) {
+    f[a].clear();
     p.add_gap(r.slope(Slope::gap, 0)[a], f[a]);
-    add_angles(r, Slope::adhesion, axes.adhesion, a, p, f[a]);
-    add_angles(r, Slope::friction, axes.friction, a, p, f[a]);
-    add_angles(r, Slope::second, axes.second, a, p, f[a]);
-    if (committed == nullptr) continue;
-    committed->add_increment(slopes_of(r, Slope::increment, a), p, f[a]);
-    if (!remembers(state)) continue;
-    committed->add_covector(slopes_of(r, Slope::stored, a), committed->covector(state.stored), p,
-                            f[a]);
-    committed->add_vector(slopes_of(r, Slope::elastic, a), committed->vector(state.elastic), p,
-                          f[a]);
   }
-  return f;
+  add_angles(r, Slope::adhesion, axes.adhesion, p, f);
+  add_angles(r, Slope::friction, axes.friction, p, f);
+  add_angles(r, Slope::second, axes.second, p, f);
+  if (committed == nullptr) return;
+  for (std::size_t a = 0; a < 2; ++a) {
+    committed->add_increment(slopes_of(r, Slope::increment, a), f[a]);
+    if (!committed->remembers()) continue;
+    committed->add_stored(slopes_of(r, Slope::stored, a), f[a]);
+    if (const Flat k = slopes_of(r, Slope::elastic, a); k != Flat{})
+      committed->add_elastic(k, f[a]);
+  }
 }
 
 /// The forms of t_1 . dt, t_2 . dt and n . dt for t = N n + T_a t_a.
@@ -211,6 +227,7 @@ inline std::array<Form, 3> traction_forms(const std::array<Form, 2>& friction,
                                           const FrameReaction& r, const FrameInput& in,
                                           const ContactPlane& p) {
   std::array<Form, 3> f{friction[0], friction[1], {}};
+  f[2].clear();
   for (std::size_t a = 0; a < 2; ++a) {
     f[a].turn[a] += in.pressure;
     f[2].turn[a] -= r.traction[a];

@@ -82,23 +82,72 @@ Tangent2<S, P, P> flat_metric() {
   return {{{{S(1.0), S(0.0)}, {S(0.0), S(1.0)}}}};
 }
 
-/// The trial force; in S = Dual<2> with the angles of the axes of adhesion.
-template <class S>
+/// The trial force and what it is made of.
 struct FrameTrial {
-  law::AxesComponents<S> axes;
-  law::Trial<S> trial;
-  CoCo<double> c;  ///< of the linear model
+  law::AxesComponents<double> axes;
+  law::LinearTensors<double> tensors;
+  law::Trial<double> trial;
 };
 
-template <class S>
-FrameTrial<S> frame_trial(const InterfaceLaw& l, const FrameInput& in, const Flat& increment) {
-  const law::AxesComponents<S> axes{turning<S, Place::co>(in.adhesion_axes, 0),
-                                    turning<S, Place::contra>(in.adhesion_axes, 0)};
+inline FrameTrial frame_trial(const InterfaceLaw& l, const FrameInput& in, const Flat& increment) {
+  const law::AxesComponents<double> axes{turning<double, Place::co>(in.adhesion_axes, 0),
+                                         turning<double, Place::contra>(in.adhesion_axes, 0)};
   const auto tensors = law::pull_back(law::linear_model(l.adhesion), axes);
-  const auto trial = law::trial(tensors, constant<S>(Covector<double>{in.stored}),
-                                constant<S>(Vector<double>{in.elastic}),
-                                constant<S>(Vector<double>{increment}), in.dt);
-  return {axes, trial, value(tensors.c)};
+  return {axes, tensors,
+          law::trial(tensors, {in.stored}, {in.elastic}, Vector<double>{increment}, in.dt)};
+}
+
+/// Derivatives of the trial force and of its stiffness by the angles of the axes of adhesion.
+struct TrialSlopes {
+  std::array<Covector<double>, 2> traction;
+  std::array<CoCo<double>, 2> stiffness;
+};
+
+/// Of m_ij e_i (x) e_j by the angle of e_k, with e_k' its derivative.
+inline CoCo<double> turned(const law::AxesMatrix& m, std::size_t k,
+                           const std::array<Covector<double>, 2>& e, const Covector<double>& de) {
+  const Covector<double> right = m[k][0] * e[0] + m[k][1] * e[1],
+                         left = m[0][k] * e[0] + m[1][k] * e[1];
+  return outer(de, right) + outer(left, de);
+}
+
+/// Of a_ij e_i (x) e^j; the reciprocal axes change by d e^j = -(e^j . e_k') e^k.
+inline CoContra<double> turned_mixed(const law::AxesMatrix& m, std::size_t k,
+                                     const law::AxesComponents<double>& axes,
+                                     const Covector<double>& de) {
+  const auto dual = law::reciprocal(axes.lower, axes.upper);
+  const Vector<double> right = m[k][0] * dual[0] + m[k][1] * dual[1];
+  const double d0 = dot(de, dual[0]), d1 = dot(de, dual[1]);
+  const Covector<double> left =
+      (m[0][0] * d0 + m[0][1] * d1) * axes.lower[0] + (m[1][0] * d0 + m[1][1] * d1) * axes.lower[1];
+  return outer(de, right) - outer(left, dual[k]);
+}
+
+/// By (w + dt A) T_tr = w T_n + Q dxi + dt C dxi_el,n and (w + dt A) S = -Q with Q = B + dt C.
+inline TrialSlopes trial_slopes(const InterfaceLaw& l, const FrameInput& in, const FrameTrial& t) {
+  const law::LinearModel& m = law::linear_model(l.adhesion);
+  const Vector<double> increment{in.increment}, elastic{in.elastic};
+  law::AxesMatrix q;
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) q[i][j] = m.b[i][j] + in.dt * m.c[i][j];
+  TrialSlopes s;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Flat& e = in.adhesion_axes[k];
+    const Covector<double> de{{-e[1], e[0]}};
+    const CoCo<double> dq = turned(q, k, t.axes.lower, de);
+    Covector<double> force = dq * increment;
+    if (m.c != law::AxesMatrix{})
+      force = force + in.dt * (turned(m.c, k, t.axes.lower, de) * elastic);
+    CoCo<double> stiffness = dq;
+    if (t.tensors.relaxes) {
+      const CoContra<double> da = in.dt * turned_mixed(m.a, k, t.axes, de);
+      force = force - da * t.trial.traction;
+      stiffness = stiffness + da * t.trial.stiffness;
+    }
+    s.traction[k] = t.trial.response * force;
+    s.stiffness[k] = -(t.trial.response * stiffness);
+  }
+  return s;
 }
 
 /// Friction tensor and axes; in S with variables their angles are those from `first` on.
@@ -116,8 +165,8 @@ void put_friction(const InterfaceLaw& l, const FrameInput& in, std::size_t first
 /// force and N. N is the only way in which a rule sees the normal law, the trial force the only one
 /// in which it sees history and motion.
 template <std::size_t Angles>
-std::array<Flat, 3> slide_slopes(const InterfaceLaw& l, const FrameInput& in,
-                                 const FrameTrial<Dual<2>>& t, const law::SlideProblem<double>& p,
+std::array<Flat, 3> slide_slopes(const InterfaceLaw& l, const FrameInput& in, const TrialSlopes& t,
+                                 const law::SlideProblem<double>& p,
                                  const law::SlideResult<double>& solved, FrameReaction& r) {
   using S = Dual<2 + Angles>;  // two angles of adhesion, angles of friction
   law::SlideProblem<S> d;
@@ -125,7 +174,7 @@ std::array<Flat, 3> slide_slopes(const InterfaceLaw& l, const FrameInput& in,
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) {
       d.stiffness(i, j) = S(p.stiffness(i, j));
-      for (std::size_t k = 0; k < 2; ++k) d.stiffness(i, j).d[k] = t.trial.stiffness(i, j).d[k];
+      for (std::size_t k = 0; k < 2; ++k) d.stiffness(i, j).d[k] = t.stiffness[k](i, j);
     }
   return std::visit(
       [&](const auto& rule) {
@@ -140,19 +189,18 @@ std::array<Flat, 3> slide_slopes(const InterfaceLaw& l, const FrameInput& in,
 }
 
 /// Adds the slopes of the trial force, times those of the force by it.
-inline void add_trial_slopes(const FrameTrial<Dual<2>>& t, double w, double dt,
+inline void add_trial_slopes(const FrameTrial& t, const TrialSlopes& d, double dt,
                              const std::array<Flat, 3>& by_force, FrameReaction& r) {
-  const auto& stiffness = t.trial.stiffness;
-  const CoContra<double> response = value(t.trial.response);
-  const CoCo<double> by_elastic = dt * (response * t.c);
+  const CoContra<double>& response = t.trial.response;
+  const CoCo<double> by_elastic = dt * (response * t.tensors.c);
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t a = 0; a < 2; ++a) {
       const double f = by_force[i][a];
       for (std::size_t j = 0; j < 2; ++j) {
-        r.slope(Slope::increment, j)[a] -= f * stiffness(i, j).v;
-        r.slope(Slope::stored, j)[a] += f * w * response(i, j);
+        r.slope(Slope::increment, j)[a] -= f * t.trial.stiffness(i, j);
+        r.slope(Slope::stored, j)[a] += f * t.tensors.w * response(i, j);
         r.slope(Slope::elastic, j)[a] += f * by_elastic(i, j);
-        r.slope(Slope::adhesion, j)[a] += f * t.trial.traction[i].d[j];
+        r.slope(Slope::adhesion, j)[a] += f * d.traction[j][i];
       }
     }
 }
@@ -163,7 +211,6 @@ inline void add_trial_slopes(const FrameTrial<Dual<2>>& t, double w, double dt,
 template <bool tangent>
 FrameReaction react_in_frame(const InterfaceLaw& l, const PointState& state,
                              FrameInput in) noexcept {
-  using S = std::conditional_t<tangent, Dual<2>, double>;
   FrameReaction r;
   Dual<1> share(1.0);
   const Flat whole = in.increment;
@@ -171,11 +218,11 @@ FrameReaction react_in_frame(const InterfaceLaw& l, const PointState& state,
     share = contact_fraction(state, Dual<1>::variable(in.gap, 0));
     for (double& x : in.increment) x *= share.v;
   }
-  const auto t = detail::frame_trial<S>(l, in, in.increment);
+  const detail::FrameTrial t = detail::frame_trial(l, in, in.increment);
   law::SlideProblem<double> p;
   detail::put_friction(l, in, 0, p);
-  p.stiffness = value(t.trial.stiffness);
-  p.trial = value(t.trial.traction);
+  p.stiffness = t.trial.stiffness;
+  p.trial = t.trial.traction;
   p.increment = {in.increment};
   p.elastic = Vector<double>{in.elastic} + p.increment;
   p.pressure = in.pressure;
@@ -188,24 +235,16 @@ FrameReaction react_in_frame(const InterfaceLaw& l, const PointState& state,
   r.traction = solved.traction.c;
   r.increment = in.increment;
   r.state = advanced(l, state,
-                     {solved.traction,
-                      solved.stored,
-                      p.elastic,
-                      p.increment,
-                      solved.slip,
-                      p.a_co,
-                      {value(t.axes.lower), value(t.axes.upper)},
-                      in.gap,
-                      in.pressure,
-                      in.dt,
-                      status});
+                     {solved.traction, solved.stored, p.elastic, p.increment, solved.slip, p.a_co,
+                      t.axes, in.gap, in.pressure, in.dt, status});
   if constexpr (tangent) {
+    const detail::TrialSlopes by_angle = detail::trial_slopes(l, in, t);
     std::array<Flat, 3> by_force{Flat{1.0, 0.0}, Flat{0.0, 1.0}, Flat{0.0, 0.0}};
     if (status == Contact::slip)
       by_force = l.friction_directions_second.field
-                     ? detail::slide_slopes<4>(l, in, t, p, solved, r)
-                     : detail::slide_slopes<2>(l, in, t, p, solved, r);
-    detail::add_trial_slopes(t, law::linear_model(l.adhesion).w, in.dt, by_force, r);
+                     ? detail::slide_slopes<4>(l, in, by_angle, p, solved, r)
+                     : detail::slide_slopes<2>(l, in, by_angle, p, solved, r);
+    detail::add_trial_slopes(t, by_angle, in.dt, by_force, r);
     for (std::size_t a = 0; a < 2; ++a) {
       double& by_gap = r.slope(Slope::gap, 0)[a];
       by_gap = by_force[2][a] * in.d_pressure;

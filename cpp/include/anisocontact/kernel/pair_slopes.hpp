@@ -33,16 +33,20 @@ struct PairSlopes {
   Vec3<double>& direction(std::size_t acts, NearForm f, std::size_t k = 0) {
     return along[acts][static_cast<std::size_t>(f) + k];
   }
-  /// Derivative of what acts by an input.
-  Eigen::Matrix3d matrix(std::size_t acts, std::size_t input) const {
-    Eigen::Matrix3d m = Eigen::Matrix3d::Zero();
-    for (std::size_t a = 0; a < 2; ++a)
-      m += along_friction[acts][a] * friction[a].by[input].transpose();
-    if (input >= Near::inputs) return m;
-    for (const std::size_t f : terms(acts))
-      if (f < (interior ? first_beside : near_forms))
-        m += along[acts][f] * near[f].by[input].transpose();
-    return m;
+  /// |dt/dx|, of the traction by the slave point.
+  double size() const {
+    constexpr std::size_t x = 0, gap = static_cast<std::size_t>(NearForm::gap);
+    const auto& t = along_friction[0];
+    const auto& u = along[0];
+    double squares = 0.0;
+    each<3>([&](auto i) ANISOCONTACT_INLINE_LAMBDA {
+      const auto k = static_cast<Eigen::Index>(i);
+      const Vec3<double> row = t[0][k] * friction[0].by[x] + t[1][k] * friction[1].by[x] +
+                               u[gap][k] * near[gap].by[x] + u[gap + 1][k] * near[gap + 1].by[x] +
+                               u[gap + 2][k] * near[gap + 2].by[x];
+      squares += row.squaredNorm();
+    });
+    return std::sqrt(squares);
   }
 
   /// The forms of near that something acting has, those beside a facet last.

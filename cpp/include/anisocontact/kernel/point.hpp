@@ -178,15 +178,16 @@ PointResult update_in_plane(const Interface& itf, const PointState& state, const
   const LawAxes axes = law_axes(itf.law, axes_at);
   if (!axes.valid()) return fail(Failure::direction);
   const auto before = surface::tangent_plane(surface::jet(itf.surface, state.xi[0], state.xi[1]));
-  const CommittedPoint committed(plane, before, here.jet.position);
-  const FrameInput in = frame_input(gap, dt, pressure, state, &committed, axes, plane);
+  const CommittedPoint committed(plane, before, here.jet.position, state);
+  const FrameInput in = frame_input(gap, dt, pressure, &committed, axes, plane);
   const FrameReaction r = react_in_frame<tangent>(itf.law, state, in);
   if (r.failure != Failure::none) return fail(r.failure);
   put_axes(axes, out.adhesion_axes, out.friction_axes);
   out.state = in_basis(r, state, foot.xi, plane, here);
   out.traction = pressure.v * plane.n + plane.spatial(r.traction);
   if constexpr (tangent) {
-    const auto friction = friction_forms(r, axes, plane, state, &committed);
+    std::array<Form, 2> friction;
+    put_friction_forms(r, axes, plane, &committed, friction);
     const auto forms = traction_forms(friction, r, in, plane);
     const auto dxi = projection::coordinate_gradient(here, foot, x);
     for (std::size_t i = 0; i < 3; ++i) {

@@ -46,7 +46,7 @@ class Orthotropic {
 
   template <class S>
   ContraContra<S> tensor(const ContraContra<S>&, const UpperAxes<S>& e, const UpperAxes<S>&) const {
-    return S(lambda_[0]) * outer(e[0], e[0]) + S(lambda_[1]) * outer(e[1], e[1]);
+    return lambda_[0] * outer(e[0], e[0]) + lambda_[1] * outer(e[1], e[1]);
   }
 
  private:
@@ -90,8 +90,7 @@ class HeCurnier {
   ContraContra<S> tensor(const ContraContra<S>& a, const UpperAxes<S>& first,
                          const UpperAxes<S>& second) const {
     const Vector<S>&m = first[0], &k = second[0];
-    const ContraContra<S> c =
-        S(alpha_[0]) * a + S(alpha_[1]) * outer(m, m) + S(alpha_[2]) * outer(k, k);
+    const ContraContra<S> c = alpha_[0] * a + alpha_[1] * outer(m, m) + alpha_[2] * outer(k, k);
     const CoCo<S> c_inv = inverse(c);  // covariant components of C^-1
     return a * c_inv * a * c_inv * a;
   }

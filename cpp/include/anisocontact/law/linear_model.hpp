@@ -63,9 +63,9 @@ LinearTensors<S> pull_back(const LinearModel& m, const AxesComponents<S>& axes) 
       relaxes ? reciprocal(lower, axes.upper) : std::array<Vector<S>, 2>{};  // of A alone
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) {
-      if (m.a[i][j] != 0.0) t.a = t.a + S(m.a[i][j]) * outer(lower[i], dual[j]);
-      if (m.b[i][j] != 0.0) t.b = t.b + S(m.b[i][j]) * outer(lower[i], lower[j]);
-      if (m.c[i][j] != 0.0) t.c = t.c + S(m.c[i][j]) * outer(lower[i], lower[j]);
+      if (m.a[i][j] != 0.0) t.a = t.a + m.a[i][j] * outer(lower[i], dual[j]);
+      if (m.b[i][j] != 0.0) t.b = t.b + m.b[i][j] * outer(lower[i], lower[j]);
+      if (m.c[i][j] != 0.0) t.c = t.c + m.c[i][j] * outer(lower[i], lower[j]);
     }
   return t;
 }
@@ -83,8 +83,8 @@ namespace detail {
 template <class S>
 Trial<S> trial(const LinearTensors<S>& m, const CoContra<S>& response, const Covector<S>& stored,
                const Vector<S>& elastic, const Vector<S>& increment, double dt) {
-  const CoCo<S> dc = S(dt) * m.c, right = m.b + dc;
-  const Covector<S> rhs = S(m.w) * stored + right * increment + dc * elastic;
+  const CoCo<S> dc = dt * m.c, right = m.b + dc;
+  const Covector<S> rhs = m.w * stored + right * increment + dc * elastic;
   return {response * rhs, -(response * right), response};
 }
 
@@ -95,7 +95,7 @@ Trial<S> trial(const LinearTensors<S>& m, const CoContra<S>& response, const Cov
 template <class S>
 Trial<S> trial(const LinearTensors<S>& m, const CoContra<S>& g, const Covector<S>& stored,
                const Vector<S>& elastic, const Vector<S>& increment, double dt) {
-  const CoContra<S> left = S(m.w) * g + S(dt) * m.a;
+  const CoContra<S> left = m.w * g + dt * m.a;
   const CoContra<S> inverse = (S(1.0) / det(left)) * (trace(left) * unit<S, Place::co>() - left);
   return detail::trial(m, inverse, stored, elastic, increment, dt);
 }
@@ -106,7 +106,7 @@ Trial<S> trial(const LinearTensors<S>& m, const Covector<S>& stored, const Vecto
                const Vector<S>& increment, double dt) {
   const CoContra<S> one = unit<S, Place::co>();
   if (m.relaxes) return trial(m, one, stored, elastic, increment, dt);
-  return detail::trial(m, S(1.0 / m.w) * one, stored, elastic, increment, dt);
+  return detail::trial(m, (1.0 / m.w) * one, stored, elastic, increment, dt);
 }
 
 }  // namespace anisocontact::law

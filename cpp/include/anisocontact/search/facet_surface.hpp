@@ -95,14 +95,17 @@ class FacetSurface {
     Candidate best;
     best.point.distance2 = q.limit * q.limit;
     double doubt2 = std::numeric_limits<double>::infinity();
-    const bool hinted = q.hint >= 0 && static_cast<std::size_t>(q.hint) < facets();
-    if (hinted) {
+    if (q.hint >= 0 && static_cast<std::size_t>(q.hint) < facets()) {
       attempt(x, q, q.hint, q.start ? &*q.start : nullptr, 0.0, best);
       settle(x, q, best);
     }
-    tree_.descend(x, best.point.distance2, [&](std::int32_t f, double d2) {
-      if (f != best.facet) doubt2 = std::min(doubt2, attempt(x, q, f, nullptr, d2, best));
-    });
+    const auto visit = [&](std::int32_t f, double d2) {
+      doubt2 = std::min(doubt2, attempt(x, q, f, nullptr, d2, best));
+    };
+    if (best.facet >= 0)
+      tree_.descend_beside(static_cast<std::size_t>(best.facet), x, best.point.distance2, visit);
+    else
+      tree_.descend(x, best.point.distance2, visit);
     if (doubt2 < best.point.distance2) return out;
     settle(x, q, best);
     return finish(x, q, best);

@@ -47,7 +47,8 @@ struct Box {
   }
 };
 
-/// A leaf holds one item; children lie after their parent, so that a pass from the back refits.
+/// A leaf holds one item; children lie after their parent, so that a pass from the back refits, and
+/// in pairs, the first of which has an odd number.
 class Tree {
  public:
   explicit Tree(std::span<const Box> items) {
@@ -55,7 +56,10 @@ class Tree {
     std::vector<std::int32_t> order(items.size());
     std::iota(order.begin(), order.end(), 0);
     nodes_.reserve(2 * items.size() - 1);
+    parent_.reserve(2 * items.size() - 1);
+    leaf_.resize(items.size());
     nodes_.push_back({});
+    parent_.push_back(0);
     struct Range {
       std::size_t node, first, last;
     };
@@ -65,6 +69,7 @@ class Tree {
       waiting.pop_back();
       if (last - first == 1) {
         nodes_[node].item = order[first];
+        leaf_[static_cast<std::size_t>(order[first])] = static_cast<std::int32_t>(node);
         continue;
       }
       const std::size_t middle =
@@ -72,6 +77,7 @@ class Tree {
       const std::size_t child = nodes_.size();
       nodes_[node].child = static_cast<std::int32_t>(child);
       nodes_.resize(child + 2);
+      parent_.resize(child + 2, static_cast<std::int32_t>(node));
       waiting.push_back({child, first, middle});
       waiting.push_back({child + 1, middle, last});
     }
@@ -95,29 +101,17 @@ class Tree {
   /// `bound2`, the near half of the tree first; `visit` may lower `bound2` on the way.
   template <class Visit>
   void descend(const Vec3<double>& x, const double& bound2, const Visit& visit) const {
-    struct Entry {
-      std::size_t node;
-      double d2;
-    };
-    std::array<Entry, depth_limit> waiting;
-    std::size_t count = 0;
-    if (nodes_.empty()) return;
-    waiting[count++] = {0, nodes_[0].box.distance2(x)};
-    while (count > 0) {
-      auto [k, d2] = waiting[--count];
-      while (d2 < bound2) {
-        const Node& n = nodes_[k];
-        if (n.item >= 0) {
-          visit(n.item, d2);
-          break;
-        }
-        const auto c = static_cast<std::size_t>(n.child);
-        Entry near{c, nodes_[c].box.distance2(x)}, far{c + 1, nodes_[c + 1].box.distance2(x)};
-        if (far.d2 < near.d2) std::swap(near, far);
-        waiting[count++] = far;
-        k = near.node;
-        d2 = near.d2;
-      }
+    if (!nodes_.empty()) descend(0, x, bound2, visit);
+  }
+
+  /// The same from an item on which x is expected: up to the root, down where a box on the way is
+  /// nearer than `bound2`. The item itself is left out.
+  template <class Visit>
+  void descend_beside(std::size_t item, const Vec3<double>& x, const double& bound2,
+                      const Visit& visit) const {
+    for (auto k = leaf_[item]; k != 0; k = parent_[static_cast<std::size_t>(k)]) {
+      const auto sibling = static_cast<std::size_t>(k % 2 == 1 ? k + 1 : k - 1);
+      descend(sibling, x, bound2, visit);
     }
   }
 
@@ -139,6 +133,37 @@ class Tree {
     std::int32_t child{-1};
     std::int32_t item{-1};
   };
+
+  /// Below a node.
+  template <class Visit>
+  void descend(std::size_t node, const Vec3<double>& x, const double& bound2,
+               const Visit& visit) const {
+    struct Entry {
+      std::size_t node;
+      double d2;
+    };
+    const double start = nodes_[node].box.distance2(x);
+    if (!(start < bound2)) return;
+    std::array<Entry, depth_limit> waiting;
+    std::size_t count = 0;
+    waiting[count++] = {node, start};
+    while (count > 0) {
+      auto [k, d2] = waiting[--count];
+      while (d2 < bound2) {
+        const Node& n = nodes_[k];
+        if (n.item >= 0) {
+          visit(n.item, d2);
+          break;
+        }
+        const auto c = static_cast<std::size_t>(n.child);
+        Entry near{c, nodes_[c].box.distance2(x)}, far{c + 1, nodes_[c + 1].box.distance2(x)};
+        if (far.d2 < near.d2) std::swap(near, far);
+        waiting[count++] = far;
+        k = near.node;
+        d2 = near.d2;
+      }
+    }
+  }
 
   static double area(const Box& b) {
     const double x = b.upper[0] - b.lower[0], y = b.upper[1] - b.lower[1],
@@ -167,6 +192,8 @@ class Tree {
   }
 
   std::vector<Node> nodes_;
+  std::vector<std::int32_t> parent_;  ///< of each node
+  std::vector<std::int32_t> leaf_;    ///< node of each item
 };
 
 }  // namespace anisocontact::search

@@ -7,6 +7,7 @@
 // normal turns round and everything stays right-handed. Nodes, vertices and sides keep the numbers
 // of the mesh; only coordinates and derivatives are exchanged, here and nowhere else.
 
+#include <type_traits>
 #include <utility>
 
 #include "anisocontact/surface/facet_shapes.hpp"
@@ -45,20 +46,52 @@ constexpr std::array<double, 2> side_direction(const FacetKind& k, std::size_t s
   return exchanged(k, {q[0] - p[0], q[1] - p[1]});
 }
 
+namespace detail {
+
+/// `count` is a constant where loops are to be written out.
+template <class Count, class S, class Nodes>
+ANISOCONTACT_INLINE void sum_nodes(Count count, const Nodes& nodes, const Shape<S>& s, bool curved,
+                                   Jet<S>& j) noexcept {
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    S position(0.0);
+    std::array<S, 2> d1{S(0.0), S(0.0)};
+    for (std::size_t i = 0; i < count; ++i) {
+      const S x(nodes[i][c]);
+      position += s.N[i] * x;
+      d1[0] += s.dN[i][0] * x;
+      d1[1] += s.dN[i][1] * x;
+    }
+    j.position[c] = position;
+    j.d1[0][c] = d1[0];
+    j.d1[1][c] = d1[1];
+    if (!curved) continue;
+    std::array<S, 3> d2{S(0.0), S(0.0), S(0.0)};
+    for (std::size_t i = 0; i < count; ++i) {
+      const S x(nodes[i][c]);
+      d2[0] += s.d2N[i][0] * x;
+      d2[1] += s.d2N[i][1] * x;
+      d2[2] += s.d2N[i][2] * x;
+    }
+    for (std::size_t d = 0; d < 3; ++d) j.d2[d][c] = d2[d];
+  }
+}
+
+}  // namespace detail
+
 /// Jet of a facet; `nodes[i]` is the position of node i (Vec3<S>, or Vec3<double> for any S).
+/// Without `curved` the second derivatives are not written.
+template <class S, class Nodes>
+void put_facet_jet(const FacetKind& k, const Nodes& nodes, const Shape<S>& s, bool curved,
+                   Jet<S>& j) noexcept {
+  if (k.topology == Topology::quad4)
+    detail::sum_nodes(std::integral_constant<std::size_t, 4>{}, nodes, s, curved, j);
+  else
+    detail::sum_nodes(k.nodes(), nodes, s, curved, j);
+}
 template <class S, class Nodes>
 Jet<S> facet_jet(const FacetKind& k, const Nodes& nodes, const Shape<S>& s) noexcept {
-  Jet<S> j{Vec3<S>::Zero(),
-           {Vec3<S>::Zero(), Vec3<S>::Zero()},
-           {Vec3<S>::Zero(), Vec3<S>::Zero(), Vec3<S>::Zero()}};
-  for (std::size_t i = 0; i < k.nodes(); ++i) {
-    for (Eigen::Index c = 0; c < 3; ++c) {
-      const S x(nodes[i][c]);
-      j.position[c] += s.N[i] * x;
-      for (std::size_t d = 0; d < 2; ++d) j.d1[d][c] += s.dN[i][d] * x;
-      for (std::size_t d = 0; d < 3; ++d) j.d2[d][c] += s.d2N[i][d] * x;
-    }
-  }
+  Jet<S> j;
+  put_facet_jet(k, nodes, s, true, j);
   return j;
 }
 

@@ -57,13 +57,13 @@ concept Surface = requires(const T& s, double u, Dual<3> x) {
 template <class S>
 struct Geometry {
   Jet<S> jet;
-  CoCo<S> a_co;                        ///< a_ij = rho_i . rho_j
-  ContraContra<S> a_contra;            ///< a^ij
-  S area;                              ///< sqrt(det a_ij)
-  Vec3<S> normal;                      ///< n = rho_1 x rho_2 / area
-  CoCo<S> h_co;                        ///< h_ij = rho_ij . n
-  ContraCo<S> h_mixed;                 ///< h^i_j = a^ik h_kj, n_j = -h^i_j rho_i (Weingarten)
-  std::array<CoCo<S>, 2> christoffel;  ///< Gamma^k_ij = rho_ij . rho^k, first index k
+  CoCo<S> a_co{};                        ///< a_ij = rho_i . rho_j
+  ContraContra<S> a_contra{};            ///< a^ij
+  S area{};                              ///< sqrt(det a_ij)
+  Vec3<S> normal{};                      ///< n = rho_1 x rho_2 / area
+  CoCo<S> h_co{};                        ///< h_ij = rho_ij . n
+  ContraCo<S> h_mixed{};                 ///< h^i_j = a^ik h_kj, n_j = -h^i_j rho_i (Weingarten)
+  std::array<CoCo<S>, 2> christoffel{};  ///< Gamma^k_ij = rho_ij . rho^k, first index k
 
   /// rho^i = a^ij rho_j.
   Vec3<S> dual_basis(std::size_t i) const {
@@ -85,19 +85,24 @@ struct Geometry {
   S mean_curvature() const { return S(0.5) * trace(h_mixed); }
 };
 
-/// Metric, area and normal from a jet; curvature and connection stay zero.
+/// Metric, area and normal from the jet in `g`; the rest stays as it is.
 template <class S>
-Geometry<S> tangent_plane(const Jet<S>& jet) {
+void put_tangent_plane(Geometry<S>& g) {
   using std::sqrt;
-  Geometry<S> g{};
-  g.jet = jet;
-  const auto& r = jet.d1;
-  for (std::size_t i = 0; i < 2; ++i)
-    for (std::size_t j = 0; j < 2; ++j) g.a_co(i, j) = r[i].dot(r[j]);
+  const auto& r = g.jet.d1;
+  const S mixed = r[0].dot(r[1]);
+  g.a_co = {{{{r[0].dot(r[0]), mixed}, {mixed, r[1].dot(r[1])}}}};
   g.a_contra = inverse(g.a_co);
   const Vec3<S> cross = r[0].cross(r[1]);
   g.area = sqrt(cross.dot(cross));
   g.normal = (S(1.0) / g.area) * cross;
+}
+
+/// Metric, area and normal from a jet; curvature and connection stay zero.
+template <class S>
+Geometry<S> tangent_plane(const Jet<S>& jet) {
+  Geometry<S> g{.jet = jet};
+  put_tangent_plane(g);
   return g;
 }
 

@@ -32,23 +32,23 @@ struct Dual {
   ANISOCONTACT_INLINE constexpr Dual operator-() const { return chain(-v, -1.0); }
   ANISOCONTACT_INLINE constexpr Dual& operator+=(const Dual& b) {
     v += b.v;
-    for (std::size_t i = 0; i < N; ++i) d[i] += b.d[i];
+    each<N>([&](std::size_t i) ANISOCONTACT_INLINE_LAMBDA { d[i] += b.d[i]; });
     return *this;
   }
   ANISOCONTACT_INLINE constexpr Dual& operator-=(const Dual& b) {
     v -= b.v;
-    for (std::size_t i = 0; i < N; ++i) d[i] -= b.d[i];
+    each<N>([&](std::size_t i) ANISOCONTACT_INLINE_LAMBDA { d[i] -= b.d[i]; });
     return *this;
   }
   ANISOCONTACT_INLINE constexpr Dual& operator*=(const Dual& b) {
-    for (std::size_t i = 0; i < N; ++i) d[i] = d[i] * b.v + v * b.d[i];
+    each<N>([&](std::size_t i) ANISOCONTACT_INLINE_LAMBDA { d[i] = d[i] * b.v + v * b.d[i]; });
     v *= b.v;
     return *this;
   }
   ANISOCONTACT_INLINE constexpr Dual& operator/=(const Dual& b) {
     const double inv = 1.0 / b.v;
     v *= inv;
-    for (std::size_t i = 0; i < N; ++i) d[i] = (d[i] - v * b.d[i]) * inv;
+    each<N>([&](std::size_t i) ANISOCONTACT_INLINE_LAMBDA { d[i] = (d[i] - v * b.d[i]) * inv; });
     return *this;
   }
 
@@ -56,6 +56,10 @@ struct Dual {
   ANISOCONTACT_INLINE friend constexpr Dual operator-(Dual a, const Dual& b) { return a -= b; }
   ANISOCONTACT_INLINE friend constexpr Dual operator*(Dual a, const Dual& b) { return a *= b; }
   ANISOCONTACT_INLINE friend constexpr Dual operator/(Dual a, const Dual& b) { return a /= b; }
+  ANISOCONTACT_INLINE friend constexpr Dual operator*(double a, const Dual& b) {
+    return b.chain(a * b.v, a);
+  }
+  ANISOCONTACT_INLINE friend constexpr Dual operator*(const Dual& a, double b) { return b * a; }
   friend constexpr bool operator<(const Dual& a, const Dual& b) { return a.v < b.v; }
   friend constexpr bool operator>(const Dual& a, const Dual& b) { return a.v > b.v; }
   friend constexpr bool operator<=(const Dual& a, const Dual& b) { return a.v <= b.v; }
@@ -66,7 +70,7 @@ struct Dual {
   /// f(x) with value `f` and derivative `df` at x (chain rule).
   ANISOCONTACT_INLINE constexpr Dual chain(double f, double df) const {
     Dual r(f);
-    for (std::size_t i = 0; i < N; ++i) r.d[i] = df * d[i];
+    each<N>([&](std::size_t i) ANISOCONTACT_INLINE_LAMBDA { r.d[i] = df * d[i]; });
     return r;
   }
 
@@ -84,7 +88,8 @@ struct Dual {
   friend Dual atan2(const Dual& y, const Dual& x) {
     const double r2 = x.v * x.v + y.v * y.v;
     Dual r(std::atan2(y.v, x.v));
-    for (std::size_t i = 0; i < N; ++i) r.d[i] = (x.v * y.d[i] - y.v * x.d[i]) / r2;
+    each<N>([&](std::size_t i)
+                ANISOCONTACT_INLINE_LAMBDA { r.d[i] = (x.v * y.d[i] - y.v * x.d[i]) / r2; });
     return r;
   }
 };

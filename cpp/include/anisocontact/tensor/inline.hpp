@@ -2,8 +2,59 @@
 // Small operations that have to be part of the code that uses them: a compiler that counts
 // instructions before it optimises would call many of them.
 
+#include <cstddef>
+#include <utility>
+
 #if defined(__GNUC__)
 #define ANISOCONTACT_INLINE [[gnu::always_inline]] inline
+#define ANISOCONTACT_INLINE_LAMBDA __attribute__((always_inline))
 #else
 #define ANISOCONTACT_INLINE inline
+#define ANISOCONTACT_INLINE_LAMBDA
 #endif
+
+namespace anisocontact {
+
+/// Calls f(0) to f(N - 1), written out. Compilers keep a small array in registers where every index
+/// is a constant before they look at loops.
+template <std::size_t N, class F>
+ANISOCONTACT_INLINE constexpr void each(const F& f) {
+  [&]<std::size_t... I>(std::index_sequence<I...>)
+      ANISOCONTACT_INLINE_LAMBDA { (f(I), ...); }(std::make_index_sequence<N>{});
+}
+
+#if defined(__GNUC__) && defined(__x86_64__)
+#define ANISOCONTACT_WIDE [[gnu::noinline, gnu::flatten, gnu::target("avx2,fma")]]
+#define ANISOCONTACT_HAS_WIDE
+/// Whether this processor has registers of four numbers. Which code runs depends on the machine
+/// alone, so that results are the same from run to run.
+inline const bool wide_registers = [] {
+  __builtin_cpu_init();
+  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
+}();
+#else
+#define ANISOCONTACT_WIDE
+inline constexpr bool wide_registers = false;
+#endif
+
+namespace detail {
+template <class F>
+ANISOCONTACT_WIDE void call_wide(const F& f) {
+  f();
+}
+template <class F>
+void call_narrow(const F& f) {
+  f();
+}
+}  // namespace detail
+
+/// Calls f, which has to be inlined, compiled twice: for every processor, and for wide registers.
+template <class F>
+void with_widest(const F& f) {
+  if (wide_registers)
+    detail::call_wide(f);
+  else
+    detail::call_narrow(f);
+}
+
+}  // namespace anisocontact

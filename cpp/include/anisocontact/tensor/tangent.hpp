@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <type_traits>
 
 #include "anisocontact/tensor/dual.hpp"
 #include "anisocontact/tensor/inline.hpp"
@@ -33,6 +34,11 @@ struct Tangent1 {
   ANISOCONTACT_INLINE friend Tangent1 operator*(const S& s, const Tangent1& a) {
     return {{s * a.c[0], s * a.c[1]}};
   }
+  ANISOCONTACT_INLINE friend Tangent1 operator*(double s, const Tangent1& a)
+    requires(!std::is_same_v<S, double>)
+  {
+    return {{s * a.c[0], s * a.c[1]}};
+  }
   ANISOCONTACT_INLINE Tangent1 operator-() const { return {{-c[0], -c[1]}}; }
 };
 
@@ -52,6 +58,11 @@ struct Tangent2 {
     return a + (-b);
   }
   ANISOCONTACT_INLINE friend Tangent2 operator*(const S& s, const Tangent2& a) {
+    return {{{{s * a.c[0][0], s * a.c[0][1]}, {s * a.c[1][0], s * a.c[1][1]}}}};
+  }
+  ANISOCONTACT_INLINE friend Tangent2 operator*(double s, const Tangent2& a)
+    requires(!std::is_same_v<S, double>)
+  {
     return {{{{s * a.c[0][0], s * a.c[0][1]}, {s * a.c[1][0], s * a.c[1][1]}}}};
   }
   ANISOCONTACT_INLINE Tangent2 operator-() const {
@@ -93,10 +104,10 @@ ANISOCONTACT_INLINE Tangent1<S, P> operator*(const Tangent2<S, P, Q>& m,
 template <class S, Place P, Place Q, Place R>
 ANISOCONTACT_INLINE Tangent2<S, P, R> operator*(const Tangent2<S, P, Q>& m,
                                                 const Tangent2<S, opposite(Q), R>& n) {
-  Tangent2<S, P, R> r;
-  for (std::size_t i = 0; i < 2; ++i)
-    for (std::size_t j = 0; j < 2; ++j) r.c[i][j] = m.c[i][0] * n.c[0][j] + m.c[i][1] * n.c[1][j];
-  return r;
+  const auto at = [&](std::size_t i, std::size_t j) ANISOCONTACT_INLINE_LAMBDA {
+    return m.c[i][0] * n.c[0][j] + m.c[i][1] * n.c[1][j];
+  };
+  return {{{{at(0, 0), at(0, 1)}, {at(1, 0), at(1, 1)}}}};
 }
 
 /// u (x) v.

@@ -103,8 +103,9 @@ class SmallestRoot {
     // from u, not as a quadratic in lambda: that would lose the digits of (N/|T_tr|)^2
     const Pair u{trial_[0] + l * m_[0], trial_[1] + l * m_[1]};
     const double p = norm_.product(u, u), half_dp = norm_.product(u, m_);
-    const double scaled = n_ / std::sqrt(p);
-    return {scaled * d - 1.0, scaled * ((tr_ + 2.0 * l * det_) - d * half_dp / p), p, half_dp};
+    const double inverse = 1.0 / std::sqrt(p), scaled = n_ * inverse;
+    return {scaled * d - 1.0, scaled * ((tr_ + 2.0 * l * det_) - d * (half_dp * inverse) * inverse),
+            p, half_dp};
   }
 
   /// Zero up to a few roundings; or no longer falling and within the rounding of u.

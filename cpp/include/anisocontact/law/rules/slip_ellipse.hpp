@@ -42,9 +42,9 @@ class SlipEllipse : public Normality<SlipEllipse> {
     // the second friction axis may be oblique: what is normal to the first counts
     const Vector<S> across = p.axes[1] - dot(p.a_co * e, p.axes[1]) * e;
     const Vector<S> f = (S(1.0) / sqrt(dot(p.a_co * across, across))) * across;
-    const Vector<S> d1 = S(axis_[0]) * e + S(axis_[1]) * f;
-    const Vector<S> d2 = S(axis_[0]) * f - S(axis_[1]) * e;
-    return S(weight_[0]) * outer(d1, d1) + S(weight_[1]) * outer(d2, d2);
+    const Vector<S> d1 = axis_[0] * e + axis_[1] * f;
+    const Vector<S> d2 = axis_[0] * f - axis_[1] * e;
+    return weight_[0] * outer(d1, d1) + weight_[1] * outer(d2, d2);
   }
 
  private:

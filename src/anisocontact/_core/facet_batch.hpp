@@ -1,0 +1,156 @@
+#pragma once
+// Batches of slave points against the facets of a mesh: what is given, and what the kernel sees of a
+// point.
+
+#include <algorithm>
+#include <array>
+
+#include "anisocontact/kernel/facet_assembly.hpp"
+#include "anisocontact/surface/facet.hpp"
+#include "arrays.hpp"
+#include "states.hpp"
+
+namespace anisocontact::bindings {
+
+using kernel::NodalShape;
+
+/// Positions of the nodes of a facet, where they are.
+struct FacetNodes {
+  const double* x;
+  const std::int32_t* node;
+
+  const double* operator[](std::size_t i) const {
+    return x + 3 * static_cast<std::size_t>(node[i]);
+  }
+};
+
+/// Facets of a mesh with the positions of all nodes now and in the reference configuration.
+struct Mesh {
+  const double *now, *reference;
+  const std::int32_t* connectivity;
+  std::size_t width;  ///< nodes in a row of the connectivity
+  const std::int8_t* topology;
+  const bool* flip;
+
+  surface::FacetKind kind(std::size_t f) const {
+    return {static_cast<surface::Topology>(topology[f]), flip[f]};
+  }
+  std::int32_t node(std::size_t f, std::size_t i) const { return connectivity[f * width + i]; }
+  /// -1 beyond the nodes of a facet.
+  std::int32_t node_or_none(std::int64_t facet, std::size_t i) const {
+    const auto f = static_cast<std::size_t>(facet);
+    return i < kind(f).nodes() ? node(f, i) : -1;
+  }
+  void copy_nodes(std::int64_t facet, std::int32_t* to) const {
+    for (std::size_t i = 0; i < width; ++i) to[i] = node_or_none(facet, i);
+  }
+  /// Positions of the nodes of a facet.
+  FacetNodes nodes(const double* x, std::size_t f) const { return {x, connectivity + f * width}; }
+};
+
+/// Slave points: nodes of their facets, shape functions there and the weight of the quadrature.
+struct Slave {
+  const std::int32_t* nodes;
+  const double *shape, *gradient, *weight;
+  std::size_t width;
+  bool current_area;
+
+  void at(std::size_t p, NodalShape& s) const {
+    s.count = width;
+    for (std::size_t a = 0; a < width; ++a) {
+      s.n[a] = shape[p * width + a];
+      s.dn[a] = {gradient[2 * (p * width + a)], gradient[2 * (p * width + a) + 1]};
+    }
+  }
+};
+
+/// Where the search has put each point.
+struct Hits {
+  const std::int32_t* facet;
+  const double *xi, *edge;
+  const std::int8_t* feature;
+};
+
+/// Facets of fewer nodes than the widest have zeros at the end.
+inline void put_shape(std::size_t count, const surface::Shape<double>& s, NodalShape& to) {
+  to.count = count;
+  std::copy_n(s.N.begin(), count, to.n.begin());
+  std::copy_n(s.dN.begin(), count, to.dn.begin());
+}
+
+/// What the kernel sees of one point.
+struct Seen {
+  kernel::PairPoint point;
+  kernel::PairShapes shapes;
+};
+
+/// Everything of a batch that does not change from point to point.
+struct Batch {
+  Mesh mesh;
+  Slave slave;
+  Hits hits;
+  bool mirrored, on_master, on_slave;  ///< on whose reference there are directions
+
+  void see_slave(std::size_t p, Seen& s) const {
+    auto& own = s.point.own;
+    for (auto* j : {&own.now, &own.reference}) {
+      j->position.setZero();
+      j->d1 = {Vec3<double>::Zero(), Vec3<double>::Zero()};
+    }
+    for (std::size_t a = 0; a < slave.width; ++a) {
+      const auto node = static_cast<std::size_t>(slave.nodes[p * slave.width + a]);
+      add_node(s.shapes.slave, a, row3(mesh.now, node), own.now);
+      if (on_slave) add_node(s.shapes.slave, a, row3(mesh.reference, node), own.reference);
+    }
+    s.point.slave = own.now.position;
+    s.shapes.area.tangents = own.now.d1;
+  }
+
+  void see_master(std::size_t p, Seen& s) const {
+    const auto f = static_cast<std::size_t>(hits.facet[p]);
+    s.point.facet = hits.facet[p];
+    s.point.master.xi = {hits.xi[2 * p], hits.xi[2 * p + 1]};
+    s.point.edge = {hits.edge[2 * p], hits.edge[2 * p + 1]};
+    const auto kind = mesh.kind(f);
+    surface::Shape<double> shape;
+    surface::shape(kind, hits.xi[2 * p], hits.xi[2 * p + 1], shape);
+    put_shape(mesh.width, shape, s.shapes.master);
+    std::copy_n(shape.d2N.begin(), mesh.width, s.shapes.bend.begin());
+    surface::put_facet_jet(kind, mesh.nodes(mesh.now, f), shape, true, s.point.master.now);
+    if (on_master)
+      surface::put_facet_jet(kind, mesh.nodes(mesh.reference, f), shape, true,
+                             s.point.master.reference);
+  }
+
+  void see_committed(const kernel::PointState& state, Seen& s) const {
+    const auto c = static_cast<std::size_t>(state.facet);
+    const auto kind = mesh.kind(c);
+    surface::Shape<double> shape;
+    surface::shape(kind, state.xi[0], state.xi[1], shape);
+    put_shape(mesh.width, shape, s.shapes.before);
+    surface::put_facet_jet(kind, mesh.nodes(mesh.now, c), shape, false, s.point.before);
+  }
+
+  /// What there was of another point stays where this one has nothing.
+  void see(const kernel::PointState& state, std::size_t p, Seen& s) const {
+    slave.at(p, s.shapes.slave);
+    s.shapes.area.weight = slave.weight[p];
+    s.shapes.area.current = slave.current_area;
+    see_slave(p, s);
+    s.point.mirrored = mirrored;
+    s.point.feature = static_cast<kernel::Feature>(hits.feature[p]);
+    s.shapes.master.count = s.shapes.before.count = 0;
+    if (s.point.feature == kernel::Feature::off) return;
+    see_master(p, s);
+    if (state.facet >= 0) see_committed(state, s);
+  }
+
+ private:
+  static void add_node(const NodalShape& s, std::size_t a, const Vec3<double>& x,
+                       surface::Jet<double>& j) {
+    j.position += s.n[a] * x;
+    for (std::size_t i = 0; i < 2; ++i) j.d1[i] += s.dn[a][i] * x;
+  }
+};
+
+}  // namespace anisocontact::bindings
