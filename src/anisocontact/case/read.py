@@ -106,7 +106,7 @@ def validate(data: Mapping[str, Any]) -> Case:
             "the finite-element level is not installed: pip install 'anisocontact[fem]', "
             "or fenics-dolfinx from conda-forge"
         )
-    if "load" in data and "mesh" not in data:
+    if isinstance(data, Mapping) and "load" in data and "mesh" not in data:
         raise InputError("load given and no mesh: this is a case of `anisocontact trace`")
     try:
         case = case_type(registries).model_validate(data)
