@@ -82,7 +82,7 @@ def load(path: str | Path) -> CaseFile:
     return CaseFile(validate(read_table(path)), path)
 
 
-def validate(data: Mapping[str, Any]) -> Case:
+def validate(data: object) -> Case:
     """A case from nested tables, as `tomllib` returns them.
 
     Args:
