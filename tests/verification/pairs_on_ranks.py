@@ -37,6 +37,8 @@ from anisocontact.solver import Problem, Solver, Step
 
 #: Accepted increments before a run is stopped.
 STOP = 2
+#: Tolerance of Newton's method; multipliers that follow leave more round-off.
+TOLERANCE, FOLLOWING = 1e-13, 1e-10
 #: Distance of the block from the mat.
 GAP_BELOW = 0.01
 
@@ -105,11 +107,29 @@ def _far() -> Made:
     return problem, [steps[0], Step("drag", 5, along)]
 
 
-def _augmented() -> Made:
+def _augmented(multipliers: str = "uzawa") -> Made:
     model = _bodies(gap=0.0)
-    exact = Augmentation(tangential=False, multipliers="uzawa")
+    exact = Augmentation(tangential=False, multipliers=multipliers)
     pair = FacetContact(model, "block.bottom", "mat.top", law=_law(), augmentation=exact)
     return _dragged(model, [pair], "linear-elastic")
+
+
+def _following() -> Made:
+    """Multipliers that follow every correction."""
+    return _augmented("newton")
+
+
+def _following_plane() -> Made:
+    """The same on an analytic surface, with multipliers of friction too."""
+    model = build_box({"block": BoxSpec((-2, -2, 0), (4, 4, 2), (4, 3, 2))})
+    plane = make_interface(stiffness=(8.0, 16.0), penalty=20.0, coefficients=(0.2, 0.4), angle=0.5)
+    pair = Contact(model, "block.bottom", plane, augmentation=Augmentation(multipliers="newton"))
+    problem = Problem(model, {"block": make_material("linear-elastic", E=8.0, nu=0.3)}, [pair])
+    steps = [
+        Step("press", 2, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.2}}),
+        Step("drag", 2, {"block.top": {"x": 0.4, "y": 0.1, "z": -0.25}}),
+    ]
+    return problem, steps
 
 
 def _under_a_lid() -> Made:
@@ -158,18 +178,20 @@ CASES: dict[str, Callable[[], Made]] = {
     "two-half": _two_half,
     "far": _far,
     "augmented": _augmented,
+    "following": _following,
+    "following-plane": _following_plane,
     "under-a-lid": _under_a_lid,
     "folded": _folded,
 }
 
 
 def _facets(problem: Problem) -> np.ndarray:
-    """Slave and master facets of the first contact on every rank, (ranks, 2)."""
+    """Slave and, if meshed, master facets of the first contact on every rank, (ranks, 1 or 2)."""
     pair = problem.contacts[0]
     model = problem.model
     own = [
         int(np.sum(model.facets(name) < model.mesh.topology.index_map(2).size_local))
-        for name in (pair.slave, pair.master)
+        for name in ([pair.slave] if isinstance(pair, Contact) else [pair.slave, pair.master])
     ]
     return np.array(problem.comm.allgather(own))
 
@@ -195,7 +217,8 @@ def run(name: str, folder: Path, mode: str) -> None:
     """One of `CASES`."""
     problem, steps = CASES[name]()
     ranks = problem.comm.size
-    solver = Solver(problem, steps, options={"snes_rtol": 1e-13}, strategy="direct")
+    tolerance = FOLLOWING if name.startswith("following") else TOLERANCE
+    solver = Solver(problem, steps, options={"snes_rtol": tolerance}, strategy="direct")
     if mode.startswith("from:"):
         stored = load_checkpoint(folder / f"{name}-{mode[5:]}-stop")
         assert stored is not None

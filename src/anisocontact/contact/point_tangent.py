@@ -41,7 +41,7 @@ class PointTangent:
         """Change of the tractions where the nodes move to `now`, (n, 3), stress."""
         moved = (now - self._now)[np.maximum(self._nodes, 0)]
         moved[self._nodes < 0] = 0.0
-        force = np.einsum("nic,nc->ni", self._force, moved.reshape(len(moved), -1))
+        force = np.einsum("nic,nc->ni", self._force, moved.reshape(len(moved), 3 * moved.shape[1]))
         grown = self._points.areas(now) - self._points.areas(self._now)
         force -= grown[:, None] * self._trial.response.traction
         return np.asarray(force / self._trial.areas[:, None])

@@ -14,12 +14,11 @@ What the derivative is multiplied with enters no state that is evaluated.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.augmentation import Augmentation
 from anisocontact.contact.multipliers import SHARE, Frames, Multipliers, Step
 from anisocontact.interface import State
 
@@ -58,26 +57,17 @@ class Base:
 
 
 class Semismooth(Multipliers):
-    """Multipliers that follow every Newton step.
-
-    Args:
-        augmentation: What is asked for.
-        size: Facet size, length.
-        penalties: Normal penalty and least tangential stiffness, stress/length.
-        comm: Communicator of the mesh.
+    """Multipliers that follow every Newton step, made like all `Multipliers`.
 
     Attributes:
         share: Share that is taken of the next step.
+        ratio: What the penalties are multiplied with in the derivative.
     """
 
     follows: ClassVar[bool] = True
 
-    def __init__(
-        self, augmentation: Augmentation, size: float, penalties: tuple[float, float], comm: Any
-    ) -> None:
-        super().__init__(augmentation, size, penalties, comm)
-        self.share = 1.0
-        self.ratio = RATIO
+    share: float = 1.0
+    ratio: ClassVar[float] = RATIO
 
     def suit(self, stiffness: float) -> None:
         """Bring the penalties to the stiffness of the bodies, where the iteration converges best.
