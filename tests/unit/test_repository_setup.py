@@ -190,7 +190,11 @@ def test_extras_are_resolved_without_the_project_itself(bootstrap: ModuleType) -
         "build-system": {"requires": ["builder"]},
         "project": {
             "dependencies": ["base"],
-            "optional-dependencies": {"fem": ["solver"], "dev": ["anisocontact[fem]", "linter"]},
+            "optional-dependencies": {
+                "fem": ["solver"],
+                "mkl": ["large"],
+                "dev": ["anisocontact[fem]", "linter"],
+            },
         },
     }
     assert bootstrap.requirements(project) == ["base", "builder", "linter", "solver"]
