@@ -18,6 +18,7 @@ from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor, gmre
 from anisocontact.solver.condensed.eliminate import WAYS
 from anisocontact.solver.condensed.parts import Condensation
 from anisocontact.solver.condensed.patterns import Patterns, State
+from anisocontact.solver.iterative.coarse import CoarseLevel
 from anisocontact.solver.newton import SingularError
 
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
@@ -278,3 +279,27 @@ def test_bulk_is_recovered_only_when_asked_for(fe: Any, monkeypatch: pytest.Monk
     before = len(calls)
     assert problem.u.x.array.any()
     assert len(calls) <= before + 1
+
+
+@pytest.mark.parametrize("how", ["condensed", "iterative"])
+def test_a_factorisation_that_failed_once_is_tried_again(
+    how: str, fe: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The next attempt begins anew: PETSc would keep on saying that the last one had failed."""
+    failed: list[int] = []
+    owner, name, nothing = {
+        "condensed": (KeptFactor, "solve", None),
+        "iterative": (CoarseLevel, "factorise", False),
+    }[how]
+    right = getattr(owner, name)
+
+    def once_wrong(self: Any, *given: Any) -> Any:
+        if failed:
+            return right(self, *given)
+        failed.append(1)
+        return nothing
+
+    monkeypatch.setattr(owner, name, once_wrong)
+    accepted = list(Solver(fe.block(fe.interface()).problem, [PRESS], strategy=how).run())
+    assert failed
+    assert [one.done for one in accepted] == [1.0]

@@ -231,6 +231,11 @@ class Newton:
         iterate.copy(x)
         reason = self.snes.getConvergedReason()
         text = "" if reason > 0 else self._explain(reason)
+        if reason == PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
+            # PETSc would say of every later one that it failed, too
+            ksp = self.snes.getKSP()
+            ksp.reset()
+            ksp.getPC().setFailedReason(PETSc.PC.FailedReason.NOERROR)
         return NewtonResult(self.snes.getIterationNumber(), self._residuals, text)
 
     def _function(self, _: SNES, x: Vec, f: Vec) -> None:

@@ -65,7 +65,10 @@ class CoarseLevel:
                 self._matrix.axpy(1.0, part, structure=subset)
         self._solver.setOperators(self._matrix)
         self._solver.setUp()
-        return bool(self._solver.getPC().getFailedReason() == 0)
+        failed = self._solver.getPC().getFailedReason() != 0
+        if failed:  # else every later factorisation would be said to have failed too
+            self._solver.reset()
+        return not failed
 
     def solve(self, rest: Vec) -> Vec:
         """Correction of all unknowns for a residual; overwritten by the next call."""

@@ -66,7 +66,7 @@ class TwoLevel:
         self._bulk = bulk
         assert self._coarse is not None
         if not self._coarse.factorise(tangent):
-            pc.setFailedReason(PETSc.PC.FailedReason.NUMERIC_ZEROPIVOT)
+            pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
 
     def apply(self, pc: PETSc.PC, b: Vec, x: Vec) -> None:
         """One cycle from zero."""
