@@ -92,7 +92,7 @@ def picture(records: Sequence[Record], path: Path) -> None:
             ax.set_ylabel(label)
         axes[0, column].set_title(f"block on {kind}")
         if axes[0, column].lines:
-            axes[0, column].legend()
+            axes[1, column].legend(loc="lower right")  # where no curve goes
         axes[1, column].set_xlabel("unknowns")
         axes[1, column].xaxis.set_minor_formatter(ticker.NullFormatter())
     figure.savefig(path, dpi=110)
