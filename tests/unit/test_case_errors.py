@@ -42,6 +42,7 @@ WRONG = [
     ("cells = [3, 3, 2]", "cells = [3, 3, 2.5]", "mesh.box.block.cells", "whole"),
     ("cells = [3, 3, 2]", "cells = [3, 3]", "mesh.box.block.cells", "3 whole numbers"),
     ("cells = [3, 3, 2]", "cells = [3, 30000, 2000000]", "mesh.box.block.cells", "at most 1e+08"),
+    ("cells = [3, 3, 2]", "cells = [3, 3377478169, 2]", "mesh.box.block.cells", "at most 1e+07"),
     ("order = 1", "order = 3", "mesh.box.block.order", "at most 2"),
     ('cell = "hexahedron"', 'cell = "hexaeder"', "mesh.box.block.cell", "tetrahedron"),
     ("increments = 4", "increments = 0", "step[1].increments", "> 0"),

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
+from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import Floats, Nodes
 
 Mask = npt.NDArray[np.bool_]
@@ -20,6 +21,9 @@ type Side = tuple[int, int]
 
 #: Distance of nodes of neighbouring blocks that are one, over the extent of the body.
 SAME_NODE = 1e-9
+#: Cells along one direction that are certainly a slip of the keyboard: their planes alone would
+#: take gigabytes before anybody could count the cells.
+MOST_ALONG = 10**7
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,12 @@ class Block:
 
 
 def even(cells: int) -> Floats:
-    """Planes of cells of one size, from 0 to 1."""
+    """Planes of cells of one size, from 0 to 1.
+
+    Raises:
+        InputError: More cells than anybody can mean.
+    """
+    check_line(cells)
     return np.linspace(0.0, 1.0, cells + 1)
 
 
@@ -57,15 +66,30 @@ def graded(cells: int, ratio: float) -> Floats:
     Returns:
         Positions of the planes, (cells + 1,).
 
+    Raises:
+        InputError: More cells than anybody can mean.
+
     Example:
         >>> graded(2, 3.0).tolist()
         [0.0, 0.25, 1.0]
     """
     if cells == 1 or ratio == 1.0:
         return even(cells)
+    check_line(cells)
     sizes = ratio ** (np.arange(cells) / (cells - 1))
     ends = np.concatenate([[0.0], np.cumsum(sizes)])
     return np.asarray(ends / ends[-1])
+
+
+def check_line(cells: int) -> None:
+    """Refuse more cells along one direction than anybody can mean.
+
+    Raises:
+        InputError: Says how many there would be.
+    """
+    if cells > MOST_ALONG:
+        text = f"{cells:.1e} cells along one direction given, at most {MOST_ALONG:.0e} allowed"
+        raise InputError(text, "cells")
 
 
 class Lattice:
