@@ -38,7 +38,7 @@ from anisocontact.solver import Problem, Solver, Step
 #: Accepted increments before a run is stopped.
 STOP = 2
 #: Tolerance of Newton's method; multipliers that follow leave more round-off.
-TOLERANCE, FOLLOWING = 1e-13, 1e-10
+TOLERANCE, FOLLOWING = 1e-13, 1e-12
 #: Distance of the block from the mat.
 GAP_BELOW = 0.01
 

@@ -124,15 +124,15 @@ def test_both_ways_find_the_same(meshed: bool, strategy: str) -> None:
 def test_multipliers_converge_quadratically(meshed: bool) -> None:
     """Once no point changes its status the residual is squared: slope above 1.6 of its logarithm.
 
-    Source: Newton's method; points slip, some stick. Over the last three residuals above 1e-10,
-    where rounding ends the order, log(r2 / r1) / log(r1 / r0) is measured where they fall; medians
-    1.8 and 1.8.
+    Source: Newton's method; points slip, some stick. Over the last three residuals the order
+    log(r2 / r1) / log(r1 / r0) is measured where they fall; the elimination of the multipliers
+    leaves 1e-4 of a violation, which is less than a square at the end; medians 1.7 and 1.8.
     """
     _, _, done = _run(1.0, meshed, SLIP, multipliers="newton")
     orders = []
     for accepted in done:
-        above = [r for r in accepted.residuals if r > 1e-10]
-        first, second, third = above[-3:] if len(above) > 2 else (1.0, 1.0, 1.0)
+        last = accepted.residuals[-3:]
+        first, second, third = last if len(last) > 2 else (1.0, 1.0, 1.0)
         if first < 0.1 and third < second < first:
             orders.append(np.log(third / second) / np.log(second / first))
     assert len(orders) >= 3

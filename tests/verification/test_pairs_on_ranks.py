@@ -51,6 +51,11 @@ def difference(one: Arrays, other: Arrays) -> dict[str, float]:
         rows = _matched(one[prefix + "reference"], other[prefix + "reference"])
         for name in filter(lambda n: n.startswith(prefix), one):
             _compare(out, name, one[name], other[name][rows])
+        # what the transfer works is a difference of works, so they are its measure
+        work = np.abs(one["common/external_work"]).max()
+        size = np.abs(one.get(prefix + "transferred", np.zeros(1))).max(initial=0.0)
+        if size > 0.0:
+            out[prefix + "transferred."] *= size / work
     return out
 
 
@@ -156,8 +161,8 @@ def test_processes_change_no_multipliers(folder: Path) -> None:
 def test_restart_on_others(folder: Path, before: int, after: int) -> None:
     """A run that was stopped goes on where the mesh is cut into another number of parts.
 
-    Requirement and tolerance: 1e-10. Source: the run that was not stopped; sums in another order
-    leave 1.4e-11.
+    Requirement: 1e-10. Source: the run that was not stopped. Tolerance 1e-11: sums in another
+    order; 2e-13 measured, in the history of the slave points.
     """
     names = ("two-half", "far", "single", "folded")
     start(before, folder, "stop", *names)
@@ -166,4 +171,4 @@ def test_restart_on_others(folder: Path, before: int, after: int) -> None:
         whole = read(folder, f"{name}-{before}-whole")
         whole["numbers"] = whole["numbers"][STOP:]
         on = read(folder, f"{name}-{after}-from-{before}")
-        assert worst(whole, on) < 1e-10, f"{name}: {difference(whole, on)}"
+        assert worst(whole, on) < 1e-11, f"{name}: {difference(whole, on)}"

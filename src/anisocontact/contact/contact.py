@@ -135,7 +135,8 @@ class Contact(ContactRecord):
         Returns:
             The response; the committed history is unchanged.
         """
-        x = self.quadrature.reference + self.quadrature.at_points(u)
+        way = self.quadrature.at_points(u)
+        x = self.quadrature.reference + way
         moved = self.quadrature.moved(u) if self.current_area or self._carries else None
         if moved is not None:
             self._slave = self._surface(moved.tangents)
@@ -143,11 +144,11 @@ class Contact(ContactRecord):
         areas = self.quadrature.areas if self._moved is None else self._moved.areas
         semismooth = self._semismooth
         if semismooth is not None:
-            self._follow(semismooth, x, dt)
+            self._follow(semismooth, way, x, dt)
         response = self._respond(self._start, x, dt)
         self._trial = Snapshot(x, areas, response)
         if semismooth is not None:
-            self._trial = self._linearised(semismooth, self._trial, dt)
+            self._trial = self._linearised(semismooth, self._trial, way, dt)
         return self._trial.response
 
     def persistent(self) -> dict[str, npt.NDArray[Any]]:
@@ -247,12 +248,15 @@ class Contact(ContactRecord):
         lag = replace(now.response, traction=self.lag())
         return replace(now, response=lag).wrench(about)
 
-    def _follow(self, semismooth: Semismooth, x: Floats, dt: float) -> None:
-        """Let the multipliers follow a step of Newton's method to x."""
-        there = self._place(x)
-        if self._base is None or np.array_equal(there, self._base_place):
+    def _follow(self, semismooth: Semismooth, way: Floats, x: Floats, dt: float) -> None:
+        """Let the multipliers follow a step of Newton's method that displaces points by way to x.
+
+        The tangent is so stiff that the rounding of positions would be felt in their difference.
+        """
+        there = self._displaced(way)
+        if self._base is None or np.array_equal(there, self._base_way):
             return
-        change = np.einsum("nij,nj->ni", self._base_tangent, there - self._base_place)
+        change = np.einsum("nij,nj->ni", self._base_tangent, there - self._base_way)
         state = self._respond(self._start, x, dt).state
         self._start = semismooth.advance(
             self._start,
@@ -261,25 +265,30 @@ class Contact(ContactRecord):
             Frames.of(self._tangents(self._start)),
         )
 
-    def _linearised(self, semismooth: Semismooth, trial: Snapshot, dt: float) -> Snapshot:
+    def _linearised(
+        self, semismooth: Semismooth, trial: Snapshot, way: Floats, dt: float
+    ) -> Snapshot:
         """The trial with the derivative of a Newton step that takes the multipliers along."""
         step = self._step(trial)
         state, slip = semismooth.stiff(step)
         stiff = self._respond(state, trial.points, dt, self._stiff)
         turn = np.eye(3) if self.body is None else self.body.trial.rotation
-        self._base_place, self._base_tangent = (
-            self._place(trial.points),
-            turn.T @ stiff.tangent @ turn,
-        )
+        self._base_way = self._displaced(way)
+        self._base_tangent = turn.T @ stiff.tangent @ turn
         lag = np.einsum("nij,nj->ni", self._base_tangent, slip)
         traction = trial.response.traction @ turn
         self._base = Base(semismooth.vector(step), traction, lag)
         response = replace(trial.response, tangent=stiff.tangent, tangent_slave=stiff.tangent_slave)
         return replace(trial, response=response)
 
-    def _place(self, x: Floats) -> Floats:
-        """Points of space in the frame of the surface, (n, 3), length."""
-        return x if self.body is None else self.body.to_body(x)
+    def _displaced(self, way: Floats) -> Floats:
+        """Displacements of points as seen from the surface, (n, 3), length."""
+        if self.body is None:
+            return way
+        pose, arms = self.body.trial, self.quadrature.reference - self.body.reference
+        return np.asarray(
+            arms @ (pose.rotation - np.eye(3)) + (way - pose.translation) @ pose.rotation
+        )
 
     def _in_space(self, vectors: Floats) -> Floats:
         return vectors if self.body is None else self.body.to_space(vectors)

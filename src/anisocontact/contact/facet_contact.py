@@ -175,20 +175,21 @@ class FacetContact(ContactRecord):
             The response; the committed history is unchanged.
         """
         self._keep_up(u)
-        self._now = self._sides.reference + self._gathered.everywhere(u)
+        moved = np.array(self._gathered.everywhere(u))
+        self._now = self._sides.reference + moved
         semismooth = self._semismooth
         if semismooth is None:
             self._trial = self._respond(self._start, self._now, dt, tangent=True)
         else:
-            self._trial = self._linearised(semismooth, dt)
+            self._trial = self._linearised(semismooth, moved, dt)
         if self._transfer is not None:
             self._hand_over(self._transfer)
         return self._trial.response
 
-    def _linearised(self, semismooth: Semismooth, dt: float) -> Snapshot:
+    def _linearised(self, semismooth: Semismooth, moved: Floats, dt: float) -> Snapshot:
         """A trial to which the multipliers have followed, with the derivative of a Newton step."""
         hit = self._project(self._now)
-        self._follow(semismooth, hit)
+        self._follow(semismooth, moved, hit)
         trial = self._ask(self._law, self._start, hit, dt, tangent=False)
         step = self._step(trial)
         state, slip = semismooth.stiff(step)
@@ -198,12 +199,12 @@ class FacetContact(ContactRecord):
         kept = {name: self._answer[name] for name in ("tangent", "nodes")}
         self._answer = answer | kept | {"stiffness": stiff}
         vector = semismooth.vector(step)
-        self._linear = PointTangent(self._points, self._now, self._answer, trial)
+        self._linear = PointTangent(self._points, self._now, moved, self._answer, trial)
         self._base = Base(vector, trial.response.traction, self._linear.slipped(slip))
         self._lag = self._linear.forces(slip)
         return trial
 
-    def _follow(self, semismooth: Semismooth, hit: FacetProjections) -> None:
+    def _follow(self, semismooth: Semismooth, moved: Floats, hit: FacetProjections) -> None:
         """Let the multipliers follow a step of Newton's method."""
         if self._base is None or self._linear is None or self._linear.at(self._now):
             return
@@ -211,7 +212,7 @@ class FacetContact(ContactRecord):
         there["facet"], there["xi"] = np.where(located(hit), hit.facet, -1), np.nan_to_num(hit.xi)
         self._start = semismooth.advance(
             self._start,
-            self._base.after(self._linear.change(self._now), semismooth.share),
+            self._base.after(self._linear.change(self._now, moved), semismooth.share),
             Frames.of(self._tangents(there)),
             Frames.of(self._tangents(self._start)),
         )

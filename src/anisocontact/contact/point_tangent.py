@@ -19,14 +19,20 @@ class PointTangent:
     Args:
         points: The slave points.
         now: Positions of the nodes at the trial, (nodes, 3), length.
+        moved: Their displacements, (nodes, 3), length.
         answer: Blocks of the points, "tangent" (n, 3 r, 3 c), and their "nodes", (n, c).
         trial: The trial.
     """
 
     def __init__(
-        self, points: SlavePoints, now: Floats, answer: dict[str, Any], trial: Snapshot
+        self,
+        points: SlavePoints,
+        now: Floats,
+        moved: Floats,
+        answer: dict[str, Any],
+        trial: Snapshot,
     ) -> None:
-        self._points, self._now, self._trial = points, now, trial
+        self._points, self._now, self._moved, self._trial = points, now, moved, trial
         self._nodes, self._blocks = answer["nodes"], answer["tangent"]
         n, rows, columns = self._blocks.shape
         own = points.nodes.shape[1]
@@ -37,9 +43,15 @@ class PointTangent:
         """Whether nodes, (nodes, 3), are where they are in the trial."""
         return np.array_equal(now, self._now)
 
-    def change(self, now: Floats) -> Floats:
-        """Change of the tractions where the nodes move to `now`, (n, 3), stress."""
-        moved = (now - self._now)[np.maximum(self._nodes, 0)]
+    def change(self, now: Floats, moved: Floats) -> Floats:
+        """Change of the tractions where the nodes move, (n, 3), stress.
+
+        Args:
+            now: Where they move to, (nodes, 3), length.
+            moved: Their displacements there: the blocks are so stiff that the rounding of
+                positions would be felt in the difference, (nodes, 3), length.
+        """
+        moved = (moved - self._moved)[np.maximum(self._nodes, 0)]
         moved[self._nodes < 0] = 0.0
         force = np.einsum("nic,nc->ni", self._force, moved.reshape(len(moved), 3 * moved.shape[1]))
         grown = self._points.areas(now) - self._points.areas(self._now)

@@ -248,14 +248,17 @@ class Stabilisation:
         """Bodies that contact has thrown off, with their free motions in words; empty if none is.
 
         Without any force a body is in balance wherever it is. That is no state to accept where the
-        body has moved by more than a facet beyond all that prescribed motions can explain.
+        body has moved by more than a facet beyond all that prescribed motions can explain; nor
+        is any where there are no springs, since rounding alone says where the body would be.
 
         Args:
             u: Displacement of the local nodes in equilibrium, (nodes, 3), length.
         """
-        gone = [one for one in self._loose if self._far(one, u)]
-        explained = self._prescribed(u) if gone else 0.0
-        gone = [g for g in gone if self._far(g, u, explained) and self._carries_nothing(g, u)]
+        gone = [one for one in self._loose if not self.enabled or self._far(one, u)]
+        if self.enabled and gone:
+            explained = self._prescribed(u)
+            gone = [one for one in gone if self._far(one, u, explained)]
+        gone = [one for one in gone if self._carries_nothing(one, u)]
         return "; ".join(f"body {g.body.name!r} has lost all contact: {g.modes}" for g in gone)
 
     def _carries_nothing(self, free: _Free, u: Floats) -> bool:
