@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import numpy.typing as npt
@@ -31,6 +31,15 @@ from anisocontact.mesh import Model
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
+
+
+class PassOptions(TypedDict, total=False):
+    """Arguments of `FacetContact` that contacts made of passes hand on to each of them."""
+
+    degree: int | None
+    reach: float | None
+    current_area: bool
+    adjust: float | None
 
 
 class FacetContact(ContactRecord):

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.facet_contact import FacetContact
+from anisocontact.contact.facet_contact import FacetContact, PassOptions
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.interface import PairLaw, Response
 from anisocontact.mesh import Model
@@ -26,14 +28,10 @@ class TwoHalfPass(ContactRecord):
         model: Mesh with both groups.
         slave: Facet group "body.group" of the first pass.
         master: Facet group "body.group" that it meets.
-        law: Laws of the interface.
-        degree: Degree of the quadrature; twice the order of the displacement if not given.
-        reach: Distance within which each searches the other, length; twice the size of the facets
-            that search if not given.
-        current_area: Whether tractions act on the area of now (finite strain) or of the reference.
-        adjust: Gaps up to this one are closed and overlaps taken out before the first step, see
-            `adjusted`, length; nothing if not given.
+        law: Laws of the interface, as of `FacetContact`.
         name: Name in output; the slave if not given.
+        options: `degree`, `reach`, `current_area` and `adjust` of both passes, as of
+            `FacetContact`.
 
     Attributes:
         passes: Both passes.
@@ -62,11 +60,8 @@ class TwoHalfPass(ContactRecord):
         master: str,
         *,
         law: PairLaw,
-        degree: int | None = None,
-        reach: float | None = None,
-        current_area: bool = True,
-        adjust: float | None = None,
         name: str = "",
+        **options: Unpack[PassOptions],
     ) -> None:
         self.master = master
         self.interface = law
@@ -76,13 +71,10 @@ class TwoHalfPass(ContactRecord):
                 on,
                 against,
                 law=law,
-                degree=degree,
-                reach=reach,
-                current_area=current_area,
-                adjust=adjust,
                 weight=0.5,
                 mirrored=mirrored,
                 overlaps=True,
+                **options,
             )
             for on, against, mirrored in ((slave, master, False), (master, slave, True))
         )
