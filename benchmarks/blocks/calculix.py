@@ -47,7 +47,8 @@ def increments(folder: Path) -> list[Increment]:
         # step, increment, attempt, iterations, three times
         if len(numbers) == 7 and numbers[0].isdigit():
             iterations.append(int(numbers[3]))
-    return [Increment(*force, k) for force, k in zip(forces, iterations, strict=True)]
+    # a run that was stopped may have written one of the two only
+    return [Increment(*force, k) for force, k in zip(forces, iterations, strict=False)]
 
 
 def _lines(kind: str, n: int) -> Iterable[str]:

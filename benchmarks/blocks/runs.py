@@ -75,13 +75,15 @@ def one(name: str, kind: str, n: int, limit: float = LIMIT) -> Record:
         where = {"PYTHONPATH": paths()}
         used = measure.run(code.command(kind, n, folder), folder, THREADS, limit, where)
         values, note = used.values | {"unknowns": float(unknowns(kind, n))}, ""
+        done: list[Increment] = []
         try:
-            values |= forces(code.increments(folder))
+            done = code.increments(folder)
+            values |= forces(done)
         except (OSError, ValueError) as error:
             last = (folder / "stdout").read_text().strip().splitlines()[-1:]
             note = f"stopped after {used.wall:.0f} s: {error} {' '.join(last)}"
             if used.wall >= limit:
-                note = f"longer than {limit:.0f} s"
+                note = f"{len(done)} of {PRESSES + DRAGS} increments in {limit:.0f} s"
     return Record(PART, kind, n, name, {} if note else values, about, note)
 
 

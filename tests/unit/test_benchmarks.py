@@ -95,6 +95,15 @@ def test_the_time_limit_ends_a_process(benchmarks, tmp_path):
     assert used.wall < 10.0
 
 
+def test_a_run_that_takes_too_long_says_how_far_it_came(benchmarks, monkeypatch):
+    code, runs = benchmarks("blocks.code"), benchmarks("blocks.runs")
+    endless = "import time; print('increment 1 2 3\\nincrement 2 3 4', flush=True); time.sleep(60)"
+    slow = code.Script("blocks.none", "print('1.0')")
+    monkeypatch.setattr(code.Script, "command", lambda *_: [sys.executable, "-c", endless])
+    monkeypatch.setitem(runs.CODES, "slow", slow)
+    assert runs.one("slow", "plane", 4, 1.0).note == "2 of 15 increments in 1 s"
+
+
 def test_a_record_replaces_that_of_the_same_run_only(benchmarks, tmp_path):
     records, path = benchmarks("records"), tmp_path / "records.json"
     records.store(
@@ -109,12 +118,12 @@ def test_pages_have_ratios_and_say_where_figures_come_from(benchmarks, tmp_path)
     made = [
         record(benchmarks, "anisocontact", 2.0, date="2026-01-02"),
         record(benchmarks, "CalculiX", 9.0),
-        record(benchmarks, "NGSolve", 0.0, note="longer than 3600 s"),
+        record(benchmarks, "NGSolve", 0.0, note="4 of 15 increments in 3600 s"),
     ]
     benchmarks("pages").write(made, tmp_path, tmp_path)
     text = (tmp_path / "blocks.md.in").read_text()
     assert "| 12 | 1 | CalculiX | 9.0 | 4.5 |" in text
-    assert "longer than 3600 s" in text
+    assert "4 of 15 increments in 3600 s" in text
     assert "- a: 2026-01-01" in text and "- b: 2026-01-02" in text
     assert text.count("| b |") == 1
     assert (tmp_path / "benchmarks-blocks.png").stat().st_size > 10_000
