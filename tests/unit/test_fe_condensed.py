@@ -51,7 +51,7 @@ def test_partial_factor(way: Any) -> None:
     matrix, border = _matrix(40), np.array([3, 7, 8, 20, 33])
     inside = np.setdiff1d(np.arange(40), border)
     dense = matrix.toarray()
-    factor = way(matrix.indptr, matrix.indices, matrix.data, border)
+    factor = way(matrix, border)
     np.testing.assert_allclose(factor.schur, _schur(dense, border, inside), atol=1e-13)
     assert np.array_equal(factor.schur, factor.schur.T)
     for k in (1, 3):
@@ -66,7 +66,7 @@ def test_singular_schur_complement(way: Any) -> None:
     """A body that nothing holds: two springs in a row, of which only the middle is eliminated."""
     springs = np.array([[1.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
     matrix = scipy.sparse.csr_array(springs)
-    factor = way(matrix.indptr, matrix.indices, matrix.data, np.array([0, 2]))
+    factor = way(matrix, np.array([0, 2]))
     np.testing.assert_allclose(factor.schur, [[0.5, -0.5], [-0.5, 0.5]], atol=1e-15)
     factor.close()
 
@@ -75,7 +75,7 @@ def test_singular_interior(way: Any) -> None:
     """A spring between two unknowns that nothing else holds."""
     matrix = scipy.sparse.csr_array(np.array([[1.0, 0.0, 0.0], [0.0, 1.0, -1.0], [0.0, -1.0, 1.0]]))
     with pytest.raises(SingularError):
-        way(matrix.indptr, matrix.indices, matrix.data, np.array([0]))
+        way(matrix, np.array([0]))
 
 
 def _condensation() -> Condensation:

@@ -2,82 +2,47 @@
 
 from __future__ import annotations
 
+from typing import override
+
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
 from anisocontact._fenicsx import PETSc
-from anisocontact.solver.newton import SingularError
+from anisocontact.solver.condensed.factor import Eliminated, aij, singular, solves
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 
 #: Right-hand sides at a time: enough for products of matrices, few beside the factor.
 _COLUMNS = 64
-#: Error of a solution beyond which a matrix counts as singular.
-_TRUSTED = 0.1
 
 
-class BlockedFactor:
-    """The interior of `A` eliminated, its border left; see `MumpsFactor`.
+class BlockedFactor(Eliminated):
+    """An interior eliminated by any factorisation of it; arguments as of `Way`.
 
-    PETSc factorises `A_ii`, with MUMPS if it has it, and `S = A_cc - A_ci A_ii^-1 A_ic` is made of
-    solutions with the columns of `A_ic`: several times slower than a partial factorisation, but
-    nothing is needed that PETSc does not always have.
-
-    Args:
-        starts: Row pointers of A in compressed rows, (n + 1,).
-        columns: Column of each entry.
-        values: The entries, both triangles.
-        border: Numbers of the border unknowns, increasing, (c,); neither none nor all.
-
-    Attributes:
-        schur: S, (c, c), dense and symmetric.
-
-    Raises:
-        SingularError: The interior cannot be solved.
+    PETSc factorises `A_ii`, with MUMPS if it has it, and S is made of solutions with the columns of
+    `A_ic`: several times slower than a partial factorisation, but nothing is needed that PETSc does
+    not always have.
     """
 
-    def __init__(
-        self, starts: npt.ArrayLike, columns: npt.ArrayLike, values: npt.ArrayLike, border: Ints
-    ) -> None:
-        n = len(np.asarray(starts)) - 1
-        matrix = scipy.sparse.csr_array((values, columns, starts), (n, n))
-        self._inside: Ints = np.setdiff1d(np.arange(n), border)
-        inner = matrix[self._inside][:, self._inside].tocsr()
-        self._matrix = PETSc.Mat().createAIJ(
-            inner.shape,
-            csr=tuple(
-                np.ascontiguousarray(a, dtype=kind)
-                for a, kind in (
-                    (inner.indptr, PETSc.IntType),
-                    (inner.indices, PETSc.IntType),
-                    (inner.data, PETSc.ScalarType),
-                )
-            ),
-            comm=PETSc.COMM_SELF,
-        )
+    def __init__(self, matrix: scipy.sparse.csr_array, border: Ints) -> None:
+        self._inside: Ints = np.setdiff1d(np.arange(matrix.shape[0]), border)
+        self._matrix = aij(matrix[self._inside][:, self._inside].tocsr())
         self._pc = _solver(self._matrix)
-        if not self._factorised():
+        if not (self._factorised() and solves(self, matrix, border)):
             self.close()
-            raise SingularError("the stiffness of the bodies is singular")
+            raise singular()
         self.schur = self._eliminated(matrix, border)
 
+    @override
     def interior(self, b: Floats) -> Floats:
-        """Solve `A_ii x_i = b_i` for several right-hand sides, with `x_c = 0`.
-
-        Args:
-            b: Right-hand sides, (n, k); entries of the border do not count.
-
-        Returns:
-            x, (n, k).
-        """
         out = np.zeros(b.shape)
         out[self._inside] = self._solved(b[self._inside])
         return out
 
+    @override
     def close(self) -> None:
-        """Give back the memory of the factor."""
         self._pc.destroy()
         self._matrix.destroy()
 
@@ -91,18 +56,12 @@ class BlockedFactor:
         return x
 
     def _factorised(self) -> bool:
-        """Whether there is a factor, and a known solution is found with it."""
+        """Whether there is a factor."""
         try:
             self._pc.setUp()
         except PETSc.Error:  # PETSc's own factorisation raises at a pivot that is zero
             return False
-        if self._pc.getFailedReason() != 0:
-            return False
-        given, force = self._matrix.createVecs()
-        given.set(1.0)
-        self._matrix.mult(given, force)
-        found = self._solved(np.array(force.array_r)[:, None])
-        return bool(np.abs(found - 1.0).max() < _TRUSTED)
+        return bool(self._pc.getFailedReason() == 0)
 
     def _eliminated(self, matrix: scipy.sparse.csr_array, border: Ints) -> Floats:
         of_border = matrix[border].tocsr()

@@ -5,13 +5,13 @@ from __future__ import annotations
 import ctypes
 import os
 from functools import cache
-from typing import Any
+from typing import Any, override
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact.solver.newton import SingularError
+from anisocontact.solver.condensed.factor import Eliminated, mirror, singular
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -42,33 +42,17 @@ def routine() -> Any:
     return found
 
 
-class PardisoFactor:
-    """The interior of `A` eliminated, its border left; see `MumpsFactor`.
+class PardisoFactor(Eliminated):
+    """An interior eliminated by Pardiso; arguments as of `Way`.
 
     The Schur complement comes out of the factorisation, of which only a triangle is made.
-
-    Args:
-        starts: Row pointers of A in compressed rows, (n + 1,).
-        columns: Column of each entry.
-        values: The entries, both triangles.
-        border: Numbers of the border unknowns, increasing, (c,); neither none nor all.
-
-    Attributes:
-        schur: S, (c, c), dense and symmetric.
-
-    Raises:
-        SingularError: The interior cannot be solved.
     """
 
-    def __init__(
-        self, starts: npt.ArrayLike, columns: npt.ArrayLike, values: npt.ArrayLike, border: Ints
-    ) -> None:
-        n = len(np.asarray(starts)) - 1
-        upper = scipy.sparse.triu(
-            scipy.sparse.csr_array((values, columns, starts), (n, n)), format="csr"
-        )
+    def __init__(self, matrix: scipy.sparse.csr_array, border: Ints) -> None:
+        n = matrix.shape[0]
+        upper = scipy.sparse.triu(matrix, format="csr")
         upper.sort_indices()
-        self.border = border
+        self._border = border
         self._entries = np.ascontiguousarray(upper.data, dtype=np.float64)
         self._starts = (upper.indptr + 1).astype(np.int32)
         self._columns = (upper.indices + 1).astype(np.int32)
@@ -79,32 +63,24 @@ class PardisoFactor:
         for place, value in _OPTIONS.items():
             self._options[place - 1] = value
         count = len(border)
-        self.schur: Floats = np.zeros((count, count), order="F")
+        self.schur = np.zeros((count, count), order="F")
         if self._call(_FACTORISE, np.zeros((n, 1)), self.schur) != 0:
             self.close()
-            raise SingularError("the stiffness of the bodies is singular")
-        for j in range(1, count):  # symmetric to the last bit
-            self.schur[:j, j] = self.schur[j, :j]
+            raise singular()
+        mirror(self.schur)
 
+    @override
     def interior(self, b: Floats) -> Floats:
-        """Solve `A_ii x_i = b_i` for several right-hand sides, with `x_c = 0`.
-
-        Args:
-            b: Right-hand sides, (n, k); entries of the border do not count.
-
-        Returns:
-            x, (n, k).
-        """
         right = np.array(b, dtype=np.float64, order="F")
-        right[self.border] = 0.0
+        right[self._border] = 0.0
         half, x = np.zeros_like(right), np.zeros_like(right)
         self._call(_FORWARD, right, half)
-        half[self.border] = 0.0
+        half[self._border] = 0.0
         self._call(_BACKWARD, half, x)
         return x
 
+    @override
     def close(self) -> None:
-        """Give back the memory of the factor."""
         if self._handle.any():
             self._call(_RELEASE, np.zeros((1, 1)), np.zeros((1, 1)))
             self._handle[:] = 0

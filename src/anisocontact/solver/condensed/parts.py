@@ -11,7 +11,8 @@ import scipy.sparse
 from scipy.sparse.csgraph import connected_components
 
 from anisocontact.solver.condensed.dense import blocks_times
-from anisocontact.solver.condensed.eliminate import Eliminated, WholeBorder, chosen
+from anisocontact.solver.condensed.eliminate import WholeBorder, chosen
+from anisocontact.solver.condensed.factor import Eliminated
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -149,4 +150,4 @@ class Condensation:
         self._note(
             f"condensing {len(free)} unknowns of a body on {len(border)} contact unknowns ({name})"
         )
-        return Part(free, border, way(matrix.indptr, matrix.indices, matrix.data, inside))
+        return Part(free, border, way(matrix, inside))
