@@ -51,6 +51,7 @@ __all__ = [
     "cell_permutation",
     "compiled",
     "corner_weights",
+    "create_force",
     "create_mesh",
     "create_stiffness",
     "curved_gradients",
@@ -263,12 +264,17 @@ def create_stiffness(form: Any) -> Mat:
     return matrix
 
 
+def create_force(form: Any) -> Vec:
+    """Vector for `assemble_force` of a linear form, with ghosts."""
+    return fem_petsc.create_vector(form.function_spaces[0])
+
+
 def assemble_force(form: Any, out: Vec) -> None:
-    """Write the vector of a linear form, ghosts added up, into `out`."""
-    assembled = fem_petsc.assemble_vector(form)
-    assembled.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
-    out.array[:] = assembled.array_r
-    assembled.destroy()
+    """Write the vector of a linear form, ghosts added up, into one of `create_force`."""
+    with out.localForm() as local:
+        local.set(0.0)
+    fem_petsc.assemble_vector(out, form)
+    out.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
 
 
 def assemble_into(matrix: Mat, form: Any) -> None:

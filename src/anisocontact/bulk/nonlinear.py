@@ -14,6 +14,7 @@ from anisocontact._fenicsx import (
     assemble_force,
     assemble_into,
     compiled,
+    create_force,
     create_stiffness,
     fem,
     ufl,
@@ -39,7 +40,7 @@ class NonlinearBulk:
         self._tangent = compiled(ufl.derivative(work, self._u, du), self._comm)
         self._energy = None if energy is None else compiled(energy, self._comm)
         self.stiffness = create_stiffness(self._tangent)
-        self._force = self.stiffness.createVecLeft()
+        self._force = create_force(self._work)
         #: Length whose strain is round-off where nothing moves: F = I + grad(u) is rounded over
         #: the size of a cell.
         self.rest_length = _cell_size(model)

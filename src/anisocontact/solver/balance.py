@@ -79,7 +79,6 @@ def balance(parts: Parts, place: Place, level: float, dt: float) -> Balance:
     layout, scale = parts.layout, parts.support_scale
     contact_force, failed = _contact_force(parts, place.nodal, dt)
     given = layout.assembled(parts.loads.force(place.nodal))
-    load_norm = float(np.hypot(layout.norm(given), float(np.linalg.norm(parts.rigid.loads()))))
     outside = parts.bulk.force(place.owned).array_r - contact_force
     if parts.stabilisation:
         outside -= parts.stabilisation.force(place.nodal).reshape(-1)[: layout.owned]
@@ -89,10 +88,11 @@ def balance(parts: Parts, place: Place, level: float, dt: float) -> Balance:
     residual[rows] = scale * (place.owned.array_r[rows] - parts.supports.at(level))
     of_bodies = parts.rigid.residual(place.rigid, scale)
     held = np.concatenate([rows, parts.constraints.planes.slaves])
-    at_work = (outside[held], contact_force, residual[rows])
+    on_nodes, *at_work = layout.norms(given, outside[held], contact_force, residual[rows])
+    load_norm = float(np.hypot(on_nodes, float(np.linalg.norm(parts.rigid.loads()))))
     force_scale = max(
         load_norm,
-        *map(layout.norm, at_work),
+        *at_work,
         float(np.linalg.norm(parts.rigid.spring_forces())),
         float(np.linalg.norm(of_bodies[parts.rigid.held()])),
     )
@@ -122,8 +122,7 @@ def _round_off(parts: Parts, u: Vec, load_norm: float) -> float:
     """Residual that floating point leaves, force."""
     levers = np.array([contact.lever() for contact in parts.contacts])
     moved = np.abs(u.array_r) + parts.bulk.rest_length
-    norm = parts.layout.norm
-    round_off = ROUND_OFF * (norm(parts.bulk.diagonal.array_r * moved) + norm(levers))
+    round_off = ROUND_OFF * sum(parts.layout.norms(parts.bulk.diagonal.array_r * moved, levers))
     return min(round_off, LOAD_SHARE * load_norm) if load_norm > 0.0 else round_off
 
 

@@ -48,5 +48,12 @@ class DeformedCells:
 
     def _volumes(self, at: Floats) -> Floats:
         """Determinant of the Jacobian, (cells, points)."""
-        jacobian = np.einsum("qbd,cbi->cqid", self._gradient, at[self._nodes], optimize=True)
-        return np.asarray(np.linalg.det(jacobian))
+        # columns of the Jacobian, (d, i, cells, points): a product of large matrices, and a sum of
+        # six products takes a tenth of the time of an elimination for every small matrix
+        table = self._gradient.transpose(2, 1, 0)[:, None]
+        a, b, c = at[self._nodes].transpose(2, 0, 1) @ table
+        return np.asarray(
+            a[0] * (b[1] * c[2] - b[2] * c[1])
+            + a[1] * (b[2] * c[0] - b[0] * c[2])
+            + a[2] * (b[0] * c[1] - b[1] * c[0])
+        )

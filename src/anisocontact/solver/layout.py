@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import PETSc, Vec, fem
+from anisocontact._fenicsx import MPI, PETSc, Vec, fem
 
 Floats = npt.NDArray[np.float64]
 
@@ -64,6 +64,8 @@ class Layout:
         self._ghosted.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
         return np.array(self._ghosted.array_r)
 
-    def norm(self, owned: Floats) -> float:
-        """Norm over all ranks of what each owns."""
-        return float(np.sqrt(self.comm.allreduce(float(owned @ owned))))
+    def norms(self, *owned: Floats) -> list[float]:
+        """Norms over all ranks of what each owns; collective, once for all of them."""
+        local = np.array([values @ values for values in owned])
+        self.comm.Allreduce(MPI.IN_PLACE, local)
+        return [float(square) for square in np.sqrt(local)]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, Vec, fem
+from anisocontact._fenicsx import MPI, Mat, Vec, fem
 from anisocontact.bulk import LinearBulk, Material
 from anisocontact.contact import AnyContact
 from anisocontact.mesh import Model
@@ -262,7 +262,9 @@ class Problem(Following):
 
     def _evaluate_at(self, x: Vec) -> None:
         """Evaluate a state, unless it is that of the last evaluation."""
-        if self._evaluated is None or not np.array_equal(self._evaluated, x.array_r):
+        other = self._evaluated is None or not np.array_equal(self._evaluated, x.array_r)
+        # a process whose own unknowns have not moved goes along
+        if self._comm.allreduce(other, MPI.LOR):
             self.evaluate(x)
 
     def improve(self, x: Vec) -> bool:
@@ -450,7 +452,7 @@ class Problem(Following):
         return rigid
 
     def _commit_bulk(self, x: Vec) -> float:
-        self.evaluate(x)
+        self._evaluate_at(x)
         self._accepted.go_on(x, self._balance.outside)
         self._accepted.take(self._balance.outside, self._balance.load)
         return self._accepted.way_work + self.attached.commit(self._nodal)

@@ -246,6 +246,8 @@ class RigidBodies:
 
     def _forces(self) -> Floats:
         """What contacts and springs need from outside at the trial, (bodies, 6)."""
+        if not self.bodies:
+            return np.zeros((0, 6))
         local = np.zeros((len(self.bodies), 6))
         for i, body in enumerate(self.bodies):
             for contact in self.contacts[body]:

@@ -15,6 +15,7 @@ from anisocontact._fenicsx import (
     assemble_force,
     assemble_into,
     compiled,
+    create_force,
     create_stiffness,
     prescribe,
     prescribed_rows,
@@ -96,7 +97,7 @@ class ContactProblem(Following):
         meshed = not all(isinstance(c, Contact) for c in contacts)
         self._coupled = CoupledTangent(self._matrix, space) if meshed else None
         self._dt = 1.0
-        self._force = self._matrix.createVecLeft()
+        self._force = create_force(self._residual)
         self._ghosted = u.x.petsc_vec.duplicate()
         self.newton = Newton(self, petsc_options_prefix, petsc_options or {}, lambda *_: None)
 
