@@ -12,7 +12,7 @@ __all__ = ["at_end", "at_start", "worst"]
 
 #: Share of the facet size beyond which a penetration or an elastic slip is worth a warning.
 DEEP = 0.05
-#: Share of the external work beyond which the energy of stabilisation is worth a warning.
+#: Share of the external work beyond which energy of stabilisation, or of flow, is worth a warning.
 STABILISED = 0.05
 
 
@@ -81,16 +81,21 @@ def at_end(
                 )
         if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
             found.append(f"{_pair(entry)}: no point touches at the end")
-    share = abs(energy["stabilisation"]) / max(abs(energy["external"]), _TINY)
-    if share > STABILISED:
-        found.append(
-            f"stabilisation took up {share:.0%} of the work from outside: bodies moved while "
-            "nothing held them, or jumped; let them touch at the start, or support them"
-        )
+    for name, text in _TAKEN.items():
+        share = abs(energy[name]) / max(abs(energy["external"]), _TINY)
+        if share > STABILISED:
+            found.append(text.format(share))
     return found
 
 
 _TINY = 1e-300
+#: Energies that are no part of what was to be computed, and what is said of them.
+_TAKEN = {
+    "stabilisation": "stabilisation took up {:.0%} of the work from outside: bodies moved while "
+    "nothing held them; let them touch at the start, or support them",
+    "flow": "jumps set free {:.0%} of the work from outside: inertia, which is left out, would "
+    "decide where the bodies come to rest",
+}
 
 
 def _pair(entry: dict[str, Any]) -> str:

@@ -105,8 +105,7 @@ class Attempts:
         """What is left to be tried where the status of points alternates."""
         if not failed.damped and not failed.flowing:
             return [replace(failed, damped=True)]
-        can_flow = self._problem.stabilisation.enabled and self._problem.reduction is None
-        if small and can_flow and not failed.flowing:
+        if small and self._problem.stabilisation.enabled and not failed.flowing:
             return [_Way(failed.start, flowing=True)]
         return []
 

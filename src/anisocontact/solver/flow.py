@@ -20,9 +20,11 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc
 from anisocontact.contact import NotHeldError
+from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
 
 Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
 
 #: Viscosity over the first step, and the largest, shares of the mean diagonal of the bulk.
 FIRST, MOST_VISCOUS = 0.03, 1e3
@@ -47,15 +49,15 @@ class Flow:
 
     Attributes:
         stiffness: Viscosity over the step of time, of each node, force/length; 0 at rest.
-        spent: What viscous forces have dissipated since the start, force times length.
+        spent: What viscous forces have dissipated since the start, force times length; trapezoidal
+            rule, in which linear bodies are exact.
         steps: Number of steps since then.
         flows: Whether this is one of the attempts that flow.
     """
 
     def __init__(self, model: Model, scale: float) -> None:
         self._comm: Any = model.mesh.comm
-        owned = model.space.dofmap.index_map.size_local
-        self._nodes = np.arange(owned, dtype=PETSc.IntType)[:, None]
+        self._owned = model.space.dofmap.index_map.size_local
         self._scale = scale
         self.stop()
 
@@ -65,25 +67,43 @@ class Flow:
         self.steps = self._corrections = self._waits = self._tried = 0
         self.flows = False
         self._from: Floats = np.zeros((0, 3))
+        self._nodes = np.zeros(0, dtype=PETSc.IntType)
+        self._force: Floats = np.zeros((0, 3))
 
-    def start(self, u: Floats) -> None:
-        """Let the bodies flow from a state, (nodes, 3), length."""
+    def start(self, u: Floats, where: Flags | None = None) -> None:
+        """Let the bodies flow.
+
+        Args:
+            u: State to start from, (nodes, 3), length.
+            where: Nodes that viscous forces act on, (nodes,); all if left out.
+        """
         self.stop()
         self.flows = True
+        nodes = np.arange(self._owned) if where is None else np.flatnonzero(where)
+        self._nodes = nodes.astype(PETSc.IntType)
+        self._force = np.zeros((len(nodes), 3))
         self._from = u.copy()
         self.stiffness = self._last = FIRST * self._scale
 
     def force(self, u: Floats) -> Floats:
         """Viscous force on the local nodes, (nodes, 3)."""
-        return -self.stiffness * (u - self._from) if self.stiffness else np.zeros_like(u)
+        force = np.zeros_like(u)
+        if self.stiffness:
+            force[self._nodes] = -self.stiffness * (u - self._from)[self._nodes]
+        return force
+
+    def couplings(self) -> list[Couplings]:
+        """What the viscous force changes with the displacement, for one more correction."""
+        self._corrections += 1
+        if not self.stiffness:
+            return []
+        nodes = self._nodes[:, None]
+        return [(nodes, nodes, np.tile(self.stiffness * np.eye(3), (len(nodes), 1, 1)))]
 
     def add_tangent(self, matrix: Mat) -> None:
         """Add what the viscous force changes with the displacement."""
-        self._corrections += 1
-        if self.stiffness:
-            blocks = np.tile(self.stiffness * np.eye(3), (len(self._nodes), 1, 1))
-            add = PETSc.InsertMode.ADD_VALUES
-            matrix.setValuesBlockedLocalRCV(self._nodes, self._nodes, blocks, add)
+        for rows, columns, blocks in self.couplings():
+            matrix.setValuesBlockedLocalRCV(rows, columns, blocks, PETSc.InsertMode.ADD_VALUES)
 
     def improve(self, u: Floats, at_work: float) -> bool:
         """Take the next step from a balance of forces.
@@ -98,17 +118,15 @@ class Flow:
         Raises:
             NotHeldError: They do not come to rest.
         """
+        if not self.flows:
+            return False
+        if self.stiffness and self.steps == MOST_STEPS:
+            raise NotHeldError(f"the bodies do not come to rest in {MOST_STEPS} steps of flow")
+        speed, before = self._move(u), self._speed
         if not self.stiffness:
             return False
-        if self.steps == MOST_STEPS:
-            raise NotHeldError(f"the bodies do not come to rest in {MOST_STEPS} steps of flow")
-        moved = (u - self._from)[: len(self._nodes)]
-        squared = self._comm.allreduce(float((moved**2).sum()))
-        self.spent += self.stiffness * squared
         self.steps += 1
         self._waits -= 1
-        self._from = u.copy()
-        speed, before = self.stiffness * float(np.sqrt(squared)), self._speed
         self._speed = speed
         easy = self._corrections <= EASY and self._waits <= 0
         self._last = self.stiffness * (LONGER if easy else 1.0)
@@ -117,6 +135,16 @@ class Flow:
         self.stiffness = 0.0 if calms else self._last
         self._corrections = 0
         return True
+
+    def _move(self, u: Floats) -> float:
+        """Go on to a state, (nodes, 3); the norm of the viscous forces there."""
+        moved = (u - self._from)[self._nodes]
+        force = self.stiffness * moved
+        work = 0.5 * ((self._force + force) * moved).sum()
+        work, squared = self._comm.allreduce(np.array([work, (force**2).sum()]))
+        self.spent += float(work)
+        self._from, self._force = u.copy(), force
+        return float(np.sqrt(squared))
 
     def soften(self) -> bool:
         """After a step that failed: take a shorter one; whether there is one."""

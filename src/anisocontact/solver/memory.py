@@ -61,17 +61,18 @@ class Memory:
             for values in (kept.nodal, kept.common)
         )
         accepted.restore(nodal, common)
-        stabilisation.energy, careful = map(float, common["stabilisation"])
+        springs, released, careful = common["stabilisation"]
+        stabilisation.energy, stabilisation.released = float(springs), float(released)
         stabilisation.careful = bool(careful)
         rigid.restore(common)
         attached.restore(common["springs"])
 
     def _now(self) -> tuple[Arrays, Arrays]:
-        accepted, rigid, attached, stabilisation = self._parts
+        accepted, rigid, attached, held = self._parts
         nodal, common = accepted.persistent()
         own = {
             "springs": attached.persistent(),
-            "stabilisation": np.array([stabilisation.energy, stabilisation.careful]),
+            "stabilisation": np.array([held.energy, held.released, held.careful]),
         }
         return nodal, common | own | rigid.persistent()
 

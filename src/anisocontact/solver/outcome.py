@@ -36,8 +36,9 @@ def energies(parts: Parts, elastic: float, work: float, nodal: Floats) -> dict[s
         nodal: Displacement of the local nodes, (nodes, 3), length.
     """
     stored = {"elastic": elastic}
-    stored |= dict.fromkeys(("adhesion", "normal", "friction", "viscous", "stabilisation"), 0.0)
+    stored |= dict.fromkeys(("adhesion", "normal", "friction", "viscous"), 0.0)
     stored["stabilisation"] = parts.stabilisation.energy
+    stored["flow"] = parts.stabilisation.released
     for contact in parts.contacts:
         for name, value in contact.energies().items():
             stored[name] = stored.get(name, 0.0) + value

@@ -275,9 +275,10 @@ class Problem(Following):
         """
         self._evaluate_at(x)
         moved = self.stabilisation.improve(self._nodal, self.force_scale)
-        if moved and self.stabilisation.untouched():
+        flows = self.stabilisation.flow.flows
+        if moved and (flows or self.stabilisation.untouched()):
             self._accepted.go_on(x, self._balance.outside)
-        if moved and self.stabilisation.flow.flows:
+        if moved and flows:
             return True
         return any([contact.improve() for contact in self.contacts]) or moved
 
@@ -429,10 +430,10 @@ class Problem(Following):
         Returns:
             "external" work of supports and loads since the start (trapezoidal rule), stored
             "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
-            "friction" and "viscous" laws, energy of "stabilisation" and, where there are
-            any, of "springs" and elastic supports and of the "transfer" of two half passes, and
-            "residual", what is left of "external" less
-            all others: first order in the size of the increments.
+            "friction" and "viscous" laws, energy of "stabilisation", what jumps have set free and
+            the "flow" to the next equilibrium has dissipated and, where there are any, energy of
+            "springs" and elastic supports and of the "transfer" of two half passes, and "residual",
+            what is left of "external" less all others: first order in the size of the increments.
         """
         if self.reduction is not None:
             elastic = self.reduction.elastic()

@@ -83,6 +83,7 @@ class Stabilisation:
 
     Attributes:
         energy: What the springs have taken up and dissipated since the start, force times length.
+        released: What `flow` has dissipated since the start, force times length.
         careful: Whether bodies get springs also where they stick, until the step ends.
         flow: What carries the bodies on where their equilibrium is lost.
         notes: What is stabilised since the last `begin`, a line for each body.
@@ -97,7 +98,7 @@ class Stabilisation:
         enabled: bool = True,
     ) -> None:
         self.enabled = enabled
-        self.energy = 0.0
+        self.energy = self.released = 0.0
         self.careful = False
         self.notes: list[str] = []
         self.flow = Flow(model, scale)
@@ -290,8 +291,9 @@ class Stabilisation:
         return not all([free.touched() for free in self._free])
 
     def commit(self) -> None:
-        """Count what the springs took up on the way to the accepted state."""
-        self.energy += self._spent + self.flow.spent
+        """Count what springs and flow took up on the way to the accepted state."""
+        self.energy += self._spent
+        self.released += self.flow.spent
         self._spent = 0.0
         if self.flow.flows:
             steps = self.flow.steps

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import pairwise, starmap
 
 import numpy as np
 import numpy.typing as npt
@@ -128,6 +129,8 @@ class Condensed:
         supports = np.zeros(self._stiffness.shape[0])
         supports[problem.supports.unknowns] = problem.supports.at(problem.level)
         self._system.set_level(supports, self._trial_load, problem.dt)
+        if problem.stabilisation.flow.flows:
+            problem.stabilisation.flow.start(self._nodal(), self._reach.nodes)
         return self._system
 
     def _fits(self, system: ContactSystem) -> bool:
@@ -170,7 +173,7 @@ class Condensed:
         system.evaluate(own)
         before, after = self._state, system.state(own.array_r)
         assert before is not None
-        work = system.patterns.work(before, after)
+        work = sum(starmap(system.patterns.work, pairwise([before, *system.way, after])))
         self._state, self._load, self._forces = after, self._trial_load, system.raw_forces
         self._stale = True
         return work + problem.attached.commit(self._nodes_of(x))

@@ -52,6 +52,7 @@ class ContactSystem(Following):
         led: Which unknowns of free rigid bodies are prescribed.
         raw_forces: Forces of contacts and of what bodies are attached to, on all nodes, (n,).
         forces: The same with those of constrained unknowns handed on.
+        way: States that bodies that flow have gone through since the last `set_level`.
         force_scale: Norm of the forces at work in the last evaluation: loads, contacts or supports.
         round_off: Residual that floating point leaves in the last evaluation, force.
         tolerance: Residual over the forces at work at which Newton stops.
@@ -69,8 +70,9 @@ class ContactSystem(Following):
     ) -> None:
         self.bulk, self.contacts, self._in_reach = bulk, problem.contacts, in_reach
         self._attached, self._rigid = problem.attached, problem.rigid
+        self._flow = problem.stabilisation.flow
         self._gathering = gathering
-        self._v = nodal.reshape(-1).copy()
+        self._nodal, self._v = nodal, nodal.reshape(-1).copy()
         self.led = self._rigid.held()
         loose = np.flatnonzero(~self.led)
         self.places = np.concatenate([bulk.contact, nodal.size + loose])
@@ -86,6 +88,7 @@ class ContactSystem(Following):
         self.force_scale = self.round_off = 0.0
         self.tolerance = TOLERANCE
         self.outgrown = False
+        self.way: list[State] = []
         self._before = np.inf
         self._dt, self._load_norm = 0.0, 0.0
         self._a, self._b, self._g = np.zeros(0), np.zeros(0), np.zeros(len(bulk.contact))
@@ -116,7 +119,7 @@ class ContactSystem(Following):
         self._dt, self._before = dt, np.inf
         self._v[self.bulk.prescribed] = supports
         self._values = self._rigid.prescribed()
-        self._evaluated = None
+        self._evaluated, self.way = None, []
 
     def handed(self, forces: Floats) -> Floats:
         """Forces with those of constrained unknowns handed on, (n,) or (n, k)."""
@@ -161,7 +164,8 @@ class ContactSystem(Following):
         self._evaluated = u
         failed = self._respond(u)
         own = u[: len(self.bulk.contact)]
-        residual = self.bulk.schur_times(own) - self._g - self.forces[self.bulk.contact]
+        forces = self.forces + self.handed(self._flow.force(self._nodal).reshape(-1))
+        residual = self.bulk.schur_times(own) - self._g - forces[self.bulk.contact]
         of_bodies = self._rigid.residual(self._values, 1.0)[~self.led]
         residual = np.concatenate([residual, of_bodies])
         self._measure(own)
@@ -178,7 +182,7 @@ class ContactSystem(Following):
 
     def _respond(self, u: Floats) -> bool:
         """Forces on the nodes at the unknowns `u`; whether a law had no answer."""
-        nodal = self.all_unknowns(u)[: len(self._v)].reshape(-1, 3)
+        nodal = self._nodal = self.all_unknowns(u)[: len(self._v)].reshape(-1, 3)
         self._rigid.place(self._values)
         forces, failed = np.zeros_like(nodal), False
         for contact in self.contacts:
@@ -195,6 +199,7 @@ class ContactSystem(Following):
         self.evaluate(x)
         blocks = [part for c in self.contacts for part in couplings(c)]
         blocks += self._rigid.couplings(len(self._v) // 3) + self._attached.blocks()
+        blocks += self._flow.couplings()
         self._tangent.take(blocks)
         out.assemble()
         return False
@@ -202,7 +207,11 @@ class ContactSystem(Following):
     def improve(self, x: Vec) -> bool:
         """Better multipliers of the contacts from equilibrium; see `Problem.improve`."""
         self.evaluate(x)
-        changed = any([contact.improve() for contact in self.contacts])
+        changed = self._flow.improve(self._nodal, self.force_scale)
+        if changed:
+            self.way.append(self.state(x.array_r))
+        else:
+            changed = any([contact.improve() for contact in self.contacts])
         if changed:
             self._evaluated = None
         return changed
@@ -210,6 +219,8 @@ class ContactSystem(Following):
     def soften(self) -> bool:
         """Softer penalties after a solution that failed; see `Problem.soften`."""
         self._evaluated = None
+        if self._flow.flows:
+            return not self.outgrown and self._flow.soften()
         return any([contact.soften() for contact in self.contacts])
 
     def mult(self, _: Mat, x: Vec, y: Vec) -> None:
