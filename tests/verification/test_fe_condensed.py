@@ -22,7 +22,7 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, Placement, Rotation, build_box, build_mesh
 from anisocontact.python_law import LawKinematics, LawResult, LawState, PythonInterface
 from anisocontact.rigid import RigidBody
-from anisocontact.solver import Accepted, ElasticSupport, Problem, Solver, Spring, Step
+from anisocontact.solver import Accepted, ElasticSupport, Problem, Solver, Spring, Step, attempts
 from anisocontact.solver.condensed import reach
 from anisocontact.surfaces import make_surface
 
@@ -215,6 +215,22 @@ def test_large_increments_leave_the_reach_within_newton(monkeypatch: pytest.Monk
     laws = (*LAWS[:2], Friction(coefficients=(1e-9, 5e-10), directions=MARKS))
     notes = _same(lambda: _pair(model, laws, reach=0.2), [PRESS, away])
     assert any("widened" in note for note in notes)
+
+
+def test_flow_that_leaves_the_reach_begins_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same with bodies that flow: to the only equilibrium, from the accepted state again."""
+    monkeypatch.setattr(reach, "_prescribed_range", lambda *_: np.zeros(3))
+    away = Step("away", 1, {"block.top": {"x": 0.9}})
+    model = _model(n=3, length=3.0)
+    laws = (*LAWS[:2], Friction(coefficients=(1e-9, 5e-10), directions=MARKS))
+    *_, wanted = _run(_pair(model, laws, reach=0.2), [PRESS, away], "direct")
+    flowing = lambda _, __, last: [attempts._Way(last, flowing=True)]  # noqa: E731
+    monkeypatch.setattr(attempts.Attempts, "_ways", flowing)
+    notes: list[str] = []
+    ours, _, found = _run(_pair(model, laws, reach=0.2), [PRESS, away], "condensed", notes)
+    assert any("widened" in note for note in notes)
+    assert ours[-1].energies["flow"] > 0.0
+    _close(found, wanted, float(np.abs(wanted).max()))
 
 
 ELASTIC = make_material("linear-elastic", E=1000.0, nu=0.3)

@@ -18,11 +18,15 @@ class Run:
         accepted: Every accepted part.
         cuts: Every cut.
         problem: The problem in its last state.
+        strategy: The strategy that was taken.
+        notes: What the log has of bodies that flowed.
     """
 
     accepted: list[Any]
     cuts: list[Any]
     problem: Any
+    strategy: str
+    notes: list[str]
 
     @property
     def ends(self) -> dict[str, Any]:
@@ -40,16 +44,16 @@ class Run:
 
 
 @pytest.fixture
-def to_the_end(tmp_path) -> Callable[[str], Run]:
+def to_the_end(tmp_path) -> Callable[..., Run]:
     """Runs the text of a case file with default settings; every increment is met, in order."""
     pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
     from anisocontact.case import load
     from anisocontact.case.build import build
 
-    def run(text: str) -> Run:
+    def run(text: str, solver: str = "") -> Run:
         assert "[solver]" not in text
         path = tmp_path / "case.toml"
-        path.write_text(text)
+        path.write_text(f"{text}\n[solver]\n{solver}\n" if solver else text)
         built = build(load(path))
         assert built.problem.unknowns < 2500
         cuts: list[Any] = []
@@ -67,6 +71,7 @@ def to_the_end(tmp_path) -> Callable[[str], Run]:
             sorted({(c.reason[:40], c.culprits[0].kind if c.culprits else "") for c in cuts}),
             accepted[-1].energies,
         )
-        return Run(accepted, cuts, built.problem)
+        notes = built.problem.stabilisation.told()
+        return Run(accepted, cuts, built.problem, built.solver.choice.name, notes)
 
     return run
