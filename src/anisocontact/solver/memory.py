@@ -9,10 +9,9 @@ import numpy.typing as npt
 
 from anisocontact.contact import AnyContact
 from anisocontact.solver.accepted import AcceptedState
-from anisocontact.solver.attached import Attachments
+from anisocontact.solver.configuration import Configuration
+from anisocontact.solver.parts import Parts
 from anisocontact.solver.persistent import Arrays, Persistent
-from anisocontact.solver.rigid import RigidBodies
-from anisocontact.solver.stabilisation import Stabilisation
 
 #: In front of the names of what was when the step began.
 BEGUN = "begun_"
@@ -24,20 +23,13 @@ class Memory:
     What a step prescribes goes on from the state in which it began, so both are needed.
 
     Args:
+        parts: Parts of the problem.
         accepted: Accepted state.
-        rigid: Rigid bodies.
-        attached: Elastic supports and springs.
-        stabilisation: Springs that keep bodies in reach.
+        bodies: Where the bodies are.
     """
 
-    def __init__(
-        self,
-        accepted: AcceptedState,
-        rigid: RigidBodies,
-        attached: Attachments,
-        stabilisation: Stabilisation,
-    ) -> None:
-        self._parts = (accepted, rigid, attached, stabilisation)
+    def __init__(self, parts: Parts, accepted: AcceptedState, bodies: Configuration) -> None:
+        self._parts, self._accepted, self._bodies = parts, accepted, bodies
         self.begin()
 
     def begin(self) -> None:
@@ -55,26 +47,29 @@ class Memory:
 
     def restore(self, kept: Persistent, prefix: str = "") -> None:
         """Go on from what `persistent` gave, or with `BEGUN` from where the step began."""
-        accepted, rigid, attached, stabilisation = self._parts
+        parts, stabilisation = self._parts, self._parts.stabilisation
         nodal, common = (
             {n.removeprefix(prefix): v for n, v in values.items() if n.startswith(prefix)}
             for values in (kept.nodal, kept.common)
         )
-        accepted.restore(nodal, common)
+        self._accepted.restore(nodal, common)
         springs, released, careful = common["stabilisation"]
         stabilisation.energy, stabilisation.released = float(springs), float(released)
         stabilisation.careful = bool(careful)
-        rigid.restore(common)
-        attached.restore(common["springs"])
+        parts.rigid.restore(common)
+        parts.attached.restore(common["springs"])
+        self._bodies.take(self._accepted.x)
+        parts.rigid.roll_back()
+        self._bodies.forget()
 
     def _now(self) -> tuple[Arrays, Arrays]:
-        accepted, rigid, attached, held = self._parts
-        nodal, common = accepted.persistent()
+        parts, held = self._parts, self._parts.stabilisation
+        nodal, common = self._accepted.persistent()
         own = {
-            "springs": attached.persistent(),
+            "springs": parts.attached.persistent(),
             "stabilisation": np.array([held.energy, held.released, held.careful]),
         }
-        return nodal, common | own | rigid.persistent()
+        return nodal, common | own | parts.rigid.persistent()
 
 
 def persistent_points(contacts: Sequence[AnyContact]) -> list[Arrays]:

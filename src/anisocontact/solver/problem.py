@@ -8,15 +8,15 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import MPI, Mat, Vec, fem
+from anisocontact._fenicsx import Mat, Vec
 from anisocontact.bulk import LinearBulk, Material
 from anisocontact.contact import AnyContact
 from anisocontact.mesh import Model
 from anisocontact.processes import Together
 from anisocontact.solver.accepted import AcceptedState
 from anisocontact.solver.attached import ElasticSupport, Spring
-from anisocontact.solver.balance import Balance, Place, balance
-from anisocontact.solver.cells import DeformedCells
+from anisocontact.solver.balance import Balance, balance
+from anisocontact.solver.configuration import Configuration
 from anisocontact.solver.following import Following
 from anisocontact.solver.interior import PENDING, Interior
 from anisocontact.solver.memory import BEGUN, Memory, persistent_points, restore_points
@@ -24,8 +24,8 @@ from anisocontact.solver.outcome import energies, reactions
 from anisocontact.solver.parts import make_parts
 from anisocontact.solver.persistent import Persistent, under
 from anisocontact.solver.reduction import Reduction
+from anisocontact.solver.step_begin import begin_step, contact_must_hold
 from anisocontact.solver.steps import Step
-from anisocontact.solver.supports import Supports
 from anisocontact.solver.tangent import Tangent, led_unknowns
 
 Floats = npt.NDArray[np.float64]
@@ -86,34 +86,25 @@ class Problem(Following):
         self.layout, self.attached = parts.layout, parts.attached
         self.supports, self.loads = parts.supports, parts.loads
         self.constraints, self.stabilisation = parts.constraints, parts.stabilisation
-        finite = [name for name, material in materials.items() if not material.linear]
-        self._cells = DeformedCells(model, finite) if finite else None
         self._comm = model.mesh.comm
         self.together = Together(self._comm)
         self._tangent = Tangent(parts, model.space)
-        self._u: Any = fem.Function(model.space, name="displacement")
+        self._bodies = Configuration(parts, model, materials)
         self.reduction: Reduction | None = None
         self.force_scale = 0.0
         self.round_off = 0.0
         self._balance = Balance.none(self._owned)
         self._level = 0.0
         self._dt = 0.0
-        self._evaluated: Floats | None = None
-        self._of_mesh = self.bulk.stiffness.createVecRight()
         self._accepted = AcceptedState(self.layout)
-        self._memory = Memory(self._accepted, self.rigid, self.attached, self.stabilisation)
+        self._memory = Memory(parts, self._accepted, self._bodies)
 
     @property
     def u(self) -> Any:
         """Displacement, a DOLFINx function; holds the accepted state between increments."""
         if self.reduction is not None:
             self.reduction.recover()
-        return self._u
-
-    @property
-    def _nodal(self) -> Floats:
-        """Displacement of the local nodes at the last state of all unknowns, (nodes, 3)."""
-        return np.asarray(self._u.x.array.reshape(-1, 3))
+        return self._bodies.u
 
     @property
     def level(self) -> float:
@@ -127,7 +118,7 @@ class Problem(Following):
 
     def dead_load(self) -> Floats:
         """Loads on the unknowns this rank owns where they do not depend on the state, force."""
-        return self.layout.assembled(self.loads.force(self._nodal))
+        return self.layout.assembled(self.loads.force(self._bodies.nodal))
 
     @property
     def outside(self) -> Floats:
@@ -189,21 +180,13 @@ class Problem(Following):
         """
         start = self.u.x.array.copy()
         self._memory.begin()
-        held = self.supports.unknowns
-        self.supports.begin(step, start)
-        gone = np.setdiff1d(held, self.supports.unknowns)
-        released = np.zeros(len(self._u.x.array))
-        _, reaction = self.constraints.planes.forces(self._accepted.reaction)
-        released[gone] = reaction[gone]
-        self.loads.begin(step, released)
-        self.rigid.begin(step)
-        self.attached.begin(step)
-        self.constraints.planes.begin(self.supports.unknowns, self.supports.end, step.name)
-        directions = [*self.supports.held(), *self.constraints.planes.held()]
-        self.stabilisation.begin(directions, step.name, now=not again)
+        begin_step(self._parts, step, start, self._accepted.reaction, again)
 
     def check_held(self, steps: Sequence[Step]) -> bool:
         """Find out whether supports or contacts can hold every body in every step.
+
+        Args:
+            steps: The steps.
 
         Returns:
             Whether contact alone has to hold one of them.
@@ -211,19 +194,16 @@ class Problem(Following):
         Raises:
             InputError: A body is free to move and in no contact.
         """
-        supports, nothing = Supports(self.model), np.zeros(len(self.u.x.array))
-        found = False
-        for step in steps:
-            supports.begin(step, nothing)
-            held = [*supports.held(), *self.constraints.planes.held()]
-            self.stabilisation.begin(held, step.name, now=False)
-            found = found or bool(self.stabilisation)
-        self.stabilisation.clear()
-        return found
+        return contact_must_hold(self._parts, self.model, steps, len(self.u.x.array))
 
     def set_level(self, fraction: float, dt: float) -> None:
-        """Loads at a fraction of the step, time increment `dt` to there."""
-        self._evaluated = None
+        """Bring the loads to a fraction of the step.
+
+        Args:
+            fraction: Where in the step, 0 to 1.
+            dt: Time increment to there.
+        """
+        self._bodies.forget()
         self._level = fraction
         self._dt = dt
         self.rigid.set_level(fraction)
@@ -240,8 +220,7 @@ class Problem(Following):
         Returns:
             Residual, force.
         """
-        rigid = self._set_unknowns(x)
-        place = Place(x, self._of_mesh, self._nodal, rigid)
+        place = self._bodies.take(x)
         self._balance = found = balance(self._parts, place, self._level, self._dt)
         self.force_scale, self.round_off = found.force_scale, found.round_off
         self.norm_as_they_are = found.norm
@@ -262,9 +241,7 @@ class Problem(Following):
 
     def _evaluate_at(self, x: Vec) -> None:
         """Evaluate a state, unless it is that of the last evaluation."""
-        other = self._evaluated is None or not np.array_equal(self._evaluated, x.array_r)
-        # a process whose own unknowns have not moved goes along
-        if self._comm.allreduce(other, MPI.LOR):
+        if not self._bodies.is_at(x):
             self.evaluate(x)
 
     def improve(self, x: Vec) -> bool:
@@ -274,7 +251,7 @@ class Problem(Following):
             NotHeldError: They do not converge.
         """
         self._evaluate_at(x)
-        moved = self.stabilisation.improve(self._nodal, self.force_scale)
+        moved = self.stabilisation.improve(self._bodies.nodal, self.force_scale)
         flows = self.stabilisation.flow.flows
         if moved and (flows or self.stabilisation.untouched()):
             self._accepted.go_on(x, self._balance.outside)
@@ -283,16 +260,11 @@ class Problem(Following):
         return any([contact.improve() for contact in self.contacts]) or moved
 
     def contact_lets_go(self, x: Vec) -> str:
-        """Why contact does not hold the free bodies in equilibrium; empty if it does.
-
-        See `Stabilisation.doubtful` and `Stabilisation.lost`.
-        """
+        """Why contact does not hold the free bodies in equilibrium; empty if it does."""
         if not self.stabilisation.watches or self.reduction is not None:
             return ""
         self._evaluate_at(x)
-        if self.stabilisation.trusts and self.stabilisation.doubtful(self._nodal):
-            return "contact alone does not hold all bodies"
-        return self.stabilisation.lost(self._nodal)
+        return self.stabilisation.lets_go(self._bodies.nodal)
 
     def soften(self) -> bool:
         """After a solution that failed: softer penalties of augmented contacts; whether any.
@@ -305,7 +277,7 @@ class Problem(Following):
 
     def flow(self) -> None:
         """Let the bodies flow to the next equilibrium in this attempt, see `Flow`."""
-        self.stabilisation.flow.start(self._nodal)
+        self.stabilisation.flow.start(self._bodies.nodal)
 
     def _stabilise(self) -> None:
         """Put the springs of stabilisation back to where they start from."""
@@ -337,14 +309,14 @@ class Problem(Following):
             load: Loads on them, force.
         """
         self._accepted.x.array[: self._owned] = u
-        self._set_unknowns(self._accepted.x)
-        outside = self.bulk.force(self._of_mesh).array_r - contact_force
+        place = self._bodies.take(self._accepted.x)
+        outside = self.bulk.force(place.owned).array_r - contact_force
         self._accepted.take(self.constraints.tied(outside), self.constraints.tied(load))
 
     def roll_back(self) -> None:
         """Return to the accepted state."""
-        self._set_unknowns(self._accepted.x)
-        self._evaluated = None
+        self._bodies.take(self._accepted.x)
+        self._bodies.forget()
         self.rigid.roll_back()
         for contact in self.contacts:
             contact.roll_back()
@@ -374,29 +346,18 @@ class Problem(Following):
         for step in steps[:-1]:
             # What a step prescribes at its end does not depend on where it began.
             self.begin(step, again=True)
-        self._put(kept, BEGUN)
+        self._memory.restore(kept, BEGUN)
         for step in steps[-1:]:
             self.begin(step, again=True)
-        self._put(kept, "")
+        self._memory.restore(kept)
         self._tangent.restore(kept.common)
-        restore_points(self.contacts, kept.points, self._nodal)
+        restore_points(self.contacts, kept.points, self._bodies.nodal)
         pending = under(PENDING, kept.nodal)
         self.reduction = Interior(self, pending) if pending else None
 
-    def _put(self, kept: Persistent, prefix: str) -> None:
-        self._memory.restore(kept, prefix)
-        self._set_unknowns(self._accepted.x)
-        self.rigid.roll_back()
-        self._evaluated = None
-
     def inverted_cells(self) -> Floats:
-        """Middles of the cells of this rank that the last evaluation turned inside out, (n, 3).
-
-        Cells at small strain do not count: their equations know no det F.
-        """
-        if self._cells is None:
-            return np.zeros((0, 3))
-        return self._cells.inverted(self._nodal)
+        """Middles of the cells of this rank that the last evaluation turned inside out, (n, 3)."""
+        return self._bodies.inverted()
 
     def accepted(self) -> Vec:
         """Copy of the accepted displacements."""
@@ -411,7 +372,7 @@ class Problem(Following):
             if not self.constraints.planes:
                 return self.reduction.reactions()
             self.reduction.recover()  # forces of the planes need all displacements on them
-        return reactions(self._parts, self._accepted.reaction, self._nodal)
+        return reactions(self._parts, self._accepted.reaction, self._bodies.nodal)
 
     def mean_displacement(self, group: str, weights: Floats) -> Floats:
         """Mean displacement of a facet group in the accepted state, (3,), length.
@@ -422,7 +383,7 @@ class Problem(Following):
         """
         if self.reduction is not None:
             return self.reduction.mean(group, weights)
-        return np.asarray(self._comm.allreduce(weights @ self._nodal))
+        return np.asarray(self._comm.allreduce(weights @ self._bodies.nodal))
 
     def energies(self) -> dict[str, float]:
         """Energies of the accepted state, force times length.
@@ -438,22 +399,11 @@ class Problem(Following):
         if self.reduction is not None:
             elastic = self.reduction.elastic()
         else:
-            self._of_mesh.array[:] = self._accepted.x.array_r[: self._owned]
-            elastic = self.bulk.energy(self._of_mesh)
-        return energies(self._parts, elastic, self._accepted.work, self._nodal)
-
-    def _set_unknowns(self, x: Vec) -> Floats:
-        """Bring all bodies to a state; on every rank the unknowns of rigid bodies."""
-        self._evaluated = np.array(x.array_r)
-        nodal, rigid = self.layout.split(x)
-        self._of_mesh.array[:] = nodal.reshape(-1)
-        self._u.x.array[: self._owned] = self._of_mesh.array_r
-        self._u.x.scatter_forward()
-        self.rigid.place(rigid)
-        return rigid
+            elastic = self._bodies.elastic(self._accepted.x)
+        return energies(self._parts, elastic, self._accepted.work, self._bodies.nodal)
 
     def _commit_bulk(self, x: Vec) -> float:
         self._evaluate_at(x)
         self._accepted.go_on(x, self._balance.outside)
         self._accepted.take(self._balance.outside, self._balance.load)
-        return self._accepted.way_work + self.attached.commit(self._nodal)
+        return self._accepted.way_work + self.attached.commit(self._bodies.nodal)

@@ -235,6 +235,16 @@ class Stabilisation:
                 free.stiffness = max(FADE * free.stiffness, LEAST * self._scale)
         return True
 
+    def lets_go(self, u: Floats) -> str:
+        """Why contact does not hold the free bodies in equilibrium; empty if it does.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+        """
+        if self.trusts and self.doubtful(u):
+            return "contact alone does not hold all bodies"
+        return self.lost(u)
+
     def doubtful(self, u: Floats) -> bool:
         """Whether a body without springs no longer sticks, or has moved by more than a facet.
 
