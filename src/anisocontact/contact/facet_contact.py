@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
-from typing import Any, TypedDict
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -15,6 +15,7 @@ from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.facet_answer import Question, ask
 from anisocontact.contact.gathering import gather, gather_named
 from anisocontact.contact.multipliers import Frames
+from anisocontact.contact.point_blocks import add_rows, point_blocks
 from anisocontact.contact.point_tangent import PointTangent
 from anisocontact.contact.quadrature import chosen_degree
 from anisocontact.contact.record import ContactRecord, Snapshot
@@ -31,15 +32,6 @@ from anisocontact.mesh import Model
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
-
-
-class PassOptions(TypedDict, total=False):
-    """Arguments of `FacetContact` that contacts made of passes hand on to each of them."""
-
-    degree: int | None
-    reach: float | None
-    current_area: bool
-    adjust: float | None
 
 
 class FacetContact(ContactRecord):
@@ -305,7 +297,7 @@ class FacetContact(ContactRecord):
         """Add the forces of the trial on both bodies to the local nodes, (nodes, 3), force."""
         total = self._gathered.zeros(out)
         if self._by_points:
-            self._add_rows(-self._answer["residual"], total)
+            add_rows(self._answer, -self._answer["residual"], total)
         else:
             total += self._answer["force"]
         if self._transfer is not None:
@@ -321,14 +313,8 @@ class FacetContact(ContactRecord):
         if self._transfer is not None:
             forces[self._handed, 3 * self._points.nodes.shape[1] :] = 0.0
             self._transfer.add_force(total, self.current.areas[:, None] * self._base.lag)
-        self._add_rows(forces, total)
+        add_rows(self._answer, forces, total)
         self._gathered.hand_back(total, out)
-
-    def _add_rows(self, forces: Floats, out: Floats) -> None:
-        """Add forces on the nodes of the rows of each point, (n, 3 r)."""
-        rows = self._answer["nodes"][:, : forces.shape[1] // 3]
-        held = rows >= 0
-        np.add.at(out, rows[held], forces.reshape(*rows.shape, 3)[held])
 
     def couplings(self) -> Sequence[Couplings]:
         """Where `-d force / d u` of the trial has entries, and the entries.
@@ -347,20 +333,8 @@ class FacetContact(ContactRecord):
         if not self._by_points:
             blocks: Sequence[Couplings] = self._answer["blocks"]
             return blocks
-        touching = self.trial.status != 0
-        nodes, tangent = self._answer["nodes"], self._answer["tangent"]
-        rows = nodes[:, : tangent.shape[1] // 3]
-        if self._transfer is None:
-            return [(rows[touching], nodes[touching], tangent[touching])]
-        k = self._points.nodes.shape[1]
-        handed, kept = touching & self._handed, touching & ~self._handed
-        count, unknowns = len(tangent), tangent.shape[2]
-        force = -tangent[:, : 3 * k].reshape(count, k, 3, unknowns).sum(axis=1)
-        return [
-            (rows[kept], nodes[kept], tangent[kept]),
-            (rows[handed, :k], nodes[handed], tangent[handed, : 3 * k]),
-            *self._transfer.couplings(nodes, force, handed),
-        ]
+        touching, own = self.trial.status != 0, self._points.nodes.shape[1]
+        return point_blocks(self._answer, touching, self._handed, own, self._transfer)
 
     def located(self, state: State) -> Mask:
         """Whether each point of a state has a facet below it, (n,)."""

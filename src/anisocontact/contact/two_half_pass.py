@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
-from typing import Unpack
+from typing import TypedDict, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.facet_contact import FacetContact, PassOptions
+from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.interface import PairLaw, Response
 from anisocontact.mesh import Model
 
 Floats = npt.NDArray[np.float64]
+
+
+class PassOptions(TypedDict, total=False):
+    """Arguments of `FacetContact` that are the same for both passes."""
+
+    degree: int | None
+    reach: float | None
+    current_area: bool
+    adjust: float | None
 
 
 class TwoHalfPass(ContactRecord):
