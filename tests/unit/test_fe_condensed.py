@@ -12,8 +12,7 @@ import pytest
 import scipy.sparse
 
 from anisocontact.errors import InputError
-from anisocontact.solver import Problem, Solver, Step, strategy
-from anisocontact.solver.condensed import costs
+from anisocontact.solver import Problem, Solver, Step, costs, strategy
 from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor, gmres
 from anisocontact.solver.condensed.eliminate import WAYS
 from anisocontact.solver.condensed.parts import Condensation

@@ -13,8 +13,8 @@ from anisocontact._fenicsx import PETSc, Vec
 from anisocontact.bulk import LinearBulk
 from anisocontact.errors import InputError
 from anisocontact.solver.condensed import Condensed, CondensedNewton, contact_unknowns
-from anisocontact.solver.condensed.costs import free_memory, memory_needed
-from anisocontact.solver.iterative import IterativeNewton, Patch, factor_bytes
+from anisocontact.solver.costs import factor_bytes, free_memory, memory_needed
+from anisocontact.solver.iterative import IterativeNewton, Patch
 from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
 from anisocontact.solver.persistent import Arrays
 from anisocontact.solver.problem import Problem

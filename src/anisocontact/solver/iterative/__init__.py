@@ -1,7 +1,6 @@
 """FGMRES on the whole system; what can be touched stays on the coarse level of two."""
 
-from anisocontact.solver.iterative.estimate import factor_bytes
 from anisocontact.solver.iterative.newton import IterativeNewton
 from anisocontact.solver.iterative.patch import Patch
 
-__all__ = ["IterativeNewton", "Patch", "factor_bytes"]
+__all__ = ["IterativeNewton", "Patch"]
