@@ -6,8 +6,8 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any
 
-from anisocontact._fenicsx import fem, ufl
-from anisocontact.bulk.materials import Density, elastic_moduli
+from anisocontact._fenicsx import ufl
+from anisocontact.bulk.materials import Density, Isotropic
 from anisocontact.registry import Entry, Parameter
 
 _MODULI = (
@@ -44,21 +44,10 @@ def cauchy_stress(material: Any, u: Any) -> Any:
     return material.piola(u) * gradient.T / ufl.det(gradient)
 
 
-class _Isotropic(ABC):
-    """Two moduli at rest, from Young's modulus and Poisson's ratio."""
+class _Hyperelastic(Isotropic, ABC):
+    """An isotropic material by its energy."""
 
     linear = False
-    entry: Entry
-
-    def __init__(self, *, E: float, nu: float, field: str = "") -> None:
-        self.young, self.nu = elastic_moduli(self.entry, E, nu, field)
-
-    def constants(self, u: Any) -> tuple[Any, Any]:
-        """Lame constant and shear modulus as constants of the form, stress."""
-        domain = ufl.domain.extract_unique_domain(u)
-        shear = self.young / (2.0 * (1.0 + self.nu))
-        lame = 2.0 * shear * self.nu / (1.0 - 2.0 * self.nu)
-        return fem.Constant(domain, lame), fem.Constant(domain, shear)
 
     def piola(self, u: Any) -> Any:
         """First Piola-Kirchhoff stress, the derivative of the energy with respect to F, UFL."""
@@ -74,7 +63,7 @@ class _Isotropic(ABC):
         """Terms of the energy for a deformation gradient."""
 
 
-class StVenantKirchhoff(_Isotropic):
+class StVenantKirchhoff(_Hyperelastic):
     """`W = lambda/2 (tr E)^2 + G E:E` of the Green-Lagrange strain E.
 
     For large rotations at small strain; it softens in strong compression.
@@ -103,7 +92,7 @@ class StVenantKirchhoff(_Isotropic):
         ]
 
 
-class NeoHookean(_Isotropic):
+class NeoHookean(_Hyperelastic):
     """`W = G/2 (tr C - 3 - 2 ln J) + lambda/2 (ln J)^2`, compressible.
 
     Args:
@@ -124,7 +113,7 @@ class NeoHookean(_Isotropic):
         return [(0.5 * shear * (first - 3.0 - 2.0 * log_j) + 0.5 * lame * log_j**2, None)]
 
 
-class NeoHookeanIncompressible(_Isotropic):
+class NeoHookeanIncompressible(_Hyperelastic):
     """`W = G/2 (J^(-2/3) tr C - 3) + K/2 (J - 1)^2`, nearly incompressible without locking.
 
     The volumetric term is integrated at one point of a cell, of second-order hexahedra at eight,
@@ -181,7 +170,14 @@ class UserEnergy:
         self.young = young
 
     def energy(self, u: Any) -> list[Density]:
-        """The energy with the default quadrature."""
+        """The energy with the default quadrature.
+
+        Args:
+            u: UFL displacement.
+
+        Returns:
+            One term, UFL.
+        """
         return [(self._energy(deformation_gradient(u)), None)]
 
     def piola(self, u: Any) -> Any:

@@ -20,7 +20,15 @@ _MATERIALS: dict[str, Callable[..., Material]] = {
 
 
 def materials() -> tuple[Entry, ...]:
-    """The registered materials with their parameters."""
+    """The registered materials with their parameters.
+
+    Returns:
+        An entry for each.
+
+    Example:
+        >>> [entry.name for entry in materials()][0]
+        'linear-elastic'
+    """
     return tuple(m.entry for m in _MATERIALS.values())  # type: ignore[attr-defined]
 
 

@@ -18,6 +18,16 @@ class LinearBulk:
     Args:
         model: Mesh with its bodies.
         materials: Body name -> linear material, one for each body.
+
+    Example:
+        >>> from anisocontact.bulk import make_material
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+        >>> bulk = LinearBulk(model, {"block": make_material("linear-elastic", E=1.0, nu=0.0)})
+        >>> u = bulk.stiffness.createVecRight()
+        >>> u.array[:] = 1.0
+        >>> bool(np.abs(bulk.force(u).array_r).max() < 1e-14)  # all nodes moved by the same
+        True
     """
 
     #: Length whose strain is round-off where nothing moves: none, `K 0` is exactly zero.
@@ -32,16 +42,34 @@ class LinearBulk:
         self.diagonal = self.stiffness.getDiagonal()
 
     def force(self, u: Vec) -> Vec:
-        """Internal force `K u`; the vector is overwritten by the next call."""
+        """Internal force `K u`.
+
+        Args:
+            u: Displacement of the nodes this rank owns, length.
+
+        Returns:
+            The force; the vector is overwritten by the next call.
+        """
         self.stiffness.mult(u, self._force)
         return self._force
 
     def energy(self, u: Vec) -> float:
-        """Elastic energy `u.K u / 2`."""
+        """Elastic energy `u.K u / 2`.
+
+        Args:
+            u: Displacement of the nodes this rank owns, length.
+
+        Returns:
+            The energy over all ranks, force times length.
+        """
         return 0.5 * float(u.dot(self.force(u)))
 
     def tangent(self, out: Mat) -> None:
-        """Write the stiffness into a matrix that has room for it and may have more unknowns."""
+        """Write the stiffness into a matrix.
+
+        Args:
+            out: A matrix that has room for it and may have more unknowns.
+        """
         out.zeroEntries()
         if out.getSizes() == self.stiffness.getSizes():
             subset = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN

@@ -31,21 +31,51 @@ class Material(Protocol):
 type Density = tuple[Any, int | None]
 
 
-def elastic_moduli(entry: Entry, E: float, nu: float, field: str) -> tuple[float, float]:
-    """Checked Young's modulus and Poisson's ratio.
+class Isotropic:
+    """A material of two moduli at rest.
+
+    Args:
+        E: Young's modulus at rest, > 0, stress.
+        nu: Poisson's ratio at rest, -1 < nu < 0.5.
+        field: Where the material was written, for messages.
 
     Raises:
         InputError: A value is out of range.
     """
-    given = registry.values(entry, {"E": E, "nu": nu}, field)
-    (young,), (ratio,) = given["E"], given["nu"]
-    if not -1.0 < ratio < 0.5:
-        path = f"{field}.nu" if field else "nu"
-        raise InputError(f"{nu!r} given, must be > -1 and < 0.5", field=path)
-    return young, ratio
+
+    entry: Entry
+
+    def __init__(self, *, E: float, nu: float, field: str = "") -> None:
+        given = registry.values(self.entry, {"E": E, "nu": nu}, field)
+        (self.young,), (self.nu,) = given["E"], given["nu"]
+        if not -1.0 < self.nu < 0.5:
+            path = f"{field}.nu" if field else "nu"
+            raise InputError(f"{nu!r} given, must be > -1 and < 0.5", field=path)
+
+    @property
+    def shear(self) -> float:
+        """Shear modulus G, stress."""
+        return self.young / (2.0 * (1.0 + self.nu))
+
+    @property
+    def lame(self) -> float:
+        """First Lame constant lambda, stress."""
+        return self.young * self.nu / ((1.0 + self.nu) * (1.0 - 2.0 * self.nu))
+
+    def constants(self, u: Any) -> tuple[Any, Any]:
+        """Both as constants of a form, so that one compiled form serves all values.
+
+        Args:
+            u: UFL displacement.
+
+        Returns:
+            Lame constant and shear modulus, UFL, stress.
+        """
+        domain = ufl.domain.extract_unique_domain(u)
+        return fem.Constant(domain, self.lame), fem.Constant(domain, self.shear)
 
 
-class LinearElastic:
+class LinearElastic(Isotropic):
     """Isotropic Hooke: `sigma = lambda tr(eps) I + 2 G eps`, `eps = sym(grad(u))`.
 
     Args:
@@ -73,21 +103,8 @@ class LinearElastic:
         ),
     )
 
-    def __init__(self, *, E: float, nu: float, field: str = "") -> None:
-        self.young, self.nu = elastic_moduli(self.entry, E, nu, field)
-
-    @property
-    def shear(self) -> float:
-        """Shear modulus G, stress."""
-        return self.young / (2.0 * (1.0 + self.nu))
-
-    @property
-    def lame(self) -> float:
-        """First Lame constant lambda, stress."""
-        return self.young * self.nu / ((1.0 + self.nu) * (1.0 - 2.0 * self.nu))
-
     def stress(self, u: Any) -> Any:
-        """UFL stress of the displacement `u`; the moduli are constants of the form.
+        """UFL stress of the displacement `u`.
 
         Args:
             u: UFL displacement.
@@ -95,7 +112,6 @@ class LinearElastic:
         Returns:
             Stress, (3, 3), UFL.
         """
-        domain = ufl.domain.extract_unique_domain(u)
-        lame, shear = fem.Constant(domain, self.lame), fem.Constant(domain, self.shear)
+        lame, shear = self.constants(u)
         strain = ufl.sym(ufl.grad(u))
         return lame * ufl.tr(strain) * ufl.Identity(3) + 2.0 * shear * strain

@@ -48,20 +48,39 @@ class NonlinearBulk:
         self.diagonal = self.stiffness.getDiagonal()
 
     def force(self, u: Vec) -> Vec:
-        """Internal force; the vector is overwritten by the next call."""
+        """Internal force.
+
+        Args:
+            u: Displacement of the nodes this rank owns, length.
+
+        Returns:
+            The force; the vector is overwritten by the next call.
+        """
         self._set(u)
         assemble_force(self._work, self._force)
         return self._force
 
     def energy(self, u: Vec) -> float:
-        """Elastic energy; 0 where a material has a stress but no energy."""
+        """Elastic energy.
+
+        Args:
+            u: Displacement of the nodes this rank owns, length.
+
+        Returns:
+            The energy over all ranks, force times length; 0 where a material has a stress but no
+            energy.
+        """
         if self._energy is None:
             return 0.0
         self._set(u)
         return float(self._comm.allreduce(fem.assemble_scalar(self._energy)))
 
     def tangent(self, out: Mat) -> None:
-        """Write the tangent of the last `force` into a matrix that has room for it."""
+        """Write the tangent of the last `force` or `energy` into a matrix.
+
+        Args:
+            out: A matrix that has room for it.
+        """
         out.zeroEntries()
         assemble_into(out, self._tangent)
         out.assemble(PETSc.Mat.AssemblyType.FINAL)
