@@ -438,7 +438,7 @@ def test_another_number_of_processes(case, whole, before, after):
     out = case.parent / "out"
     code = (
         "import os, signal, sys; from anisocontact.cli import main; "
-        "from anisocontact.results import report; report.write_report = lambda folder: []; "
+        "from anisocontact.results import report, writer; report.write_report = lambda folder: []; "
         "keep = writer.Writer.keep; stop = int(sys.argv.pop(1))\n"
         "def kept(self, *a):\n"
         "    keep(self, *a)\n"

@@ -137,7 +137,7 @@ def shapes(cell, order):
 
 
 @pytest.mark.parametrize(("cell", "order"), CELLS)
-def test_tangent_of_a_pressure_that_follows(cell, order):
+def test_tangent_of_a_pressure_that_follows(tangent_errors, cell, order):
     """Halving the step quarters the error of the central difference against the tangent.
 
     Requirement: exact tangent of pressures at finite strain. Source: Taylor. Tolerance: the ratio
@@ -150,17 +150,7 @@ def test_tangent_of_a_pressure_that_follows(cell, order):
         problem = soft(shape)
         problem.begin(Step("press", 1, {"body.bottom": NOTHING}, pressure={f"body.{group}": 30.0}))
         problem.set_level(1.0, 1.0)
-        x, direction = problem.new_vector(), problem.new_vector()
-        x.array[:] = 0.02 * rng.standard_normal(x.getSize())
-        direction.array[:] = rng.standard_normal(x.getSize())
-        matrix = problem.new_tangent()
-        problem.tangent(x, matrix)
-        exact = (matrix @ direction).array.copy()
-        errors = []
-        for h in (2e-4, 1e-4, 5e-5):
-            ends = [problem.evaluate(x + sign * h * direction) for sign in (1.0, -1.0)]
-            errors.append(np.linalg.norm((ends[0] - ends[1]) / (2.0 * h) - exact))
-        errors = np.array(errors) / np.linalg.norm(exact)
+        errors = tangent_errors(problem, rng, 0.02)
         assert np.all(np.abs(errors[:-1] / errors[1:] - 4.0) < 0.15)
         assert errors[-1] < 1e-5
 

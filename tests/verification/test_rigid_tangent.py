@@ -9,6 +9,9 @@ SURFACES = {
     "sphere": {"centre": (0.45, 0.55, -2.0), "radius": 2.0},
     "cylinder": {"point": (0.0, 0.5, -1.5), "axis": (1.0, 0.0, 0.0), "radius": 1.5},
 }
+FREE = ("x", "y", "z", "rx", "ry", "rz")
+#: States that are tried.
+SEEDS = range(60)
 
 
 def interface(surface, coefficients, seed, on="master"):
@@ -67,6 +70,15 @@ def errors(block, x, direction, steps):
     return np.array(found) / np.linalg.norm(exact), same, set(status.tolist())
 
 
+def first_errors(states, steps, statuses):
+    """Errors of the first state with these statuses, all of which stay along its direction."""
+    for block, x, direction in states:
+        found, same, seen = errors(block, x, direction, steps)
+        if same and seen == statuses:
+            return found
+    return pytest.fail("no such state found")
+
+
 @pytest.mark.parametrize("surface", SURFACES)
 @pytest.mark.parametrize(
     ("statuses", "coefficients", "lift"),
@@ -92,14 +104,8 @@ def test_second_order_of_the_central_difference(
     """
     first = 4e-4 if statuses == {1} else 2e-5
     steps = [first * 0.5**k for k in range(3)]
-    free = ("x", "y", "z", "rx", "ry", "rz")
-    for seed in range(60):
-        block, x, direction = state(fe, seed, surface, coefficients, lift, free, current_area)
-        found, same, seen = errors(block, x, direction, steps)
-        if same and seen == statuses:
-            break
-    else:
-        pytest.fail("no such state found")
+    states = (state(fe, seed, surface, coefficients, lift, FREE, current_area) for seed in SEEDS)
+    found = first_errors(states, steps, statuses)
     if statuses == {0}:
         assert found[0] < 1e-9
     else:
@@ -114,17 +120,14 @@ def test_single_columns(fe, component):
     Requirement and source as above; the column must agree to 1e-6 of its own size at the smallest
     step, which the second order reaches.
     """
-    for seed in range(60):
-        block, x, direction = state(
-            fe, seed, "sphere", (0.4, 0.15), 0.0, ("x", "y", "z", "rx", "ry", "rz"), True
-        )
+
+    def along(seed):
+        block, x, direction = state(fe, seed, "sphere", (0.4, 0.15), 0.0, FREE, True)
         direction.array[:] = 0.0
         direction.array[component - 6] = 1.0
-        found, same, seen = errors(block, x, direction, [1e-4, 5e-5])
-        if same and seen == {0, 1, 2}:
-            break
-    else:
-        pytest.fail("no such state found")
+        return block, x, direction
+
+    found = first_errors(map(along, SEEDS), [1e-4, 5e-5], {0, 1, 2})
     assert found[1] < 1e-6
     assert found[0] / found[1] > 3.5 or found[0] < 1e-10
 
@@ -135,13 +138,8 @@ def test_prescribed_components(fe):
     Requirement: tangent exact also where some components are prescribed. Source: Taylor.
     """
     steps = [2e-5 * 0.5**k for k in range(3)]
-    for seed in range(60):
-        block, x, direction = state(fe, seed, "plane", (0.4, 0.15), 0.0, ("z", "ry"), False)
-        found, same, seen = errors(block, x, direction, steps)
-        if same and seen == {0, 1, 2}:
-            break
-    else:
-        pytest.fail("no such state found")
+    states = (state(fe, seed, "plane", (0.4, 0.15), 0.0, ("z", "ry"), False) for seed in SEEDS)
+    found = first_errors(states, steps, {0, 1, 2})
     assert np.all(np.abs(found[:-1] / found[1:] - 4.0) < 0.15)
 
 
@@ -153,15 +151,9 @@ def test_directions_on_the_slave(fe, current_area):
     tangents of the slave, too, as they lie on the body.
     """
     steps = [2e-5 * 0.5**k for k in range(3)]
-    free = ("x", "y", "z", "rx", "ry", "rz")
-    for seed in range(60):
-        block, x, direction = state(
-            fe, seed, "sphere", (0.4, 0.15), 0.0, free, current_area, "slave"
-        )
-        found, same, seen = errors(block, x, direction, steps)
-        if same and seen == {0, 1, 2}:
-            break
-    else:
-        pytest.fail("no such state found")
+    states = (
+        state(fe, seed, "sphere", (0.4, 0.15), 0.0, FREE, current_area, "slave") for seed in SEEDS
+    )
+    found = first_errors(states, steps, {0, 1, 2})
     assert np.all(np.abs(found[:-1] / found[1:] - 4.0) < 0.15)
     assert found[0] < 1e-2

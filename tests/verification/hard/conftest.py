@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import pytest
 
 
@@ -37,10 +36,6 @@ class Run:
         """Resultant on the slave at the end of a step."""
         name = self.problem.contacts[contact].name
         return self.ends[step].resultants[name][0]
-
-    def penetration(self) -> float:
-        """Largest penetration at the end, length."""
-        return max(float(np.max(-c.last.gap, initial=0.0)) for c in self.problem.contacts)
 
 
 @pytest.fixture
