@@ -191,6 +191,13 @@ def components(
 
     Raises:
         InputError: The basis does not span the tangent plane.
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> one = np.array([[[2.0, 0.0], [0.0, 1.0]]])
+        >>> components(plane, np.zeros((1, 2)), one, "mixed")[0].tolist()
+        [[2.0, 0.0], [0.0, 1.0]]
     """
     rho = surface.jet(xi).d1
     a = rho @ rho.transpose(0, 2, 1)
@@ -215,7 +222,16 @@ def components(
 
 
 def require_regular(surface: Surface, xi: Floats, valid: npt.NDArray[np.bool_]) -> None:
-    """Raises an `InputError` that names the first point where a field has no direction."""
+    """Refuse points at which a field has no direction.
+
+    Args:
+        surface: The surface.
+        xi: Coordinates, (n, 2).
+        valid: Whether the field is regular there, (n,).
+
+    Raises:
+        InputError: It is not somewhere; the first such point is named.
+    """
     wrong = np.flatnonzero(~valid)
     if wrong.size:
         where = xi[wrong[0]]

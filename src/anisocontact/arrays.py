@@ -24,6 +24,10 @@ def points(x: npt.ArrayLike, columns: int, name: str = "x", rows: int | None = N
 
     Raises:
         InputError: Another shape was given, or something else than numbers.
+
+    Example:
+        >>> points((1, 2, 3), 3).shape
+        (1, 3)
     """
     try:
         a = np.ascontiguousarray(np.atleast_2d(np.asarray(x, dtype=np.float64)))
@@ -50,6 +54,10 @@ def blocks(x: npt.ArrayLike, shape: tuple[int, ...], name: str) -> Floats:
 
     Raises:
         InputError: The shapes do not agree.
+
+    Example:
+        >>> blocks([1.0, 2.0], (3, 2), "x").tolist()
+        [[1.0, 2.0], [1.0, 2.0], [1.0, 2.0]]
     """
     a = np.asarray(x, dtype=np.float64)
     try:

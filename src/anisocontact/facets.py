@@ -269,6 +269,9 @@ class FacetSurface:
 
         Returns:
             A set of facets for each point.
+
+        Raises:
+            InputError: The distance is negative.
         """
         if not distance >= 0.0:
             raise InputError(f"given {distance}, must not be negative", field="distance")

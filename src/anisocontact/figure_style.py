@@ -21,14 +21,27 @@ STEP_COLOURS = ("#0f766e", "#7c3aed", "#c2410c", "#0369a1", "#a16207", "#be185d"
 
 
 def new_figure(width: float, height: float) -> Figure:
-    """A figure of the given size in inches that needs no display."""
+    """A figure that needs no display.
+
+    Args:
+        width: Width, inches.
+        height: Height, inches.
+
+    Returns:
+        The figure, empty.
+    """
     figure = Figure(figsize=(width, height), layout="constrained", dpi=120)
     FigureCanvasAgg(figure)
     return figure
 
 
 def save(figure: Figure, path: Path) -> None:
-    """Write a picture as PNG, without the date so that equal runs give equal files."""
+    """Write a picture as PNG, without the date so that equal runs give equal files.
+
+    Args:
+        figure: The picture.
+        path: The file; it is written whole or not at all.
+    """
     out = io.BytesIO()
     figure.savefig(out, format="png", metadata={"Software": None})
     with replacing(path) as draft:

@@ -56,7 +56,14 @@ class NormalLaw:
         self.named = _named(registry.normal_laws, model, parameters, "normal.model")
 
     def stiffened(self, factor: float) -> NormalLaw:
-        """The law "penalty" with a penalty `factor` times as large."""
+        """The law "penalty" with another penalty.
+
+        Args:
+            factor: How many times as large it is.
+
+        Returns:
+            The stiffer law.
+        """
         return NormalLaw(penalty=factor * self.named[1]["penalty"][0])
 
 
@@ -104,7 +111,14 @@ class Adhesion:
         self.directions_on = _side(directions_on, "adhesion.directions_on")
 
     def stiffened(self, factor: float) -> Adhesion:
-        """The model "elastic" with stiffnesses `factor` times as large."""
+        """The model "elastic" with other stiffnesses.
+
+        Args:
+            factor: How many times as large they are.
+
+        Returns:
+            The stiffer model, with the same directions.
+        """
         first, second = self.named[1]["stiffness"]
         return Adhesion(
             stiffness=(factor * first, factor * second),
@@ -267,7 +281,15 @@ class Carried:
 
 
 def carried(adhesion: Adhesion, friction: Friction) -> tuple[Carried, Carried, Carried]:
-    """The direction fields of adhesion, friction and the second surface."""
+    """The direction fields of two laws, and which body carries them.
+
+    Args:
+        adhesion: Law inside the yield ellipse.
+        friction: The yield ellipse.
+
+    Returns:
+        Those of adhesion, of friction, and of the second surface of friction.
+    """
     return (
         Carried("adhesion.directions", adhesion.directions, adhesion.directions_on),
         Carried("friction.directions", friction.directions, friction.directions_on),

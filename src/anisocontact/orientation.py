@@ -64,7 +64,14 @@ def orientation(core: _core.FacetSurface) -> Orientation:
 
 
 def triangular(core: _core.FacetSurface) -> npt.NDArray[np.bool_]:
-    """Which facets have three sides, (number of facets,)."""
+    """Which facets have three sides.
+
+    Args:
+        core: The surface of the core.
+
+    Returns:
+        A flag for each, (number of facets,).
+    """
     three: npt.NDArray[np.bool_] = np.bincount(core.sides()[:, 0]) == 3
     return three
 

@@ -103,9 +103,12 @@ class Together:
 
 
 def started_together() -> Together | None:
-    """The processes a launcher has started beside this one; None without a launcher.
+    """The processes a launcher has started beside this one.
 
     Nothing of MPI is loaded for a process that is alone.
+
+    Returns:
+        The processes; None without a launcher.
     """
     if not any(name in os.environ for name in _TOLD):
         return None

@@ -15,6 +15,17 @@ def replacing(path: Path) -> Iterator[Path]:
     """A path to write to; it takes the place of `path` when the block ends well.
 
     Readers see the old file or the new one, never a part of either.
+
+    Args:
+        path: The file.
+
+    Yields:
+        The path to write to, in the same folder.
+
+    Example:
+        >>> from tempfile import TemporaryDirectory
+        >>> with TemporaryDirectory() as folder, replacing(Path(folder) / "a.txt") as draft:
+        ...     length = draft.write_text("whole")
     """
     draft = draft_of(path)
     try:
@@ -25,5 +36,12 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def draft_of(path: Path) -> Path:
-    """Where a file is while this process writes it."""
+    """Where a file is while this process writes it.
+
+    Args:
+        path: The file.
+
+    Returns:
+        A name that no other process has, in the same folder.
+    """
     return path.with_name(f".{path.stem}-{os.getpid()}{path.suffix}")

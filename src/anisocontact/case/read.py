@@ -61,7 +61,14 @@ class CaseFile:
         return path.parent.name if path.stem == "case" and path.parent.name else path.stem
 
     def resolve(self, path: str) -> Path:
-        """A path written in the case."""
+        """A path written in the case.
+
+        Args:
+            path: As it is written: absolute, or relative to the folder of the file.
+
+        Returns:
+            Where that is.
+        """
         return self.path.parent / path
 
 

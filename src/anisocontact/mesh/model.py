@@ -61,6 +61,9 @@ class Model:
         Args:
             arrays: The mesh: a share of it on every process of `comm`, or all of it on each.
             comm: Communicator of the mesh.
+
+        Returns:
+            The names on a mesh that is distributed.
         """
         own = arrays.shared(comm)
         mesh = create_mesh(comm, own.cell, own.degree, own.cells, own.points)
@@ -110,11 +113,19 @@ class Model:
         return vector_space(self.mesh, self.order)
 
     def body_names(self) -> list[str]:
-        """Names of the bodies."""
+        """Names of the bodies.
+
+        Returns:
+            One for each, in the order of the sources.
+        """
         return list(self._bodies)
 
     def facet_names(self) -> list[str]:
-        """Names of the facet groups, "body.group"."""
+        """Names of the facet groups.
+
+        Returns:
+            "body.group" for each.
+        """
         return list(self._facets)
 
     def cells(self, name: str, field: str = "") -> Ints:
@@ -123,6 +134,9 @@ class Model:
         Args:
             name: Body.
             field: Where the name was written, for the message.
+
+        Returns:
+            Their numbers on this rank, with ghosts, (cells,).
 
         Raises:
             InputError: No such body.
@@ -136,18 +150,42 @@ class Model:
             name: "body.group".
             field: Where the name was written, for the message.
 
+        Returns:
+            Their numbers on this rank, with ghosts, (facets,).
+
         Raises:
             InputError: No such group; the line suggests the nearest name.
         """
         return _looked_up(self._facets, name, "facet group", field)
 
     def body_of(self, facet_group: str, field: str = "") -> str:
-        """Name of the body a facet group bounds."""
+        """Name of the body a facet group bounds.
+
+        Args:
+            facet_group: "body.group".
+            field: Where the name was written, for the message.
+
+        Returns:
+            The name.
+
+        Raises:
+            InputError: No such group.
+        """
         self.facets(facet_group, field)
         return facet_group.partition(".")[0]
 
     def count_facets(self, name: str) -> int:
-        """Number of facets of a group, over all ranks."""
+        """Number of facets of a group.
+
+        Args:
+            name: "body.group".
+
+        Returns:
+            The number over all ranks; the call is collective.
+
+        Raises:
+            InputError: No such group.
+        """
         index_map = self.mesh.topology.index_map(2)
         owned = int(np.sum(self.facets(name) < index_map.size_local))
         return int(self.mesh.comm.allreduce(owned))

@@ -95,10 +95,6 @@ class Stream:
         """Numbers with a fraction, (n,)."""
         return self._take(n, FLOAT)
 
-    def records(self, n: int, dtype: np.dtype[np.void]) -> npt.NDArray[np.void]:
-        """Binary rows of mixed types."""
-        return self._raw(n, dtype)
-
     def rows(
         self,
         count: int,

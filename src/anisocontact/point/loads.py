@@ -205,9 +205,9 @@ class DeadLoad(Load):
     """A tangential force of given size and direction.
 
     Past the friction limit there is no equilibrium, and a rate-independent law has no speed. So a
-    dashpot holds the point: F + T - eta dx/dt = 0. It is stated, it dissipates
-    `dissipation_regularisation`, and as eta goes to 0 the slip has the direction that the sliding
-    rule gives at the limit. `Push` needs no dashpot.
+    dashpot holds the point: F + T - eta dx/dt = 0. It is stated, what it dissipates is the energy
+    "regularisation" of the history, and as eta goes to 0 the slip has the direction that the
+    sliding rule gives at the limit. `Push` needs no dashpot.
 
     Args:
         force: Knots (k, 3) in space, or (k, 2) in `frame`, or a function [force]. Its part along

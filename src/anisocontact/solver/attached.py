@@ -113,7 +113,17 @@ class ElasticSupport:
         return [self.group]
 
     def on(self, model: Model) -> Attached:
-        """The support on a model; raises InputError where the group is unknown."""
+        """The support on a model.
+
+        Args:
+            model: Mesh with the group.
+
+        Returns:
+            Its forces and blocks.
+
+        Raises:
+            InputError: The group is unknown.
+        """
         return _Bed(self, model)
 
 
@@ -161,7 +171,17 @@ class Spring:
         return [self.group] if self.to is None else [self.group, self.to]
 
     def on(self, model: Model) -> Attached:
-        """The spring on a model; raises InputError where a group is unknown."""
+        """The spring on a model.
+
+        Args:
+            model: Mesh with the groups.
+
+        Returns:
+            Its forces and blocks.
+
+        Raises:
+            InputError: A group is unknown.
+        """
         return _Spring(self, model)
 
 

@@ -155,7 +155,14 @@ class ContactProblem(Following):
         return matrix
 
     def evaluate(self, x: Vec) -> Floats:
-        """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer."""
+        """Residual of the unknowns this rank owns.
+
+        Args:
+            x: Displacements, length.
+
+        Returns:
+            Residual, force; NaN everywhere where a law has no answer.
+        """
         self.u.x.array[: self._owned] = x.array_r
         self.u.x.scatter_forward()
         nodal = self.u.x.array.reshape(-1, 3)
@@ -209,7 +216,13 @@ class ContactProblem(Following):
         return grown
 
     def improve(self, x: Vec) -> bool:
-        """Better multipliers of the contacts from equilibrium; whether any changed.
+        """Better multipliers of the contacts from equilibrium.
+
+        Args:
+            x: Displacements in equilibrium, length.
+
+        Returns:
+            Whether any changed.
 
         Raises:
             NotHeldError: They do not converge.

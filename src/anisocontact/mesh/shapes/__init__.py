@@ -30,7 +30,15 @@ _SHAPES = {s.entry.name: s for s in (BoxSpec, CylinderSpec, RingSpec, BallSpec, 
 
 
 def shapes() -> tuple[Entry, ...]:
-    """The built-in shapes with their parameters."""
+    """The built-in shapes with their parameters.
+
+    Returns:
+        An entry for each.
+
+    Example:
+        >>> "ball" in [entry.name for entry in shapes()]
+        True
+    """
     return tuple(shape.entry for shape in _SHAPES.values())
 
 

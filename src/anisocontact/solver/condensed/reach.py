@@ -43,7 +43,6 @@ class Reach:
         self._reference = np.asarray(model.space.tabulate_dof_coordinates())
         self._contacts, self._others = contacts, others
         self._ranges = {body: _prescribed_range(steps, body) for body in model.body_names()}
-        self._motions: dict[int, float] = {}
         self._start: Floats = np.zeros_like(self._reference)
         self._factor = 1.0
         self.nodes: Flags = np.zeros(len(self._reference), dtype=np.bool_)
