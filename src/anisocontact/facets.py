@@ -323,6 +323,11 @@ def outward_flips(
 
     Returns:
         `flip` of `FacetSurface`.
+
+    Example:
+        >>> triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+        >>> outward_flips(triangle, [[0, 1, 2]], "tri3", [[0.3, 0.3, 1.0]]).tolist()
+        [True]
     """
     surface = FacetSurface(coordinates, connectivity, topology)
     behind = points(inside, 3, "inside", rows=len(surface))

@@ -274,6 +274,10 @@ def check(p: Parameter, given: object, field: str = "") -> list[float]:
 
     Raises:
         InputError: Not of the parameter's form, not finite or out of its bound.
+
+    Example:
+        >>> check(Parameter("radius", "scalar", "length", "radius", "positive"), 2)
+        [2.0]
     """
     field = field or p.name
     if p.kind == "choice":

@@ -84,6 +84,12 @@ def load(path: str | Path) -> CaseFile:
     Raises:
         InputError: The file is missing or is not TOML.
         CaseError: Something in it is wrong; `errors` has a line for each mistake.
+
+    Example:
+        >>> load("nowhere.toml")
+        Traceback (most recent call last):
+            ...
+        anisocontact.errors.InputError: case file 'nowhere.toml' does not exist
     """
     path = Path(path)
     return CaseFile(validate(read_table(path)), path)

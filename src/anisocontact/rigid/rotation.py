@@ -60,6 +60,10 @@ def spin_of(vector: Floats) -> Floats:
 
     Returns:
         J, (3, 3).
+
+    Example:
+        >>> spin_of(np.zeros(3)).tolist()
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     """
     _, second, third = _coefficients(float(np.linalg.norm(vector)))
     v = skew(vector)
