@@ -15,6 +15,7 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
+from facet_grid import grid
 from mpi4py import MPI
 
 from anisocontact import registry
@@ -27,16 +28,6 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 PASSES = 7
 #: Points of quadrature on a facet: degree of the rule, twice the order of the facet.
 DEGREE = {"tri3": 2, "tri6": 4, "quad4": 2, "quad9": 4}
-#: Nodes of the facets of a cell on a grid of (degree + 1) x (degree + 1) points.
-NODES = {
-    "tri3": [[(0, 0), (1, 0), (0, 1)], [(1, 1), (0, 1), (1, 0)]],
-    "tri6": [
-        [(0, 0), (2, 0), (0, 2), (1, 1), (0, 1), (1, 0)],
-        [(2, 2), (0, 2), (2, 0), (1, 1), (2, 1), (1, 2)],
-    ],
-    "quad4": [[(0, 0), (1, 0), (0, 1), (1, 1)]],
-    "quad9": [[(0, 0), (2, 0), (0, 2), (2, 2), (1, 0), (0, 1), (2, 1), (1, 2), (1, 1)]],
-}
 RULES: dict[str, dict[str, object]] = {
     "maximum-dissipation": {},
     "slip-ellipse": {"slip_axes": (2.0, 1.0), "slip_angle": 0.3},
@@ -45,13 +36,9 @@ RULES: dict[str, dict[str, object]] = {
 
 def sheet(cells: int, topology: str) -> tuple[np.ndarray, np.ndarray]:
     """Points and facets of a wavy unit square."""
-    step = 1 if topology in {"tri3", "quad4"} else 2
-    m = step * cells + 1
-    y, x = (a.ravel() for a in np.meshgrid(*[np.linspace(0.0, 1.0, m)] * 2, indexing="ij"))
-    j, i = (step * a.ravel() for a in np.meshgrid(*[np.arange(cells)] * 2, indexing="ij"))
-    facets = [np.column_stack([(j + b) * m + i + a for a, b in nodes]) for nodes in NODES[topology]]
+    x, y, facets = grid(cells, topology)
     height = 0.02 * np.sin(6.0 * x) * np.cos(5.0 * y)
-    return np.column_stack((x, y, height)), np.concatenate(facets).astype(np.int32)
+    return np.column_stack((x, y, height)), facets.astype(np.int32)
 
 
 def law(rule: str, mu: float) -> PairLaw:
@@ -161,7 +148,7 @@ def main(cells: int = 100) -> None:
     assert set(RULES) <= set(names)
     print("| facets | rule | stick | slip | laws | all | laws, tangent | all, tangent |")
     print("|---|---|---|---|---|---|---|---|")
-    for topology in NODES:
+    for topology in DEGREE:
         for rule in RULES:
             print(f"| {' | '.join(rates(topology, rule, 0.3, cells))} |")
         print(f"| {' | '.join(rates(topology, 'maximum-dissipation', 30.0, cells))} |")

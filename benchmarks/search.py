@@ -13,21 +13,11 @@ import time
 from collections.abc import Callable
 
 import numpy as np
+from facet_grid import grid
 
 from anisocontact.facets import TOPOLOGIES, FacetProjections, FacetSurface
 
 POINTS = 200_000
-#: Nodes of the facets of a cell on a grid of (degree + 1) x (degree + 1) points.
-NODES = {
-    "tri3": [[(0, 0), (1, 0), (0, 1)], [(1, 1), (0, 1), (1, 0)]],
-    "tri6": [
-        [(0, 0), (2, 0), (0, 2), (1, 1), (0, 1), (1, 0)],
-        [(2, 2), (0, 2), (2, 0), (1, 1), (2, 1), (1, 2)],
-    ],
-    "quad4": [[(0, 0), (1, 0), (0, 1), (1, 1)]],
-    "quad8": [[(0, 0), (2, 0), (0, 2), (2, 2), (1, 0), (0, 1), (2, 1), (1, 2)]],
-    "quad9": [[(0, 0), (2, 0), (0, 2), (2, 2), (1, 0), (0, 1), (2, 1), (1, 2), (1, 1)]],
-}
 
 
 def height(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -37,12 +27,8 @@ def height(x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
 def sheet(cells: int, topology: str) -> tuple[np.ndarray, np.ndarray]:
     """Points and facets."""
-    degree = 1 if TOPOLOGIES[topology] < 5 else 2
-    m = degree * cells + 1
-    y, x = (a.ravel() for a in np.meshgrid(*[np.linspace(0.0, 1.0, m)] * 2, indexing="ij"))
-    j, i = (degree * a.ravel() for a in np.meshgrid(*[np.arange(cells)] * 2, indexing="ij"))
-    facets = [np.column_stack([(j + b) * m + i + a for a, b in nodes]) for nodes in NODES[topology]]
-    return np.column_stack((x, y, height(x, y))), np.concatenate(facets)
+    x, y, facets = grid(cells, topology)
+    return np.column_stack((x, y, height(x, y))), facets
 
 
 def seconds(work: Callable[[], FacetProjections]) -> tuple[float, FacetProjections]:
