@@ -14,6 +14,7 @@ import pytest
 pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import build_parser, main
+from anisocontact.solver import Progress
 
 
 @pytest.fixture
@@ -172,6 +173,20 @@ def test_ctrl_c_ends_after_the_increment_and_keeps_it(case, case_text):
     summary = json.loads((out / "summary.json").read_text())
     assert summary["status"] == "stopped"
     assert len((out / "history.csv").read_text().splitlines()) == 1 + summary["steps"]
+
+
+def test_a_first_ctrl_c_says_once_what_it_does(no_report, monkeypatch, capsys, case):
+    from anisocontact.cli.progress import Lines
+
+    def interrupted(_: Lines, progress: Progress) -> None:
+        if (progress.step, progress.iteration) == ("drag", 0):
+            os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr(Lines, "iteration", interrupted)
+    assert main(["run", str(case), "-o", str(case.parent / "out")]) == 3
+    said = capsys.readouterr().out.splitlines()
+    assert said.count("stopping after this increment; a second Ctrl-C stops at once") == 1
+    assert [line for line in said if line.startswith("drag")][-1].startswith("drag 1 ")
 
 
 def test_an_internal_error_is_one_line_and_its_details_in_the_log(

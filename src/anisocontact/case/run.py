@@ -34,6 +34,9 @@ class Listener(Protocol):
     def cut(self, cut: Cut) -> None:
         """An increment has failed and is tried again in smaller parts."""
 
+    def stopping(self) -> None:
+        """The run has been asked to stop and will, after the increment."""
+
 
 @dataclass(frozen=True)
 class Outcome:
@@ -125,9 +128,14 @@ def _writer(built: Built, folder: str | Path, text: str, checkpoint: Stored | No
 
 
 def _solve(built: Built, writer: Writer, listener: Listener, text: str) -> tuple[str, str]:
+    told = threading.Event()
+
     def on_iteration(progress: Progress) -> None:
         writer.log(_iteration_line(progress))
         listener.iteration(progress)
+        if interrupted.is_set() and not told.is_set():
+            told.set()
+            listener.stopping()
 
     def on_cut(cut: Cut) -> None:
         writer.cut(cut)

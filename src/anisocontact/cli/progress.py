@@ -16,6 +16,10 @@ from anisocontact.solver import Accepted, Cut, Progress, Step
 __all__ = ["progress_on"]
 
 
+#: What is said after a first Ctrl-C.
+STOPPING = "stopping after this increment; a second Ctrl-C stops at once"
+
+
 @contextmanager
 def progress_on(stream: TextIO, steps: Sequence[Step]) -> Iterator[Listener]:
     """A listener that shows the run on a stream."""
@@ -55,6 +59,10 @@ class Lines:
         """Print the cut."""
         print(cut, file=self._stream, flush=True)
 
+    def stopping(self) -> None:
+        """Print it."""
+        print(STOPPING, file=self._stream, flush=True)
+
 
 class Terminal:
     """One bar for the whole run, with the iteration that is going on; a line for each step.
@@ -90,3 +98,7 @@ class Terminal:
     def cut(self, cut: Cut) -> None:
         """Show the cut beside the bar."""
         self._bar.update(self._task, state=f"cut to {cut.next_size:.3g} of the increment")
+
+    def stopping(self) -> None:
+        """Print it above the bar."""
+        self._bar.console.print(STOPPING, highlight=False, soft_wrap=True)

@@ -30,6 +30,9 @@ TOLERANCE = 1e-8
 MAX_ITERATIONS = 25
 #: Residual over its smallest value at which an iteration is given up.
 DIVERGED = 1e8
+#: A line search whose residual keeps more than this share of itself over so many corrections
+#: stands in front of a jump of the law, and would stay there.
+STUCK, STUCK_OVER = 0.5, 8
 #: Smallest share of a correction that is taken where multipliers follow.
 LEAST_SHARE = 1.0 / 8.0
 #: Two corrections have gained something where the residual is below this share of the least before.
@@ -290,7 +293,13 @@ class Newton:
             return reasons.CONVERGED_FNORM_RELATIVE
         if relative > DIVERGED * min(self._residuals[1:], default=np.inf):
             return reasons.DIVERGED_DTOL
-        return reasons.ITERATING
+        return reasons.DIVERGED_LINE_SEARCH if self._stuck() else reasons.ITERATING
+
+    def _stuck(self) -> bool:
+        """Whether a line search gains next to nothing."""
+        known = self._residuals
+        searching = self.snes.getLineSearch().getType() != PETSc.SNESLineSearch.Type.BASIC
+        return searching and len(known) > STUCK_OVER and known[-1] > STUCK * known[-1 - STUCK_OVER]
 
     def _explain(self, reason: int) -> str:
         reasons = PETSc.SNES.ConvergedReason
@@ -301,7 +310,7 @@ class Newton:
             reasons.DIVERGED_FUNCTION_DOMAIN: "the residual is not a number",
             reasons.DIVERGED_LINEAR_SOLVE: "the tangent matrix could not be factorised "
             "(a body without support?)",
-            reasons.DIVERGED_LINE_SEARCH: "the line search found no descent, residual {r:.1e}",
+            reasons.DIVERGED_LINE_SEARCH: "the line search got stuck, residual {r:.1e}",
             reasons.DIVERGED_DTOL: "the Newton iteration diverged, residual {r:.1e}",
         }
         text = known.get(reason, f"SNES stopped with reason {reason}")

@@ -1,0 +1,89 @@
+"""Newton's method on a system of two equations, apart from any mesh."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact._fenicsx import MPI, Mat, PETSc, Vec
+from anisocontact.solver.newton import STUCK_OVER, Newton
+
+
+class Valley:
+    """The stationary point of a curved valley, as two equations: 1 - x and c (y - x^2).
+
+    Full steps are there after two corrections, the first of which climbs; a search that lets the
+    residual only fall follows the bend.
+    """
+
+    force_scale = 1.0
+    round_off = 0.0
+    follows = False
+    comm = MPI.COMM_SELF
+
+    def __init__(self, steepness: float) -> None:
+        self._steepness = steepness
+
+    def new_vector(self) -> Vec:
+        return PETSc.Vec().createSeq(2, comm=self.comm)
+
+    def new_tangent(self) -> Mat:
+        matrix = PETSc.Mat().createDense((2, 2), comm=self.comm)
+        matrix.setUp()
+        return matrix
+
+    def evaluate(self, x: Vec) -> np.ndarray:
+        a, b = x.array_r
+        return np.array([1.0 - a, self._steepness * (b - a**2)])
+
+    def tangent(self, x: Vec, out: Mat) -> bool:
+        a, c = float(x.array_r[0]), self._steepness
+        out.setValues([0, 1], [0, 1], [-1.0, 0.0, -2.0 * a * c, c])
+        out.assemble()
+        return False
+
+    def improve(self, _: Vec) -> bool:
+        return False
+
+    def soften(self) -> bool:
+        return False
+
+    def unbalanced(self, norm: float) -> float:
+        return norm
+
+    def held(self) -> bool:
+        return True
+
+    def take_share(self, _: float) -> None: ...
+
+
+def _solved(full_steps: bool, **options: Any) -> tuple[Any, np.ndarray]:
+    system = Valley(1e6)
+    dense = {"pc_type": "lu", "pc_factor_mat_solver_type": "petsc"}
+    newton = Newton(system, "valley_", dense | options, lambda *_: None)
+    x = system.new_vector()
+    x.array[:] = (-1.2, 1.44)
+    result = newton.solve(x, full_steps)
+    newton.close()
+    return result, x.array_r.copy()
+
+
+def test_a_search_that_creeps_is_given_up():
+    """It would need hundreds of corrections; what comes next are full steps."""
+    result, _ = _solved(full_steps=False)
+    assert "the line search got stuck" in result.reason
+    assert result.iterations == STUCK_OVER
+    again, x = _solved(full_steps=True)
+    assert not again.reason
+    assert again.iterations <= 3
+    np.testing.assert_allclose(x, 1.0, rtol=1e-12)
+
+
+def test_steps_without_search_are_never_given_up_for_creeping():
+    """The user may choose them by an option of PETSc."""
+    result, _ = _solved(full_steps=False, snes_linesearch_type="basic")
+    assert not result.reason
