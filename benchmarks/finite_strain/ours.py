@@ -49,7 +49,7 @@ def count(problem: Problem, clock: Clock) -> None:
                 clock.count(contact, method, "contact")
     coupled = problem._tangent.coupled
     if coupled is not None:
-        for method in ("make_room", "add"):
+        for method in ("new_matrix", "make_room", "add"):
             clock.count(coupled, method, "contact")
     for method in ("force", "tangent"):
         clock.count(problem.bulk, method, "assembly")

@@ -18,6 +18,7 @@ from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.point_blocks import add_rows, point_blocks
 from anisocontact.contact.point_tangent import PointTangent
 from anisocontact.contact.quadrature import chosen_degree
+from anisocontact.contact.reachable import Pairs, reachable
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.contact.semismooth import Base, Semismooth
 from anisocontact.contact.sides import check_sides, initial_state, located, make_sides
@@ -315,6 +316,16 @@ class FacetContact(ContactRecord):
             self._transfer.add_force(total, self.current.areas[:, None] * self._base.lag)
         add_rows(self._answer, forces, total)
         self._gathered.hand_back(total, out)
+
+    def reachable(self, way: Floats, margin: float, hops: int) -> list[Pairs]:
+        """Nodes that `couplings` can name where the slave goes along a way, see `reachable`.
+
+        Args:
+            way: Displacement against the master at places along the way, (w, 3), length.
+            margin: How far beside the way a point can be, length.
+            hops: Places along the way that an increment goes.
+        """
+        return reachable(self._sides, self._now, way, margin, hops, self._transfer is None)
 
     def couplings(self) -> Sequence[Couplings]:
         """Where `-d force / d u` of the trial has entries, and the entries.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -11,10 +11,15 @@ import numpy.typing as npt
 from scipy.sparse import bsr_array, csr_array
 
 from anisocontact._fenicsx import Mat, PETSc
+from anisocontact.contact.reachable import Pairs
 from anisocontact.contact.transfer import Couplings
 
+Ints = npt.NDArray[np.int32]
 Keys = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
+
+#: Couplings over those that are needed or foreseen, at which the others lose their places.
+MOST_LEFT = 2.0
 
 
 class CoupledTangent:
@@ -26,8 +31,10 @@ class CoupledTangent:
     as nodes too. Couplings name a node by its local number, or by the number of local nodes plus
     its number in the whole mesh, which those beyond the mesh continue.
 
-    Couplings that were once there keep their place, so the pattern grows only when a slave point
-    meets a facet it has not met before; the symbolic factorisation is reused in between.
+    The pattern has places for the couplings that are foreseen. It grows only where a slave point
+    meets a facet that it was not expected on, and then with what is foreseen from there; the
+    symbolic factorisation is reused in between. What is not foreseen any more keeps its place until
+    it makes most of the pattern.
 
     Args:
         stiffness: Matrix of the bulk; its pattern stays.
@@ -82,8 +89,16 @@ class CoupledTangent:
         rows = np.arange(pattern.shape[0]) + self._first
         return np.repeat(rows, np.diff(pattern.indptr)), pattern.indices
 
-    def new_matrix(self) -> Mat:
-        """Matrix for `make_room` and `add`, with the pattern of the bulk for now."""
+    def new_matrix(self, foreseen: Sequence[Pairs] = ()) -> Mat:
+        """Matrix for `make_room` and `add`.
+
+        Args:
+            foreseen: Nodes that will be coupled, without which the pattern is that of the bulk and
+                of couplings that were there before.
+        """
+        if foreseen:
+            self._keys = np.union1d(self._keys, self._named(foreseen))
+            self._given = np.full(1, -1, dtype=np.int64)
         matrix = PETSc.Mat().create(self._comm)
         matrix.setSizes((self._size, self._size), bsize=3)
         matrix.setType(PETSc.Mat.Type.AIJ)
@@ -91,8 +106,15 @@ class CoupledTangent:
         self._preallocate(matrix)
         return matrix
 
-    def make_room(self, out: Mat, couplings: Sequence[Couplings]) -> bool:
+    def make_room(
+        self, out: Mat, couplings: Sequence[Couplings], foresee: Callable[[], Sequence[Pairs]]
+    ) -> bool:
         """Let the pattern of a matrix of `new_matrix` grow where these couplings need it.
+
+        Args:
+            out: The matrix.
+            couplings: The couplings.
+            foresee: Asked where it grows which nodes will be coupled from now on.
 
         Returns:
             Whether it has grown; its entries are gone then. On several processes PETSc does not
@@ -102,7 +124,7 @@ class CoupledTangent:
         changed = not np.array_equal(keys, self._given)
         grown = False
         if self._comm.allreduce(changed):
-            grown = self._locate(keys, out)
+            grown = self._locate(keys, out, foresee)
         self._blocks = self._sum @ blocks
         return grown
 
@@ -118,13 +140,17 @@ class CoupledTangent:
         )
         out.assemble()
 
-    def _locate(self, keys: Keys, out: Mat) -> bool:
+    def _locate(self, keys: Keys, out: Mat, foresee: Callable[[], Sequence[Pairs]]) -> bool:
         """Places of the blocks of `keys`; whether the pattern grows by some that are new."""
         there = np.flatnonzero(keys >= 0)
         unknown = np.unique(keys[there][~_found(self._keys, keys[there])])
         grown = bool(self._comm.allreduce(unknown.size) > 0)
         if grown:
-            self._keys = np.union1d(self._keys, unknown)
+            foreseen = self._named(foresee())
+            needed = np.union1d(foreseen, keys[there])
+            whole = np.union1d(self._keys, needed)
+            left = len(foreseen) > 0 and len(whole) > MOST_LEFT * len(needed)
+            self._keys = needed if left else whole
             self._preallocate(out)
         places = np.searchsorted(self._keys, keys[there])
         entries = (np.ones(len(there)), (places, there))
@@ -149,6 +175,11 @@ class CoupledTangent:
             )
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         matrix.assemble()
+
+    def _named(self, pairs: Sequence[Pairs]) -> Keys:
+        """Each pair of nodes once, as one number."""
+        found = [_keys(rows, columns, self._numbers) for rows, columns in pairs]
+        return np.unique(np.concatenate([self._keys[:0], *found]))
 
     def _places(self) -> tuple[Keys, Keys]:
         """Nodes of the rows and of the columns of the couplings, numbers in the whole system."""
@@ -183,13 +214,18 @@ def _joined(bulk: Any, contact: Any) -> Any:
     return np.concatenate([bulk, contact.reshape(-1)]).astype(PETSc.IntType)
 
 
+def _keys(rows: Ints, columns: Ints, nodes: int) -> Keys:
+    """Pairs of nodes as one number each, -1 for none: of rows (p, r) and columns (p, c)."""
+    pair = rows[:, :, None].astype(np.int64) * nodes + columns[:, None, :]
+    missing = (rows[:, :, None] < 0) | (columns[:, None, :] < 0)
+    return np.where(missing, -1, pair).reshape(-1)
+
+
 def _pairs(couplings: Sequence[Couplings], nodes: int) -> tuple[Keys, Floats]:
     """Pairs of nodes as one number each, -1 for none, and their 3 x 3 blocks as rows of nine."""
     keys, blocks = [np.empty(0, dtype=np.int64)], [np.empty((0, 9))]
     for rows, columns, values in couplings:
-        pair = rows[:, :, None].astype(np.int64) * nodes + columns[:, None, :]
-        missing = (rows[:, :, None] < 0) | (columns[:, None, :] < 0)
-        keys.append(np.where(missing, -1, pair).reshape(-1))
+        keys.append(_keys(rows, columns, nodes))
         by_pair = values
         if values.ndim == 3:  # whole rows
             shape = (len(rows), rows.shape[1], 3, columns.shape[1], 3)

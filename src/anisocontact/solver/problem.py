@@ -168,6 +168,10 @@ class Problem(Following):
         """Matrix for `tangent`."""
         return self._tangent.new_matrix()
 
+    def look_ahead(self, steps: Sequence[Step]) -> None:
+        """Have places in matrices of `new_tangent` for what contact will need in these steps."""
+        self._tangent.look_ahead(steps)
+
     def begin(self, step: Step, again: bool = False) -> None:
         """Take over the loads of a step from the accepted state.
 
@@ -181,6 +185,7 @@ class Problem(Following):
         start = self.u.x.array.copy()
         self._memory.begin()
         begin_step(self._parts, step, start, self._accepted.reaction, again)
+        self._tangent.begin(step)
 
     def check_held(self, steps: Sequence[Step]) -> bool:
         """Find out whether supports or contacts can hold every body in every step.
@@ -237,7 +242,7 @@ class Problem(Following):
             Whether entries were added to its pattern.
         """
         self._evaluate_at(x)
-        return self._tangent.write(out)
+        return self._tangent.write(out, self._level)
 
     def _evaluate_at(self, x: Vec) -> None:
         """Evaluate a state, unless it is that of the last evaluation."""

@@ -133,6 +133,7 @@ def make_newton(
         return CondensedNewton(condensed, prefix, options, on_iteration)
     if choice.name == ITERATIVE:
         return IterativeNewton(problem, steps, prefix, options, on_iteration, note)
+    problem.look_ahead(steps)
     return Newton(problem, prefix, options, on_iteration)
 
 

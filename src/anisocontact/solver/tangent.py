@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -9,9 +10,12 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc
 from anisocontact.contact import Contact
+from anisocontact.contact.reachable import Pairs
+from anisocontact.solver.ahead import Ahead
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.parts import Parts
 from anisocontact.solver.persistent import Arrays
+from anisocontact.solver.steps import Step
 
 
 class Tangent:
@@ -38,6 +42,19 @@ class Tangent:
             if self._meshed or extra or parts.attached.coupling
             else None
         )
+        self._ahead: Ahead | None = None
+        self._step: Step | None = None
+        self._level = 0.0
+        self._restored = False
+
+    def look_ahead(self, steps: Sequence[Step]) -> None:
+        """Have places in the pattern for what contact will need in these steps."""
+        if self._meshed:
+            self._ahead = Ahead(self._meshed, steps)
+
+    def begin(self, step: Step) -> None:
+        """Take it that a step begins."""
+        self._step, self._level = step, 0.0
 
     def persistent(self) -> Arrays:
         """Couplings that have a place, on one process: numbers of nodes are those of it."""
@@ -49,24 +66,30 @@ class Tangent:
         """Go on from what `persistent` gave, among other things."""
         if self.coupled is not None and self._comm.size == 1 and "couplings" in kept:
             self.coupled.pattern = kept["couplings"]
+            self._restored = True
 
     def new_matrix(self) -> Mat:
         """Matrix for `write`."""
         if self.coupled is not None:
-            return self.coupled.new_matrix()
+            # a run that goes on has the pattern that it had
+            return self.coupled.new_matrix([] if self._restored else self._foreseen())
         matrix = self._parts.bulk.stiffness.duplicate()
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         return matrix
 
-    def write(self, out: Mat) -> bool:
-        """Write the tangent into a matrix of `new_matrix`; whether its pattern has grown."""
-        parts = self._parts
+    def write(self, out: Mat, level: float) -> bool:
+        """Write the tangent at a fraction of the step into a matrix of `new_matrix`.
+
+        Returns:
+            Whether its pattern has grown.
+        """
+        parts, self._level = self._parts, level
         grown = False
         if self.coupled is not None:
             couplings = [k for c in self._meshed for k in c.couplings()]
             couplings += parts.rigid.couplings(self.coupled.first_extra)
             couplings += parts.attached.couplings()
-            grown = self.coupled.make_room(out, couplings)
+            grown = self.coupled.make_room(out, couplings, self._foreseen)
         parts.bulk.tangent(out)
         for contact in self._analytic:
             contact.add_tangent(out)
@@ -81,6 +104,9 @@ class Tangent:
         first, _ = out.getOwnershipRange()
         out.zeroRows((first + rows).astype(PETSc.IntType), parts.support_scale)
         return grown
+
+    def _foreseen(self) -> Sequence[Pairs]:
+        return [] if self._ahead is None else self._ahead.pairs(self._step, self._level)
 
 
 def led_unknowns(parts: Parts) -> npt.NDArray[np.int64]:

@@ -203,7 +203,7 @@ class ContactProblem(Following):
             self.evaluate(x)
         if self._coupled:
             meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
-            grown = self._coupled.make_room(out, [k for c in meshed for k in c.couplings()])
+            grown = self._coupled.make_room(out, [k for c in meshed for k in c.couplings()], list)
         out.zeroEntries()
         assemble_into(out, self._tangent)
         for contact in self.contacts:

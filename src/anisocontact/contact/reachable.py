@@ -1,0 +1,83 @@
+"""Facets of a master that slave points get to where bodies move past each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import csr_array
+
+from anisocontact.contact.sides import Sides
+from anisocontact.facets import FACET_STATUS
+
+Ints = npt.NDArray[np.int32]
+Numbers = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+
+#: Nodes of rows and columns that are coupled, (p, r) and (p, c), named as in `Couplings`.
+type Pairs = tuple[Ints, Ints]
+
+
+def reachable(
+    sides: Sides, now: Floats, way: Floats, margin: float, hops: int, by_point: bool
+) -> list[Pairs]:
+    """Nodes that a tangent can couple where the slave points go along a way.
+
+    A point couples the nodes of its facet with those of the facet of the master below it, and these
+    with those of the facet that was below it at the end of the last increment.
+
+    Args:
+        sides: Slave and master; the surface is where the nodes are.
+        now: Positions of the nodes, (nodes, 3), length.
+        way: Displacement of the slave against the master at places along the way, (w, 3), length.
+        margin: How far beside the way a point can be, length.
+        hops: Places along the way that an increment goes.
+        by_point: Whether facets of the master are coupled by each point alone, or by all points of
+            a facet of the slave.
+
+    Returns:
+        Rows and columns: facets of the slave, pairs of slave and master, of master and slave and
+        of facets of the master.
+    """
+    first = sides.slave.nodes
+    if not (len(first) and len(sides.master.nodes)):
+        return [(first, first)]
+    x = sides.points.positions(now)
+    limit = sides.reach + float(np.linalg.norm(way, axis=1).max())
+    everywhere = np.tile(np.arange(len(x)), len(way))
+    excluded = None if sides.excluded is None else sides.excluded.take(everywhere)
+    places = (x + way[:, None]).reshape(-1, 3)
+    hit = sides.surface.project(places, max_distance=limit, exclude=excluded)
+    found = np.flatnonzero(hit.status <= FACET_STATUS.index("off"))
+    near = sides.surface.within(hit.position[found], margin)
+    which = np.repeat(found, np.diff(near.offsets))
+    place, point = np.divmod(which, len(x))
+    slave = sides.points.facet[point]
+    own, other = _different(slave.astype(np.int64), near.facets, len(sides.master.nodes))
+    owner = point if by_point else slave
+    to, back = _met(owner * (len(way) + hops) + place, near.facets, len(sides.master.nodes), hops)
+    second = sides.gathered.coupled(sides.master.nodes)
+    return [
+        (first, first),
+        (first[own], second[other]),
+        (second[other], first[own]),
+        (second[to], second[back]),
+    ]
+
+
+def _met(group: Numbers, facet: Ints, facets: int, hops: int) -> tuple[Numbers, Numbers]:
+    """Pairs of facets that are in one group, or in groups at most `hops` apart."""
+    rows, columns = _different(group, facet, facets)
+    shape = (int(rows.max(initial=0)) + hops + 1, facets)
+    there = csr_array((np.ones(len(rows)), (rows, columns)), shape=shape)
+    total = there.T @ there
+    for apart in range(1, hops + 1):
+        later = there[:-apart].T @ there[apart:]
+        total = total + later + later.T
+    to, back = total.nonzero()
+    return to.astype(np.int64), back.astype(np.int64)
+
+
+def _different(first: Numbers, second: Ints, count: int) -> tuple[Numbers, Numbers]:
+    """Each pair of numbers once; `second` is below `count`."""
+    own, other = np.divmod(np.unique(first * count + second), count)
+    return own, other

@@ -1,0 +1,106 @@
+"""Couplings that contact will need: those of facets that prescribed motions lead to."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact import FacetContact
+from anisocontact.contact.reachable import Pairs
+from anisocontact.solver.steps import AXES, Step
+
+Floats = npt.NDArray[np.float64]
+
+# Places that are not used cost fill: a margin of a quarter or a longer window make eliminations
+# dearer than the symbolic factorisations that they save, see docs/dev/architecture.md.
+#: Motion beside the prescribed one, over the size of a slave facet: bodies deform.
+MARGIN = 0.1
+#: How far ahead facets are looked for, over the size of a slave facet.
+FARTHEST = 2.0
+#: Distance of the places along the way at which they are looked for, likewise.
+SPACING = 0.5
+
+
+class Ahead:
+    """Looks ahead along the prescribed motions of all steps.
+
+    Args:
+        passes: Passes over slave points.
+        steps: What will be done.
+    """
+
+    def __init__(self, passes: Sequence[FacetContact], steps: Sequence[Step]) -> None:
+        self._passes, self._steps = list(passes), list(steps)
+        self._increments = np.array([step.increments for step in steps], dtype=np.float64)
+        names = {name for one in passes for name in (one.slave, one.master)}
+        bodies = {name.partition(".")[0] for name in names}
+        self._paths = {body: _path(steps, body) for body in bodies}
+
+    def pairs(self, step: Step | None, level: float) -> list[Pairs]:
+        """Nodes that can be coupled from now on.
+
+        Args:
+            step: The step that has been begun last; None before the first.
+            level: Fraction of it.
+        """
+        found = []
+        for one in self._passes:
+            way, hops = self.way(one, step, level)
+            found += one.reachable(way, MARGIN * one.facet_size, hops)
+        return found
+
+    def way(self, one: FacetContact, step: Step | None, level: float) -> tuple[Floats, int]:
+        """Displacement of the slave against the master at places along the way, (w, 3), length.
+
+        Args:
+            one: The pass.
+            step: The step that has been begun last; None before the first.
+            level: Fraction of it.
+
+        Returns:
+            The places, and how many of them an increment goes at most.
+        """
+        first = next((i for i, known in enumerate(self._steps) if known is step), 0)
+        slave, master = (self._paths[name.partition(".")[0]] for name in (one.slave, one.master))
+        path = slave - master
+        ends, jumps = path[first:], np.diff(path[first:], axis=0)
+        sizes = np.linalg.norm(jumps, axis=1) / self._increments[first:]
+        if len(jumps):
+            ends = np.concatenate([ends[:1] + level * jumps[:1], ends[1:]])
+        spacing, farthest = SPACING * one.facet_size, FARTHEST * one.facet_size
+        way = _sampled(ends - ends[0], spacing)
+        beyond = np.flatnonzero(np.linalg.norm(way, axis=1) > farthest)
+        way = way[: beyond[0]] if len(beyond) else way
+        hops = np.ceil(min(sizes.max(initial=0.0), farthest) / spacing)
+        return way, int(hops)
+
+
+def _path(steps: Sequence[Step], body: str) -> Floats:
+    """Displacement of a body at the beginning and at the ends of the steps, (steps + 1, 3), length.
+
+    Along each axis that of the support that moves farthest.
+    """
+    groups = {g for step in steps for g in step.displacement if g.partition(".")[0] == body}
+    path = np.zeros((len(steps) + 1, 3))
+    for group in sorted(groups):
+        own = np.zeros_like(path)
+        for k, step in enumerate(steps):
+            own[k + 1] = own[k]
+            for axis, value in step.displacement.get(group, {}).items():
+                own[k + 1, AXES.index(axis)] = own[k, AXES.index(axis)] if value is None else value
+        farther = np.abs(own).max(axis=0) > np.abs(path).max(axis=0)
+        path[:, farther] = own[:, farther]
+    return path
+
+
+def _sampled(ends: Floats, spacing: float) -> Floats:
+    """Places along a polygon, at most `spacing` apart, (w, 3)."""
+    places = [ends[:1]]
+    for begin, end in pairwise(ends):
+        count = int(np.ceil(np.linalg.norm(end - begin) / spacing))
+        share = np.arange(1, count + 1)[:, None] / max(count, 1)
+        places.append(begin + share * (end - begin))
+    return np.concatenate(places)
