@@ -49,6 +49,7 @@ class PairLaw:
         friction: Yield ellipse and sliding rule.
 
     Attributes:
+        dtype: Type of the state of a point.
         carried: Direction fields and the bodies that carry them.
 
     Raises:
@@ -65,6 +66,7 @@ class PairLaw:
     def __init__(self, normal: NormalLaw, adhesion: Adhesion, friction: Friction) -> None:
         _check_laws(normal, adhesion, friction)
         self.normal, self.adhesion, self.friction = normal, adhesion, friction
+        self.dtype = STATE
         self.carried = carried(adhesion, friction)
         for one in self.carried:
             one.check_meshed("master")

@@ -2,7 +2,8 @@
 
 A law gives the tangential force of many points at once in an orthonormal frame of the tangent
 plane. `PythonInterface` does the rest (projection, pressure, transport of the history, tangent in
-space) and can be used wherever an `Interface` can.
+space) and can be used wherever an `Interface` can. `PythonPairLaw` of `anisocontact.python_pair`
+is the same for two meshed bodies.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ class LawKinematics:
         increment: Slip increment, (n, 2) [length].
         pressure: N at the end of the step, (n,) [stress].
         gap: xi^3 at the end of the step, (n,) [length].
-        xi: Coordinates of the projection, (n, 2).
+        xi: Coordinates of the projection, (n, 2); on a meshed master those of a facet.
         dt: Time step [time].
     """
 
@@ -142,15 +143,7 @@ class PythonInterface:
         self.core = _core.FramedInterface(
             surface.core, normal.named, directions.core if directions else None
         )
-        self.dtype = np.dtype(
-            {
-                "names": [*(STATE.names or ()), "internal"],
-                "formats": [
-                    *(STATE[name] for name in STATE.names or ()),
-                    (np.float64, (law.internal,)),
-                ],
-            }
-        )
+        self.dtype = state_type(law.internal)
 
     def stiffened(self, factor: float, tangential: bool) -> PythonInterface:
         """The interface with a normal penalty `factor` times as large."""
@@ -180,7 +173,7 @@ class PythonInterface:
         failed = np.flatnonzero(r["failure"])
         if failed.size:
             raise InputError(f"{FAILURE[1]} for the point {x[failed[0]].tolist()}", field="x")
-        return self._with_internal(as_state(r["state"]), np.zeros((len(x), self.law.internal)))
+        return with_internal(as_state(r["state"]), np.zeros((len(x), self.law.internal)))
 
     def update(
         self, state: State, x: npt.ArrayLike, dt: float = 1.0, *, tangent: bool = True
@@ -197,7 +190,7 @@ class PythonInterface:
             Tractions, tangent and trial state, as of `Interface.update`.
         """
         x = points(x, 3)
-        raw = raw_state(_common(state))
+        raw = raw_state(common(state))
         k = self.core.kinematics(raw, x, dt, self.threads)
         n = len(x)
         frame = k["frame"].reshape(n, 3, 3)
@@ -230,15 +223,7 @@ class PythonInterface:
             k["xi"][active],
             dt,
         )
-        result = self.law.update(remembered, now)
-        shape = (len(active), 2)
-        for name in ("traction", "slip"):
-            got = np.shape(getattr(result, name))
-            if got != shape:
-                raise InputError(
-                    f"the law returned an array of shape {got}, {shape} needed", field=name
-                )
-        return result
+        return answer(self.law, remembered, now)
 
     def _tangent(
         self,
@@ -291,22 +276,69 @@ class PythonInterface:
         )
         internal = np.zeros((n, self.law.internal))
         internal[active] = r.internal
-        return self._with_internal(as_state(new), internal)
-
-    def _with_internal(self, common: State, internal: Floats) -> State:
-        state = np.zeros(len(common), dtype=self.dtype)
-        for name in STATE.names or ():
-            state[name] = common[name]
-        state["internal"] = internal
-        return state
+        return with_internal(as_state(new), internal)
 
 
-def _common(state: State) -> State:
+def answer(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> LawResult:
+    """What a law answers, checked.
+
+    Args:
+        law: The law.
+        state: What n points remember.
+        kinematics: What happens to them.
+
+    Returns:
+        Its answer.
+
+    Raises:
+        InputError: An array of another shape, or one with numbers that are not finite.
+    """
+    n, own = state.internal.shape
+    result = law.update(state, kinematics)
+    shapes: dict[str, tuple[int, ...]] = {
+        **dict.fromkeys(("traction", "slip", "d_pressure"), (n, 2)),
+        **dict.fromkeys(("d_increment", "d_traction", "d_elastic"), (n, 2, 2)),
+        **dict.fromkeys(("dissipation", "energy"), (n,)),
+        "internal": (n, own),
+    }
+    if result.stored is not None:
+        shapes["stored"] = (n, 2)
+    for name, shape in shapes.items():
+        values = np.asarray(getattr(result, name))
+        if values.shape != shape:
+            text = f"the law returned an array of shape {values.shape}, {shape} needed"
+            raise InputError(text, field=name)
+        bad = np.flatnonzero(~np.isfinite(values).all(axis=tuple(range(1, values.ndim))))
+        if bad.size:
+            text = f"the law returned {values[bad[0]].tolist()} at {len(bad)} of {n} points, "
+            raise InputError(text + "finite numbers needed", field=name)
+    return result
+
+
+def state_type(count: int) -> np.dtype[np.void]:
+    """Type of the state of a point: the fields of `STATE`, and `internal` (count,)."""
+    names = STATE.names or ()
+    formats = [*(STATE[name] for name in names), (np.float64, (count,))]
+    return np.dtype({"names": [*names, "internal"], "formats": formats})
+
+
+def common(state: State) -> State:
     """The fields of `STATE` alone."""
-    common = np.zeros(len(state), dtype=STATE)
+    if state.dtype == STATE:
+        return state
+    alone = np.zeros(len(state), dtype=STATE)
     for name in STATE.names or ():
-        common[name] = state[name]
-    return common
+        alone[name] = state[name]
+    return alone
+
+
+def with_internal(alone: State, internal: Floats) -> State:
+    """States with a law's own variables, (n, k)."""
+    state = np.zeros(len(alone), dtype=state_type(internal.shape[1]))
+    for name in STATE.names or ():
+        state[name] = alone[name]
+    state["internal"] = internal
+    return state
 
 
 def _in_contact(frame: Floats, active: npt.NDArray[np.intp]) -> Floats:

@@ -117,6 +117,9 @@ residual = 100.0 * ufl.inner(ufl.sym(ufl.grad(u)), ufl.sym(ufl.grad(v))) * ufl.d
 top = fem.locate_dofs_topological(V, 2, model.facets("block.top"))
 bcs = [fem.dirichletbc(np.array([0.0, 0.0, -0.01]), top, V)]
 """,
+    "own-law": BLOCK.replace(
+        "build_box({", 'build_box({"base": BoxSpec((0, 0, -1), (1, 1, 1), (2, 2, 1)), '
+    ),
     "rigid-bodies": BLOCK.replace("(0, 0, 1)\n)", "(0, 0, -1)\n)")
     + """
 plane = make_surface("plane", point=(0, 0, 1), normal=(0, 0, -1))
@@ -145,6 +148,14 @@ turned = milled = make_directions("constant", vector=(1, 0, 0))
 #: What has to hold afterwards.
 AFTER = {
     "own-script": "assert problem.solve() is not None and contact.last.status.max() > 0",
+    "own-law": """
+u = np.zeros((len(model.space.tabulate_dof_coordinates()), 3))
+u[on_plane.slave_nodes] = (1e-3, 0.0, -1e-3)
+for one in (on_plane, on_base):
+    answer = one.update(u, 1.0)
+    assert np.allclose(answer.traction, (-2.0 / 1.2, 0.0, 10.0))
+    assert np.allclose(answer.state["internal"], 1.0)
+""",
     "rigid-bodies": "assert abs(problem.rigid.contact_force(die)[2] - 100.0) < 1e-6",
     "restart": "assert again.place == solver.place",
     "meshes": "assert model.body_names() == ['wheel', 'plate']",

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 from tests.conftest import make_interface
+from tests.verification.laws_in_python import RadialReturn
 from tests.verification.test_fe_self_contact import GAP, hairpin
 
 from anisocontact.anisotropy import make_directions
@@ -25,6 +26,7 @@ from anisocontact.contact import Contact, FacetContact, SelfContact, TwoHalfPass
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.python_pair import PythonPairLaw
 from anisocontact.results.checkpoint import (
     distribute,
     keep_checkpoint,
@@ -81,6 +83,15 @@ def _dragged(model: Any, contacts: list[Any], material: str = "neo-hookean") -> 
 def _single() -> Made:
     model = _bodies("tetrahedron")
     return _dragged(model, [FacetContact(model, "block.bottom", "mat.top", law=_law())])
+
+
+def _in_python() -> Made:
+    """A law written in Python, with what it remembers of the points."""
+    model = _bodies("tetrahedron")
+    along = make_directions("constant", vector=(1, 0, 0), angle=0.5)
+    own = RadialReturn((8.0, 16.0), (0.2, 0.4))
+    law = PythonPairLaw(NormalLaw(penalty=20.0), own, directions=along)
+    return _dragged(model, [FacetContact(model, "block.bottom", "mat.top", law=law)])
 
 
 def _second_order() -> Made:
@@ -174,6 +185,7 @@ def _folded() -> Made:
 
 CASES: dict[str, Callable[[], Made]] = {
     "single": _single,
+    "in-python": _in_python,
     "second-order": _second_order,
     "two-half": _two_half,
     "far": _far,

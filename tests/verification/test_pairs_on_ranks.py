@@ -164,7 +164,7 @@ def test_restart_on_others(folder: Path, before: int, after: int) -> None:
     Requirement: 1e-10. Source: the run that was not stopped. Tolerance 1e-11: sums in another
     order; 2e-13 measured, in the history of the slave points.
     """
-    names = ("two-half", "far", "single", "folded")
+    names = ("two-half", "far", "single", "in-python", "folded")
     start(before, folder, "stop", *names)
     start(after, folder, f"from:{before}", *names)
     for name in names:

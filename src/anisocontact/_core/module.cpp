@@ -15,4 +15,5 @@ NB_MODULE(_core, m) {
   anisocontact::bindings::bind_framed(m);
   anisocontact::bindings::bind_search(m);
   anisocontact::bindings::bind_facet_pair(m);
+  anisocontact::bindings::bind_facet_framed(m);
 }

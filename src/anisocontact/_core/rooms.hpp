@@ -12,5 +12,6 @@ void bind_kernel(nanobind::module_& m);
 void bind_framed(nanobind::module_& m);
 void bind_search(nanobind::module_& m);
 void bind_facet_pair(nanobind::module_& m);
+void bind_facet_framed(nanobind::module_& m);
 
 }  // namespace anisocontact::bindings

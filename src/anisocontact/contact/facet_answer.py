@@ -13,6 +13,8 @@ from anisocontact.contact.record import Snapshot
 from anisocontact.contact.sides import Sides, located
 from anisocontact.facets import FACET_STATUS, FacetProjections
 from anisocontact.interface import Response, State, as_state, raw_state
+from anisocontact.python_law import common
+from anisocontact.python_pair import PythonPairs
 
 #: Code of the kernel for a point without a facet below it.
 OFF = 3
@@ -20,6 +22,9 @@ OFF = 3
 NEAR = 1e-6
 
 Floats = npt.NDArray[np.float64]
+
+#: What answers for slave points that meet facets.
+type Pairs = FacetPairs | PythonPairs
 
 
 @dataclass(frozen=True)
@@ -43,12 +48,11 @@ class Question:
     by_points: bool
 
 
-def ask(sides: Sides, law: FacetPairs, q: Question) -> tuple[dict[str, Any], Snapshot]:
-    """Answer of the kernel, with forces and blocks, and the points as they are then."""
+def ask(sides: Sides, law: Pairs, q: Question) -> tuple[dict[str, Any], Snapshot]:
+    """What a law answers, with forces and blocks, and the points as they are then."""
     slave, master, hit = sides.points, sides.master, q.hit
     touches = hit.gap - q.state["offset"] <= NEAR * slave.size  # as far as rounding goes
-    answer = (law.update if q.by_points else law.assemble)(
-        raw_state(q.state),
+    batch = (
         q.dt,
         slave.nodes,
         slave.shape,
@@ -68,14 +72,23 @@ def ask(sides: Sides, law: FacetPairs, q: Question) -> tuple[dict[str, Any], Sna
         q.tangent,
         sides.threads,
     )
+    answer = _answer(law, q, batch)
     lost = hit.status == FACET_STATUS.index("failed")
     response = Response(
         traction=answer["traction"],
         tangent=np.empty((0, 3, 3)),
-        state=as_state(answer["state"]),
+        state=answer["state"],
         normal=answer["normal"],
         directions_adhesion=answer["adhesion_axes"],
         directions_friction=answer["friction_axes"],
         failure=np.where(lost, np.int8(1), answer["failure"]),
     )
     return answer, Snapshot(slave.positions(q.now), answer["area"], response)
+
+
+def _answer(law: Pairs, q: Question, batch: tuple[Any, ...]) -> dict[str, Any]:
+    if isinstance(law, PythonPairs):
+        return law.respond(q.state, q.by_points, *batch)
+    # a law of the core has no use for the own variables of one in Python
+    found = (law.update if q.by_points else law.assemble)(raw_state(common(q.state)), *batch)
+    return found | {"state": as_state(found["state"])}

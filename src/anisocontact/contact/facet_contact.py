@@ -9,10 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._core import FacetPairs
 from anisocontact.augmentation import Augmentation
 from anisocontact.contact.adjust import adjusted
-from anisocontact.contact.facet_answer import Question, ask
+from anisocontact.contact.facet_answer import Pairs, Question, ask
 from anisocontact.contact.gathering import gather, gather_named
 from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.point_blocks import add_rows, point_blocks
@@ -29,6 +28,7 @@ from anisocontact.facets import FacetProjections
 from anisocontact.interface import PairLaw, Response, State
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
+from anisocontact.python_pair import MeshedLaw
 
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]
@@ -46,8 +46,8 @@ class FacetContact(ContactRecord):
         model: Mesh with both groups.
         slave: Facet group "body.group" that carries the quadrature points.
         master: Facet group "body.group" that is the surface.
-        law: Laws of the interface; directions are given in the reference configuration and
-            carried by the master.
+        law: Laws, also one written in Python; directions are given in the reference configuration
+            and carried by the body that is named, the master if none is.
         degree: Degree of the quadrature; if not given twice the order of the
             displacement, with an augmentation the order.
         reach: Distance within which the master is searched, length; twice the size of the slave's
@@ -88,7 +88,7 @@ class FacetContact(ContactRecord):
         slave: str,
         master: str,
         *,
-        law: PairLaw,
+        law: MeshedLaw,
         degree: int | None = None,
         reach: float | None = None,
         current_area: bool = True,
@@ -124,7 +124,7 @@ class FacetContact(ContactRecord):
         self._answer: dict[str, Any] = {}
         self._transfer = Transfer(sides) if overlaps else None
         self._handed: Mask = np.zeros(len(self._points.nodes), dtype=bool)
-        state = adjusted(initial_state(self._hint), adjust)
+        state = adjusted(initial_state(self._hint, law.dtype), adjust)
         start = self._respond(state, sides.reference, 1.0, tangent=False)
         self._committed = (self._gathered.local(self._now), self._hint)
         super().__init__(model.space, slave, name or slave, state, start, self._points.facet)
@@ -379,7 +379,7 @@ class FacetContact(ContactRecord):
         return self._transfer is not None or self._semismooth is not None
 
     def _ask(
-        self, law: FacetPairs, state: State, hit: FacetProjections, dt: float, *, tangent: bool
+        self, law: Pairs, state: State, hit: FacetProjections, dt: float, *, tangent: bool
     ) -> Snapshot:
         """What a law answers where the points are; forces and blocks go to `_answer`."""
         question = Question(state, hit, self._now, dt, tangent, self._by_points)
@@ -403,7 +403,7 @@ class FacetContact(ContactRecord):
         if self._semismooth is not None:
             self._stiff = self._with(factor * self._semismooth.ratio)
 
-    def _with(self, factor: float) -> FacetPairs:
+    def _with(self, factor: float) -> Pairs:
         tangential = self._multipliers is not None and self._multipliers.tangential
         return self.interface.stiffened(factor, tangential).pairs(self._mirrored)
 

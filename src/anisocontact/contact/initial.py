@@ -12,9 +12,10 @@ from anisocontact.contact.contact import Contact
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.two_half_pass import TwoHalfPass
 from anisocontact.errors import InputError
-from anisocontact.interface import FAILURE, Interface, PairLaw
+from anisocontact.interface import FAILURE, Interface
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw
 from anisocontact.python_law import PythonInterface
+from anisocontact.python_pair import MeshedLaw
 
 Floats = npt.NDArray[np.float64]
 
@@ -118,7 +119,7 @@ def _check_sides(contact: Contact | FacetContact, size: float) -> None:
     )
 
 
-def _fields(law: Interface | PairLaw | PythonInterface) -> list[Carried]:
+def _fields(law: Interface | MeshedLaw | PythonInterface) -> list[Carried]:
     if isinstance(law, PythonInterface):
         return [Carried("directions", law.directions, "master")] if law.directions else []
     return [one for one in law.carried if one.field is not None]

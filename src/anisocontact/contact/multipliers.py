@@ -18,11 +18,12 @@ import numpy.typing as npt
 
 from anisocontact.augmentation import NEWTON, Augmentation
 from anisocontact.errors import InputError
-from anisocontact.interface import STATUS, Interface, PairLaw, Response, State
+from anisocontact.interface import STATUS, Interface, Response, State
 from anisocontact.python_law import PythonInterface
+from anisocontact.python_pair import PYTHON_LAWS, MeshedLaw
 
 #: Laws whose penalties can be augmented.
-type AugmentedLaw = Interface | PairLaw | PythonInterface
+type AugmentedLaw = Interface | MeshedLaw | PythonInterface
 
 Floats = npt.NDArray[np.float64]
 
@@ -49,7 +50,7 @@ def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
         )
     if not augmentation.tangential:
         return
-    if isinstance(law, PythonInterface):
+    if isinstance(law, PYTHON_LAWS):
         raise InputError(
             "a tangential law written in Python is physical: tangential=False needed", "method"
         )
@@ -71,7 +72,7 @@ def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
 
 def follows(augmentation: Augmentation, law: AugmentedLaw) -> bool:
     """Whether a law lets its multipliers be found together with the displacements."""
-    if not augmentation.tangential or isinstance(law, PythonInterface):
+    if not augmentation.tangential or isinstance(law, PYTHON_LAWS):
         return True
     return law.friction.rule[0] != _EXPLICIT
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.penalty import facet_size
-from anisocontact.interface import PairLaw
 from anisocontact.mesh import Model
+from anisocontact.python_pair import MeshedLaw
 
 #: Reference distance below which facets do not meet, in facet sizes: more than the search reaches,
 #: so that nothing touches at the start.
@@ -42,7 +42,7 @@ class SelfContact(FacetContact):
         model: Model,
         group: str,
         *,
-        law: PairLaw,
+        law: MeshedLaw,
         degree: int | None = None,
         apart: float | None = None,
         reach: float | None = None,

@@ -25,7 +25,7 @@ from anisocontact.contact.overlap import largest_radius
 from anisocontact.contact.record import Snapshot
 from anisocontact.errors import InputError
 from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSets, FacetSurface
-from anisocontact.interface import STATE, State
+from anisocontact.interface import State
 from anisocontact.mesh import Model
 from anisocontact.surfaces import default_threads
 
@@ -246,10 +246,18 @@ def located(hit: FacetProjections) -> Mask:
     return np.asarray(hit.status == FACET_STATUS.index("on"))
 
 
-def initial_state(hit: FacetProjections) -> State:
-    """Free of force; a point near the master knows its facet, coordinates and gap."""
+def initial_state(hit: FacetProjections, dtype: np.dtype[np.void]) -> State:
+    """Free of force; a point near the master knows its facet, coordinates and gap.
+
+    Args:
+        hit: Projections of the points.
+        dtype: Type of the state of a point.
+
+    Returns:
+        The states, (n,).
+    """
     near = located(hit)
-    state = np.zeros(len(hit.facet), dtype=STATE)
+    state = np.zeros(len(hit.facet), dtype=dtype)
     state["facet"] = np.where(near, hit.facet, -1)
     state["xi"][near] = hit.xi[near]
     state["origin"] = state["xi"]

@@ -9,8 +9,9 @@ import numpy.typing as npt
 
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.record import ContactRecord, Snapshot
-from anisocontact.interface import PairLaw, Response
+from anisocontact.interface import Response
 from anisocontact.mesh import Model
+from anisocontact.python_pair import MeshedLaw
 
 Floats = npt.NDArray[np.float64]
 
@@ -68,7 +69,7 @@ class TwoHalfPass(ContactRecord):
         slave: str,
         master: str,
         *,
-        law: PairLaw,
+        law: MeshedLaw,
         name: str = "",
         **options: Unpack[PassOptions],
     ) -> None:

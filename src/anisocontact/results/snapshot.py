@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.contact import AnyContact
 from anisocontact.interface import STATUS
-from anisocontact.python_law import PythonInterface
+from anisocontact.python_pair import PYTHON_LAWS
 from anisocontact.rigid import RigidBody, rotation_vector
 from anisocontact.solver import Accepted, Problem, Step
 from anisocontact.solver.loads import mean_shares
@@ -107,7 +107,7 @@ def named_groups(loads: Iterable[Iterable[str]]) -> list[str]:
 def laws(contact: AnyContact) -> dict[str, Any]:
     """Laws of a contact with the numbers they were given, by name."""
     interface = contact.interface
-    if isinstance(interface, PythonInterface):
+    if isinstance(interface, PYTHON_LAWS):
         name, values = interface.normal.named
         own = {"name": type(interface.law).__name__}
         return {"normal": {"name": name, **values}, "adhesion": own, "friction": own}

@@ -21,7 +21,7 @@ from anisocontact._fenicsx import Mat, PETSc
 from anisocontact.contact import AnyContact, Contact, NotHeldError, facet_size
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
-from anisocontact.python_law import PythonInterface
+from anisocontact.python_pair import PYTHON_LAWS
 from anisocontact.solver.flow import Flow
 from anisocontact.solver.free_modes import Body, Held, bodies, free_modes, named
 from anisocontact.solver.joined import joined
@@ -63,7 +63,7 @@ class _Free:
     def sticks(self) -> bool:
         """Whether enough points stick in the trial, with a known stiffness, to hold it."""
         laws = ((c, c.interface) for c in self.contacts)
-        stiff = [c for c, i in laws if not isinstance(i, PythonInterface) and i.penalties()[1] > 0]
+        stiff = [c for c, i in laws if not isinstance(i, PYTHON_LAWS) and i.penalties()[1] > 0]
         return sum(c.counts()["stick"] for c in stiff) >= ENOUGH
 
     def touched(self) -> bool:

@@ -52,11 +52,21 @@ class PairAxes {
 
 }  // namespace detail
 
+/// What answers in the contact plane: adhesion and friction of the interface.
+struct OwnReaction {
+  template <bool tangent>
+  FrameReaction at(const InterfaceLaw& law, const PointState& state,
+                   const FrameInput& in) const noexcept {
+    return react_in_frame<tangent>(law, state, in);
+  }
+};
+
 /// Pure update of one slave point against a facet; where there are `slopes` to be written, all
 /// derivatives of a point that touches. Those of others are not written.
-template <bool tangent>
+template <bool tangent, class React = OwnReaction>
 PairResult update_pair(const InterfaceLaw& law, const PointState& state, const PairPoint& p,
-                       double dt, [[maybe_unused]] PairSlopes* d = nullptr) noexcept {
+                       double dt, [[maybe_unused]] PairSlopes* d = nullptr,
+                       const React& react = {}) noexcept {
   PairResult out;
   out.state = lasting(state);
   if (p.feature == Feature::off) return out;
@@ -87,7 +97,7 @@ PairResult update_pair(const InterfaceLaw& law, const PointState& state, const P
     history.emplace(plane, surface::tangent_plane(p.before), p.master.now.position, state);
   const CommittedPoint* committed = history ? &*history : nullptr;
   const FrameInput in = frame_input(gap, dt, pressure, committed, axes, plane);
-  const FrameReaction r = react_in_frame<tangent>(law, state, in);
+  const FrameReaction r = react.template at<tangent>(law, state, in);
   if (r.failure != Failure::none) return fail(r.failure);
   out.state = in_basis(r, state, p.master.xi, plane, foot.facet());
   out.state.facet = p.facet;
