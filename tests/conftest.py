@@ -97,12 +97,39 @@ def plane_tensor(values: Pair, angle: float) -> Any:
     return axes.T @ np.diag(values) @ axes
 
 
+def tangent_errors(problem: Any, rng: np.random.Generator, size: float) -> Any:
+    """Central differences of the residual against the tangent, at a random state.
+
+    Args:
+        problem: A problem with a step and its level.
+        rng: Source of the state and of the direction.
+        size: Standard deviation of the displacements, length.
+
+    Returns:
+        Relative error of the derivative along the direction for three steps, each half of the
+        one before.
+    """
+    x, direction = problem.new_vector(), problem.new_vector()
+    x.array[:] = size * rng.standard_normal(x.getSize())
+    direction.array[:] = rng.standard_normal(x.getSize())
+    matrix = problem.new_tangent()
+    for _ in range(2):  # the second time the pattern is there
+        problem.tangent(x, matrix)
+    exact = (matrix @ direction).array.copy()
+    errors = []
+    for h in (2e-4, 1e-4, 5e-5):
+        ends = [problem.evaluate(x + sign * h * direction) for sign in (1.0, -1.0)]
+        errors.append(np.linalg.norm((ends[0] - ends[1]) / (2.0 * h) - exact))
+    return np.asarray(errors) / np.linalg.norm(exact)
+
+
 class FiniteElements:
     """What the tests of the finite-element level share."""
 
     interface = staticmethod(make_interface)
     block = staticmethod(make_block)
     tensor = staticmethod(plane_tensor)
+    tangent_errors = staticmethod(tangent_errors)
 
 
 @pytest.fixture(scope="session")

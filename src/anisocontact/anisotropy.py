@@ -191,13 +191,6 @@ def components(
 
     Raises:
         InputError: The basis does not span the tangent plane.
-
-    Example:
-        >>> from anisocontact.surfaces import make_surface
-        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-        >>> one = np.array([[[2.0, 0.0], [0.0, 1.0]]])
-        >>> components(plane, np.zeros((1, 2)), one, "mixed")[0].tolist()
-        [[2.0, 0.0], [0.0, 1.0]]
     """
     rho = surface.jet(xi).d1
     a = rho @ rho.transpose(0, 2, 1)

@@ -392,38 +392,6 @@ def surfaces() -> Surfaces:
     return Surfaces()
 
 
-def tangent_errors(problem: Any, rng: np.random.Generator, size: float) -> Floats:
-    """Central differences of the residual against the tangent, at a random state.
-
-    Args:
-        problem: A problem with a step and its level.
-        rng: Source of the state and of the direction.
-        size: Standard deviation of the displacements, length.
-
-    Returns:
-        Relative error of the derivative along the direction for three steps, each half of the
-        one before.
-    """
-    x, direction = problem.new_vector(), problem.new_vector()
-    x.array[:] = size * rng.standard_normal(x.getSize())
-    direction.array[:] = rng.standard_normal(x.getSize())
-    matrix = problem.new_tangent()
-    for _ in range(2):  # the second time the pattern is there
-        problem.tangent(x, matrix)
-    exact = (matrix @ direction).array.copy()
-    errors = []
-    for h in (2e-4, 1e-4, 5e-5):
-        ends = [problem.evaluate(x + sign * h * direction) for sign in (1.0, -1.0)]
-        errors.append(np.linalg.norm((ends[0] - ends[1]) / (2.0 * h) - exact))
-    return np.asarray(errors) / np.linalg.norm(exact)
-
-
-@pytest.fixture(scope="session", name="tangent_errors")
-def _tangent_errors() -> Callable[[Any, np.random.Generator, float], Floats]:
-    """See `tangent_errors`."""
-    return tangent_errors
-
-
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Run a test that asks for a `sample` once for each."""
     if "sample" in metafunc.fixturenames:

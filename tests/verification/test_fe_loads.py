@@ -137,7 +137,7 @@ def shapes(cell, order):
 
 
 @pytest.mark.parametrize(("cell", "order"), CELLS)
-def test_tangent_of_a_pressure_that_follows(tangent_errors, cell, order):
+def test_tangent_of_a_pressure_that_follows(fe, cell, order):
     """Halving the step quarters the error of the central difference against the tangent.
 
     Requirement: exact tangent of pressures at finite strain. Source: Taylor. Tolerance: the ratio
@@ -150,7 +150,7 @@ def test_tangent_of_a_pressure_that_follows(tangent_errors, cell, order):
         problem = soft(shape)
         problem.begin(Step("press", 1, {"body.bottom": NOTHING}, pressure={f"body.{group}": 30.0}))
         problem.set_level(1.0, 1.0)
-        errors = tangent_errors(problem, rng, 0.02)
+        errors = fe.tangent_errors(problem, rng, 0.02)
         assert np.all(np.abs(errors[:-1] / errors[1:] - 4.0) < 0.15)
         assert errors[-1] < 1e-5
 

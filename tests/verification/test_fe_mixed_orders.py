@@ -88,7 +88,7 @@ def test_a_linear_body_is_what_it_is_alone(cell, round_body):
 
 
 @pytest.mark.parametrize("cell", CELLS)
-def test_tangent_with_ties_and_planes(tangent_errors, cell):
+def test_tangent_with_ties_and_planes(fe, cell):
     """Halving the step quarters the error of the central difference against the tangent.
 
     Requirement: exact tangent with middle nodes that are tied, on planes too. Source: Taylor.
@@ -101,7 +101,7 @@ def test_tangent_with_ties_and_planes(tangent_errors, cell):
     made = problem([block("one", 1, cell), block("two", 2, cell, x=5.0)], symmetry=planes)
     made.begin(Step("a", 1, supports, pressure={"one.top": 2.0}))
     made.set_level(1.0, 1.0)
-    errors = tangent_errors(made, np.random.default_rng(3), 0.01)
+    errors = fe.tangent_errors(made, np.random.default_rng(3), 0.01)
     assert np.all(np.abs(errors[:-1] / errors[1:] - 4.0) < 0.15)
 
 

@@ -210,7 +210,7 @@ def test_prescribed_motion_out_of_a_plane_is_refused():
         run(problem, Step("shift", 1, {"bar.bottom": NOTHING | {"x": 0.1}}))
 
 
-def test_tangent_of_everything_that_holds(tangent_errors):
+def test_tangent_of_everything_that_holds(fe):
     """Halving the step quarters the error of the central difference against the tangent.
 
     Requirement: exact tangent with oblique planes, springs, elastic supports and a pressure that
@@ -227,7 +227,7 @@ def test_tangent_of_everything_that_holds(tangent_errors):
     loads = Step("a", 1, {"bar.bottom": {"x": 0.0}}, pressure={"bar.back": 2.0})
     problem.begin(loads)
     problem.set_level(1.0, 1.0)
-    errors = tangent_errors(problem, np.random.default_rng(3), 0.02)
+    errors = fe.tangent_errors(problem, np.random.default_rng(3), 0.02)
     assert np.all(np.abs(errors[:-1] / errors[1:] - 4.0) < 0.15)
 
 

@@ -90,12 +90,7 @@ class Contact(ContactRecord):
         name: str = "",
         body: RigidBody | None = None,
     ) -> None:
-        facets = model.facets(slave, "slave")
-        if model.count_facets(slave) == 0:
-            raise InputError(f"facet group {slave!r} has no facets", "slave")
-        if not hasattr(interface, "surface"):
-            text = f"{type(interface).__name__} given, Interface or PythonInterface needed"
-            raise InputError(text, "interface")
+        facets = _checked(model, slave, interface)
         degree = chosen_degree(degree, model.order, augmentation is not None)
         self.interface = interface
         self.body = body
@@ -336,3 +331,14 @@ class Contact(ContactRecord):
         if self._slave is None or isinstance(master, PythonInterface):
             return master.update(state, x, dt)
         return master.update(state, x, dt, slave=self._slave)
+
+
+def _checked(model: Model, slave: str, interface: object) -> Ints:
+    """Facets of the slave on this rank; refuses arguments that are no slave or no interface."""
+    facets = model.facets(slave, "slave")
+    if model.count_facets(slave) == 0:
+        raise InputError(f"facet group {slave!r} has no facets", "slave")
+    if not hasattr(interface, "surface"):
+        text = f"{type(interface).__name__} given, Interface or PythonInterface needed"
+        raise InputError(text, "interface")
+    return facets

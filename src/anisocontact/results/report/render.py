@@ -11,6 +11,21 @@ import pyvista
 from anisocontact.figure_style import GREY
 from anisocontact.results.report.shape import LABEL, caption, magnification, round_box, surfaces
 
+#: The scale of colours.
+_BAR = {
+    "title": LABEL,
+    "color": "black",
+    "fmt": "%.3g",
+    "n_labels": 5,
+    "vertical": True,
+    "position_x": 0.86,
+    "position_y": 0.2,
+    "width": 0.06,
+    "height": 0.6,
+    "title_font_size": 20,
+    "label_font_size": 20,
+}
+
 
 def _main(source: str, picture: str) -> None:
     grid: Any = pyvista.read(source)
@@ -18,24 +33,11 @@ def _main(source: str, picture: str) -> None:
     skin, before = surfaces(grid, scale)
     plotter: Any = pyvista.Plotter(off_screen=True, window_size=[1200, 800])
     plotter.set_background("white")
-    bar = {
-        "title": LABEL,
-        "color": "black",
-        "fmt": "%.3g",
-        "n_labels": 5,
-        "vertical": True,
-        "position_x": 0.86,
-        "position_y": 0.2,
-        "width": 0.06,
-        "height": 0.6,
-        "title_font_size": 20,
-        "label_font_size": 20,
-    }
     plotter.add_mesh(
         skin,
         scalars="size",
         cmap="viridis",
-        scalar_bar_args=bar,
+        scalar_bar_args=_BAR,
         smooth_shading=True,
         split_sharp_edges=True,
         ambient=0.25,

@@ -1,11 +1,9 @@
-"""Going on with a run: what fits, what is refused, and what a full disk leaves."""
+"""Going on with a run: what fits and what is refused."""
 
 from __future__ import annotations
 
-import errno
 import json
 import os
-import resource
 import signal
 import subprocess
 import sys
@@ -21,42 +19,7 @@ from anisocontact.case.build import build
 from anisocontact.case.restart import check_same
 from anisocontact.cli import main
 from anisocontact.errors import InputError
-from anisocontact.results import checkpoint
-from anisocontact.results.files import Disk, WriteError
 from anisocontact.results.history import flat
-
-
-@pytest.fixture(autouse=True)
-def no_report(monkeypatch):
-    """The pictures take longer than the run."""
-    monkeypatch.setattr("anisocontact.results.report.write_report", lambda folder: [])
-
-
-@pytest.fixture
-def case(tmp_path, case_text):
-    path = tmp_path / "case.toml"
-    path.write_text(case_text + '\n[solver]\nstrategy = "direct"\n')
-    return path
-
-
-@pytest.fixture
-def whole(case):
-    """Results of a run that nothing has disturbed."""
-    folder = case.parent / "whole"
-    assert main(["run", str(case), "-o", str(folder)]) == 0
-    return folder
-
-
-def same(a, b):
-    """Whether two runs left the same numbers and fields, bit by bit."""
-    names = ["history.csv", "fields.pvd", "contact.pvd"]
-    names += [f"{f}/{p.name}" for f in ("fields", "contact") for p in (a / f).iterdir()]
-    summaries = [json.loads((f / "summary.json").read_text()) for f in (a, b)]
-    for summary in summaries:
-        del summary["wall_time_s"]
-    return summaries[0] == summaries[1] and all(
-        (a / n).read_bytes() == (b / n).read_bytes() for n in names
-    )
 
 
 def stop_after(monkeypatch, count, number=signal.SIGINT):
@@ -74,7 +37,7 @@ def stop_after(monkeypatch, count, number=signal.SIGINT):
 
 
 @pytest.mark.parametrize("count", [1, 3])
-def test_condensed_goes_on_bit_by_bit(monkeypatch, case, count):
+def test_condensed_goes_on_bit_by_bit(monkeypatch, case, count, same):
     """What has been condensed is made again from the same numbers in the same order."""
     case.write_text(case.read_text().replace('"direct"', '"condensed"'))
     whole, out = case.parent / "whole", case.parent / "out"
@@ -129,7 +92,7 @@ def test_a_restored_state_is_whole_when_it_is_asked_for(case):
                 np.testing.assert_allclose(second.problem.reactions()[group], force, atol=1e-7)
 
 
-def test_augmented_contact_of_a_free_body_goes_on(monkeypatch, case):
+def test_augmented_contact_of_a_free_body_goes_on(monkeypatch, case, same):
     """Multipliers, the level of their penalties and stabilisation go on bit by bit."""
     text = case.read_text().replace("normal = { penalty = 1e4 }", 'method = "augmented"')
     text = text.replace("stiffness = [4e3, 1e3]", 'stiffness = "auto"')
@@ -151,7 +114,7 @@ def test_augmented_contact_of_a_free_body_goes_on(monkeypatch, case):
 
 
 @pytest.mark.parametrize("count", [1, 2, 4])
-def test_ctrl_c_says_how_to_go_on_and_it_does(monkeypatch, capsys, case, whole, count):
+def test_ctrl_c_says_how_to_go_on_and_it_does(monkeypatch, capsys, case, whole, count, same):
     """Requirement: Ctrl-C finishes the increment, keeps all and says the exact command."""
     out = case.parent / "out folder"
     with monkeypatch.context() as patch:
@@ -166,7 +129,7 @@ def test_ctrl_c_says_how_to_go_on_and_it_does(monkeypatch, capsys, case, whole, 
     assert same(whole, out)
 
 
-def test_term_is_like_ctrl_c(monkeypatch, capsys, case, whole):
+def test_term_is_like_ctrl_c(monkeypatch, capsys, case, whole, same):
     """Batch systems send TERM before they kill."""
     out = case.parent / "out"
     with monkeypatch.context() as patch:
@@ -177,7 +140,7 @@ def test_term_is_like_ctrl_c(monkeypatch, capsys, case, whole):
     assert same(whole, out)
 
 
-def test_a_run_that_is_done_goes_on_with_further_steps(capsys, case, whole):
+def test_a_run_that_is_done_goes_on_with_further_steps(capsys, case, whole, same):
     """A further step may be added; the result is that of both steps in one run."""
     more = '\n[[step]]\nname = "back"\nincrements = 2\ndisplacement = { "block.top" = { x = 0 } }\n'
     case.write_text(case.read_text().replace("\n[output]", f"{more}\n[output]"))
@@ -232,7 +195,7 @@ def test_results_without_checkpoint_are_kept(capsys, case, whole):
     assert (whole / "history.csv").read_bytes() == before
 
 
-def test_killed_before_the_first_increment(capsys, case, whole):
+def test_killed_before_the_first_increment(capsys, case, whole, same):
     """There is a folder and no accepted increment: the run begins."""
     out = case.parent / "early"
     out.mkdir()
@@ -242,183 +205,6 @@ def test_killed_before_the_first_increment(capsys, case, whole):
     assert "restart   from the beginning" in capsys.readouterr().out
     assert same(whole, out)
     assert not (out / ".summary-123.json").exists()
-
-
-@pytest.mark.parametrize("kind", ["cut", "noise", "text", "format"])
-def test_a_damaged_checkpoint_is_one_line(capsys, case, whole, kind):
-    path = whole / "checkpoint.npz"
-    if kind == "cut":
-        path.write_bytes(path.read_bytes()[:-100])
-    elif kind == "noise":
-        path.write_bytes(b"PK" + bytes(range(256)))
-    elif kind == "text":
-        path.write_text("no archive")
-    else:
-        stored = checkpoint.load_checkpoint(whole)
-        assert stored is not None
-        facts = json.dumps(stored.facts | {"format": 0}).encode()
-        np.savez(path, **stored.arrays, facts=np.frombuffer(facts, dtype=np.uint8))
-    assert main(["run", str(case), "-o", str(whole), "--restart"]) == 2
-    error = capsys.readouterr().err
-    assert len(error.splitlines()) == 1
-    assert "checkpoint.npz" in error
-    assert "pickle" not in error  # what NumPy says of files that it does not know
-
-
-@pytest.mark.parametrize("victim", ["history", "fields", "summary", "checkpoint", "log"])
-def test_a_full_disk_loses_nothing(monkeypatch, capsys, case, whole, victim):
-    """Requirement: a full disk is an error that loses nothing: the run goes on when there is room.
-
-    The named file fails from the third accepted increment on.
-    """
-    from anisocontact.results import collection, writer
-    from anisocontact.results.history import History
-
-    owner, name = {
-        "history": (History, "append"),
-        "fields": (collection, "_write"),
-        "summary": (writer, "write_text"),
-        "checkpoint": (checkpoint, "save_checkpoint"),
-        "log": (writer.Writer, "_append"),
-    }[victim]
-    real, full = getattr(owner, name), {"now": False}
-
-    def failing(*arguments, **more):
-        if full["now"]:
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), f"{victim} file")
-        return real(*arguments, **more)
-
-    accept = writer.Writer.accept
-
-    def accepting(self, accepted):
-        full["now"] = self.summary["steps"] >= 2
-        accept(self, accepted)
-
-    out = case.parent / "out"
-    with monkeypatch.context() as patch:
-        patch.setattr(owner, name, failing)
-        patch.setattr(writer.Writer, "accept", accepting)
-        assert main(["run", str(case), "-o", str(out)]) == 3
-    error = capsys.readouterr().err.splitlines()
-    said = f"error: stopped: cannot write '{victim} file': No space left on device"
-    assert error[0].startswith(said)
-    assert error[-1].startswith("to go on: anisocontact run ")
-    assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
-    assert same(whole, out)
-
-
-def test_files_that_may_not_grow(case, whole):
-    """The same with a limit of the system on the size of a file, which VTK meets too."""
-    out = case.parent / "out"
-    code = (
-        "import resource, signal, sys; from anisocontact.cli import main; "
-        "import anisocontact._fenicsx  # MPI needs larger files\n"
-        "from anisocontact.results import report; report.write_report = lambda folder: []; "
-        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN); "
-        "resource.setrlimit(resource.RLIMIT_FSIZE, ({0}, {0})); "
-        f"sys.exit(main(['run', {str(case)!r}, '-o', {str(out)!r}]))"
-    )
-    assert resource.getrlimit(resource.RLIMIT_FSIZE)[0] == resource.RLIM_INFINITY
-    largest = max(p.stat().st_size for p in (whole / "contact").iterdir())
-    done = subprocess.run(
-        [sys.executable, "-c", code.replace("{0}", str(largest - 1))],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 3, done.stderr
-    assert "error: stopped: cannot write" in done.stderr
-    assert "Traceback" not in done.stderr
-    assert not list(out.rglob(".*"))
-    assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
-    assert same(whole, out)
-
-
-def test_writing_stops_at_the_first_failure():
-    from mpi4py import MPI
-
-    disk, calls = Disk(MPI.COMM_SELF), []
-    disk.write(lambda: calls.append(1))
-    disk.check()
-
-    def full():
-        raise OSError(errno.ENOSPC, "No space left on device", "a")
-
-    disk.write(full)
-    disk.write(lambda: calls.append(2))
-    with pytest.raises(WriteError, match="cannot write 'a': No space left on device"):
-        disk.check()
-    assert calls == [1]
-
-
-def test_another_order_of_nodes_finds_its_own(case, whole):
-    """Other ranks number nodes and points in another order: they are found by their positions."""
-    built = build(load(case))
-    stored = checkpoint.load_checkpoint(whole)
-    assert stored is not None
-    like = built.solver.persistent()
-    wanted = checkpoint.distribute(stored, built.problem.model, like)
-    chance = np.random.default_rng(3)
-    shuffled = {}
-    order = {
-        "n": chance.permutation(len(stored.arrays["node/body"])),
-        "p": chance.permutation(len(stored.arrays["points/0/reference"])),
-    }
-    for name, values in stored.arrays.items():
-        shuffled[name] = values[order[name[0]]] if name[0] in order else values
-    found = checkpoint.distribute(
-        checkpoint.Stored(shuffled, stored.facts), built.problem.model, like
-    )
-    assert all(np.array_equal(found.nodal[n], v) for n, v in wanted.nodal.items())
-    assert all(np.array_equal(found.points[0][n], v) for n, v in wanted.points[0].items())
-    shuffled["node/position"] = shuffled["node/position"] + 1e-3
-    with pytest.raises(InputError, match="the mesh is not that of the run that is to go on"):
-        checkpoint.distribute(checkpoint.Stored(shuffled, stored.facts), built.problem.model, like)
-
-
-VARIANTS = {
-    "augmented": {"normal = { penalty = 1e4 }": 'method = "augmented"'},
-    "finite strain": {'model = "linear-elastic"': 'model = "neo-hookean"'},
-    "unsupported": {
-        "origin = [0, 0, 0]": "origin = [0, 0, 0.05]",
-        'displacement = { "block.top" = { x = 0, y = 0, z = -0.01 } }': (
-            'force = { "block.top" = { z = -5 } }'
-        ),
-        'displacement = { "block.top" = { x = 0.02, y = 0.01 } }': (
-            'force = { "block.top" = { x = 0.3 } }'
-        ),
-    },
-}
-
-
-@pytest.mark.parametrize("variant", VARIANTS)
-@pytest.mark.parametrize("at", [0, 2])
-def test_every_state_counts(case, variant, at):
-    """Through the file and back: what follows is the same bit by bit, whatever has a history."""
-    text = case.read_text()
-    for old, new in VARIANTS[variant].items():
-        assert old in text
-        text = text.replace(old, new)
-    case.write_text(text)
-    first, second = build(load(case)), build(load(case))
-    later = []
-    for count, accepted in enumerate(first.solver.run()):
-        if count == at:
-            model = first.problem.model
-            own, common = checkpoint.own_arrays(model, first.solver.persistent())
-            checkpoint.save_checkpoint(case.parent, own | common, {})
-        elif count > at:
-            later.append(accepted)
-    stored = checkpoint.load_checkpoint(case.parent)
-    assert stored is not None
-    like = second.solver.persistent()
-    second.solver.restore(checkpoint.distribute(stored, second.problem.model, like))
-    again = list(second.solver.run())
-    assert len(again) == len(later) == 5 - at
-    for a, b in zip(later, again, strict=True):
-        assert (a.time, a.iterations, a.residuals) == (b.time, b.iterations, b.residuals)
-        assert a.energies == b.energies
-    assert np.array_equal(first.problem.u.x.array, second.problem.u.x.array)
 
 
 @pytest.mark.mpi

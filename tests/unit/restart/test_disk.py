@@ -1,0 +1,126 @@
+"""Checkpoints that are damaged, and what a full disk leaves."""
+
+from __future__ import annotations
+
+import errno
+import json
+import os
+import resource
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import main
+from anisocontact.results import checkpoint
+from anisocontact.results.files import Disk, WriteError
+
+
+@pytest.mark.parametrize("kind", ["cut", "noise", "text", "format"])
+def test_a_damaged_checkpoint_is_one_line(capsys, case, whole, kind):
+    path = whole / "checkpoint.npz"
+    if kind == "cut":
+        path.write_bytes(path.read_bytes()[:-100])
+    elif kind == "noise":
+        path.write_bytes(b"PK" + bytes(range(256)))
+    elif kind == "text":
+        path.write_text("no archive")
+    else:
+        stored = checkpoint.load_checkpoint(whole)
+        assert stored is not None
+        facts = json.dumps(stored.facts | {"format": 0}).encode()
+        np.savez(path, **stored.arrays, facts=np.frombuffer(facts, dtype=np.uint8))
+    assert main(["run", str(case), "-o", str(whole), "--restart"]) == 2
+    error = capsys.readouterr().err
+    assert len(error.splitlines()) == 1
+    assert "checkpoint.npz" in error
+    assert "pickle" not in error  # what NumPy says of files that it does not know
+
+
+@pytest.mark.parametrize("victim", ["history", "fields", "summary", "checkpoint", "log"])
+def test_a_full_disk_loses_nothing(monkeypatch, capsys, case, whole, victim, same):
+    """Requirement: a full disk is an error that loses nothing: the run goes on when there is room.
+
+    The named file fails from the third accepted increment on.
+    """
+    from anisocontact.results import collection, writer
+    from anisocontact.results.history import History
+
+    owner, name = {
+        "history": (History, "append"),
+        "fields": (collection, "_write"),
+        "summary": (writer, "write_text"),
+        "checkpoint": (checkpoint, "save_checkpoint"),
+        "log": (writer.Writer, "_append"),
+    }[victim]
+    real, full = getattr(owner, name), {"now": False}
+
+    def failing(*arguments, **more):
+        if full["now"]:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), f"{victim} file")
+        return real(*arguments, **more)
+
+    accept = writer.Writer.accept
+
+    def accepting(self, accepted):
+        full["now"] = self.summary["steps"] >= 2
+        accept(self, accepted)
+
+    out = case.parent / "out"
+    with monkeypatch.context() as patch:
+        patch.setattr(owner, name, failing)
+        patch.setattr(writer.Writer, "accept", accepting)
+        assert main(["run", str(case), "-o", str(out)]) == 3
+    error = capsys.readouterr().err.splitlines()
+    said = f"error: stopped: cannot write '{victim} file': No space left on device"
+    assert error[0].startswith(said)
+    assert error[-1].startswith("to go on: anisocontact run ")
+    assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
+    assert same(whole, out)
+
+
+def test_files_that_may_not_grow(case, whole, same):
+    """The same with a limit of the system on the size of a file, which VTK meets too."""
+    out = case.parent / "out"
+    code = (
+        "import resource, signal, sys; from anisocontact.cli import main; "
+        "import anisocontact._fenicsx  # MPI needs larger files\n"
+        "from anisocontact.results import report; report.write_report = lambda folder: []; "
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN); "
+        "resource.setrlimit(resource.RLIMIT_FSIZE, ({0}, {0})); "
+        f"sys.exit(main(['run', {str(case)!r}, '-o', {str(out)!r}]))"
+    )
+    assert resource.getrlimit(resource.RLIMIT_FSIZE)[0] == resource.RLIM_INFINITY
+    largest = max(p.stat().st_size for p in (whole / "contact").iterdir())
+    done = subprocess.run(
+        [sys.executable, "-c", code.replace("{0}", str(largest - 1))],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 3, done.stderr
+    assert "error: stopped: cannot write" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not list(out.rglob(".*"))
+    assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
+    assert same(whole, out)
+
+
+def test_writing_stops_at_the_first_failure():
+    from mpi4py import MPI
+
+    disk, calls = Disk(MPI.COMM_SELF), []
+    disk.write(lambda: calls.append(1))
+    disk.check()
+
+    def full():
+        raise OSError(errno.ENOSPC, "No space left on device", "a")
+
+    disk.write(full)
+    disk.write(lambda: calls.append(2))
+    with pytest.raises(WriteError, match="cannot write 'a': No space left on device"):
+        disk.check()
+    assert calls == [1]

@@ -1,0 +1,83 @@
+"""The state of a run through its file and back."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.case import load
+from anisocontact.case.build import build
+from anisocontact.errors import InputError
+from anisocontact.results import checkpoint
+
+
+def test_another_order_of_nodes_finds_its_own(case, whole):
+    """Other ranks number nodes and points in another order: they are found by their positions."""
+    built = build(load(case))
+    stored = checkpoint.load_checkpoint(whole)
+    assert stored is not None
+    like = built.solver.persistent()
+    wanted = checkpoint.distribute(stored, built.problem.model, like)
+    chance = np.random.default_rng(3)
+    shuffled = {}
+    order = {
+        "n": chance.permutation(len(stored.arrays["node/body"])),
+        "p": chance.permutation(len(stored.arrays["points/0/reference"])),
+    }
+    for name, values in stored.arrays.items():
+        shuffled[name] = values[order[name[0]]] if name[0] in order else values
+    found = checkpoint.distribute(
+        checkpoint.Stored(shuffled, stored.facts), built.problem.model, like
+    )
+    assert all(np.array_equal(found.nodal[n], v) for n, v in wanted.nodal.items())
+    assert all(np.array_equal(found.points[0][n], v) for n, v in wanted.points[0].items())
+    shuffled["node/position"] = shuffled["node/position"] + 1e-3
+    with pytest.raises(InputError, match="the mesh is not that of the run that is to go on"):
+        checkpoint.distribute(checkpoint.Stored(shuffled, stored.facts), built.problem.model, like)
+
+
+VARIANTS = {
+    "augmented": {"normal = { penalty = 1e4 }": 'method = "augmented"'},
+    "finite strain": {'model = "linear-elastic"': 'model = "neo-hookean"'},
+    "unsupported": {
+        "origin = [0, 0, 0]": "origin = [0, 0, 0.05]",
+        'displacement = { "block.top" = { x = 0, y = 0, z = -0.01 } }': (
+            'force = { "block.top" = { z = -5 } }'
+        ),
+        'displacement = { "block.top" = { x = 0.02, y = 0.01 } }': (
+            'force = { "block.top" = { x = 0.3 } }'
+        ),
+    },
+}
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+@pytest.mark.parametrize("at", [0, 2])
+def test_every_state_counts(case, variant, at):
+    """Through the file and back: what follows is the same bit by bit, whatever has a history."""
+    text = case.read_text()
+    for old, new in VARIANTS[variant].items():
+        assert old in text
+        text = text.replace(old, new)
+    case.write_text(text)
+    first, second = build(load(case)), build(load(case))
+    later = []
+    for count, accepted in enumerate(first.solver.run()):
+        if count == at:
+            model = first.problem.model
+            own, common = checkpoint.own_arrays(model, first.solver.persistent())
+            checkpoint.save_checkpoint(case.parent, own | common, {})
+        elif count > at:
+            later.append(accepted)
+    stored = checkpoint.load_checkpoint(case.parent)
+    assert stored is not None
+    like = second.solver.persistent()
+    second.solver.restore(checkpoint.distribute(stored, second.problem.model, like))
+    again = list(second.solver.run())
+    assert len(again) == len(later) == 5 - at
+    for a, b in zip(later, again, strict=True):
+        assert (a.time, a.iterations, a.residuals) == (b.time, b.iterations, b.residuals)
+        assert a.energies == b.energies
+    assert np.array_equal(first.problem.u.x.array, second.problem.u.x.array)
