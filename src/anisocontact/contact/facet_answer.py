@@ -24,7 +24,7 @@ NEAR = 1e-6
 Floats = npt.NDArray[np.float64]
 
 #: What answers for slave points that meet facets.
-type Pairs = FacetPairs | PythonPairs
+type PairKernel = FacetPairs | PythonPairs
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ class Question:
     by_points: bool
 
 
-def ask(sides: Sides, law: Pairs, q: Question) -> tuple[dict[str, Any], Snapshot]:
+def ask(sides: Sides, law: PairKernel, q: Question) -> tuple[dict[str, Any], Snapshot]:
     """What a law answers, with forces and blocks, and the points as they are then."""
     slave, master, hit = sides.points, sides.master, q.hit
     touches = hit.gap - q.state["offset"] <= NEAR * slave.size  # as far as rounding goes
@@ -86,7 +86,7 @@ def ask(sides: Sides, law: Pairs, q: Question) -> tuple[dict[str, Any], Snapshot
     return answer, Snapshot(slave.positions(q.now), answer["area"], response)
 
 
-def _answer(law: Pairs, q: Question, batch: tuple[Any, ...]) -> dict[str, Any]:
+def _answer(law: PairKernel, q: Question, batch: tuple[Any, ...]) -> dict[str, Any]:
     if isinstance(law, PythonPairs):
         return law.respond(q.state, q.by_points, *batch)
     # a law of the core has no use for the own variables of one in Python

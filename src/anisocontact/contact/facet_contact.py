@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.augmentation import Augmentation
 from anisocontact.contact.adjust import adjusted
-from anisocontact.contact.facet_answer import Pairs, Question, ask
+from anisocontact.contact.facet_answer import PairKernel, Question, ask
 from anisocontact.contact.gathering import gather, gather_named
 from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.point_blocks import add_rows, point_blocks
@@ -379,7 +379,7 @@ class FacetContact(ContactRecord):
         return self._transfer is not None or self._semismooth is not None
 
     def _ask(
-        self, law: Pairs, state: State, hit: FacetProjections, dt: float, *, tangent: bool
+        self, law: PairKernel, state: State, hit: FacetProjections, dt: float, *, tangent: bool
     ) -> Snapshot:
         """What a law answers where the points are; forces and blocks go to `_answer`."""
         question = Question(state, hit, self._now, dt, tangent, self._by_points)
@@ -403,7 +403,7 @@ class FacetContact(ContactRecord):
         if self._semismooth is not None:
             self._stiff = self._with(factor * self._semismooth.ratio)
 
-    def _with(self, factor: float) -> Pairs:
+    def _with(self, factor: float) -> PairKernel:
         tangential = self._multipliers is not None and self._multipliers.tangential
         return self.interface.stiffened(factor, tangential).pairs(self._mirrored)
 
