@@ -17,7 +17,7 @@ from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.point_blocks import add_rows, point_blocks
 from anisocontact.contact.point_tangent import PointTangent
 from anisocontact.contact.quadrature import chosen_degree
-from anisocontact.contact.reachable import Pairs, reachable
+from anisocontact.contact.reachable import NodePairs, reachable
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.contact.semismooth import Base, Semismooth
 from anisocontact.contact.sides import check_sides, initial_state, located, make_sides
@@ -317,7 +317,7 @@ class FacetContact(ContactRecord):
         add_rows(self._answer, forces, total)
         self._gathered.hand_back(total, out)
 
-    def reachable(self, way: Floats, margin: float, hops: int) -> list[Pairs]:
+    def reachable(self, way: Floats, margin: float, hops: int) -> list[NodePairs]:
         """Nodes that `couplings` can name where the slave goes along a way, see `reachable`.
 
         Args:

@@ -14,12 +14,12 @@ Numbers = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 
 #: Nodes of rows and columns that are coupled, (p, r) and (p, c), named as in `Couplings`.
-type Pairs = tuple[Ints, Ints]
+type NodePairs = tuple[Ints, Ints]
 
 
 def reachable(
     sides: Sides, now: Floats, way: Floats, margin: float, hops: int, by_point: bool
-) -> list[Pairs]:
+) -> list[NodePairs]:
     """Nodes that a tangent can couple where the slave points go along a way.
 
     A point couples the nodes of its facet with those of the facet of the master below it, and these

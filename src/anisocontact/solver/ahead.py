@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact import FacetContact
-from anisocontact.contact.reachable import Pairs
+from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.steps import AXES, Step
 
 Floats = npt.NDArray[np.float64]
@@ -39,7 +39,7 @@ class Ahead:
         bodies = {name.partition(".")[0] for name in names}
         self._paths = {body: _path(steps, body) for body in bodies}
 
-    def pairs(self, step: Step | None, level: float) -> list[Pairs]:
+    def pairs(self, step: Step | None, level: float) -> list[NodePairs]:
         """Nodes that can be coupled from now on.
 
         Args:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from scipy.sparse import bsr_array, csr_array
 
 from anisocontact._fenicsx import Mat, PETSc
-from anisocontact.contact.reachable import Pairs
+from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.transfer import Couplings
 
 Ints = npt.NDArray[np.int32]
@@ -89,7 +89,7 @@ class CoupledTangent:
         rows = np.arange(pattern.shape[0]) + self._first
         return np.repeat(rows, np.diff(pattern.indptr)), pattern.indices
 
-    def new_matrix(self, foreseen: Sequence[Pairs] = ()) -> Mat:
+    def new_matrix(self, foreseen: Sequence[NodePairs] = ()) -> Mat:
         """Matrix for `make_room` and `add`.
 
         Args:
@@ -107,7 +107,7 @@ class CoupledTangent:
         return matrix
 
     def make_room(
-        self, out: Mat, couplings: Sequence[Couplings], foresee: Callable[[], Sequence[Pairs]]
+        self, out: Mat, couplings: Sequence[Couplings], foresee: Callable[[], Sequence[NodePairs]]
     ) -> bool:
         """Let the pattern of a matrix of `new_matrix` grow where these couplings need it.
 
@@ -140,7 +140,7 @@ class CoupledTangent:
         )
         out.assemble()
 
-    def _locate(self, keys: Keys, out: Mat, foresee: Callable[[], Sequence[Pairs]]) -> bool:
+    def _locate(self, keys: Keys, out: Mat, foresee: Callable[[], Sequence[NodePairs]]) -> bool:
         """Places of the blocks of `keys`; whether the pattern grows by some that are new."""
         there = np.flatnonzero(keys >= 0)
         unknown = np.unique(keys[there][~_found(self._keys, keys[there])])
@@ -176,7 +176,7 @@ class CoupledTangent:
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         matrix.assemble()
 
-    def _named(self, pairs: Sequence[Pairs]) -> Keys:
+    def _named(self, pairs: Sequence[NodePairs]) -> Keys:
         """Each pair of nodes once, as one number."""
         found = [_keys(rows, columns, self._numbers) for rows, columns in pairs]
         return np.unique(np.concatenate([self._keys[:0], *found]))

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc
 from anisocontact.contact import Contact
-from anisocontact.contact.reachable import Pairs
+from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.ahead import Ahead
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.parts import Parts
@@ -105,7 +105,7 @@ class Tangent:
         out.zeroRows((first + rows).astype(PETSc.IntType), parts.support_scale)
         return grown
 
-    def _foreseen(self) -> Sequence[Pairs]:
+    def _foreseen(self) -> Sequence[NodePairs]:
         return [] if self._ahead is None else self._ahead.pairs(self._step, self._level)
 
 
