@@ -56,12 +56,18 @@ def _law(angle: float = 0.5) -> PairLaw:
     )
 
 
-def _bodies(cell: str = "hexahedron", order: int = 1, gap: float = GAP_BELOW) -> Any:
+def _bodies(
+    cell: str = "hexahedron",
+    order: int = 1,
+    gap: float = GAP_BELOW,
+    cells: tuple[tuple[int, int], tuple[int, int]] = ((4, 3), (7, 6)),
+) -> Any:
     """A block just above a mat; nothing touches by rounding alone."""
+    upper, lower = cells
     return build_box(
         {
-            "block": BoxSpec((-2, -2, gap), (4, 4, 2), (4, 3, 2), cell, order),
-            "mat": BoxSpec((-6, -5, -3), (12, 10, 3), (7, 6, 2), cell, order),
+            "block": BoxSpec((-2, -2, gap), (4, 4, 2), (*upper, 2), cell, order),
+            "mat": BoxSpec((-6, -5, -3), (12, 10, 3), (*lower, 2), cell, order),
         }
     )
 
@@ -101,6 +107,12 @@ def _second_order() -> Made:
 
 def _two_half() -> Made:
     model = _bodies()
+    return _dragged(model, [TwoHalfPass(model, "block.bottom", "mat.top", law=_law())])
+
+
+def _matching() -> Made:
+    """All edges of the block lie on edges of the mat, until it is dragged."""
+    model = _bodies(cells=((2, 4), (6, 10)))
     return _dragged(model, [TwoHalfPass(model, "block.bottom", "mat.top", law=_law())])
 
 
@@ -188,6 +200,7 @@ CASES: dict[str, Callable[[], Made]] = {
     "in-python": _in_python,
     "second-order": _second_order,
     "two-half": _two_half,
+    "matching": _matching,
     "far": _far,
     "augmented": _augmented,
     "following": _following,

@@ -20,6 +20,9 @@ Mask = npt.NDArray[np.bool_]
 UNCOVERED = 1e-6
 #: Overlaps below this share of a facet are nothing but rounding.
 SLIVER = 1e-14
+#: Distance over the size of a facet within which a corner lies on a border: where edges lie on each
+#: other rounding would say where they cross, and so how the overlap is cut into triangles.
+ON_BORDER = 1e-10
 #: Newton iterations to the coordinates of a point on a facet; one on a parallelogram.
 ITERATIONS = 8
 CONVERGED = 1e-13
@@ -79,8 +82,9 @@ def overlaps(
     for i in range(border.shape[1]):
         start, side = border[:, i], np.roll(border, -1, axis=1)[:, i] - border[:, i]
         outward = np.stack([side[:, 1], -side[:, 0]], axis=1)
+        on = ON_BORDER * np.sum(side**2, axis=1)
         bound = np.sum(outward * start, axis=1)
-        polygons, counts = _clip(polygons, counts, outward[f], bound[f])
+        polygons, counts = _clip(polygons, counts, outward[f], bound[f], on[f])
     area = _area(border)
     points, weight, pair = _fan(polygons, counts, area[f] * SLIVER, shapes.overlap_degree)
     owner = f[pair]
@@ -201,14 +205,20 @@ def _solved(a: Floats, b: Floats) -> Floats:
     return np.asarray(np.stack([x, y], axis=-1) / np.where(det != 0.0, det, np.inf)[..., None])
 
 
-def _clip(polygons: Floats, counts: Ints, normal: Floats, bound: Floats) -> tuple[Floats, Ints]:
-    """The parts of polygons with normal . p <= bound; only the first `counts` corners count."""
+def _clip(
+    polygons: Floats, counts: Ints, normal: Floats, bound: Floats, on: Floats
+) -> tuple[Floats, Ints]:
+    """The parts of polygons with normal . p <= bound; only the first `counts` corners count.
+
+    A corner beyond the bound by no more than `on` is within.
+    """
     n, most, _ = polygons.shape
     corner = np.arange(most)
     there = corner < counts[:, None]
     after = np.where(corner + 1 < counts[:, None], corner + 1, 0)
     follower = np.take_along_axis(polygons, after[..., None], axis=1)
     d, e = (np.einsum("nci,ni->nc", p, normal) - bound[:, None] for p in (polygons, follower))
+    d, e = (np.where(np.abs(apart) <= on[:, None], 0.0, apart) for apart in (d, e))
     crossing = (d <= 0.0) != (e <= 0.0)
     share = d / np.where(crossing, d - e, 1.0)
     out = np.stack([polygons, polygons + share[..., None] * (follower - polygons)], axis=2)
