@@ -76,18 +76,21 @@ class Pool {
   std::vector<Block> free_;
 };
 
+/// Entries of a new array that are not set: for results of which every entry is written.
+struct Unset {};
+inline constexpr Unset unset{};
+
 /// A new NumPy array and the block behind it.
 template <class T>
 struct Array {
   T* data;
   nb::ndarray<nb::numpy, T> array;
 
-  explicit Array(std::initializer_list<std::size_t> shape) {
-    auto block = std::make_unique<T[]>(count(shape));
-    data = block.get();
-    nb::capsule owner(block.release(), [](void* p) noexcept { delete[] static_cast<T*>(p); });
-    array = nb::ndarray<nb::numpy, T>(data, shape.size(), shape.begin(), owner);
-  }
+  /// Zeros.
+  explicit Array(std::initializer_list<std::size_t> shape)
+      : Array(shape, std::make_unique<T[]>(count(shape))) {}
+  Array(std::initializer_list<std::size_t> shape, Unset)
+      : Array(shape, std::make_unique_for_overwrite<T[]>(count(shape))) {}
 
   /// Not initialised, in memory of a pool.
   Array(std::initializer_list<std::size_t> shape, const std::shared_ptr<Pool>& pool)
@@ -107,6 +110,10 @@ struct Array {
   }
 
  private:
+  Array(std::initializer_list<std::size_t> shape, std::unique_ptr<T[]> block) : data(block.get()) {
+    nb::capsule owner(block.release(), [](void* p) noexcept { delete[] static_cast<T*>(p); });
+    array = nb::ndarray<nb::numpy, T>(data, shape.size(), shape.begin(), owner);
+  }
   static std::size_t count(std::initializer_list<std::size_t> shape) {
     std::size_t n = 1;
     for (const auto s : shape) n *= s;

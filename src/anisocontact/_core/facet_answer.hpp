@@ -1,6 +1,8 @@
 #pragma once
 // What a batch answers at its points, and the forces on the nodes that follow.
 
+#include <vector>
+
 #include "facet_batch.hpp"
 
 namespace anisocontact::bindings {
@@ -14,25 +16,26 @@ struct Answer {
   std::size_t ks, km;
   Array<std::uint8_t> state;
   Array<double> traction, normal, adhesion, friction, area, stiffness;
-  Array<double> on_master;  ///< forces on the nodes of the facet, point by point
+  Array<double> on_master;  ///< forces on the nodes of the facet, of points that touch
   Array<std::int8_t> failure;
+  std::vector<std::uint8_t> touching;  ///< of each point, whether it has forces
 
   Answer(std::size_t n, const Batch& b)
       : ks(b.slave.width),
         km(b.mesh.width),
-        state({n, sizeof(kernel::PointState)}),
-        traction({n, 3}),
-        normal({n, 3}),
-        adhesion({n, 2, 3}),
-        friction({n, 2, 3}),
-        area({n}),
-        stiffness({n}),
-        on_master({n, b.mesh.width, 3}),
-        failure({n}) {}
+        state({n, sizeof(kernel::PointState)}, unset),
+        traction({n, 3}, unset),
+        normal({n, 3}, unset),
+        adhesion({n, 2, 3}, unset),
+        friction({n, 2, 3}, unset),
+        area({n}, unset),
+        stiffness({n}, unset),
+        on_master({n, b.mesh.width, 3}, unset),
+        failure({n}, unset),
+        touching(n) {}
 
   /// With the slopes of a point that touches.
-  void put(std::size_t p, const kernel::PairResult& r, const kernel::PairSlopes* d,
-           const Seen& s) const {
+  void put(std::size_t p, const kernel::PairResult& r, const kernel::PairSlopes* d, const Seen& s) {
     store(state.data, p, r.state);
     put3(traction.data, p, r.traction);
     put3(normal.data, p, r.normal);
@@ -43,6 +46,7 @@ struct Answer {
     failure.data[p] = static_cast<std::int8_t>(r.failure);
     area.data[p] = s.shapes.area.value();
     stiffness.data[p] = d != nullptr && touches(r) ? size_of_block(p, *d, s) : 0.0;
+    touching[p] = touches(r) ? 1 : 0;
     if (touches(r)) put_on_master(p, r, s.shapes.master);
   }
 
@@ -56,7 +60,7 @@ struct Answer {
              row3(f.data, static_cast<std::size_t>(node)) + t);
     };
     for (std::size_t p = 0; p < n; ++p) {
-      if (load(state.data, p).status == 0 || failure.data[p] != 0) continue;
+      if (touching[p] == 0) continue;
       const Vec3<double> t = area.data[p] * row3(traction.data, p);
       for (std::size_t a = 0; a < ks; ++a)
         add(b.slave.nodes[p * ks + a], b.slave.shape[p * ks + a] * t);

@@ -74,8 +74,8 @@ struct Hits {
 /// Facets of fewer nodes than the widest have zeros at the end.
 inline void put_shape(std::size_t count, const surface::Shape<double>& s, NodalShape& to) {
   to.count = count;
-  std::copy_n(s.N.begin(), count, to.n.begin());
-  std::copy_n(s.dN.begin(), count, to.dn.begin());
+  to.n = s.N;
+  to.dn = s.dN;
 }
 
 /// What the kernel sees of one point.
@@ -115,7 +115,7 @@ struct Batch {
     surface::Shape<double> shape;
     surface::shape(kind, hits.xi[2 * p], hits.xi[2 * p + 1], shape);
     put_shape(mesh.width, shape, s.shapes.master);
-    std::copy_n(shape.d2N.begin(), mesh.width, s.shapes.bend.begin());
+    s.shapes.bend = shape.d2N;
     surface::put_facet_jet(kind, mesh.nodes(mesh.now, f), shape, true, s.point.master.now);
     if (on_master)
       surface::put_facet_jet(kind, mesh.nodes(mesh.reference, f), shape, true,

@@ -78,9 +78,10 @@ nb::dict project(const FacetSurface& s, const Points& x, const Indices& hint,
                  const Indices& excluded, std::size_t threads) {
   const std::size_t n = x.shape(0);
   const QueryInput in{x, hint, start, limit, offsets, excluded};
-  Array<std::int32_t> facet({n});
-  Array<std::int8_t> status({n}), feature({n}), entity({n});
-  Array<double> xi({n, 2}), edge({n, 2}), position({n, 3}), normal({n, 3}), gap({n});
+  Array<std::int32_t> facet({n}, unset);
+  Array<std::int8_t> status({n}, unset), feature({n}, unset), entity({n}, unset);
+  Array<double> xi({n, 2}, unset), edge({n, 2}, unset), position({n, 3}, unset),
+      normal({n, 3}, unset), gap({n}, unset);
   {
     nb::gil_scoped_release free;
     kernel::parallel_for(n, threads, [&](std::size_t i) {

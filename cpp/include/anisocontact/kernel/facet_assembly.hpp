@@ -46,7 +46,8 @@ struct Block {
 
 namespace detail {
 
-using Row = std::array<double, 3 * 2 * most_nodes>;
+/// Begins with a line of the cache, so that wide registers do not read across two of them.
+struct alignas(64) Row : std::array<double, 3 * 2 * most_nodes> {};
 using Rows = std::array<Row, 3>;
 
 /// Columns of some nodes, one after the other: rows of the changes, times area, of what the values of
@@ -79,7 +80,12 @@ ANISOCONTACT_INLINE void combine(Length length, const std::array<double, K>& c,
 class Columns {
  public:
   Columns(const PairResult& r, const PairSlopes& d, const PairShapes& s) noexcept
-      : r_(r), d_(d), s_(s), area_(s.area.value()) {}
+      : r_(r), d_(d), s_(s), cross_(s.area.cross()), area_(s.area.weight) {
+    if (!s.area.current) return;
+    const double size = cross_.norm();
+    area_ *= size;
+    cross_ *= 1.0 / size;
+  }
 
   /// Columns of the nodes of the slave and of the master; `merged` where the history was committed
   /// on the same facet.
@@ -161,9 +167,9 @@ class Columns {
   ANISOCONTACT_INLINE void put_growth(Slaves slaves, Length length) {
     std::fill_n(growth_.data(), length, 0.0);
     if (!s_.area.current) return;
-    const Vec3<double> m = s_.area.cross().normalized(), zero = Vec3<double>::Zero();
-    const Vec3<double> c1 = s_.area.weight * s_.area.tangents[1].cross(m),
-                       c2 = s_.area.weight * m.cross(s_.area.tangents[0]);
+    const Vec3<double> zero = Vec3<double>::Zero();
+    const Vec3<double> c1 = s_.area.weight * s_.area.tangents[1].cross(cross_),
+                       c2 = s_.area.weight * cross_.cross(s_.area.tangents[0]);
     spread(slaves, s_.slave, zero, c1, c2, growth_.data());
   }
 
@@ -210,6 +216,7 @@ class Columns {
   const PairResult& r_;
   const PairSlopes& d_;
   const PairShapes& s_;
+  Vec3<double> cross_;  ///< of the tangents of the slave; its direction where the area follows
   double area_;
   std::array<Row, 2> friction_;
   std::array<Row, PairSlopes::near_forms> near_;

@@ -33,6 +33,13 @@ class PairAxes {
   /// Without a field, along the first direction.
   PlaneAxes operator()(const Directions& d) noexcept {
     if (!d.field) return with_normal(start_, n_);
+    PlaneAxes r;
+    with_widest([&]() ANISOCONTACT_INLINE_LAMBDA { r = of_field(d); });
+    return r;
+  }
+
+ private:
+  PlaneAxes of_field(const Directions& d) noexcept {
     if (d.side == Side::master) {
       if (!master_) master_.emplace(point_.master, turns_);
       return carried(*d.field, *master_, n_, d.side);
@@ -41,7 +48,6 @@ class PairAxes {
     return carried(*d.field, *own_, n_, d.side);
   }
 
- private:
   const PairPoint& point_;
   const Vec3<double>& n_;
   const PlaneAxis& start_;
@@ -49,6 +55,23 @@ class PairAxes {
   std::optional<ReferencePlane<std::conditional_t<tangent, Dual<2>, double>>> master_;
   std::optional<ReferencePlane<double>> own_;
 };
+
+/// Writes all derivatives of a point that touches: of what `foot` and `committed` say of the
+/// geometry and `r` of the law.
+inline void put_slopes(Footing& foot, const PairPoint& p, const Couple& couple,
+                       const Dual<1>& pressure, const FrameReaction& r, const LawAxes& axes,
+                       const CommittedPoint* committed, PairSlopes& d) noexcept {
+  const ContactPlane& plane = foot.plane;
+  foot.follow(p);
+  foot.follow(d);
+  put_friction_forms(r, axes, plane, committed, d.friction);
+  for (Form& f : d.friction) foot.expand(f, d);
+  d.along_friction[0] = plane.t;
+  d.direction(0, NearForm::gap) = pressure.d[0] * plane.n;
+  for (std::size_t a = 0; a < 2; ++a)
+    d.direction(0, NearForm::turn, a) = pressure.v * plane.t[a] - r.traction[a] * plane.n;
+  couple.differentiate(r.traction, d);
+}
 
 }  // namespace detail
 
@@ -105,17 +128,10 @@ PairResult update_pair(const InterfaceLaw& law, const PointState& state, const P
   const Couple couple(foot, friction);
   out.traction += friction;
   for (std::size_t j = 0; j < 2; ++j) out.couple[j] = couple.on_tangent(j);
-  if constexpr (tangent) {
-    foot.follow(p);
-    foot.follow(*d);
-    put_friction_forms(r, axes, plane, committed, d->friction);
-    for (Form& f : d->friction) foot.expand(f, *d);
-    d->along_friction[0] = plane.t;
-    d->direction(0, NearForm::gap) = pressure.d[0] * plane.n;
-    for (std::size_t a = 0; a < 2; ++a)
-      d->direction(0, NearForm::turn, a) = pressure.v * plane.t[a] - r.traction[a] * plane.n;
-    couple.differentiate(r.traction, *d);
-  }
+  if constexpr (tangent)
+    with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
+      detail::put_slopes(foot, p, couple, pressure, r, axes, committed, *d);
+    });
   return out;
 }
 

@@ -150,13 +150,15 @@ inline TrialSlopes trial_slopes(const InterfaceLaw& l, const FrameInput& in, con
   return s;
 }
 
-/// Friction tensor and axes; in S with variables their angles are those from `first` on.
-template <class S>
+/// Friction tensor and axes; in S with variables their angles are those from `first` on. `Two`:
+/// whether there may be a second field.
+template <bool Two, class S>
 void put_friction(const InterfaceLaw& l, const FrameInput& in, std::size_t first,
                   law::SlideProblem<S>& p) {
   p.axes = turning<S>(in.friction_axes, first);
-  const auto second =
-      l.friction_directions_second.field ? turning<S>(in.second_axes, first + 2) : p.axes;
+  auto second = p.axes;
+  if constexpr (Two)
+    if (l.friction_directions_second.field) second = turning<S>(in.second_axes, first + 2);
   p.a_co = flat_metric<S, Place::co>();
   p.friction = law::friction_tensor(l.friction, flat_metric<S, Place::contra>(), p.axes, second);
 }
@@ -170,7 +172,7 @@ std::array<Flat, 3> slide_slopes(const InterfaceLaw& l, const FrameInput& in, co
                                  const law::SlideResult<double>& solved, FrameReaction& r) {
   using S = Dual<2 + Angles>;  // two angles of adhesion, angles of friction
   law::SlideProblem<S> d;
-  put_friction(l, in, 2, d);
+  put_friction<(Angles > 2)>(l, in, 2, d);
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) {
       d.stiffness(i, j) = S(p.stiffness(i, j));
@@ -205,12 +207,8 @@ inline void add_trial_slopes(const FrameTrial& t, const TrialSlopes& d, double d
     }
 }
 
-}  // namespace detail
-
-/// Force and trial state; with `tangent` also the slopes.
 template <bool tangent>
-FrameReaction react_in_frame(const InterfaceLaw& l, const PointState& state,
-                             FrameInput in) noexcept {
+FrameReaction reaction(const InterfaceLaw& l, const PointState& state, FrameInput in) noexcept {
   FrameReaction r;
   Dual<1> share(1.0);
   const Flat whole = in.increment;
@@ -218,9 +216,9 @@ FrameReaction react_in_frame(const InterfaceLaw& l, const PointState& state,
     share = contact_fraction(state, Dual<1>::variable(in.gap, 0));
     for (double& x : in.increment) x *= share.v;
   }
-  const detail::FrameTrial t = detail::frame_trial(l, in, in.increment);
+  const FrameTrial t = frame_trial(l, in, in.increment);
   law::SlideProblem<double> p;
-  detail::put_friction(l, in, 0, p);
+  put_friction<true>(l, in, 0, p);
   p.stiffness = t.trial.stiffness;
   p.trial = t.trial.traction;
   p.increment = {in.increment};
@@ -238,13 +236,13 @@ FrameReaction react_in_frame(const InterfaceLaw& l, const PointState& state,
                      {solved.traction, solved.stored, p.elastic, p.increment, solved.slip, p.a_co,
                       t.axes, in.gap, in.pressure, in.dt, status});
   if constexpr (tangent) {
-    const detail::TrialSlopes by_angle = detail::trial_slopes(l, in, t);
+    const TrialSlopes by_angle = trial_slopes(l, in, t);
     std::array<Flat, 3> by_force{Flat{1.0, 0.0}, Flat{0.0, 1.0}, Flat{0.0, 0.0}};
     if (status == Contact::slip)
       by_force = l.friction_directions_second.field
-                     ? detail::slide_slopes<4>(l, in, by_angle, p, solved, r)
-                     : detail::slide_slopes<2>(l, in, by_angle, p, solved, r);
-    detail::add_trial_slopes(t, by_angle, in.dt, by_force, r);
+                     ? slide_slopes<4>(l, in, by_angle, p, solved, r)
+                     : slide_slopes<2>(l, in, by_angle, p, solved, r);
+    add_trial_slopes(t, by_angle, in.dt, by_force, r);
     for (std::size_t a = 0; a < 2; ++a) {
       double& by_gap = r.slope(Slope::gap, 0)[a];
       by_gap = by_force[2][a] * in.d_pressure;
@@ -254,6 +252,17 @@ FrameReaction react_in_frame(const InterfaceLaw& l, const PointState& state,
       }
     }
   }
+  return r;
+}
+
+}  // namespace detail
+
+/// Force and trial state; with `tangent` also the slopes.
+template <bool tangent>
+FrameReaction react_in_frame(const InterfaceLaw& l, const PointState& state,
+                             const FrameInput& in) noexcept {
+  FrameReaction r;
+  with_widest([&]() ANISOCONTACT_INLINE_LAMBDA { r = detail::reaction<tangent>(l, state, in); });
   return r;
 }
 

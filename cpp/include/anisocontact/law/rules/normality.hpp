@@ -18,7 +18,8 @@ class Normality {
     const ContraContra<S> k = self().conjugate(p);
     const auto secular = Secular<S>::of(p, k);
     const Secular<double> numbers = plain(secular);
-    const Root root = SmallestRoot(numbers, value(p.pressure)).find();
+    const SmallestRoot finder(numbers, value(p.pressure));
+    const Root root = finder.find();
     SlideResult<S> r;
     r.converged = root.converged;
     r.multiplier = S(root.lambda);
@@ -28,7 +29,7 @@ class Normality {
     } else {
       // one Newton step in S carries the exact derivative of the root; in doubles it changes nothing
       if constexpr (!std::is_same_v<S, double>)
-        r.multiplier -= secular.residual(r.multiplier, p.pressure) / S(root.slope);
+        r.multiplier -= secular.residual(r.multiplier, p.pressure) / S(finder.slope(root.lambda));
       r.traction = on_ellipse(p, p.trial + r.multiplier * secular.m);
       r.slip = -r.multiplier * (k * r.traction);
     }

@@ -35,7 +35,6 @@ struct Secular {
 /// Where T(lambda) first meets the ellipse.
 struct Root {
   double lambda{0.0};
-  double slope{1.0};  ///< dh/dlambda
   bool converged{false};
 };
 
@@ -73,13 +72,16 @@ class SmallestRoot {
       low = inflection;
     }
     if (det_ == 0.0 && (a2 < 0.0 || (a2 == 0.0 && a1 <= 0.0)))
-      return {std::numeric_limits<double>::infinity(), 1.0, true};
+      return {std::numeric_limits<double>::infinity(), true};
     return beyond(low);
   }
 
+  /// dh/dlambda.
+  double slope(double lambda) const noexcept { return at(lambda).slope; }
+
  private:
   struct Point {
-    double h, slope, p, half_dp;  // h, dh/dlambda; p = |u|_F^2, half of dp/dlambda
+    double h, slope, bend, p, half_dp;  // h and its derivatives; p = |u|_F^2, half of dp/dlambda
   };
   using Pair = std::array<double, 2>;
 
@@ -104,8 +106,10 @@ class SmallestRoot {
     const Pair u{trial_[0] + l * m_[0], trial_[1] + l * m_[1]};
     const double p = norm_.product(u, u), half_dp = norm_.product(u, m_);
     const double inverse = 1.0 / std::sqrt(p), scaled = n_ * inverse;
-    return {scaled * d - 1.0, scaled * ((tr_ + 2.0 * l * det_) - d * (half_dp * inverse) * inverse),
-            p, half_dp};
+    const double dd = tr_ + 2.0 * l * det_, turn = half_dp * inverse * inverse;
+    const double bend =
+        2.0 * (det_ - dd * turn) + d * (3.0 * turn * turn - q2_ * inverse * inverse);
+    return {scaled * d - 1.0, scaled * (dd - d * turn), scaled * bend, p, half_dp};
   }
 
   /// Zero up to a few roundings; or no longer falling and within the rounding of u.
@@ -121,9 +125,8 @@ class SmallestRoot {
     double previous = 2.0;
     for (int k = 0; k < most_; ++k) {
       const Point x = at(r.lambda);
-      r.slope = x.slope;
       if (is_root(r.lambda, x, previous)) {
-        r.converged = r.slope > 0.0;
+        r.converged = x.slope > 0.0;
         return r;
       }
       const double value = x.p * x.h * (x.h + 2.0);
@@ -136,22 +139,39 @@ class SmallestRoot {
     return r;
   }
 
-  /// Newton on h, kept inside a bracket, where there is one root above `low`.
+  /// Halley's step on h, that is, to the zero of a hyperbola with the derivatives of h; Newton's
+  /// where h bends too much for that.
+  static double stepped(double l, const Point& x) noexcept {
+    const double square = x.slope * x.slope, below = 2.0 * square - x.h * x.bend;
+    return l - (below > square ? 2.0 * x.h * x.slope / below : x.h / x.slope);
+  }
+
+  /// Whether a step of Halley, which leaves the cube of the error, ends at the root but for rounding.
+  static bool ends(const Point& x) noexcept {
+    constexpr double enough = 1e-6;
+    const double square = x.slope * x.slope;
+    return std::abs(x.h) * (square + std::abs(x.bend)) <= enough * square;
+  }
+
+  /// Halley on h, kept inside a bracket, where there is one root above `low`.
   Root beyond(double low) const noexcept {
     Root r{low};
     double high = std::numeric_limits<double>::infinity(), previous = 2.0;
     for (int k = 0; k < most_; ++k) {
       const Point x = at(r.lambda);
-      r.slope = x.slope;
       if (is_root(r.lambda, x, previous)) {
-        r.converged = r.slope > 0.0;
+        r.converged = x.slope > 0.0;
         return r;
       }
       previous = std::abs(x.h);
       (x.h < 0.0 ? low : high) = r.lambda;
-      double next = r.lambda - x.h / x.slope;
-      if (!(next > low && next < high)) next = between(low, high);
-      r.lambda = next;
+      const double next = stepped(r.lambda, x);
+      const bool inside = next > low && next < high;
+      r.lambda = inside ? next : between(low, high);
+      if (inside && x.slope > 0.0 && ends(x)) {
+        r.converged = true;
+        return r;
+      }
     }
     return r;
   }
