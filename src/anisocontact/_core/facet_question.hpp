@@ -104,6 +104,7 @@ nb::dict assemble(const Handle& h, const Question& q) {
                               Seen s;
                               for (std::size_t i = slots.runs[first]; i < slots.runs[last]; ++i) {
                                 const std::size_t p = slots.order[i];
+                                prefetch(q.state, slots.order[std::min(i + 2, q.points - 1)]);
                                 const kernel::PointState old = load(q.state, p);
                                 q.batch.see(old, p, s);
                                 const auto r = h.template at<tangent>(p, old, s.point, q.dt, &by);

@@ -17,6 +17,14 @@ inline kernel::PointState load(const std::uint8_t* bytes, std::size_t i) {
   return s;
 }
 
+/// Asks memory for a state that is loaded soon.
+inline void prefetch([[maybe_unused]] const std::uint8_t* bytes, [[maybe_unused]] std::size_t i) {
+#if defined(__GNUC__)
+  constexpr std::size_t line = 64, size = sizeof(kernel::PointState);
+  for (std::size_t k = 0; k < size; k += line) __builtin_prefetch(bytes + i * size + k);
+#endif
+}
+
 inline void store(std::uint8_t* bytes, std::size_t i, const kernel::PointState& s) {
   std::memcpy(bytes + i * sizeof(s), &s, sizeof(s));
 }

@@ -333,7 +333,7 @@ inline void add_residual(const PairResult& r, const PairShapes& s, double* out) 
 inline void add_tangent(const PairResult& r, const PairSlopes& d, const PairShapes& s, Block own,
                         Block earlier) noexcept {
   detail::with_counts(s.slave.count, s.master.count, [&](auto slaves, auto masters) {
-    with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
+    with_longest([&]() ANISOCONTACT_INLINE_LAMBDA {
       detail::add_tangent_of(slaves, masters, r, d, s, own, earlier);
     });
   });

@@ -37,9 +37,28 @@ inline const bool wide_registers = [] {
 inline constexpr bool wide_registers = false;
 #endif
 
+#if defined(ANISOCONTACT_HAS_WIDE) && !defined(__clang__)
+#define ANISOCONTACT_LONG        \
+  [[gnu::noinline, gnu::flatten, \
+    gnu::target("avx2,fma,avx512f,avx512dq,avx512vl,prefer-vector-width=512")]]
+/// Whether this processor has registers of eight numbers.
+inline const bool long_registers = [] {
+  __builtin_cpu_init();
+  return wide_registers && __builtin_cpu_supports("avx512f") != 0 &&
+         __builtin_cpu_supports("avx512dq") != 0 && __builtin_cpu_supports("avx512vl") != 0;
+}();
+#else
+#define ANISOCONTACT_LONG
+inline constexpr bool long_registers = false;
+#endif
+
 namespace detail {
 template <class F>
 ANISOCONTACT_WIDE void call_wide(const F& f) {
+  f();
+}
+template <class F>
+ANISOCONTACT_LONG void call_long(const F& f) {
   f();
 }
 template <class F>
@@ -55,6 +74,15 @@ void with_widest(const F& f) {
     detail::call_wide(f);
   else
     detail::call_narrow(f);
+}
+
+/// The same for loops along rows of numbers, compiled once more for registers of eight.
+template <class F>
+void with_longest(const F& f) {
+  if (long_registers)
+    detail::call_long(f);
+  else
+    with_widest(f);
 }
 
 }  // namespace anisocontact

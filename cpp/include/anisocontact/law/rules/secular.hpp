@@ -77,11 +77,15 @@ class SmallestRoot {
   }
 
   /// dh/dlambda.
-  double slope(double lambda) const noexcept { return at(lambda).slope; }
+  double slope(double lambda) const noexcept {
+    const Point x = at(lambda);
+    return x.slope / x.size;
+  }
 
  private:
+  /// h and its derivatives, all times |u|_F, the size; and half of d(ln |u|_F^2)/dlambda.
   struct Point {
-    double h, slope, bend, p, half_dp;  // h and its derivatives; p = |u|_F^2, half of dp/dlambda
+    double h, slope, bend, size, turn;
   };
   using Pair = std::array<double, 2>;
 
@@ -104,22 +108,20 @@ class SmallestRoot {
     const double d = 1.0 + l * (tr_ + l * det_);
     // from u, not as a quadratic in lambda: that would lose the digits of (N/|T_tr|)^2
     const Pair u{trial_[0] + l * m_[0], trial_[1] + l * m_[1]};
-    const double p = norm_.product(u, u), half_dp = norm_.product(u, m_);
-    const double inverse = 1.0 / std::sqrt(p), scaled = n_ * inverse;
-    const double dd = tr_ + 2.0 * l * det_, turn = half_dp * inverse * inverse;
-    const double bend =
-        2.0 * (det_ - dd * turn) + d * (3.0 * turn * turn - q2_ * inverse * inverse);
-    return {scaled * d - 1.0, scaled * (dd - d * turn), scaled * bend, p, half_dp};
+    const double p = norm_.product(u, u), size = std::sqrt(p), inverse = 1.0 / p;
+    const double dd = tr_ + 2.0 * l * det_, turn = norm_.product(u, m_) * inverse;
+    const double bend = 2.0 * (det_ - dd * turn) + d * (3.0 * turn * turn - q2_ * inverse);
+    return {n_ * d - size, n_ * (dd - d * turn), n_ * bend, size, turn};
   }
 
   /// Zero up to a few roundings; or no longer falling and within the rounding of u.
   bool is_root(double l, const Point& x, double previous) const noexcept {
-    if (std::abs(x.h) <= 4e-15) return true;
+    if (std::abs(x.h) <= 4e-15 * x.size) return true;
     constexpr double rounding2 = 1e-29;
-    return std::abs(x.h) >= previous && x.h * x.h * x.p <= rounding2 * (q0_ + l * l * q2_);
+    return std::abs(x.h) >= previous * x.size && x.h * x.h <= rounding2 * (q0_ + l * l * q2_);
   }
 
-  /// Newton on P = p h (h + 2), monotone from lambda = 0.
+  /// Newton on P = |u|_F^2 h (h + 2), monotone from lambda = 0.
   Root in_concave_part(double inflection) const noexcept {
     Root r;
     double previous = 2.0;
@@ -129,12 +131,12 @@ class SmallestRoot {
         r.converged = x.slope > 0.0;
         return r;
       }
-      const double value = x.p * x.h * (x.h + 2.0);
-      const double slope = 2.0 * (x.half_dp * x.h * (x.h + 2.0) + x.p * (x.h + 1.0) * x.slope);
+      const double value = x.h * (x.h + 2.0 * x.size);
+      const double slope = 2.0 * (x.turn * value + (x.h + x.size) * x.slope);
       if (!(slope > 0.0)) return r;
       r.lambda -= value / slope;
       if (!(r.lambda < inflection)) return r;
-      previous = std::abs(x.h);
+      previous = std::abs(x.h) / x.size;
     }
     return r;
   }
@@ -150,7 +152,7 @@ class SmallestRoot {
   static bool ends(const Point& x) noexcept {
     constexpr double enough = 1e-6;
     const double square = x.slope * x.slope;
-    return std::abs(x.h) * (square + std::abs(x.bend)) <= enough * square;
+    return std::abs(x.h) * (square + std::abs(x.bend) * x.size) <= enough * square * x.size;
   }
 
   /// Halley on h, kept inside a bracket, where there is one root above `low`.
@@ -163,7 +165,7 @@ class SmallestRoot {
         r.converged = x.slope > 0.0;
         return r;
       }
-      previous = std::abs(x.h);
+      previous = std::abs(x.h) / x.size;
       (x.h < 0.0 ? low : high) = r.lambda;
       const double next = stepped(r.lambda, x);
       const bool inside = next > low && next < high;
