@@ -79,7 +79,7 @@ WRONG = {
     ),
     "laws with a surface": (
         lambda m: FacetContact(m, "block.bottom", "base.top", law=INTERFACE),
-        "law: Interface given, PairLaw needed",
+        "law: Interface given, PairLaw or PythonPairLaw needed",
     ),
     "no degree on a plane": (
         lambda m: Contact(m, "block.bottom", INTERFACE, degree=0),

@@ -19,14 +19,16 @@ from tests.verification.test_fe_self_contact import GAP, hairpin
 from anisocontact.anisotropy import make_directions
 from anisocontact.augmentation import Augmentation
 from anisocontact.bulk import make_material
-from anisocontact.contact import FacetContact, SelfContact, TwoHalfPass
+from anisocontact.contact import Contact, FacetContact, SelfContact, TwoHalfPass, check_start
 from anisocontact.errors import InputError
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.python_law import PythonInterface
 from anisocontact.python_pair import PythonPairLaw
 from anisocontact.results import checkpoint
 from anisocontact.solver import Problem, Solver, Step
+from anisocontact.surfaces import make_surface
 
 type Ends = dict[str, dict[str, float]]
 
@@ -283,6 +285,22 @@ def test_mistakes_are_said() -> None:
     lines = make_directions("coordinate-lines")
     with pytest.raises(InputError, match="directions: 'coordinate-lines' goes by the coordinates"):
         PythonPairLaw(NORMAL, RADIAL, directions=lines)
+
+
+@pytest.mark.parametrize("kind", ["meshed", "plane"])
+def test_singular_directions_are_said(kind: str) -> None:
+    """Directions along the normal, where points can touch at once: one line, on both masters."""
+    upright = make_directions("constant", vector=(0, 0, 1))
+    model = _blocks()
+    if kind == "meshed":
+        law = PythonPairLaw(NORMAL, RADIAL, directions=upright)
+        contact: Any = FacetContact(model, "block.bottom", "base.top", law=law)
+    else:
+        plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        own = PythonInterface(plane, NORMAL, RADIAL, directions=upright)
+        contact = Contact(model, "block.bottom", own)
+    with pytest.raises(InputError, match="directions: no direction at 16 slave points"):
+        check_start(contact, 0.5)
 
 
 def test_self_contact() -> None:

@@ -22,7 +22,7 @@ from anisocontact.errors import InputError
 from anisocontact.interface import Interface, Response, SlaveSurface, State
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
-from anisocontact.python_law import PythonInterface
+from anisocontact.python_law import PythonInterface, common
 from anisocontact.rigid import MovingInterface, RigidBody
 
 Ints = npt.NDArray[np.int32]
@@ -209,7 +209,7 @@ class Contact(ContactRecord):
         tangents = self.quadrature.tangents
         slave = self._surface(tangents) if interface.takes_slave() else None
         points = self.quadrature.reference
-        return interface.update(state, points, tangent=False, slave=slave).failure
+        return interface.update(common(state), points, tangent=False, slave=slave).failure
 
     def lever(self) -> float:
         """Forces that would move every point of the trial to the origin, norm over this rank.

@@ -102,7 +102,8 @@ class FacetContact(ContactRecord):
     ) -> None:
         check_sides(model, slave, master, apart)
         if not hasattr(law, "pairs"):
-            raise InputError(f"{type(law).__name__} given, PairLaw needed", "law")
+            text = f"{type(law).__name__} given, PairLaw or PythonPairLaw needed"
+            raise InputError(text, "law")
         self.master = master
         self.interface = law
         self.current_area = current_area
