@@ -51,6 +51,7 @@ class TwoHalfPass(ContactRecord):
         InputError: As of `FacetContact`.
 
     Example:
+        >>> from anisocontact.interface import PairLaw
         >>> from anisocontact.laws import Adhesion, Friction, NormalLaw
         >>> from anisocontact.mesh import BoxSpec, build_box
         >>> upper = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
