@@ -17,6 +17,7 @@ from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.solver.ahead import FARTHEST, SPACING, Ahead
 from anisocontact.solver.coupled import MOST_LEFT
+from anisocontact.solver.turn import Turn
 
 LAW = PairLaw(
     NormalLaw(penalty=2e3), Adhesion(stiffness=(1e3, 1e3)), Friction(coefficients=(0.3, 0.3))
@@ -91,18 +92,13 @@ def test_back_and_forth_it_is_built_once():
     assert len(built) == 1
 
 
-def test_a_motion_that_nobody_foresees_lets_it_grow():
-    """A traction drags the block: only the margin beside the way is there."""
-    steps = pressed(0.0, 1)
-    free = dataclasses.replace(
-        steps[1],
-        increments=4,
-        displacement={"block.top": {"x": None, "y": 0.0}},
-        traction={"block.top": {"x": 0.5}},
-    )
-    forces, built = run(pair(), [steps[0], free])
-    grown, often = run(pair(), [steps[0], free], ahead=False)
-    assert len(built) < len(often)
+def test_where_no_way_is_prescribed_points_are_taken_to_slide_on():
+    """A block is turned about its axis: those at its corners go two facets far."""
+    turn = Turn((0, 0, 1), 1.0, point=(0.425, 0.375, 0.0))
+    steps = [pressed(0.0, 1)[0], Step("turn", 20, rotation={"block.top": turn})]
+    forces, built = run(pair(), steps)
+    grown, often = run(pair(), steps, ahead=False)
+    assert len(built) <= len(often) / 3
     np.testing.assert_allclose(forces, grown, atol=1e-6 * np.abs(grown).max())
 
 

@@ -17,7 +17,7 @@ from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.point_blocks import add_rows, point_blocks
 from anisocontact.contact.point_tangent import PointTangent
 from anisocontact.contact.quadrature import chosen_degree
-from anisocontact.contact.reachable import NodePairs, reachable
+from anisocontact.contact.reachable import NodePairs, reachable, slid
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.contact.semismooth import Base, Semismooth
 from anisocontact.contact.sides import check_sides, initial_state, located, make_sides
@@ -322,11 +322,17 @@ class FacetContact(ContactRecord):
         """Nodes that `couplings` can name where the slave goes along a way, see `reachable`.
 
         Args:
-            way: Displacement against the master at places along the way, (w, 3), length.
+            way: Displacement against the master at places along the way, of each point or one for
+                all, (w, n or 1, 3), length.
             margin: How far beside the way a point can be, length.
             hops: Places along the way that an increment goes.
         """
         return reachable(self._sides, self._now, way, margin, hops, self._transfer is None)
+
+    def slid(self) -> Floats:
+        """How far the foot of each point has slid in the trial, (n, 3), length."""
+        assert self._hint is not None
+        return slid(self._sides, self.state, self._hint)
 
     def couplings(self) -> Sequence[Couplings]:
         """Where `-d force / d u` of the trial has entries, and the entries.

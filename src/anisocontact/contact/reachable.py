@@ -6,8 +6,9 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import csr_array
 
-from anisocontact.contact.sides import Sides
-from anisocontact.facets import FACET_STATUS
+from anisocontact.contact.sides import Sides, located
+from anisocontact.facets import FACET_STATUS, FacetProjections
+from anisocontact.interface import State
 
 Ints = npt.NDArray[np.int32]
 Numbers = npt.NDArray[np.int64]
@@ -28,7 +29,8 @@ def reachable(
     Args:
         sides: Slave and master; the surface is where the nodes are.
         now: Positions of the nodes, (nodes, 3), length.
-        way: Displacement of the slave against the master at places along the way, (w, 3), length.
+        way: Displacement of each slave point against the master at places along the way, or one
+            for all, (w, n or 1, 3), length.
         margin: How far beside the way a point can be, length.
         hops: Places along the way that an increment goes.
         by_point: Whether facets of the master are coupled by each point alone, or by all points of
@@ -42,10 +44,10 @@ def reachable(
     if not (len(first) and len(sides.master.nodes)):
         return [(first, first)]
     x = sides.points.positions(now)
-    limit = sides.reach + float(np.linalg.norm(way, axis=1).max())
+    limit = sides.reach + float(np.linalg.norm(way, axis=2).max())
     everywhere = np.tile(np.arange(len(x)), len(way))
     excluded = None if sides.excluded is None else sides.excluded.take(everywhere)
-    places = (x + way[:, None]).reshape(-1, 3)
+    places = (x + way).reshape(-1, 3)
     hit = sides.surface.project(places, max_distance=limit, exclude=excluded)
     found = np.flatnonzero(hit.status <= FACET_STATUS.index("off"))
     near = sides.surface.within(hit.position[found], margin)
@@ -62,6 +64,18 @@ def reachable(
         (second[other], first[own]),
         (second[to], second[back]),
     ]
+
+
+def slid(sides: Sides, state: State, hit: FacetProjections) -> Floats:
+    """How far the foot of each point has slid on the master since a state, (n, 3), length.
+
+    Zero where there is no foot now or was none then. The surface is where `hit` found it.
+    """
+    out = np.zeros(hit.position.shape)
+    both = np.flatnonzero(located(hit) & (state["facet"] >= 0))
+    there = sides.surface.jet(state["facet"][both], state["xi"][both]).position
+    out[both] = hit.position[both] - there
+    return out
 
 
 def _met(group: Numbers, facet: Ints, facets: int, hops: int) -> tuple[Numbers, Numbers]:

@@ -20,6 +20,8 @@ Floats = npt.NDArray[np.float64]
 MARGIN = 0.1
 #: How far ahead facets are looked for, over the size of a slave facet.
 FARTHEST = 2.0
+#: Increments that points are taken to go on sliding where nothing is prescribed.
+MOST_INCREMENTS = 10.0
 #: Distance of the places along the way at which they are looked for, likewise.
 SPACING = 0.5
 
@@ -42,6 +44,9 @@ class Ahead:
     def pairs(self, step: Step | None, level: float) -> list[NodePairs]:
         """Nodes that can be coupled from now on.
 
+        Where nothing is prescribed, as under loads and turns, points are taken to go on as they
+        have slid in this increment.
+
         Args:
             step: The step that has been begun last; None before the first.
             level: Fraction of it.
@@ -49,6 +54,9 @@ class Ahead:
         found = []
         for one in self._passes:
             way, hops = self.way(one, step, level)
+            way = way[:, None]
+            if len(way) == 1:
+                way, hops = going_on(one)
             found += one.reachable(way, MARGIN * one.facet_size, hops)
         return found
 
@@ -76,6 +84,22 @@ class Ahead:
         way = way[: beyond[0]] if len(beyond) else way
         hops = np.ceil(min(sizes.max(initial=0.0), farthest) / spacing)
         return way, int(hops)
+
+
+def going_on(one: FacetContact) -> tuple[Floats, int]:
+    """Where slave points get to that slide on as in this increment, (w, n or 1, 3), length.
+
+    Also how many of these places an increment goes.
+    """
+    slid = one.slid() / one.facet_size
+    longest = float(np.linalg.norm(slid, axis=1).max(initial=0.0))
+    if not 0.0 < longest < np.inf:
+        return np.zeros((1, 1, 3)), 0
+    increments = min(FARTHEST / longest, MOST_INCREMENTS)
+    count = int(np.ceil(increments * longest / SPACING))
+    share = np.linspace(0.0, increments, count + 1)[:, None, None]
+    hops = int(np.ceil(min(longest, FARTHEST) / SPACING))
+    return share * slid * one.facet_size, hops
 
 
 def _path(steps: Sequence[Step], body: str) -> Floats:
