@@ -85,11 +85,16 @@ Transported<S> history(const AnyEvolution& evolution, const PointState& state,
   return t;
 }
 
+/// Share of the limit by which a trial force may exceed it and still sticks: a point that has slipped
+/// is on the limit, and while it does not move again rounding must not say whether it slips.
+inline constexpr double on_limit = 1e-10;
+
 /// Solves for T: the trial force where it is inside the ellipse, else what the rule makes of it.
 template <class S>
 law::SlideResult<S> tangential(const InterfaceLaw& l, const law::SlideProblem<S>& p,
                                Contact& status) {
-  if (law::friction_norm(p.friction, p.trial) <= p.pressure) {
+  const S size = law::friction_norm(p.friction, p.trial);
+  if (value(size) <= (1.0 + on_limit) * value(p.pressure)) {
     status = Contact::stick;
     return {p.trial, p.trial, {}, true};
   }
