@@ -6,6 +6,10 @@ the core, order of convergence, balance. Requirement and source of the others st
 
 from __future__ import annotations
 
+import shutil
+import subprocess
+import sys
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -276,6 +280,36 @@ def test_wrong_answers_are_said(name: str) -> None:
     with pytest.raises(InputError, match=text) as said:
         list(_solver(_problem(_python(Spoiled(RADIAL, array, wrong)))).run())
     assert "\n" not in str(said.value)
+
+
+ON_ONE = """
+import numpy as np
+from anisocontact.errors import InputError
+from mpi4py import MPI
+from tests.verification import pairs_on_ranks as pairs
+from tests.verification.laws_in_python import RadialReturn, Spoiled
+wrong = np.nan if MPI.COMM_WORLD.rank == 0 else 1.0
+own = Spoiled(RadialReturn((8.0, 16.0), (0.2, 0.4)), "traction", lambda v: wrong * v)
+model = pairs._bodies("tetrahedron")
+law = pairs.PythonPairLaw(pairs.NormalLaw(penalty=20.0), own)
+pair = pairs.FacetContact(model, "block.bottom", "mat.top", law=law)
+try:
+    list(pairs.Solver(*pairs._dragged(model, [pair])).run())
+except InputError as error:
+    print(error, flush=True)
+"""
+
+
+@pytest.mark.mpi
+def test_a_wrong_answer_on_one_process_is_said_on_all() -> None:
+    """The law spoils its force on the first of two processes alone: both stop with that line."""
+    if shutil.which("mpirun") is None:
+        pytest.skip("no mpirun")
+    command = ["timeout", "-k", "5", "120", "mpirun", "-n", "2", sys.executable, "-c", ON_ONE]
+    root = Path(__file__).parents[2]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("traction: the law returned [nan, nan] at") == 2
 
 
 def test_mistakes_are_said() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy.typing as npt
 from anisocontact._core import FacetPairs
 from anisocontact.contact.record import Snapshot
 from anisocontact.contact.sides import Sides, located
+from anisocontact.errors import InputError
 from anisocontact.facets import FACET_STATUS, FacetProjections
 from anisocontact.interface import Response, State, as_state, raw_state
 from anisocontact.python_law import common
@@ -72,7 +74,7 @@ def ask(sides: Sides, law: PairKernel, q: Question) -> tuple[dict[str, Any], Sna
         q.tangent,
         sides.threads,
     )
-    answer = _answer(law, q, batch)
+    answer = _answer(sides.comm, law, q, batch)
     lost = hit.status == FACET_STATUS.index("failed")
     response = Response(
         traction=answer["traction"],
@@ -86,9 +88,24 @@ def ask(sides: Sides, law: PairKernel, q: Question) -> tuple[dict[str, Any], Sna
     return answer, Snapshot(slave.positions(q.now), answer["area"], response)
 
 
-def _answer(law: PairKernel, q: Question, batch: tuple[Any, ...]) -> dict[str, Any]:
+def _answer(comm: Any, law: PairKernel, q: Question, batch: tuple[Any, ...]) -> dict[str, Any]:
     if isinstance(law, PythonPairs):
-        return law.respond(q.state, q.by_points, *batch)
+        return _on_all(comm, lambda: law.respond(q.state, q.by_points, *batch))
     # a law of the core has no use for the own variables of one in Python
     found = (law.update if q.by_points else law.assemble)(raw_state(common(q.state)), *batch)
     return found | {"state": as_state(found["state"])}
+
+
+def _on_all[T](comm: Any, ask: Callable[[], T]) -> T:
+    """What is asked on every rank; a mistake of one is raised on all, which would wait for it."""
+    answer: T | None = None
+    said: tuple[str, str] | None = None
+    try:
+        answer = ask()
+    except InputError as mistake:
+        said = str(mistake), mistake.field
+    first = next((one for one in comm.allgather(said) if one is not None), None)
+    if first is not None:
+        raise InputError(*first)
+    assert answer is not None
+    return answer
