@@ -151,9 +151,10 @@ def test_history_is_untouched_by_a_failed_increment(fe):
     """A run goes on after a failure as if it had not been.
 
     Requirement: history untouched by a failed step. Source: purity of the update. Tolerance: none,
-    the states are compared byte by byte and the forces bit by bit.
+    the states are compared byte by byte and the forces bit by bit. No cuts: of a smaller part one
+    correction may be enough.
     """
-    from anisocontact.solver import Step, StoppedError
+    from anisocontact.solver import Limits, Solver, Step, StoppedError
 
     def start():
         block = fe.block(fe.interface(angle=0.4), cells=(2, 2, 1))
@@ -162,8 +163,10 @@ def test_history_is_untouched_by_a_failed_increment(fe):
 
     disturbed, straight = start(), start()
     state, u = disturbed.contact.state.tobytes(), disturbed.problem.u.x.array.copy()
+    fail = Step("fail", 1, {"block.top": {"y": 0.5}})
     with pytest.raises(StoppedError):
-        disturbed.run(Step("fail", 1, {"block.top": {"y": 0.5}}), snes_max_it=1)
+        once = {"snes_max_it": 1}
+        list(Solver(disturbed.problem, [fail], options=once, limits=Limits(cuts=0)).run())
     assert disturbed.contact.state.tobytes() == state
     assert np.array_equal(disturbed.problem.u.x.array, u)
 

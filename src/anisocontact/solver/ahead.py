@@ -75,11 +75,13 @@ class Ahead:
         slave, master = (self._paths[name.partition(".")[0]] for name in (one.slave, one.master))
         path = slave - master
         ends, jumps = path[first:], np.diff(path[first:], axis=0)
-        sizes = np.linalg.norm(jumps, axis=1) / self._increments[first:]
+        with np.errstate(over="ignore"):
+            sizes = np.linalg.norm(jumps, axis=1) / self._increments[first:]
         if len(jumps):
             ends = np.concatenate([ends[:1] + level * jumps[:1], ends[1:]])
         spacing, farthest = SPACING * one.facet_size, FARTHEST * one.facet_size
-        way = _sampled(ends - ends[0], spacing)
+        # what is farther than twice as far from a place within is outside
+        way = _sampled(ends - ends[0], spacing, most=int(2.0 * FARTHEST / SPACING) + 1)
         beyond = np.flatnonzero(np.linalg.norm(way, axis=1) > farthest)
         way = way[: beyond[0]] if len(beyond) else way
         hops = np.ceil(min(sizes.max(initial=0.0), farthest) / spacing)
@@ -120,11 +122,11 @@ def _path(steps: Sequence[Step], body: str) -> Floats:
     return path
 
 
-def _sampled(ends: Floats, spacing: float) -> Floats:
-    """Places along a polygon, at most `spacing` apart, (w, 3)."""
+def _sampled(ends: Floats, spacing: float, most: int) -> Floats:
+    """Places along a polygon, at most `spacing` apart, the first `most` of each side, (w, 3)."""
     places = [ends[:1]]
     for begin, end in pairwise(ends):
-        count = int(np.ceil(np.linalg.norm(end - begin) / spacing))
-        share = np.arange(1, count + 1)[:, None] / max(count, 1)
+        count = np.ceil(np.linalg.norm(end - begin) / spacing)
+        share = np.arange(1.0, min(count, most) + 1.0)[:, None] / max(count, 1.0)
         places.append(begin + share * (end - begin))
     return np.concatenate(places)
