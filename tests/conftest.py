@@ -97,6 +97,29 @@ def plane_tensor(values: Pair, angle: float) -> Any:
     return axes.T @ np.diag(values) @ axes
 
 
+def difference_errors(problem: Any, x: Any, direction: Any, steps: Sequence[float]) -> Any:
+    """Central differences of the residual against the tangent.
+
+    Args:
+        problem: A problem with a step and its level.
+        x: All unknowns.
+        direction: Along which the derivative is taken.
+        steps: Steps of the differences.
+
+    Returns:
+        Relative error of the derivative for each step.
+    """
+    matrix = problem.new_tangent()
+    for _ in range(2):  # the second time the pattern is there
+        problem.tangent(x, matrix)
+    exact = (matrix @ direction).array.copy()
+    errors = []
+    for h in steps:
+        ends = [problem.evaluate(x + sign * h * direction).copy() for sign in (1.0, -1.0)]
+        errors.append(np.linalg.norm((ends[0] - ends[1]) / (2.0 * h) - exact))
+    return np.asarray(errors) / np.linalg.norm(exact)
+
+
 def tangent_errors(problem: Any, rng: np.random.Generator, size: float) -> Any:
     """Central differences of the residual against the tangent, at a random state.
 
@@ -112,15 +135,7 @@ def tangent_errors(problem: Any, rng: np.random.Generator, size: float) -> Any:
     x, direction = problem.new_vector(), problem.new_vector()
     x.array[:] = size * rng.standard_normal(x.getSize())
     direction.array[:] = rng.standard_normal(x.getSize())
-    matrix = problem.new_tangent()
-    for _ in range(2):  # the second time the pattern is there
-        problem.tangent(x, matrix)
-    exact = (matrix @ direction).array.copy()
-    errors = []
-    for h in (2e-4, 1e-4, 5e-5):
-        ends = [problem.evaluate(x + sign * h * direction) for sign in (1.0, -1.0)]
-        errors.append(np.linalg.norm((ends[0] - ends[1]) / (2.0 * h) - exact))
-    return np.asarray(errors) / np.linalg.norm(exact)
+    return difference_errors(problem, x, direction, (2e-4, 1e-4, 5e-5))
 
 
 class FiniteElements:

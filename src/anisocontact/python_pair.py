@@ -148,8 +148,9 @@ class PythonPairs:
         told = self._core.tell(raw, *batch)
         active = np.flatnonzero(told["pressure"] > 0.0)
         result = self._ask(state, told, active, batch)
-        laid = np.zeros((len(state), 22))
-        laid[active] = _laid_out(result)
+        answers = _laid_out(result)
+        laid = np.zeros((len(state), answers.shape[1]))
+        laid[active] = answers
         answered = self._core.answered(laid)
         found = (answered.update if by_points else answered.assemble)(raw, *batch)
         internal = np.zeros((len(state), self._law.internal))
@@ -184,7 +185,7 @@ _XI = 12
 
 
 def _laid_out(r: LawResult) -> Floats:
-    """The answer at each point as the core reads it, (n, 22)."""
+    """The answer at each point as the core reads it, one row each."""
     parts = (
         r.traction,
         r.traction if r.stored is None else r.stored,
