@@ -38,14 +38,18 @@ Directions field(Random& r) {
   const Side side = r.coin() ? Side::master : Side::slave;
   const double angle = r(-1.0, 1.0);
   if (r(0.0, 1.0) < 0.1) return {};
-  if (r.coin())
-    return {anisotropy::Fields::make(
-                "polar",
-                Values({{"axis", {-0.7, r(-0.6, -0.4), 0.0, 0.0, 0.1, 1.0}}, {"angle", {angle}}})),
-            side};
-  return {anisotropy::Fields::make(
-              "from-vectors", Values({{"first", {1.0, angle, 0.1}}, {"second", {-0.4, 1.0, 0.2}}})),
-          side};
+  const std::vector<double> axis{-0.7, r(-0.6, -0.4), 0.0, 0.0, 0.1, 1.0};
+  const std::array<anisotropy::AnyField, 5> fields{
+      anisotropy::Fields::make("constant",
+                               Values({{"vector", {1.0, 0.3, 0.1}}, {"angle", {angle}}})),
+      anisotropy::Fields::make("oblique", Values({{"vector", {1.0, 0.3, 0.1}},
+                                                  {"angle_first", {angle}},
+                                                  {"angle_second", {angle + 1.1}}})),
+      anisotropy::Fields::make("polar", Values({{"axis", axis}, {"angle", {angle}}})),
+      anisotropy::Fields::make("spiral", Values({{"axis", axis}, {"pitch", {4.0 + angle}}})),
+      anisotropy::Fields::make(
+          "from-vectors", Values({{"first", {1.0, angle, 0.1}}, {"second", {-0.4, 1.0, 0.2}}}))};
+  return {fields[static_cast<std::size_t>(r(0.0, 4.999))], side};
 }
 
 law::AnyAdhesion adhesion(Random& r) {

@@ -63,18 +63,10 @@ Sheet sheet(Random& r, Topology t, std::int32_t cells) {
   return s;
 }
 
-surface::Shape<double> shape_at(const surface::FacetKind& kind, const std::array<double, 2>& xi) {
-  surface::Shape<double> f;
-  surface::shape(kind, xi[0], xi[1], f);
-  return f;
-}
-
 kernel::NodalShape nodal(const surface::FacetKind& kind, const std::array<double, 2>& xi) {
-  const auto f = shape_at(kind, xi);
   kernel::NodalShape n;
   n.count = kind.nodes();
-  n.n = f.N;
-  n.dn = f.dN;
+  surface::shape(kind, xi[0], xi[1], n);
   return n;
 }
 
@@ -113,7 +105,6 @@ std::size_t meet(const search::FacetSurface& s, const Vec3<double>& x,
   p.own = {jet, jet, {}};
   kernel::PairShapes shapes;
   shapes.slave = shapes.master = nodal(s.kind(hit.facet), hit.xi);
-  shapes.bend = shape_at(s.kind(hit.facet), hit.xi).d2N;
   shapes.area = {0.3, true, jet.d1};
   if (state.facet >= 0) {
     const auto f = static_cast<std::int32_t>(state.facet);

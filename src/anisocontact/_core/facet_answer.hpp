@@ -75,13 +75,13 @@ struct Answer {
     const double dA = area.data[p];
     const Vec3<double> t = dA * r.traction, m0 = dA * r.couple[0], m1 = dA * r.couple[1];
     for (std::size_t c = 0; c < km; ++c)
-      put3(on_master.data, p * km + c, shape.dn[c][0] * m0 + shape.dn[c][1] * m1 - shape.n[c] * t);
+      put3(on_master.data, p * km + c, shape.dN[c][0] * m0 + shape.dN[c][1] * m1 - shape.N[c] * t);
   }
   /// Size of a point's block: of |dt/dx| and of the shape functions on both sides.
   double size_of_block(std::size_t p, const kernel::PairSlopes& d, const Seen& s) const {
     double squares = 0.0;
     for (const auto* shape : {&s.shapes.slave, &s.shapes.master})
-      for (std::size_t a = 0; a < shape->count; ++a) squares += shape->n[a] * shape->n[a];
+      for (std::size_t a = 0; a < shape->count; ++a) squares += shape->N[a] * shape->N[a];
     return area.data[p] * squares * d.size();
   }
 };

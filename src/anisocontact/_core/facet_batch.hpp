@@ -58,8 +58,8 @@ struct Slave {
   void at(std::size_t p, NodalShape& s) const {
     s.count = width;
     for (std::size_t a = 0; a < width; ++a) {
-      s.n[a] = shape[p * width + a];
-      s.dn[a] = {gradient[2 * (p * width + a)], gradient[2 * (p * width + a) + 1]};
+      s.N[a] = shape[p * width + a];
+      s.dN[a] = {gradient[2 * (p * width + a)], gradient[2 * (p * width + a) + 1]};
     }
   }
 };
@@ -70,13 +70,6 @@ struct Hits {
   const double *xi, *edge;
   const std::int8_t* feature;
 };
-
-/// Facets of fewer nodes than the widest have zeros at the end.
-inline void put_shape(std::size_t count, const surface::Shape<double>& s, NodalShape& to) {
-  to.count = count;
-  to.n = s.N;
-  to.dn = s.dN;
-}
 
 /// What the kernel sees of one point.
 struct Seen {
@@ -112,10 +105,8 @@ struct Batch {
     s.point.master.xi = {hits.xi[2 * p], hits.xi[2 * p + 1]};
     s.point.edge = {hits.edge[2 * p], hits.edge[2 * p + 1]};
     const auto kind = mesh.kind(f);
-    surface::Shape<double> shape;
-    surface::shape(kind, hits.xi[2 * p], hits.xi[2 * p + 1], shape);
-    put_shape(mesh.width, shape, s.shapes.master);
-    s.shapes.bend = shape.d2N;
+    auto& shape = s.shapes.master;
+    put_shape(kind, s.point.master.xi, shape);
     surface::put_facet_jet(kind, mesh.nodes(mesh.now, f), shape, true, s.point.master.now);
     if (on_master)
       surface::put_facet_jet(kind, mesh.nodes(mesh.reference, f), shape, true,
@@ -125,9 +116,8 @@ struct Batch {
   void see_committed(const kernel::PointState& state, Seen& s) const {
     const auto c = static_cast<std::size_t>(state.facet);
     const auto kind = mesh.kind(c);
-    surface::Shape<double> shape;
-    surface::shape(kind, state.xi[0], state.xi[1], shape);
-    put_shape(mesh.width, shape, s.shapes.before);
+    auto& shape = s.shapes.before;
+    put_shape(kind, state.xi, shape);
     surface::put_facet_jet(kind, mesh.nodes(mesh.now, c), shape, false, s.point.before);
   }
 
@@ -146,10 +136,16 @@ struct Batch {
   }
 
  private:
+  /// Facets of fewer nodes than the widest have zeros at the end.
+  void put_shape(const surface::FacetKind& kind, const std::array<double, 2>& xi,
+                 NodalShape& s) const {
+    s.count = mesh.width;
+    surface::shape(kind, xi[0], xi[1], s);
+  }
   static void add_node(const NodalShape& s, std::size_t a, const Vec3<double>& x,
                        surface::Jet<double>& j) {
-    j.position += s.n[a] * x;
-    for (std::size_t i = 0; i < 2; ++i) j.d1[i] += s.dn[a][i] * x;
+    j.position += s.N[a] * x;
+    for (std::size_t i = 0; i < 2; ++i) j.d1[i] += s.dN[a][i] * x;
   }
 };
 

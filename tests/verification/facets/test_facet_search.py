@@ -131,6 +131,30 @@ def test_hint_changes_nothing_but_the_name(meshes: SimpleNamespace, topology: st
         assert np.abs(warm.normal - cold.normal).max() < 1e-8
 
 
+@pytest.mark.parametrize("turn", [0.0, 0.4])
+@pytest.mark.parametrize("topology", ["tri3", "quad4", "quad9"])
+def test_hint_on_the_wrong_layer(meshes: SimpleNamespace, topology: str, turn: float) -> None:
+    """Points between two sheets a tenth of a facet apart, along the axes of their boxes and across
+    them: with the hint on a facet of the other sheet, or on a neighbour, the nearer sheet as in a
+    search without a hint; to rounding, and flat minima of curved facets to 1e-9 of its square."""
+    ring = meshes.ring(20, 9, topology)
+    c, s = np.cos(turn), np.sin(turn)
+    points = ring.points @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    count, height = len(ring.facets), 0.01
+    layers = np.concatenate([points, points + np.array([0.0, 0.0, height])])
+    facets = np.concatenate([ring.facets, ring.facets + len(points)])
+    surface = FacetSurface(layers, facets, topology)
+    rng = np.random.default_rng(11)
+    x = layers[rng.integers(len(layers), size=3000)] + height * rng.normal(size=(3000, 3))
+    cold = surface.project(x)
+    other = (cold.facet + count) % (2 * count)
+    beside = (cold.facet + rng.integers(1, 3, size=3000)) % (2 * count)
+    for hint in (cold, other, beside):
+        warm = surface.project(x, hint=hint)
+        d, e = (np.linalg.norm(x - p.position, axis=1) for p in (cold, warm))
+        assert np.abs(d - e).max() <= (EXACT if topology in {"tri3", "quad4"} else CURVED)
+
+
 @pytest.mark.parametrize("topology", ["tri3", "quad4", "quad9"])
 def test_walk_around_a_ring(meshes: SimpleNamespace, topology: str) -> None:
     """A point carried around a torus, both ways at once, each projection the hint of the next:

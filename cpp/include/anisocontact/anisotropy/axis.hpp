@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "anisocontact/anisotropy/field.hpp"
+#include "anisocontact/anisotropy/turned_line.hpp"
 
 namespace anisocontact::anisotropy {
 
@@ -21,13 +21,13 @@ class Axis {
 
   const Vec3<double>& direction() const { return direction_; }
 
-  /// z x r = R e_phi, around the axis in the sense of a right-handed screw; none on the axis
+  /// z x r = R e_phi, around the axis in the sense of a right-handed screw; zero on the axis
   /// itself, as near as the rounding of positions can tell.
   template <class S>
-  std::optional<Vec3<S>> around(const Vec3<S>& x) const {
+  Vec3<S> around(const Vec3<S>& x) const {
     const Vec3<S> r = constant<S>(direction_).cross(x - constant<S>(point_));
     const double size2 = value(x).squaredNorm() + point_.squaredNorm();
-    if (!(value(r.dot(r)) > parallel_limit * parallel_limit * size2)) return std::nullopt;
+    if (!(value(r.dot(r)) > parallel_limit * parallel_limit * size2)) return Vec3<S>::Zero();
     return r;
   }
 

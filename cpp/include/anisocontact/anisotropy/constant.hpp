@@ -1,7 +1,7 @@
 #pragma once
 // Constant direction with an angle: the spectral representation.
 
-#include "anisocontact/anisotropy/field.hpp"
+#include "anisocontact/anisotropy/turned_line.hpp"
 
 namespace anisocontact::anisotropy {
 
@@ -31,8 +31,12 @@ class Constant {
   }
 
   template <class S>
+  TurnedLine<S> line(const Vec3<S>&) const {
+    return {constant<S>(vector_), {turn_, turn_.and_quarter()}};
+  }
+  template <class S>
   Axes<S> axes(const surface::Geometry<S>& g, const Vector<S>&) const {
-    return axes_from<S>(g, constant<S>(vector_), turn_);
+    return axes_along(g, line(g.jet.position));
   }
 
  private:

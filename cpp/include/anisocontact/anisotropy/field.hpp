@@ -41,8 +41,19 @@ class Turn {
     const Vec3<S> f = normal.cross(e);
     return c_ * e + s_ * f;
   }
+  /// The same from components of e and n x e.
+  template <class S>
+  Vector<S> operator()(const Vector<S>& e, const Vector<S>& f) const {
+    return c_ * e + s_ * f;
+  }
+
+  /// This turn and a quarter more, or a quarter back.
+  Turn and_quarter() const { return {-s_, c_}; }
+  Turn less_quarter() const { return {s_, -c_}; }
 
  private:
+  Turn(double c, double s) : c_(c), s_(s) {}
+
   double c_{1.0}, s_{0.0};
 };
 

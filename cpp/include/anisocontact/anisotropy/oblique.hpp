@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "anisocontact/anisotropy/field.hpp"
+#include "anisocontact/anisotropy/turned_line.hpp"
 
 namespace anisocontact::anisotropy {
 
@@ -36,10 +36,12 @@ class Oblique {
   }
 
   template <class S>
+  TurnedLine<S> line(const Vec3<S>&) const {
+    return {constant<S>(vector_), {first_, second_}};
+  }
+  template <class S>
   Axes<S> axes(const surface::Geometry<S>& g, const Vector<S>&) const {
-    const auto e = unit_tangent<S>(g, constant<S>(vector_));
-    if (!e) return no_axes(g);
-    return {{first_(g.normal, *e), second_(g.normal, *e)}, true};
+    return axes_along(g, line(g.jet.position));
   }
 
  private:

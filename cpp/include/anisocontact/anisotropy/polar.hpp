@@ -30,12 +30,12 @@ class Polar {
   static Polar make(const Values& v) { return {Axis::from(v.axis("axis")), v.scalar("angle")}; }
 
   template <class S>
+  TurnedLine<S> line(const Vec3<S>& x) const {
+    return {axis_.around(x), {turn_.less_quarter(), turn_}};
+  }
+  template <class S>
   Axes<S> axes(const surface::Geometry<S>& g, const Vector<S>&) const {
-    const auto around = axis_.around(g.jet.position);
-    if (!around) return no_axes(g);
-    const auto ring = unit_tangent(g, *around);
-    if (!ring) return no_axes(g);
-    return orthonormal_axes<S>(g, Vec3<S>(ring->cross(g.normal)), turn_);
+    return axes_along(g, line(g.jet.position));
   }
 
  private:

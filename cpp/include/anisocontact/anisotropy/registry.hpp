@@ -22,4 +22,19 @@ Axes<S> axes(const AnyField& f, const surface::Geometry<S>& g, const Vector<S>& 
   return std::visit([&](const auto& t) { return t.axes(g, xi); }, f);
 }
 
+/// Components of the axes of a field; `geometry()` gives the whole geometry to fields that need more
+/// than a basis.
+template <class S, class Whole>
+Components<S> components(const AnyField& f, const TangentBasis<S>& b, const Vector<S>& xi,
+                         const Whole& geometry) {
+  return std::visit(
+      [&]<class F>(const F& t) -> Components<S> {
+        if constexpr (HasLine<F, S>) return components_along(b, t.line(b.position));
+        const surface::Geometry<S> g = geometry();
+        const Axes<S> axes = t.axes(g, xi);
+        return {g.project_contra(axes.e), axes.valid};
+      },
+      f);
+}
+
 }  // namespace anisocontact::anisotropy

@@ -31,13 +31,16 @@ class Spiral {
   }
   static Spiral make(const Values& v) { return {Axis::from(v.axis("axis")), v.scalar("pitch")}; }
 
+  /// The normal of the helicoid times R^2; the spiral is across it.
+  template <class S>
+  TurnedLine<S> line(const Vec3<S>& x) const {
+    const Vec3<S> around = axis_.around(x);
+    return {around.dot(around) * constant<S>(axis_.direction()) - S(h_) * around,
+            {Turn{}.less_quarter(), Turn{}}};
+  }
   template <class S>
   Axes<S> axes(const surface::Geometry<S>& g, const Vector<S>&) const {
-    const auto around = axis_.around(g.jet.position);
-    if (!around) return no_axes(g);
-    // the normal of the helicoid times R^2
-    const Vec3<S> m = around->dot(*around) * constant<S>(axis_.direction()) - S(h_) * *around;
-    return orthonormal_axes<S>(g, unit_along<S>(m.cross(g.normal), value(m.dot(m))), Turn{});
+    return axes_along(g, line(g.jet.position));
   }
 
  private:

@@ -32,24 +32,29 @@ struct Carrier {
 
 namespace detail {
 
-/// The jet beside a point; S = Dual<2> has the two coordinates as variables.
+/// x beside a point, with its derivatives along the coordinates; S = Dual<2> has the two coordinates
+/// as variables.
+template <class S>
+Vec3<S> beside(const Vec3<double>& x, [[maybe_unused]] const Vec3<double>& d1,
+               [[maybe_unused]] const Vec3<double>& d2) {
+  Vec3<S> r = constant<S>(x);
+  if constexpr (!std::is_same_v<S, double>)
+    for (Eigen::Index k = 0; k < 3; ++k) r[k].d = {d1[k], d2[k]};
+  return r;
+}
+template <class S>
+Vec3<S> position_beside(const surface::Jet<double>& j) {
+  return beside<S>(j.position, j.d1[0], j.d1[1]);
+}
+template <class S>
+std::array<Vec3<S>, 2> tangents_beside(const surface::Jet<double>& j) {
+  return {beside<S>(j.d1[0], j.d2[0], j.d2[1]), beside<S>(j.d1[1], j.d2[1], j.d2[2])};
+}
 template <class S>
 surface::Jet<S> beside(const surface::Jet<double>& j) {
-  if constexpr (std::is_same_v<S, double>) {
-    return j;
-  } else {
-    surface::Jet<S> r;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      r.position[k] = S(j.position[k]);
-      for (std::size_t i = 0; i < 2; ++i) {
-        r.position[k].d[i] = j.d1[i][k];
-        r.d1[i][k] = S(j.d1[i][k]);
-        for (std::size_t m = 0; m < 2; ++m) r.d1[i][k].d[m] = j.second(i, m)[k];
-      }
-      for (std::size_t i = 0; i < 3; ++i) r.d2[i][k] = S(j.d2[i][k]);
-    }
-    return r;
-  }
+  return {position_beside<S>(j),
+          tangents_beside<S>(j),
+          {constant<S>(j.d2[0]), constant<S>(j.d2[1]), constant<S>(j.d2[2])}};
 }
 
 template <class S>
@@ -60,18 +65,18 @@ Vector<S> beside(const std::array<double, 2>& xi) {
     return {{S::variable(xi[0], 0), S::variable(xi[1], 1)}};
 }
 
-/// The axis along c^i rho_i, with c and, in dual numbers, its derivatives along the coordinates.
+/// Writes the axis along c^i rho_i, with c and, in dual numbers, its derivatives along the
+/// coordinates; returns whether there is one.
 template <class S>
-std::optional<PlaneAxis> plane_axis(const surface::Jet<double>& now, const Vec3<double>& n,
-                                    const Vector<S>& c) {
-  PlaneAxis a;
+bool put_axis(const surface::Jet<double>& now, const Vec3<double>& n, const Vector<S>& c,
+              PlaneAxis& a) {
   a.c = value(c).c;
   const Vec3<double> v = a.c[0] * now.d1[0] + a.c[1] * now.d1[1];
   a.lift = v.dot(n);
   const Vec3<double> flat = v - a.lift * n;
   const double length2 = flat.squaredNorm();
   constexpr double limit = anisotropy::parallel_limit;
-  if (!(length2 > limit * limit * v.squaredNorm())) return std::nullopt;
+  if (!(length2 > limit * limit * v.squaredNorm())) return false;
   const double inverse = 1.0 / std::sqrt(length2);
   a.e = inverse * flat;
   a.mu = inverse * n.cross(a.e);
@@ -81,7 +86,7 @@ std::optional<PlaneAxis> plane_axis(const surface::Jet<double>& now, const Vec3<
                               a.c[0] * now.second(0, j) + a.c[1] * now.second(1, j);
       a.by_xi[j] = a.mu.dot(dv);
     }
-  return a;
+  return true;
 }
 
 }  // namespace detail
@@ -99,19 +104,25 @@ inline PlaneAxes with_normal(const PlaneAxis& first, const Vec3<double>& n) {
   return r;
 }
 
-/// A body with the tangent plane of its reference configuration; in S = Dual<2> its coordinates may
-/// follow the projection, in double they are fixed.
+/// A body with the basis of its reference configuration; in S = Dual<2> its coordinates may follow
+/// the projection, in double they are fixed.
 template <class S>
 struct ReferencePlane {
   const Carrier& body;
-  surface::Geometry<S> plane;
-  Vector<S> xi;
+  double orientation;
+  anisotropy::TangentBasis<S> basis;
 
-  /// `orientation`: on which side of the reference the normal is about which directions turn.
-  ReferencePlane(const Carrier& b, double orientation)
-      : body(b), plane{.jet = detail::beside<S>(b.reference)}, xi(detail::beside<S>(b.xi)) {
-    surface::put_tangent_plane(plane);
-    if (orientation < 0.0) plane.normal = -plane.normal;
+  /// `side`: on which side of the reference the normal is about which directions turn, 1 or -1.
+  ReferencePlane(const Carrier& b, double side)
+      : body(b),
+        orientation(side),
+        basis(detail::position_beside<S>(b.reference), detail::tangents_beside<S>(b.reference),
+              side) {}
+
+  surface::Geometry<S> geometry() const {
+    auto g = surface::tangent_plane(detail::beside<S>(body.reference));
+    if (orientation < 0.0) g.normal = -g.normal;
+    return g;
   }
 };
 
@@ -120,16 +131,14 @@ struct ReferencePlane {
 template <class S>
 PlaneAxes carried(const anisotropy::AnyField& field, const ReferencePlane<S>& reference,
                   const Vec3<double>& n, Side side) {
-  const auto axes = anisotropy::axes(field, reference.plane, reference.xi);
+  const auto c =
+      anisotropy::components(field, reference.basis, detail::beside<S>(reference.body.xi),
+                             [&] { return reference.geometry(); });
   PlaneAxes r;
   r.side = side;
-  r.valid = axes.valid;
-  for (std::size_t k = 0; k < 2 && r.valid; ++k) {
-    const auto a =
-        detail::plane_axis<S>(reference.body.now, n, reference.plane.project_contra(axes.e[k]));
-    r.valid = a.has_value();
-    if (a) r.axis[k] = *a;
-  }
+  r.valid = c.valid;
+  for (std::size_t k = 0; k < 2 && r.valid; ++k)
+    r.valid = detail::put_axis<S>(reference.body.now, n, c.c[k], r.axis[k]);
   return r;
 }
 

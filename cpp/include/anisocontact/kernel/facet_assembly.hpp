@@ -8,16 +8,15 @@
 #include <algorithm>
 
 #include "anisocontact/kernel/facet_pair.hpp"
+#include "anisocontact/surface/facet_shapes.hpp"
 
 namespace anisocontact::kernel {
 
-inline constexpr std::size_t most_nodes = 9;
+inline constexpr std::size_t most_nodes = surface::max_facet_nodes;
 
-/// Shape functions at a point and their first derivatives.
-struct NodalShape {
+/// Shape functions of some nodes at a point.
+struct NodalShape : surface::Shape<double> {
   std::size_t count{0};
-  std::array<double, most_nodes> n{};
-  std::array<std::array<double, 2>, most_nodes> dn{};
 };
 
 /// Area of the slave point: weight of the quadrature and, where the area is the current one, the
@@ -34,7 +33,6 @@ struct SlaveArea {
 /// A point as it is assembled.
 struct PairShapes {
   NodalShape slave, master, before;
-  std::array<std::array<double, 3>, most_nodes> bend{};  ///< second derivatives of the master's
   SlaveArea area;
 };
 
@@ -106,7 +104,7 @@ class Columns {
       const auto& by = d_.near[f].by;
       double* to = near_[f].data();
       for (std::size_t a = 0; a < slaves; ++a)
-        for (Eigen::Index j = 0; j < 3; ++j) *to++ = s_.slave.n[a] * by[0][j];
+        for (Eigen::Index j = 0; j < 3; ++j) *to++ = s_.slave.N[a] * by[0][j];
       spread(masters, s_.master, by[1], by[2], by[3], to);
     }
     put_growth(slaves, length);
@@ -148,7 +146,7 @@ class Columns {
                                             double* to) {
     for (std::size_t a = 0; a < count; ++a)
       for (Eigen::Index j = 0; j < 3; ++j)
-        *to++ = s.n[a] * v[j] + s.dn[a][0] * v1[j] + s.dn[a][1] * v2[j];
+        *to++ = s.N[a] * v[j] + s.dN[a][0] * v1[j] + s.dN[a][1] * v2[j];
     return to;
   }
   template <class Count>
@@ -159,7 +157,7 @@ class Columns {
                &v2 = by[before_input(1)];
     for (std::size_t a = 0; a < count; ++a)
       for (Eigen::Index j = 0; j < 3; ++j)
-        *to++ += s.n[a] * v[j] + s.dn[a][0] * v1[j] + s.dn[a][1] * v2[j];
+        *to++ += s.N[a] * v[j] + s.dN[a][0] * v1[j] + s.dN[a][1] * v2[j];
   }
 
   /// Change of the area with the nodes of the slave.
@@ -233,17 +231,17 @@ ANISOCONTACT_INLINE void add_rows(Slaves slaves, Masters masters, Length length,
   for (std::size_t a = 0; a < slaves; ++a)
     for (std::size_t i = 0; i < 3; ++i, out += length) {
       const double* const force = columns.acting[0][i].data();
-      for (std::size_t j = 0; j < length; ++j) out[j] = old(j) - s.slave.n[a] * force[j];
+      for (std::size_t j = 0; j < length; ++j) out[j] = old(j) - s.slave.N[a] * force[j];
     }
   const auto [first_bend, last_bend] = bends(masters);
   for (std::size_t b = 0; b < masters; ++b) {
-    const double n = s.master.n[b], n1 = s.master.dn[b][0], n2 = s.master.dn[b][1];
+    const double n = s.master.N[b], n1 = s.master.dN[b][0], n2 = s.master.dN[b][1];
     for (std::size_t i = 0; i < 3; ++i, out += length) {
       const double *const force = columns.acting[0][i].data(),
                           *const first = columns.acting[1][i].data(),
                           *const second = columns.acting[2][i].data();
       if (bent && last_bend == first_bend + 1) {
-        const double bend = s.bend[b][first_bend];
+        const double bend = s.master.d2N[b][first_bend];
         const double* const moved = columns.bend[first_bend][i].data();
         for (std::size_t j = 0; j < length; ++j)
           out[j] = old(j) + n * force[j] - n1 * first[j] - n2 * second[j] - bend * moved[j];
@@ -253,7 +251,7 @@ ANISOCONTACT_INLINE void add_rows(Slaves slaves, Masters masters, Length length,
         out[j] = old(j) + n * force[j] - n1 * first[j] - n2 * second[j];
       for (std::size_t k = first_bend; bent && k < last_bend; ++k) {
         const double* const moved = columns.bend[k][i].data();
-        for (std::size_t j = 0; j < length; ++j) out[j] -= s.bend[b][k] * moved[j];
+        for (std::size_t j = 0; j < length; ++j) out[j] -= s.master.d2N[b][k] * moved[j];
       }
     }
   }
@@ -321,10 +319,10 @@ inline void add_residual(const PairResult& r, const PairShapes& s, double* out) 
   const auto add = [&](const Vec3<double>& f) {
     for (Eigen::Index i = 0; i < 3; ++i) *out++ += area * f[i];
   };
-  for (std::size_t a = 0; a < s.slave.count; ++a) add(-s.slave.n[a] * r.traction);
+  for (std::size_t a = 0; a < s.slave.count; ++a) add(-s.slave.N[a] * r.traction);
   for (std::size_t b = 0; b < s.master.count; ++b)
-    add(s.master.n[b] * r.traction - s.master.dn[b][0] * r.couple[0] -
-        s.master.dn[b][1] * r.couple[1]);
+    add(s.master.N[b] * r.traction - s.master.dN[b][0] * r.couple[0] -
+        s.master.dN[b][1] * r.couple[1]);
 }
 
 /// Adds the tangent of a point. Rows of both blocks: nodes of the slave, then of the master.

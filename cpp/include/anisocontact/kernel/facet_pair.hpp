@@ -109,9 +109,9 @@ PairResult update_pair(const InterfaceLaw& law, const PointState& state, const P
     out.state.facet = p.facet;
     return out;
   };
-  const auto start = foot.start(p);
-  if (!start) return fail(Failure::direction);
-  detail::PairAxes<tangent> axes_at(p, plane.n, *start);
+  PlaneAxis start;
+  if (!foot.start(p, start)) return fail(Failure::direction);
+  detail::PairAxes<tangent> axes_at(p, plane.n, start);
   const LawAxes axes = law_axes(law, axes_at);
   if (!axes.valid()) return fail(Failure::direction);
   put_axes(axes, out.adhesion_axes, out.friction_axes);

@@ -49,14 +49,15 @@ class Footing {
   /// rho_ij of the facet.
   const Vec3<double>& second(std::size_t i, std::size_t j) const { return jet_.second(i, j); }
 
-  /// Axis along the first direction: of the facet, or of the edge. It makes the frame.
-  std::optional<PlaneAxis> start(const PairPoint& p) noexcept {
+  /// Writes the axis along the first direction, of the facet or of the edge, which makes the frame;
+  /// returns whether there is one.
+  bool start(const PairPoint& p, PlaneAxis& first) noexcept {
     const Vector<double> c =
         p.feature == Feature::edge ? Vector<double>{p.edge} : Vector<double>{{1.0, 0.0}};
     const Vector<Dual<2>> fixed = constant<Dual<2>>(c);
-    const auto first = detail::plane_axis<Dual<2>>(jet_, plane.n, fixed);
-    if (first) plane.t = {first->e, plane.n.cross(first->e)};
-    return first;
+    if (!detail::put_axis<Dual<2>>(jet_, plane.n, fixed, first)) return false;
+    plane.t = {first.e, plane.n.cross(first.e)};
+    return true;
   }
 
   void follow(const PairPoint& p) noexcept {

@@ -207,9 +207,10 @@ inline void add_trial_slopes(const FrameTrial& t, const TrialSlopes& d, double d
     }
 }
 
+/// Writes what the law answers to `r`, which is new.
 template <bool tangent>
-FrameReaction reaction(const InterfaceLaw& l, const PointState& state, FrameInput in) noexcept {
-  FrameReaction r;
+void react(const InterfaceLaw& l, const PointState& state, FrameInput in,
+           FrameReaction& r) noexcept {
   Dual<1> share(1.0);
   const Flat whole = in.increment;
   if (!remembers(state)) {
@@ -228,7 +229,7 @@ FrameReaction reaction(const InterfaceLaw& l, const PointState& state, FrameInpu
   const auto solved = tangential(l, p, status);
   if (!solved.converged) {
     r.failure = Failure::law;
-    return r;
+    return;
   }
   r.traction = solved.traction.c;
   r.increment = in.increment;
@@ -252,7 +253,6 @@ FrameReaction reaction(const InterfaceLaw& l, const PointState& state, FrameInpu
       }
     }
   }
-  return r;
 }
 
 }  // namespace detail
@@ -262,7 +262,7 @@ template <bool tangent>
 FrameReaction react_in_frame(const InterfaceLaw& l, const PointState& state,
                              const FrameInput& in) noexcept {
   FrameReaction r;
-  with_widest([&]() ANISOCONTACT_INLINE_LAMBDA { r = detail::reaction<tangent>(l, state, in); });
+  with_widest([&]() ANISOCONTACT_INLINE_LAMBDA { detail::react<tangent>(l, state, in, r); });
   return r;
 }
 

@@ -169,11 +169,12 @@ PointResult update_in_plane(const Interface& itf, const PointState& state, const
     out.state.gap = gap;
     return out;
   }
-  const auto start = detail::plane_axis<Dual<2>>(here.jet, plane.n, {{Dual<2>(1.0), Dual<2>(0.0)}});
-  if (!start) return fail(Failure::direction);
-  plane.t = {start->e, plane.n.cross(start->e)};
+  PlaneAxis start;
+  if (!detail::put_axis<Dual<2>>(here.jet, plane.n, {{Dual<2>(1.0), Dual<2>(0.0)}}, start))
+    return fail(Failure::direction);
+  plane.t = {start.e, plane.n.cross(start.e)};
   const auto axes_at = [&](const Directions& d) {
-    return detail::axes_at<tangent>(d, here, foot.xi, own, *start);
+    return detail::axes_at<tangent>(d, here, foot.xi, own, start);
   };
   const LawAxes axes = law_axes(itf.law, axes_at);
   if (!axes.valid()) return fail(Failure::direction);

@@ -12,24 +12,23 @@ using surface::Topology;
 
 class RelativeFacet {
  public:
-  RelativeFacet(Topology t, const FacetNodes& nodes, const Vec3<double>& x) noexcept
-      : topology(t), controls(surface::control_points(t, nodes)) {
+  RelativeFacet(Topology t, const FacetNodes& nodes, const Vec3<double>& x) noexcept : topology(t) {
+    if (t == Topology::tri3 || t == Topology::quad4)
+      std::copy_n(nodes.begin(), surface::node_count(t), controls.begin());
+    else
+      controls = surface::control_points(t, nodes);
     for (std::size_t i = 0; i < surface::control_count(t); ++i) controls[i] -= x;
     const auto& p = controls;
     switch (t) {
       case Topology::tri3:
-        c_ = {p[0], p[1] - p[0], p[2] - p[0]};
+        put({p[0], p[1] - p[0], p[2] - p[0]});
         return;
       case Topology::quad4:
-        c_ = {p[0], p[1] - p[0], p[2] - p[0], p[3] - p[2] - p[1] + p[0]};
+        put({p[0], p[1] - p[0], p[2] - p[0], p[3] - p[2] - p[1] + p[0]});
         return;
       case Topology::tri6:
-        c_ = {p[0],
-              2.0 * (p[1] - p[0]),
-              2.0 * (p[3] - p[0]),
-              2.0 * (p[0] - p[1] - p[3] + p[4]),
-              p[0] - 2.0 * p[1] + p[2],
-              p[0] - 2.0 * p[3] + p[5]};
+        put({p[0], 2.0 * (p[1] - p[0]), 2.0 * (p[3] - p[0]), 2.0 * (p[0] - p[1] - p[3] + p[4]),
+             p[0] - 2.0 * p[1] + p[2], p[0] - 2.0 * p[3] + p[5]});
         return;
       case Topology::quad8:
       case Topology::quad9:
@@ -94,6 +93,11 @@ class RelativeFacet {
     return l;
   }
 
+  template <std::size_t N>
+  void put(const Vec3<double> (&c)[N]) noexcept {
+    std::copy(std::begin(c), std::end(c), c_.begin());
+  }
+
   /// From control points of degree 2 in both coordinates, one coordinate after the other.
   void square() noexcept {
     const auto line = [](const Vec3<double>& a, const Vec3<double>& b, const Vec3<double>& c) {
@@ -104,7 +108,7 @@ class RelativeFacet {
                high = line(p[6], p[7], p[8]);
     const auto k0 = line(low[0], middle[0], high[0]), k1 = line(low[1], middle[1], high[1]),
                k2 = line(low[2], middle[2], high[2]);
-    c_ = {k0[0], k1[0], k0[1], k1[1], k2[0], k0[2], k2[1], k1[2], k2[2]};
+    put({k0[0], k1[0], k0[1], k1[1], k2[0], k0[2], k2[1], k1[2], k2[2]});
   }
 
   FacetNodes c_;  ///< of 1, u, v, uv, uu, vv, uuv, uvv, uuvv, as far as there are (tri3: 1, u, v)

@@ -35,6 +35,16 @@ struct Box {
   }
   double centre(std::size_t i) const { return 0.5 * (lower[i] + upper[i]); }
 
+  /// Distance of x to the nearest face from inside; negative outside.
+  double depth(const Vec3<double>& x) const {
+    double d = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double c = x[static_cast<Eigen::Index>(i)];
+      d = std::min(d, std::min(c - lower[i], upper[i] - c));
+    }
+    return d;
+  }
+
   /// Squared distance of x to the box, zero inside it.
   double distance2(const Vec3<double>& x) const {
     double d2 = 0.0;
@@ -95,6 +105,12 @@ class Tree {
         n.box.add(nodes_[c + 1].box);
       }
     }
+    free_.resize(nodes_.size());
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    if (!free_.empty()) free_[0] = {{-inf, -inf, -inf}, {inf, inf, inf}};
+    for (std::size_t k = 1; k < nodes_.size(); ++k)
+      free_[k] = beside(free_[static_cast<std::size_t>(parent_[k])], nodes_[k].box,
+                        nodes_[sibling(k)].box);
   }
 
   /// Calls visit(item, squared distance to its box) for the items whose boxes are nearer than
@@ -104,14 +120,16 @@ class Tree {
     if (!nodes_.empty()) descend(0, x, bound2, visit);
   }
 
-  /// The same from an item on which x is expected: up to the root, down where a box on the way is
-  /// nearer than `bound2`. The item itself is left out.
+  /// The same from an item on which x is expected: up until x is deep enough in what is free of all
+  /// other boxes, down where a box on the way is nearer than `bound2`. The item itself is left out.
   template <class Visit>
   void descend_beside(std::size_t item, const Vec3<double>& x, const double& bound2,
                       const Visit& visit) const {
-    for (auto k = leaf_[item]; k != 0; k = parent_[static_cast<std::size_t>(k)]) {
-      const auto sibling = static_cast<std::size_t>(k % 2 == 1 ? k + 1 : k - 1);
-      descend(sibling, x, bound2, visit);
+    for (auto k = static_cast<std::size_t>(leaf_[item]); k != 0;
+         k = static_cast<std::size_t>(parent_[k])) {
+      const double depth = free_[k].depth(x);
+      if (depth >= 0.0 && depth * depth >= bound2) return;
+      descend(sibling(k), x, bound2, visit);
     }
   }
 
@@ -125,7 +143,7 @@ class Tree {
   }
 
  private:
-  /// Halving by count: a tree of 2^32 items is 32 deep.
+  /// No part has less than a third of the items: a tree of 2^32 items is at most 55 deep.
   static constexpr std::size_t depth_limit = 64;
 
   struct Node {
@@ -133,6 +151,33 @@ class Tree {
     std::int32_t child{-1};
     std::int32_t item{-1};
   };
+
+  static std::size_t sibling(std::size_t k) { return k % 2 == 1 ? k + 1 : k - 1; }
+
+  /// The part of `region` on that side of the box `other` that leaves most of `box`, of several the
+  /// one across which it is widest.
+  static Box beside(Box region, const Box& box, const Box& other) {
+    std::size_t axis = 0;
+    bool below = true;
+    std::array<double, 2> most{-std::numeric_limits<double>::infinity(), 0.0};
+    const auto consider = [&](std::size_t i, bool under, double length, double width) {
+      const std::array<double, 2> left{std::min(length, width) / width, width};
+      if (!(left > most)) return;
+      most = left;
+      axis = i;
+      below = under;
+    };
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double width = box.upper[i] - box.lower[i];
+      consider(i, true, other.lower[i] - box.lower[i], width);
+      consider(i, false, box.upper[i] - other.upper[i], width);
+    }
+    if (below)
+      region.upper[axis] = std::min(region.upper[axis], other.lower[axis]);
+    else
+      region.lower[axis] = std::max(region.lower[axis], other.upper[axis]);
+    return region;
+  }
 
   /// Below a node.
   template <class Visit>
@@ -171,7 +216,8 @@ class Tree {
     return x * y + y * z + z * x;
   }
 
-  /// Orders the items about the median along the axis on which their centres spread most.
+  /// Orders the items about the median along the axis on which their centres spread most. Rows of a
+  /// regular mesh are not torn where that leaves both parts large enough: their boxes would overlap.
   static std::size_t split(std::span<const Box> items, std::span<std::int32_t> order) {
     Box centres = Box::empty();
     for (const std::int32_t i : order) {
@@ -181,19 +227,28 @@ class Tree {
     std::size_t axis = 0;
     for (std::size_t i = 1; i < 3; ++i)
       if (centres.upper[i] - centres.lower[i] > centres.upper[axis] - centres.lower[axis]) axis = i;
-    const std::size_t middle = order.size() / 2;
-    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(middle),
-                     order.end(), [&](std::int32_t a, std::int32_t b) {
-                       const double p = items[static_cast<std::size_t>(a)].centre(axis),
-                                    q = items[static_cast<std::size_t>(b)].centre(axis);
-                       return p < q || (p == q && a < b);
-                     });
-    return middle;
+    const auto at = [&](std::int32_t i) { return items[static_cast<std::size_t>(i)].centre(axis); };
+    const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
+    std::nth_element(order.begin(), middle, order.end(), [&](std::int32_t a, std::int32_t b) {
+      const double p = at(a), q = at(b);
+      return p < q || (p == q && a < b);
+    });
+    constexpr double same = 1e-6;  // of the spread: centres of a row, to rounding
+    const double row = same * (centres.upper[axis] - centres.lower[axis]), here = at(*middle);
+    const auto before =
+        std::partition(order.begin(), middle, [&](std::int32_t i) { return at(i) < here - row; });
+    const auto after =
+        std::partition(middle, order.end(), [&](std::int32_t i) { return at(i) <= here + row; });
+    const auto nearest = middle - before <= after - middle ? before : after;
+    const bool large =
+        3 * std::min(nearest - order.begin(), order.end() - nearest) >= std::ssize(order);
+    return static_cast<std::size_t>((large ? nearest : middle) - order.begin());
   }
 
   std::vector<Node> nodes_;
   std::vector<std::int32_t> parent_;  ///< of each node
   std::vector<std::int32_t> leaf_;    ///< node of each item
+  std::vector<Box> free_;             ///< of each node, where no box of an item outside it is
 };
 
 }  // namespace anisocontact::search

@@ -80,6 +80,16 @@ constexpr Line<S> line2(const S& t) {
           {4.0, 4.0, -8.0}};
 }
 
+/// Zeros from a node on.
+template <class S>
+constexpr void clear(std::size_t first, Shape<S>& s) {
+  for (std::size_t k = first; k < max_facet_nodes; ++k) {
+    s.N[k] = S(0.0);
+    s.dN[k] = {S(0.0), S(0.0)};
+    s.d2N[k] = {S(0.0), S(0.0), S(0.0)};
+  }
+}
+
 /// Functions of the line along xi^1 and xi^2 that make the function of a node of quad4 or quad9.
 inline constexpr std::array<std::array<std::size_t, 2>, 9> tensor_index{
     {{0, 0}, {1, 0}, {0, 1}, {1, 1}, {2, 0}, {0, 2}, {1, 2}, {2, 1}, {2, 2}}};
@@ -148,7 +158,7 @@ constexpr void triangle2(const S& u, const S& v, Shape<S>& s) {
 /// Shape functions at the coordinates (u, v) of the reference facet.
 template <class S>
 constexpr void shape(Topology t, const S& u, const S& v, Shape<S>& s) noexcept {
-  s = Shape<S>{};
+  detail::clear(triangular(t) ? 0 : node_count(t), s);
   switch (t) {
     case Topology::tri3:
       return detail::triangle1(u, v, s);
