@@ -97,7 +97,13 @@ def plane_tensor(values: Pair, angle: float) -> Any:
     return axes.T @ np.diag(values) @ axes
 
 
-def difference_errors(problem: Any, x: Any, direction: Any, steps: Sequence[float]) -> Any:
+def difference_errors(
+    problem: Any,
+    x: Any,
+    direction: Any,
+    steps: Sequence[float],
+    after: Callable[[], None] = lambda: None,
+) -> Any:
     """Central differences of the residual against the tangent.
 
     Args:
@@ -105,6 +111,7 @@ def difference_errors(problem: Any, x: Any, direction: Any, steps: Sequence[floa
         x: All unknowns.
         direction: Along which the derivative is taken.
         steps: Steps of the differences.
+        after: Called after each evaluation, first at x.
 
     Returns:
         Relative error of the derivative for each step.
@@ -112,12 +119,40 @@ def difference_errors(problem: Any, x: Any, direction: Any, steps: Sequence[floa
     matrix = problem.new_tangent()
     for _ in range(2):  # the second time the pattern is there
         problem.tangent(x, matrix)
+    after()
     exact = (matrix @ direction).array.copy()
     errors = []
     for h in steps:
-        ends = [problem.evaluate(x + sign * h * direction).copy() for sign in (1.0, -1.0)]
+        ends = []
+        for sign in (1.0, -1.0):
+            ends.append(problem.evaluate(x + sign * h * direction).copy())
+            after()
         errors.append(np.linalg.norm((ends[0] - ends[1]) / (2.0 * h) - exact))
     return np.asarray(errors) / np.linalg.norm(exact)
+
+
+def errors_and_status(
+    problem: Any, contact: Any, x: Any, direction: Any, steps: Sequence[float]
+) -> tuple[Any, bool, Any]:
+    """Errors of the differences, and whether points change their status on the way.
+
+    Args:
+        problem: A problem with a step and its level.
+        contact: The contact whose points are looked at.
+        x: All unknowns.
+        direction: Along which the derivative is taken.
+        steps: Steps of the differences.
+
+    Returns:
+        Relative errors, whether every point kept its status, and the statuses at x.
+    """
+    seen: list[Any] = []
+
+    def keep() -> None:
+        seen.append(contact.trial.status.copy())
+
+    errors = difference_errors(problem, x, direction, steps, keep)
+    return errors, all(np.array_equal(s, seen[0]) for s in seen), seen[0]
 
 
 def tangent_errors(problem: Any, rng: np.random.Generator, size: float) -> Any:

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.conftest import errors_and_status
 
 RULES = [
     ("maximum-dissipation", {}),
@@ -40,22 +41,6 @@ def random_state(fe, seed, rule, of_rule, **block):
     return made, x, random_vector(made.problem, rng, 1.0)
 
 
-def differences(problem, contact, x, direction, steps):
-    """Error of the central difference for each step, and whether a point changed its status."""
-    matrix = problem.new_tangent()
-    problem.tangent(x, matrix)
-    exact = (matrix @ direction).array.copy()
-    status = contact.trial.status.copy()
-    errors, same = [], True
-    for h in steps:
-        ends = []
-        for sign in (1.0, -1.0):
-            ends.append(problem.evaluate(x + sign * h * direction))
-            same = same and np.array_equal(contact.trial.status, status)
-        errors.append(np.linalg.norm((ends[0] - ends[1]) / (2.0 * h) - exact))
-    return np.array(errors) / np.linalg.norm(exact), same, status
-
-
 @pytest.mark.parametrize(("rule", "of_rule"), RULES, ids=[r[0] for r in RULES])
 @pytest.mark.parametrize(("cell", "order"), [("hexahedron", 1), ("tetrahedron", 2)])
 @pytest.mark.parametrize("seed", range(4))
@@ -73,7 +58,7 @@ def test_second_order_of_the_central_difference(fe, rule, of_rule, cell, order, 
         block, x, direction = random_state(
             fe, 100 * seed + attempt, rule, of_rule, cell=cell, order=order
         )
-        errors, same, status = differences(block.problem, block.contact, x, direction, steps)
+        errors, same, status = errors_and_status(block.problem, block.contact, x, direction, steps)
         if same and set(status) == {0, 1, 2}:
             break
     else:
@@ -98,7 +83,7 @@ def test_linear_statuses(fe, status):
     block.problem.set_level(1.0, 1.0)
     x = random_vector(block.problem, rng, 1e-3)
     direction = random_vector(block.problem, rng, 1.0)
-    errors, same, found = differences(block.problem, block.contact, x, direction, [1e-4])
+    errors, same, found = errors_and_status(block.problem, block.contact, x, direction, [1e-4])
     assert same
     assert set(found) == {{"open": 0, "stick": 1}[status]}
     assert errors[0] < 1e-10

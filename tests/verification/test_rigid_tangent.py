@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.conftest import errors_and_status
 
 SPRINGS = {"x": 30.0, "y": 20.0, "z": 40.0, "rx": 3.0, "ry": 2.0, "rz": 4.0}
 SURFACES = {
@@ -54,27 +55,11 @@ def state(fe, seed, surface, coefficients, lift, free, current_area, on="master"
     return block, x, direction
 
 
-def errors(block, x, direction, steps):
-    """Error of the central difference for each step, whether statuses stayed, and the statuses."""
-    matrix = block.problem.new_tangent()
-    block.problem.tangent(x, matrix)
-    exact = (matrix @ direction).array.copy()
-    status = block.contact.trial.status.copy()
-    found, same = [], True
-    for h in steps:
-        ends = []
-        for sign in (1.0, -1.0):
-            ends.append(block.problem.evaluate(x + sign * h * direction))
-            same = same and np.array_equal(block.contact.trial.status, status)
-        found.append(np.linalg.norm((ends[0] - ends[1]) / (2.0 * h) - exact))
-    return np.array(found) / np.linalg.norm(exact), same, set(status.tolist())
-
-
 def first_errors(states, steps, statuses):
     """Errors of the first state with these statuses, all of which stay along its direction."""
     for block, x, direction in states:
-        found, same, seen = errors(block, x, direction, steps)
-        if same and seen == statuses:
+        found, same, seen = errors_and_status(block.problem, block.contact, x, direction, steps)
+        if same and set(seen.tolist()) == statuses:
             return found
     return pytest.fail("no such state found")
 

@@ -85,10 +85,11 @@ struct Geometry {
   S mean_curvature() const { return S(0.5) * trace(h_mixed); }
 };
 
-/// Metric, area and normal from the jet in `g`; the rest stays as it is.
+/// Metric, area and normal from a jet; curvature and connection stay zero.
 template <class S>
-void put_tangent_plane(Geometry<S>& g) {
+Geometry<S> tangent_plane(const Jet<S>& jet) {
   using std::sqrt;
+  Geometry<S> g{.jet = jet};
   const auto& r = g.jet.d1;
   const S mixed = r[0].dot(r[1]);
   g.a_co = {{{{r[0].dot(r[0]), mixed}, {mixed, r[1].dot(r[1])}}}};
@@ -96,13 +97,6 @@ void put_tangent_plane(Geometry<S>& g) {
   const Vec3<S> cross = r[0].cross(r[1]);
   g.area = sqrt(cross.dot(cross));
   g.normal = (S(1.0) / g.area) * cross;
-}
-
-/// Metric, area and normal from a jet; curvature and connection stay zero.
-template <class S>
-Geometry<S> tangent_plane(const Jet<S>& jet) {
-  Geometry<S> g{.jet = jet};
-  put_tangent_plane(g);
   return g;
 }
 
