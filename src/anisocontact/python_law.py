@@ -8,7 +8,9 @@ is the same for two meshed bodies.
 
 from __future__ import annotations
 
+import traceback
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Protocol
 
 import numpy as np
@@ -291,10 +293,13 @@ def answer(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> La
         Its answer.
 
     Raises:
-        InputError: An array of another shape, or one with numbers that are not finite.
+        InputError: The law failed, or an array has another shape or numbers that are not finite.
     """
     n, own = state.internal.shape
-    result = law.update(state, kinematics)
+    try:
+        result = law.update(state, kinematics)
+    except Exception as error:
+        raise InputError(f"the law {type(law).__name__} failed: {where_failed(error)}") from error
     shapes: dict[str, tuple[int, ...]] = {
         **dict.fromkeys(("traction", "slip", "d_pressure"), (n, 2)),
         **dict.fromkeys(("d_increment", "d_traction", "d_elastic"), (n, 2, 2)),
@@ -313,6 +318,17 @@ def answer(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> La
             text = f"the law returned {values[bad[0]].tolist()} at {len(bad)} of {n} points, "
             raise InputError(text + "finite numbers needed", field=name)
     return result
+
+
+def where_failed(error: Exception) -> str:
+    """An error of somebody's code in one line: file and line, and what it says."""
+    at: tuple[str | None, int | None] = (None, None)
+    if isinstance(error, SyntaxError):
+        at = (error.filename, error.lineno)
+    elif frames := traceback.extract_tb(error.__traceback__)[1:]:
+        at = (frames[-1].filename, frames[-1].lineno)
+    said = " ".join(f"{type(error).__name__}: {getattr(error, 'msg', None) or error}".split())
+    return said if at[0] is None else f"{Path(at[0]).name}, line {at[1]}: {said}"
 
 
 def state_type(count: int) -> np.dtype[np.void]:

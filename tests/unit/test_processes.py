@@ -91,6 +91,31 @@ def test_an_error_on_some_ranks_ends_all(case: Path, where: str) -> None:
 
 
 @pytest.mark.mpi
+def test_a_law_in_python_that_fails_on_one_rank(case: Path) -> None:
+    """The run stops with the file and line of the law, on both processes, and says it once."""
+    (case.parent / "own.py").write_text(
+        "import numpy as np\n"
+        "from mpi4py import MPI\n"
+        "from anisocontact.python_law import LawResult\n\n"
+        "class Own:\n"
+        "    internal = 0\n"
+        "    def update(self, state, kinematics):\n"
+        "        if MPI.COMM_WORLD.rank == 1: raise ValueError('too fast')\n"
+        "        n = len(kinematics.pressure)\n"
+        "        none, block = np.zeros((n, 2)), np.zeros((n, 2, 2))\n"
+        "        at = state.internal, none[:, 0], none[:, 0]\n"
+        "        return LawResult(none, none, block, none, block, block, *at)\n"
+    )
+    text = case.read_text()
+    first, last = text.index("adhesion ="), text.index("[[step]]")
+    table = '[contact.python]\nfile = "own.py"\nlaw = "Own"\nisotropic = true\n'
+    case.write_text(text[:first] + table + text[last:])
+    done = run(case, "", "")
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.count("own.py, line 8: ValueError: too fast") == 1
+
+
+@pytest.mark.mpi
 @pytest.mark.slow
 @pytest.mark.parametrize("where", ["1", "01"])
 def test_interrupt(case: Path, where: str) -> None:

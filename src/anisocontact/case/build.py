@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from anisocontact._fenicsx import MPI, PETSc
 from anisocontact.case import objects
 from anisocontact.case.contacts import contact
+from anisocontact.case.law_file import law_of
 from anisocontact.case.model import Case
 from anisocontact.case.quantity import FREE
 from anisocontact.case.read import CaseFile
@@ -57,6 +58,7 @@ def build(file: CaseFile) -> Built:
         anisocontact.errors.InputError: case file 'no-such-case.toml' does not exist
     """
     case = file.case
+    own = [law_of(section, file.resolve, f"contact[{i}]") for i, section in enumerate(case.contact)]
     model = _model(file)
     _check_bodies(case, model)
     materials = {
@@ -65,8 +67,8 @@ def build(file: CaseFile) -> Built:
     }
     bodies = _rigid_bodies(case)
     contacts = [
-        contact(case, section, model, materials, bodies, f"contact[{i}]")
-        for i, section in enumerate(case.contact)
+        contact(case, section, model, materials, bodies, f"contact[{i}]", law)
+        for i, (section, law) in enumerate(zip(case.contact, own, strict=True))
     ]
     steps = _steps(case, model)
     _check_options(case.solver.options)

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from anisocontact.augmentation import AUTO as AUTO_MULTIPLIERS
-from anisocontact.case import objects
+from anisocontact.case import law_file, objects
 from anisocontact.case.model import (
     AUGMENTED,
     PENALTY,
@@ -109,8 +109,11 @@ def _contact(
     if contact.master not in surfaces:
         text = f'"{contact.master}" given, no such surface; {near(contact.master, list(surfaces))}'
         yield InputError(text, field=f"{place}.master")
-    elif master is not None:
-        yield from _tried(objects.interface, contact, master, place)[1]
+    elif master is not None and not (wrong := list(_tangential(contact, place))):
+        made = objects.interface if contact.python is None else law_file.interface
+        yield from _tried(made, contact, master, place)[1]
+    else:
+        yield from wrong
 
 
 def _method(contact: ContactSection, place: str) -> Iterator[InputError]:
@@ -151,7 +154,24 @@ def _meshed(case: Case, contact: ContactSection, place: str) -> Iterator[InputEr
         yield InputError(text, field=f"{place}.master")
     else:
         yield from _group(case, contact.master, f"{place}.master")
-    yield from _tried(objects.pair_law, contact, place)[1]
+    if wrong := list(_tangential(contact, place)):
+        yield from wrong
+        return
+    made = objects.pair_law if contact.python is None else law_file.pair_law
+    yield from _tried(made, contact, place)[1]
+
+
+def _tangential(contact: ContactSection, place: str) -> Iterator[InputError]:
+    """Laws of the core or one in Python."""
+    if contact.python is None:
+        if contact.friction is None:
+            text = "missing; yield ellipse and sliding rule (or python, a law of your own)"
+            yield InputError(text, field=f"{place}.friction")
+        return
+    for key in ("adhesion", "friction"):
+        if key in contact.model_fields_set:
+            text = "given with python, which is the whole tangential law"
+            yield InputError(text, field=f"{place}.{key}")
 
 
 def _group(case: Case, name: str, field: str) -> Iterator[InputError]:

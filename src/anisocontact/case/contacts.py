@@ -8,7 +8,7 @@ import numpy as np
 
 from anisocontact.augmentation import Augmentation
 from anisocontact.bulk import Material
-from anisocontact.case import objects
+from anisocontact.case import law_file, objects
 from anisocontact.case.model import AUGMENTED, Case, ContactSection
 from anisocontact.case.quantity import AUTO
 from anisocontact.contact import (
@@ -22,10 +22,15 @@ from anisocontact.contact import (
     facet_size,
 )
 from anisocontact.errors import InputError
+from anisocontact.interface import Interface
 from anisocontact.mesh import Model
+from anisocontact.python_law import PythonInterface, TangentialLaw
+from anisocontact.python_pair import MeshedLaw
 from anisocontact.rigid import RigidBody
 
 __all__ = ["contact"]
+
+type AnyInterface = Interface | PythonInterface
 
 
 def contact(
@@ -35,6 +40,7 @@ def contact(
     materials: Mapping[str, Material],
     rigid: Mapping[str, RigidBody],
     place: str,
+    law: TangentialLaw | None = None,
 ) -> AnyContact:
     """The contact of a table.
 
@@ -45,6 +51,7 @@ def contact(
         materials: Material of each body.
         rigid: Rigid body that carries a surface, by name of the surface.
         place: Path of the table, for messages.
+        law: The Python law that the table names, if it does.
 
     Returns:
         The contact, before the first step.
@@ -60,9 +67,18 @@ def contact(
     )
     finite = not all(body.linear for body in bodies)
     if section.meshed:
-        made = _meshed(section, model, auto, finite, place)
+        if section.python is None:
+            laws: MeshedLaw = objects.pair_law(section, place, auto)
+        else:
+            laws = law_file.pair_law(section, place, auto, law)
+        made = _meshed(section, model, laws, finite, place)
     else:
-        made = _rigid(case, section, model, rigid.get(section.master), auto, finite, place)
+        master = objects.surface(case.surface[section.master], f"surface.{section.master}")
+        if section.python is None:
+            interface: AnyInterface = objects.interface(section, master, place, auto)
+        else:
+            interface = law_file.interface(section, master, place, auto, law)
+        made = _rigid(section, model, interface, rigid.get(section.master), finite, place)
     made.physical_adhesion = not _auto_adhesion(section)
     with objects.within(place):
         check_start(made, facet_size(model, section.slave))
@@ -70,9 +86,8 @@ def contact(
 
 
 def _meshed(
-    section: ContactSection, model: Model, auto: float, finite: bool, place: str
+    section: ContactSection, model: Model, law: MeshedLaw, finite: bool, place: str
 ) -> AnyContact:
-    law = objects.pair_law(section, place, auto)
     name = f"{section.slave} on {section.master}"
     with objects.within(place):
         if section.self_contact:
@@ -110,16 +125,13 @@ def _meshed(
 
 
 def _rigid(
-    case: Case,
     section: ContactSection,
     model: Model,
+    interface: AnyInterface,
     body: RigidBody | None,
-    auto: float,
     finite: bool,
     place: str,
 ) -> AnyContact:
-    master = objects.surface(case.surface[section.master], f"surface.{section.master}")
-    interface = objects.interface(section, master, place, auto)
     with objects.within(place):
         made = Contact(
             model,
@@ -149,7 +161,7 @@ def _augmentation(section: ContactSection) -> Augmentation | None:
 
 def _auto_adhesion(section: ContactSection) -> bool:
     """Whether the stiffness of adhesion is one that the run chooses."""
-    return bool(section.adhesion.parameters().get("stiffness") == AUTO)
+    return section.python is None and bool(section.adhesion.parameters().get("stiffness") == AUTO)
 
 
 def _adjust(section: ContactSection) -> float | None:

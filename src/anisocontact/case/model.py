@@ -22,6 +22,7 @@ from anisocontact import registry
 from anisocontact.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.augmentation import NEWTON, SCHEMES, UZAWA, Augmentation
 from anisocontact.case.bodies import Mesh, mesh_type
+from anisocontact.case.law_file import PythonSection
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
 from anisocontact.case.quantity import Quantity, line, shown
 from anisocontact.case.quantity import number as _number
@@ -223,6 +224,7 @@ class ContactSection(Section):
     adhesion: Any
     friction: Any
     evolution: str
+    python: Any
 
     @property
     def meshed(self) -> bool:
@@ -317,7 +319,9 @@ def case_type(known: Registries) -> type[Case]:
     """
     # "pass" is no name for an attribute in a class body
     passes: dict[str, Any] = {"pass": (Annotated[str, _word(_PASSES, SINGLE, TWO_HALF)], SINGLE)}
-    contact = create_model("Contact", __base__=ContactSection, **passes, **laws(known))
+    contact = create_model(
+        "Contact", __base__=ContactSection, **passes, **{**laws(known), **_or_in_python(known)}
+    )
     surface = OneOf("Surface", Key("shape", known.surfaces))
     material = OneOf("Material", Key("model", known.materials))
     return create_model(
@@ -337,6 +341,23 @@ def case_type(known: Registries) -> type[Case]:
             Field(default_factory=list, description="pairs in contact"),
         ),
     )
+
+
+def _or_in_python(known: Registries) -> dict[str, Any]:
+    """Fields of a contact where a law in Python may stand in place of those of the core."""
+    friction, about = laws(known)["friction"]
+    field = Annotated[Any, OneOf("Directions", Key("kind", known.direction_fields))]
+    python = create_model(
+        "Python",
+        __base__=PythonSection,
+        directions=(field, Field(None, description="direction field of the first axis of the law")),
+        directions_on=_on("master"),
+    )
+    text = f"{about.description}; needed unless there is a law in Python"
+    return {
+        "friction": (friction, Field(None, description=text)),
+        "python": (python | None, Field(None, description=str(PythonSection.__doc__))),
+    }
 
 
 def _on(default: str) -> tuple[Any, str]:

@@ -25,9 +25,11 @@ if TYPE_CHECKING:
 
 __all__ = [
     "body",
+    "directions",
     "interface",
     "material",
     "mesh_file",
+    "normal_law",
     "pair_law",
     "placement",
     "rotation",
@@ -172,27 +174,32 @@ def pair_law(section: Laws, place: str, auto: float = 1.0) -> PairLaw:
 
 
 def _laws(section: Laws, auto: float) -> tuple[NormalLaw, Adhesion, Friction]:
-    normal = NormalLaw(**section.normal.chosen, **_numbers(section.normal, auto))
     adhesion = Adhesion(
         **section.adhesion.chosen,
         **_numbers(section.adhesion, auto),
-        directions=_directions(section.adhesion.directions, "adhesion.directions"),
+        directions=directions(section.adhesion.directions, "adhesion.directions"),
         directions_on=section.adhesion.directions_on,
     )
     friction = Friction(
         **section.friction.chosen,
         **_numbers(section.friction, auto),
-        directions=_directions(section.friction.directions, "friction.directions"),
-        directions_second=_directions(
+        directions=directions(section.friction.directions, "friction.directions"),
+        directions_second=directions(
             section.friction.directions_second, "friction.directions_second"
         ),
         directions_on=section.friction.directions_on,
         directions_second_on=section.friction.directions_second_on,
     )
-    return normal, adhesion, friction
+    return normal_law(section, auto), adhesion, friction
 
 
-def _directions(section: Registered | None, place: str) -> DirectionField | None:
+def normal_law(section: Laws, auto: float) -> NormalLaw:
+    """The law of the pressure; `auto` where the table says "auto" [stress/length]."""
+    return NormalLaw(**section.normal.chosen, **_numbers(section.normal, auto))
+
+
+def directions(section: Registered | None, place: str) -> DirectionField | None:
+    """The direction field of a table, if there is one."""
     if section is None:
         return None
     with within(place):

@@ -8,10 +8,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from anisocontact.case.law_file import sources
 from anisocontact.errors import InputError
 from anisocontact.results.files import MARKS
 
 if TYPE_CHECKING:
+    from anisocontact.case.read import CaseFile
     from anisocontact.results.checkpoint import Stored
 
 __all__ = ["check_same", "checkpoint_of"]
@@ -20,12 +22,12 @@ __all__ = ["check_same", "checkpoint_of"]
 FREE_TO_CHANGE = ("title", "output", "solver")
 
 
-def checkpoint_of(folder: Path, case: Path) -> Stored | None:
+def checkpoint_of(folder: Path, file: CaseFile) -> Stored | None:
     """The checkpoint of a results folder, if the case file fits it.
 
     Args:
         folder: Results folder of the run that is to go on.
-        case: The case file as it is now.
+        file: The case as it is now.
 
     Returns:
         The checkpoint; None if the run was killed before its first accepted increment.
@@ -38,7 +40,9 @@ def checkpoint_of(folder: Path, case: Path) -> Stored | None:
     stored = load_checkpoint(folder)
     if stored is not None:
         before = tomllib.loads(stored.facts["case"])
-        check_same(before, tomllib.loads(case.read_text(encoding="utf-8")), stored.facts["begun"])
+        now = tomllib.loads(file.path.read_text(encoding="utf-8"))
+        check_same(before, now, stored.facts["begun"])
+        _check_laws(stored.facts["laws"], sources(file.case.contact, file.resolve))
         return stored
     if not any((folder / mark).is_file() for mark in MARKS):
         raise InputError(f"--restart: '{folder}' holds no run to go on with")
@@ -48,6 +52,16 @@ def checkpoint_of(folder: Path, case: Path) -> Stored | None:
             "run without --restart into another folder"
         )
     return None
+
+
+def _check_laws(before: Mapping[str, str], now: Mapping[str, str]) -> None:
+    """Refuse a law in Python whose file has become another one."""
+    for name, text in now.items():
+        if text != before[name]:
+            raise InputError(
+                f"--restart: '{name}' is not the law any more that the run that is to go on had: "
+                "run without --restart"
+            )
 
 
 def check_same(before: Mapping[str, Any], now: Mapping[str, Any], begun: int) -> None:

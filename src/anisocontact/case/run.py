@@ -13,6 +13,7 @@ from types import FrameType
 from typing import Any, Protocol
 
 from anisocontact.case.build import Built
+from anisocontact.case.law_file import sources
 from anisocontact.errors import InputError
 from anisocontact.results.checkpoint import NAME, Stored, distribute
 from anisocontact.results.files import WriteError
@@ -129,6 +130,7 @@ def _writer(built: Built, folder: str | Path, text: str, checkpoint: Stored | No
 
 def _solve(built: Built, writer: Writer, listener: Listener, text: str) -> tuple[str, str]:
     told = threading.Event()
+    laws = sources(built.file.case.contact, built.file.resolve)
 
     def on_iteration(progress: Progress) -> None:
         writer.log(_iteration_line(progress))
@@ -143,7 +145,7 @@ def _solve(built: Built, writer: Writer, listener: Listener, text: str) -> tuple
 
     def keep() -> None:
         place = built.solver.place
-        facts = {"case": text, "begun": place.step + place.begun}
+        facts = {"case": text, "laws": laws, "begun": place.step + place.begun}
         writer.keep(built.solver.persistent(), facts)
 
     comm = built.problem.comm

@@ -33,10 +33,12 @@ def contents(built: Built) -> list[str]:
     for section, contact in zip(case.contact, problem.contacts, strict=True):
         _, values = contact.interface.normal.named
         penalty = f", penalty {values['penalty'][0]:.4g}" if "penalty" in values else ""
+        own = section.python
+        rule = section.friction.sliding_rule if own is None else f"{own.law} of {own.file}"
         passes = ", two half passes" if section.half_passes else ""
         lines.append(
             f"contact   {section.slave} on {section.master}: {model.count_facets(section.slave)} "
-            f"slave facets{penalty}, {section.friction.sliding_rule}{passes}"
+            f"slave facets{penalty}, {rule}{passes}"
         )
     for rigid in problem.rigid.bodies:
         how = "free where a step frees it" if rigid.free else "moved as prescribed"

@@ -24,7 +24,7 @@ def command(arguments: argparse.Namespace) -> int:
     file = load(arguments.case)
     folder = Path(arguments.output or Path("results") / file.name)
     if arguments.restart:
-        checkpoint = checkpoint_of(folder, file.path)
+        checkpoint = checkpoint_of(folder, file)
     else:
         check_folder(folder, arguments.overwrite)
         checkpoint = None

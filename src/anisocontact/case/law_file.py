@@ -1,0 +1,202 @@
+"""Tangential laws of a case file that are classes in a Python file."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING, Annotated, Any
+
+from pydantic import Field
+
+from anisocontact.case import objects
+from anisocontact.case.quantity import number
+from anisocontact.case.section import Section, near
+from anisocontact.errors import InputError
+from anisocontact.laws import SIDES
+from anisocontact.python_law import (
+    LawKinematics,
+    LawResult,
+    LawState,
+    PythonInterface,
+    TangentialLaw,
+    where_failed,
+)
+from anisocontact.python_pair import PythonPairLaw
+from anisocontact.surfaces import Surface
+
+if TYPE_CHECKING:
+    from anisocontact.case.model import ContactSection
+
+__all__ = ["PythonSection", "interface", "law_of", "pair_law", "sources"]
+
+#: How the history enters a step: a law of one's own sees it turned to where the point is.
+_EVOLUTION = "transport"
+
+
+class PythonSection(Section):
+    """A tangential law of your own, a class in a Python file, in place of adhesion and friction."""
+
+    file: str = Field(description="Python file, from the folder of the case file on")
+    law: str = Field(description="name of the class in it")
+    arguments: dict[str, Any] = Field(
+        default_factory=dict, description="what the class is made with, by name"
+    )
+    isotropic: Annotated[
+        bool,
+        number("flag", "1", "whether the law is the same in all directions, so that it needs none"),
+    ] = False
+    directions: Any = None
+    directions_on: str = SIDES[0]
+
+
+class _Later:
+    """Stands for a law that has not been read yet."""
+
+    internal = 0
+
+    def update(self, state: LawState, kinematics: LawKinematics) -> LawResult:
+        raise NotImplementedError
+
+
+def interface(
+    section: ContactSection,
+    master: Surface,
+    place: str,
+    auto: float = 1.0,
+    law: TangentialLaw | None = None,
+) -> PythonInterface:
+    """The interface of a table with a Python law whose master is a rigid surface.
+
+    Args:
+        section: The table.
+        master: Its surface.
+        place: Its path, for messages.
+        auto: Stiffness where the table says "auto" [stress/length].
+        law: The law; without one the interface is good for checks alone.
+
+    Returns:
+        The interface.
+
+    Raises:
+        InputError: What the table says does not go together.
+    """
+    with objects.within(place):
+        _check(section)
+        if section.python.directions_on != SIDES[0]:
+            text = f'"{section.python.directions_on}" given, a rigid master needs "{SIDES[0]}"'
+            raise InputError(text, "python.directions_on")
+        return PythonInterface(
+            master,
+            objects.normal_law(section, auto),
+            law or _Later(),
+            directions=objects.directions(section.python.directions, "python.directions"),
+        )
+
+
+def pair_law(
+    section: ContactSection, place: str, auto: float = 1.0, law: TangentialLaw | None = None
+) -> PythonPairLaw:
+    """The laws of a table with a Python law whose master is meshed; arguments as of `interface`."""
+    with objects.within(place):
+        _check(section)
+        return PythonPairLaw(
+            objects.normal_law(section, auto),
+            law or _Later(),
+            directions=objects.directions(section.python.directions, "python.directions"),
+            directions_on=section.python.directions_on,
+        )
+
+
+def _check(section: ContactSection) -> None:
+    if section.evolution != _EVOLUTION:
+        text = f'"{section.evolution}" given, a law of your own has "{_EVOLUTION}" only'
+        raise InputError(text, "evolution")
+    if section.python.directions is None and not section.python.isotropic:
+        raise InputError("missing; needed unless isotropic = true", "python.directions")
+
+
+def law_of(
+    section: ContactSection, resolve: Callable[[str], Path], place: str
+) -> TangentialLaw | None:
+    """The law of a table, read from its file and made.
+
+    Args:
+        section: The table.
+        resolve: From a path in the case file to where that is.
+        place: Path of the table, for messages.
+
+    Returns:
+        The law; None if the table names laws of the core.
+
+    Raises:
+        InputError: No such file or class, a file that cannot be run, arguments that the class
+            refuses, or an object that is no law.
+    """
+    given = section.python
+    if given is None:
+        return None
+    with objects.within(f"{place}.python"):
+        path = resolve(given.file)
+        module = _module(path, given.file)
+        kind = getattr(module, given.law, None)
+        if not isinstance(kind, type):
+            known = [
+                n
+                for n, k in vars(module).items()
+                if getattr(k, "__module__", "") == module.__name__
+            ]
+            text = f"\"{given.law}\" given, no such class in '{given.file}'; "
+            raise InputError(text + near(given.law, known), "law")
+        try:
+            law: TangentialLaw = kind(**given.arguments)
+        except Exception as error:
+            text = f"{given.law} refuses them: {where_failed(error)}"
+            raise InputError(text, "arguments") from None
+        _check_law(law, given.law)
+        return law
+
+
+def sources(contacts: list[ContactSection], resolve: Callable[[str], Path]) -> dict[str, str]:
+    """Text of the files with laws, by the path in the case file."""
+    files = {section.python.file for section in contacts if section.python is not None}
+    return {file: resolve(file).read_text(encoding="utf-8") for file in sorted(files)}
+
+
+def _module(path: Path, given: str) -> ModuleType:
+    if not path.is_file():
+        raise InputError(f"'{given}' given, no such file", "file")
+    name = f"_law_of_{path.stem}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    if spec is None or spec.loader is None:
+        raise InputError(f"'{given}' given, a Python file needed, '.py'", "file")
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # dataclasses look themselves up there
+    try:
+        with _beside(path):
+            spec.loader.exec_module(module)
+    except Exception as error:
+        raise InputError(f"'{given}' cannot be run: {where_failed(error)}", "file") from None
+    return module
+
+
+@contextmanager
+def _beside(path: Path) -> Iterator[None]:
+    """Modules beside the file can be imported by it."""
+    sys.path.insert(0, str(path.resolve().parent))
+    try:
+        yield
+    finally:
+        del sys.path[0]
+
+
+def _check_law(law: Any, name: str) -> None:
+    if not callable(getattr(law, "update", None)):
+        raise InputError(f"{name} has no method update(state, kinematics)", "law")
+    count = getattr(law, "internal", None)
+    if not isinstance(count, int) or isinstance(count, bool) or count < 0:
+        text = f"{name}.internal is {count!r}, the number of its own variables needed, 0 or more"
+        raise InputError(text, "law")

@@ -1,0 +1,161 @@
+"""A tangential law of a case file that is a class in a Python file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import main
+
+HERE = Path(__file__).parent
+LAWS = HERE.parent / "verification" / "laws_in_python.py"
+
+ALONG = 'directions = { kind = "constant", vector = [1, 0.2, 0] }'
+CORE = f"""adhesion = {{ stiffness = [4e3, 1e3], {ALONG} }}
+friction = {{ coefficients = [0.3, 0.1], sliding_rule = "radial", {ALONG} }}
+"""
+PYTHON = f"""[contact.python]
+file = "{LAWS.as_posix()}"
+law = "RadialReturn"
+arguments = {{ stiffness = [4e3, 1e3], coefficients = [0.3, 0.1] }}
+{ALONG}
+"""
+BASE = """[mesh.box.base]
+origin = [-0.5, -0.5, -0.5]
+size = [2, 2, 0.5]
+cells = [4, 4, 1]
+[material.base]
+model = "linear-elastic"
+E = 3000
+nu = 0.3
+"""
+#: A law that gives no force, and may fail.
+SMOOTH = """
+import numpy as np
+from anisocontact.python_law import LawResult
+
+class Smooth:
+    internal = 0
+
+    def update(self, state, kinematics):
+        n = len(kinematics.pressure)
+        none, block = np.zeros((n, 2)), np.zeros((n, 2, 2))
+        return LawResult(none, none, block, none, block, block, state.internal, none[:, 0],
+                         none[:, 0])
+"""
+
+
+def case(tmp_path: Path, laws: str, *, meshed: bool = False, name: str = "case") -> Path:
+    """The small block with other laws, on its plate or on a second block."""
+    text = (HERE / "small_block.toml").read_text(encoding="utf-8")
+    first, last = text.index("adhesion ="), text.index("[[step]]")
+    text = text[:first] + laws + text[last:]
+    if meshed:
+        text = text.replace("[material.block]", BASE + "[material.block]")
+        text = text.replace('master = "plate"', 'master = "base.top"')
+        held = '"base.bottom" = { x = 0, y = 0, z = 0 }, "block.top" = { x = 0, y = 0'
+        text = text.replace('"block.top" = { x = 0, y = 0', held)
+    path = tmp_path / f"{name}.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def smooth(tmp_path: Path, change: tuple[str, str] = ("", ""), keys: str = "") -> Path:
+    """A case with a law of its own file, beside it."""
+    (tmp_path / "smooth.py").write_text(SMOOTH.replace(*change), encoding="utf-8")
+    table = '[contact.python]\nfile = "smooth.py"\nlaw = "Smooth"\nisotropic = true\n'
+    return case(tmp_path, keys + table)
+
+
+def numbers(tmp_path: Path, name: str) -> dict:
+    return json.loads((tmp_path / name / "summary.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("meshed", [False, True], ids=["plate", "block"])
+def test_law_of_the_core_written_in_python(tmp_path, meshed, capsys):
+    """The sliding rule "radial" from a Python file gives what the core gives: forces, elastic slip
+    and slip to 1e-7 of their size, the tolerance of Newton's method. On a body that deforms both
+    laws are isotropic: there the second axis of a law in Python stays normal to the first, that of
+    the core follows the material."""
+    for name, given in (("core", CORE), ("python", PYTHON)):
+        laws = given
+        if meshed:
+            laws = laws.replace("[4e3, 1e3]", "[2e3, 2e3]").replace("[0.3, 0.1]", "[0.2, 0.2]")
+            laws = laws.replace(f", {ALONG}", "")
+        path = case(tmp_path, laws, meshed=meshed, name=name)
+        assert main(["run", str(path), "-o", str(tmp_path / name)]) == 0
+    assert "RadialReturn of " in capsys.readouterr().out
+    core, python = (numbers(tmp_path, name)["contacts"][0] for name in ("core", "python"))
+    assert core["points"]["slip"] > 0
+    assert python["points"] == core["points"]
+    for key in ("force", "elastic_slip", "slip", "max_pressure"):
+        assert python[key] == pytest.approx(core[key], rel=1e-7, abs=1e-9), key
+
+
+WRONG = [
+    (PYTHON.replace("RadialReturn", "RadialRetur"), "law", 'did you mean "RadialReturn"?'),
+    (PYTHON.replace(LAWS.name, "no_laws.py"), "file", "no such file"),
+    (PYTHON.replace("coefficients =", "mu ="), "arguments", "unexpected keyword argument 'mu'"),
+    (PYTHON.replace("arguments", "argument"), "argument", 'did you mean "arguments"?'),
+    (PYTHON[: PYTHON.index("directions")], "directions", "needed unless isotropic = true"),
+    (PYTHON + 'directions_on = "slave"\n', "directions_on", '"master"'),
+    (PYTHON.replace("[1, 0.2, 0]", "[0, 0, 0]"), "directions.vector", "[0, 0, 0] given"),
+]
+
+
+@pytest.mark.parametrize(("laws", "key", "said"), WRONG, ids=[w[1] + w[2][:9] for w in WRONG])
+def test_mistakes_in_the_table(tmp_path, capsys, laws, key, said):
+    """One line that names the key, and no results."""
+    assert main(["run", str(case(tmp_path, laws)), "-o", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err.strip()
+    assert error.startswith(f"error: contact[0].python.{key}: ")
+    assert said in error
+    assert "\n" not in error
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("laws", "field"),
+    [
+        ("", "friction"),
+        (CORE + PYTHON, "adhesion"),
+        ('evolution = "total"\n' + PYTHON, "evolution"),
+    ],
+)
+def test_one_tangential_law(tmp_path, capsys, laws, field):
+    """Laws of the core or one in Python, not both and not none."""
+    assert main(["check", str(case(tmp_path, laws))]) == 2
+    assert capsys.readouterr().err.startswith(f"error: contact[0].{field}: ")
+
+
+FAULTY = [
+    (("class Smooth", "class Smooth("), "file: 'smooth.py' cannot be run: smooth.py, line 5"),
+    (("import numpy as np", "import nump as np"), "line 2: ModuleNotFoundError: No module named"),
+    (("internal = 0", "internal = -1"), "law: Smooth.internal is -1"),
+    (("def update", "def change"), "law: Smooth has no method update"),
+    (("block, none, block", "block, q, block"), "smooth.py, line 11: NameError: name 'q'"),
+    (("(none, none, block", "(none[1:], none, block"), "traction: the law returned an array of"),
+]
+
+
+@pytest.mark.parametrize(("change", "said"), FAULTY, ids=[f[0][1][:14] for f in FAULTY])
+def test_mistakes_in_the_law(tmp_path, capsys, change, said):
+    """One line with the place in the Python file."""
+    assert main(["run", str(smooth(tmp_path, change)), "-o", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err.strip()
+    assert said in error
+    assert "\n" not in error
+
+
+def test_restart_with_another_law(tmp_path, capsys):
+    """A run goes on with the law that it had; a file that changed is refused."""
+    path, out = smooth(tmp_path), tmp_path / "out"
+    assert main(["run", str(path), "-o", str(out)]) == 0
+    assert main(["run", str(path), "-o", str(out), "--restart"]) == 0
+    (tmp_path / "smooth.py").write_text(SMOOTH + "\n# another\n", encoding="utf-8")
+    assert main(["run", str(path), "-o", str(out), "--restart"]) == 2
+    assert "'smooth.py' is not the law any more" in capsys.readouterr().err
