@@ -54,8 +54,9 @@ def joined(whole: dict[str, Any], part: dict[str, Any]) -> None:
         if key in StepSection.model_fields:
             whole["step"][0][key] = value
         elif key == "contact":
-            given = {"slave": "block.bottom", "master": "plate", "friction": {"coefficients": 0.1}}
-            whole["contact"] = [given | one for one in value]
+            sides = {"slave": "block.bottom", "master": "plate"}
+            laws: dict[str, Any] = {"friction": {"coefficients": 0.1}}
+            whole["contact"] = [sides | ({} if "python" in one else laws) | one for one in value]
         elif isinstance(value, dict) and key in whole:
             whole[key] = whole[key] | value
         else:
