@@ -134,9 +134,10 @@ def test_hint_changes_nothing_but_the_name(meshes: SimpleNamespace, topology: st
 @pytest.mark.parametrize("turn", [0.0, 0.4])
 @pytest.mark.parametrize("topology", ["tri3", "quad4", "quad9"])
 def test_hint_on_the_wrong_layer(meshes: SimpleNamespace, topology: str, turn: float) -> None:
-    """Points between two sheets a tenth of a facet apart, along the axes of their boxes and across
-    them: with the hint on a facet of the other sheet, or on a neighbour, the nearer sheet as in a
-    search without a hint; to rounding, and flat minima of curved facets to 1e-9 of its square."""
+    """Points about two tori, at most a twentieth of a facet apart, turned about their axis too so
+    that boxes overlap otherwise: with the hint on a facet of the other torus, or on a neighbour,
+    the distance is that of a search without a hint; to rounding, and flat minima of curved facets
+    to 1e-9."""
     ring = meshes.ring(20, 9, topology)
     c, s = np.cos(turn), np.sin(turn)
     points = ring.points @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
