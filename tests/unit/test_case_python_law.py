@@ -151,11 +151,32 @@ def test_mistakes_in_the_law(tmp_path, capsys, change, said):
     assert "\n" not in error
 
 
+def test_a_surface_that_cannot_be(tmp_path, capsys):
+    """What only the surface itself can judge is one line, whatever the laws."""
+    for laws in (CORE, PYTHON):
+        path = case(tmp_path, laws)
+        plane = 'shape = "plane"\npoint = [0, 0, 0]\nnormal = [0, 0, 1]'
+        ring = 'shape = "torus"\ncentre = [0, 0, 0]\naxis = [0, 0, 1]\nradius = 1\ntube = 2'
+        text = path.read_text(encoding="utf-8")
+        assert plane in text
+        path.write_text(text.replace(plane, ring), encoding="utf-8")
+        assert main(["check", str(path)]) == 2
+        error = capsys.readouterr().err.strip()
+        assert error.startswith("error: surface.plate: ")
+        assert "tube must be less than radius" in error
+        assert "\n" not in error
+
+
 def test_restart_with_another_law(tmp_path, capsys):
-    """A run goes on with the law that it had; a file that changed is refused."""
+    """A run goes on with the law that it had; a file that changed, or has gone, is refused."""
     path, out = smooth(tmp_path), tmp_path / "out"
     assert main(["run", str(path), "-o", str(out)]) == 0
     assert main(["run", str(path), "-o", str(out), "--restart"]) == 0
     (tmp_path / "smooth.py").write_text(SMOOTH + "\n# another\n", encoding="utf-8")
     assert main(["run", str(path), "-o", str(out), "--restart"]) == 2
     assert "'smooth.py' is not the law any more" in capsys.readouterr().err
+    (tmp_path / "smooth.py").unlink()
+    assert main(["run", str(path), "-o", str(out), "--restart"]) == 2
+    assert capsys.readouterr().err == (
+        "error: contact[0].python.file: 'smooth.py' given, no such file\n"
+    )

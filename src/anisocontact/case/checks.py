@@ -109,11 +109,8 @@ def _contact(
     if contact.master not in surfaces:
         text = f'"{contact.master}" given, no such surface; {near(contact.master, list(surfaces))}'
         yield InputError(text, field=f"{place}.master")
-    elif master is not None and not (wrong := list(_tangential(contact, place))):
-        made = objects.interface if contact.python is None else law_file.interface
-        yield from _tried(made, contact, master, place)[1]
-    else:
-        yield from wrong
+    elif master is not None:
+        yield from _laws(contact, place, objects.interface, law_file.interface, master)
 
 
 def _method(contact: ContactSection, place: str) -> Iterator[InputError]:
@@ -154,24 +151,28 @@ def _meshed(case: Case, contact: ContactSection, place: str) -> Iterator[InputEr
         yield InputError(text, field=f"{place}.master")
     else:
         yield from _group(case, contact.master, f"{place}.master")
-    if wrong := list(_tangential(contact, place)):
-        yield from wrong
-        return
-    made = objects.pair_law if contact.python is None else law_file.pair_law
-    yield from _tried(made, contact, place)[1]
+    yield from _laws(contact, place, objects.pair_law, law_file.pair_law)
 
 
-def _tangential(contact: ContactSection, place: str) -> Iterator[InputError]:
-    """Laws of the core or one in Python."""
-    if contact.python is None:
-        if contact.friction is None:
-            text = "missing; yield ellipse and sliding rule (or python, a law of your own)"
-            yield InputError(text, field=f"{place}.friction")
-        return
-    for key in ("adhesion", "friction"):
-        if key in contact.model_fields_set:
-            text = "given with python, which is the whole tangential law"
-            yield InputError(text, field=f"{place}.{key}")
+def _laws(
+    contact: ContactSection,
+    place: str,
+    of_core: Callable[..., Any],
+    in_python: Callable[..., Any],
+    *master: Surface,
+) -> Iterator[InputError]:
+    """Laws of the core or one in Python, the latter as far as they are known without its file."""
+    twice = [key for key in ("adhesion", "friction") if key in contact.model_fields_set]
+    if contact.python is None and contact.friction is None:
+        text = "missing; yield ellipse and sliding rule (or python, a law of your own)"
+        yield InputError(text, field=f"{place}.friction")
+    elif contact.python is None:
+        yield from _tried(of_core, contact, *master, place)[1]
+    elif twice:
+        text = "given with python, which is the whole tangential law"
+        yield from (InputError(text, field=f"{place}.{key}") for key in twice)
+    else:
+        yield from _tried(in_python, contact, *master, place)[1]
 
 
 def _group(case: Case, name: str, field: str) -> Iterator[InputError]:

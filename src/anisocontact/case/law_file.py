@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import importlib.util
 import sys
 from collections.abc import Callable, Iterator
@@ -31,7 +32,7 @@ from anisocontact.surfaces import Surface
 if TYPE_CHECKING:
     from anisocontact.case.model import ContactSection
 
-__all__ = ["PythonSection", "interface", "law_of", "pair_law", "sources"]
+__all__ = ["PythonSection", "fingerprints", "interface", "law_of", "pair_law"]
 
 #: How the history enters a step: a law of one's own sees it turned to where the point is.
 _EVOLUTION = "transport"
@@ -140,15 +141,11 @@ def law_of(
     if given is None:
         return None
     with objects.within(f"{place}.python"):
-        path = resolve(given.file)
-        module = _module(path, given.file)
+        module = _module(_found(resolve, given.file), given.file)
         kind = getattr(module, given.law, None)
         if not isinstance(kind, type):
-            known = [
-                n
-                for n, k in vars(module).items()
-                if getattr(k, "__module__", "") == module.__name__
-            ]
+            classes = {n: k for n, k in vars(module).items() if isinstance(k, type)}
+            known = [n for n, k in classes.items() if k.__module__ == module.__name__]
             text = f"\"{given.law}\" given, no such class in '{given.file}'; "
             raise InputError(text + near(given.law, known), "law")
         try:
@@ -160,15 +157,41 @@ def law_of(
         return law
 
 
-def sources(contacts: list[ContactSection], resolve: Callable[[str], Path]) -> dict[str, str]:
-    """Text of the files with laws, by the path in the case file."""
-    files = {section.python.file for section in contacts if section.python is not None}
-    return {file: resolve(file).read_text(encoding="utf-8") for file in sorted(files)}
+def fingerprints(contacts: list[ContactSection], resolve: Callable[[str], Path]) -> dict[str, str]:
+    """What the files with laws contain, for telling whether they have changed.
+
+    Args:
+        contacts: Tables of the contacts.
+        resolve: From a path in the case file to where that is.
+
+    Returns:
+        SHA-256 of each file, by its path in the case file.
+
+    Raises:
+        InputError: A file is missing or cannot be read.
+    """
+    found = {}
+    for i, section in enumerate(contacts):
+        if section.python is not None:
+            with objects.within(f"contact[{i}].python"):
+                given = section.python.file
+                path = _found(resolve, given)
+                try:
+                    found[given] = hashlib.sha256(path.read_bytes()).hexdigest()
+                except OSError as error:
+                    text = f"'{given}' cannot be read: {error.strerror}"
+                    raise InputError(text, "file") from None
+    return found
+
+
+def _found(resolve: Callable[[str], Path], given: str) -> Path:
+    path = resolve(given)
+    if not path.is_file():
+        raise InputError(f"'{given}' given, no such file", "file")
+    return path
 
 
 def _module(path: Path, given: str) -> ModuleType:
-    if not path.is_file():
-        raise InputError(f"'{given}' given, no such file", "file")
     name = f"_law_of_{path.stem}"
     spec = importlib.util.spec_from_file_location(name, path)
     if spec is None or spec.loader is None:

@@ -319,9 +319,8 @@ def case_type(known: Registries) -> type[Case]:
     """
     # "pass" is no name for an attribute in a class body
     passes: dict[str, Any] = {"pass": (Annotated[str, _word(_PASSES, SINGLE, TWO_HALF)], SINGLE)}
-    contact = create_model(
-        "Contact", __base__=ContactSection, **passes, **{**laws(known), **_or_in_python(known)}
-    )
+    fields = _or_in_python(laws(known), known)
+    contact = create_model("Contact", __base__=ContactSection, **passes, **fields)
     surface = OneOf("Surface", Key("shape", known.surfaces))
     material = OneOf("Material", Key("model", known.materials))
     return create_model(
@@ -343,21 +342,31 @@ def case_type(known: Registries) -> type[Case]:
     )
 
 
-def _or_in_python(known: Registries) -> dict[str, Any]:
-    """Fields of a contact where a law in Python may stand in place of those of the core."""
-    friction, about = laws(known)["friction"]
-    field = Annotated[Any, OneOf("Directions", Key("kind", known.direction_fields))]
-    python = create_model(
-        "Python",
-        __base__=PythonSection,
-        directions=(field, Field(None, description="direction field of the first axis of the law")),
-        directions_on=_on("master"),
-    )
+def _or_in_python(fields: dict[str, Any], known: Registries) -> dict[str, Any]:
+    """Fields of a contact, with a law in Python that may stand in place of those of the core."""
+    friction, about = fields["friction"]
+    python = _directed("Python", PythonSection, known, "direction field of the law's first axis")
     text = f"{about.description}; needed unless there is a law in Python"
-    return {
+    return fields | {
         "friction": (friction, Field(None, description=text)),
         "python": (python | None, Field(None, description=str(PythonSection.__doc__))),
     }
+
+
+@cache
+def _field(known: Registries) -> Any:
+    """A table of a direction field."""
+    return Annotated[Any, OneOf("Directions", Key("kind", known.direction_fields))]
+
+
+def _directed(name: str, base: type[Section], known: Registries, about: str) -> Any:
+    """A table with a direction field and the body that carries it."""
+    return create_model(
+        name,
+        __base__=base,
+        directions=(_field(known), Field(None, description=about)),
+        directions_on=_on("master"),
+    )
 
 
 def _on(default: str) -> tuple[Any, str]:
@@ -367,17 +376,11 @@ def _on(default: str) -> tuple[Any, str]:
 
 def laws(known: Registries) -> dict[str, Any]:
     """Fields of a contact that come from the registries."""
-    field = Annotated[Any, OneOf("Directions", Key("kind", known.direction_fields))]
-    directed = create_model(
-        "Directed",
-        __base__=Directed,
-        directions=(field, Field(None, description=_DIRECTIONS)),
-        directions_on=_on("master"),
-    )
+    directed = _directed("Directed", Directed, known, _DIRECTIONS)
     twice_directed = create_model(
         "TwiceDirected",
         __base__=directed,
-        directions_second=(field, Field(None, description=_DIRECTIONS_SECOND)),
+        directions_second=(_field(known), Field(None, description=_DIRECTIONS_SECOND)),
         directions_second_on=_on("slave"),
     )
     normal = OneOf("Normal", Key("model", known.normal_laws, default_of(NormalLaw, "model")))

@@ -13,7 +13,7 @@ from types import FrameType
 from typing import Any, Protocol
 
 from anisocontact.case.build import Built
-from anisocontact.case.law_file import sources
+from anisocontact.case.law_file import fingerprints
 from anisocontact.errors import InputError
 from anisocontact.results.checkpoint import NAME, Stored, distribute
 from anisocontact.results.files import WriteError
@@ -84,6 +84,8 @@ def run(
         RunError: Something unforeseen happened; `run.log` has the details.
     """
     text = built.file.path.read_text(encoding="utf-8")
+    laws = fingerprints(built.file.case.contact, built.file.resolve)
+    facts = {"case": text, "laws": laws}
     together = built.problem.together
     if checkpoint is not None:
         solver = built.solver
@@ -94,7 +96,7 @@ def run(
         return Outcome("stopped", str(error), Path(folder), goes_on=checkpoint is not None)
     writer.strategy(built.solver.choice.name, built.solver.choice.reason)
     try:
-        status, message = _solve(built, writer, listener, text)
+        status, message = _solve(built, writer, listener, facts)
     except KeyboardInterrupt:
         status, message = "stopped", "interrupted"
         if together.met() is None:
@@ -128,9 +130,10 @@ def _writer(built: Built, folder: str | Path, text: str, checkpoint: Stored | No
     )
 
 
-def _solve(built: Built, writer: Writer, listener: Listener, text: str) -> tuple[str, str]:
+def _solve(
+    built: Built, writer: Writer, listener: Listener, facts: dict[str, Any]
+) -> tuple[str, str]:
     told = threading.Event()
-    laws = sources(built.file.case.contact, built.file.resolve)
 
     def on_iteration(progress: Progress) -> None:
         writer.log(_iteration_line(progress))
@@ -145,8 +148,8 @@ def _solve(built: Built, writer: Writer, listener: Listener, text: str) -> tuple
 
     def keep() -> None:
         place = built.solver.place
-        facts = {"case": text, "laws": laws, "begun": place.step + place.begun}
-        writer.keep(built.solver.persistent(), facts)
+        begun = {"begun": place.step + place.begun}
+        writer.keep(built.solver.persistent(), facts | begun)
 
     comm = built.problem.comm
     try:

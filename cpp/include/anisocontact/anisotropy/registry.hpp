@@ -29,10 +29,13 @@ Components<S> components(const AnyField& f, const TangentBasis<S>& b, const Vect
                          const Whole& geometry) {
   return std::visit(
       [&]<class F>(const F& t) -> Components<S> {
-        if constexpr (HasLine<F, S>) return components_along(b, t.line(b.position));
-        const surface::Geometry<S> g = geometry();
-        const Axes<S> axes = t.axes(g, xi);
-        return {g.project_contra(axes.e), axes.valid};
+        if constexpr (HasLine<F, S>) {
+          return components_along(b, t.line(b.position));
+        } else {
+          const surface::Geometry<S> g = geometry();
+          const Axes<S> axes = t.axes(g, xi);
+          return {g.project_contra(axes.e), axes.valid};
+        }
       },
       f);
 }
