@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from anisocontact._fenicsx import Vec
+from anisocontact.solver.acceptance import Refusal, refused
 from anisocontact.solver.culprits import find_culprits
 from anisocontact.solver.newton import NewtonResult
 from anisocontact.solver.problem import Problem
@@ -25,10 +26,12 @@ class Outcome:
     Attributes:
         result: Of the attempt that converged, or of the last; iterations are those of all.
         culprits: Places that caused the failure of one of them.
+        final: Whether no smaller part can help, see `Refusal`.
     """
 
     result: NewtonResult
     culprits: tuple[Culprit, ...] = ()
+    final: bool = False
 
 
 @dataclass(frozen=True)
@@ -83,17 +86,19 @@ class Attempts:
         """
         spent = 0
         found: list[Culprit] = []
+        reason, final = "", False
         ways = self._ways(first, last)
         for way in ways:
-            result, culprits = self._attempt(way)
+            result, refusal = self._attempt(way)
             spent += result.iterations
-            if not result.reason:
+            if refusal is None:
                 return Outcome(replace(result, iterations=spent))
-            found = _graver(found, culprits)
+            reason, final = refusal.reason, refusal.final
+            found = _graver(found, list(refusal.culprits))
             if way is ways[-1] and found[:1] and found[0].kind == "flipping":
                 ways += self._against_flipping(way, small)
-        reason = _reason(result.reason, found)
-        return Outcome(replace(result, iterations=spent, reason=reason), tuple(found))
+        result = replace(result, iterations=spent, reason=_reason(reason, found))
+        return Outcome(result, tuple(found), final)
 
     def _ways(self, first: Vec, last: Vec) -> list[_Way]:
         searching, full = _Way(first, full_steps=False), _Way(last)
@@ -109,7 +114,8 @@ class Attempts:
             return [_Way(failed.start, flowing=True)]
         return []
 
-    def _attempt(self, way: _Way) -> tuple[NewtonResult, list[Culprit]]:
+    def _attempt(self, way: _Way) -> tuple[NewtonResult, Refusal | None]:
+        """Solve in one way; None where its state was accepted."""
         problem = self._problem
         self._watch.clear()
         self._share = 1.0
@@ -118,16 +124,16 @@ class Attempts:
             if way.flowing:
                 problem.flow()
             result = self._newton.solve(x, way.full_steps, self._damping if way.damped else None)
-            if not result.reason and problem.comm.allreduce(len(problem.inverted_cells())):
-                result = replace(result, reason="cells are turned inside out")
-            lets_go = "" if result.reason else problem.contact_lets_go(x)
-            if not result.reason and not lets_go:
+            if result.reason:
+                problem.stabilisation.careful = True
+                culprits = find_culprits(problem, self._watch, self._newton.residual)
+                return result, Refusal(result.reason, tuple(culprits))
+            refusal = refused(problem, x)
+            if refusal is None:
                 problem.commit(x)
-                return result, []
-            problem.stabilisation.careful = True
-            if lets_go:
-                return replace(result, reason=lets_go), []
-            return result, find_culprits(problem, self._watch, self._newton.residual)
+            else:
+                problem.stabilisation.careful = True
+            return result, refusal
         except (Exception, KeyboardInterrupt):
             problem.together.met()
             raise

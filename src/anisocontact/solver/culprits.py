@@ -73,6 +73,11 @@ def _slave_point(
     )
 
 
+def inverted_cells(problem: Problem) -> list[Culprit]:
+    """Cells that the last evaluation turned inside out, over all ranks."""
+    return _everywhere(problem, list(_inverted(problem)))
+
+
 def _inverted(problem: Problem) -> Iterator[Culprit]:
     for middle in problem.inverted_cells():
         yield Culprit("inverted", _place(middle), "the cell here is inverted (det F <= 0)")

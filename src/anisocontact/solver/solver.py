@@ -214,7 +214,7 @@ class Solver:
         """Make the next part smaller, or give up."""
         pace, result = self.place.pace, outcome.result
         tried, cuts = pace.part, pace.cuts
-        if not pace.cut():
+        if outcome.final or not pace.cut():
             points = np.array([c.position for c in outcome.culprits if c.kind == "law"])
             text = f"{cuts} cuts, the last part was {tried:.2g} of the increment" if cuts else ""
             raise StoppedError(

@@ -1,0 +1,68 @@
+"""What a state in equilibrium has to pass before it is accepted.
+
+Newton's method knows balance of forces and nothing else. A state in balance in which cells are
+inside out, or a body is where it cannot be, is no solution: it is refused with its reason, and the
+increment is tried in another way or in smaller parts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from anisocontact._fenicsx import Vec
+from anisocontact.solver.culprits import inverted_cells
+from anisocontact.solver.problem import Problem
+from anisocontact.solver.steps import Culprit
+
+
+@dataclass(frozen=True)
+class Refusal:
+    """Why a state in equilibrium is not accepted.
+
+    Attributes:
+        reason: In a line.
+        culprits: The places that caused it, over all ranks.
+        final: Whether no smaller part of the increment can help: the run stops.
+    """
+
+    reason: str
+    culprits: tuple[Culprit, ...] = ()
+    final: bool = False
+
+
+type Check = Callable[[Problem, Vec], Refusal | None]
+"""Takes the problem and all unknowns of the state that it was evaluated at last.
+
+Collective: it is asked on every rank and says the same on each.
+"""
+
+
+def cells_inside_out(problem: Problem, _: Vec) -> Refusal | None:
+    """Refuse states with inverted cells."""
+    found = inverted_cells(problem)
+    return Refusal("cells are turned inside out", tuple(found)) if found else None
+
+
+def contact_lets_go(problem: Problem, x: Vec) -> Refusal | None:
+    """Refuse states in which nothing holds a free body."""
+    reason = problem.contact_lets_go(x)
+    return Refusal(reason) if reason else None
+
+
+#: All checks, in the order in which they are asked.
+CHECKS: tuple[Check, ...] = (cells_inside_out, contact_lets_go)
+
+
+def refused(problem: Problem, x: Vec) -> Refusal | None:
+    """The first objection to a state in equilibrium; None if it may be accepted.
+
+    Args:
+        problem: The problem, evaluated at the state.
+        x: All unknowns of the state.
+    """
+    for check in CHECKS:
+        objection = check(problem, x)
+        if objection is not None:
+            return objection
+    return None
