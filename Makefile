@@ -1,7 +1,7 @@
 # `make run` and `make test` need nothing but make, a C++20 compiler and a Python >= 3.12.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help setup run test verify sanitize lint format bench docs clean distclean
+.PHONY: help setup run test verify sanitize lint format bench scoreboard docs clean distclean
 
 IN_VENV := tools/venv-run
 EXAMPLE := milled_block
@@ -46,6 +46,9 @@ format: setup ## format Python and C++
 
 bench: setup ## all benchmarks, this code and others; N="12 24" for sizes
 	@$(IN_VENV) python benchmarks/run.py $(N) --docs
+
+scoreboard: setup ## hard cases with every method and strategy; CASES="pair plate" for some
+	@$(IN_VENV) python benchmarks/scoreboard/run.py $(CASES) --docs
 
 docs: setup ## build the documentation in docs/_build/html
 	@$(IN_VENV) sphinx-build -W --keep-going -q -b html docs docs/_build/html

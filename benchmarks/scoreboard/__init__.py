@@ -1,0 +1,1 @@
+"""Hard cases of contact, run with every method and strategy that applies."""
