@@ -25,10 +25,10 @@ lint: setup ## style, types and format of Python and C++
 	@[ -z "$(CPP)" ] || $(IN_VENV) clang-format --dry-run -Werror $(CPP)
 
 test: lint ## lint and all tests but the slow ones
-	@$(IN_VENV) pytest
+	@$(IN_VENV) pytest -n auto
 
 verify: lint ## lint and all tests
-	@$(IN_VENV) pytest -m ""
+	@$(IN_VENV) pytest -n auto -m ""
 
 sanitize: setup ## the programs of tests/cpp under address and undefined-behaviour sanitizers
 	@echo 'int main() {}' | $${CXX:-c++} -x c++ -fsanitize=address,undefined -o /dev/null - 2>/dev/null || \

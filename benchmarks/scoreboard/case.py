@@ -41,7 +41,7 @@ class HardCase:
         text: The case file.
 
     Example:
-        >>> case = HardCase("two", '# A pair.\\n# stops: friction\\ntitle = "A"\\n[[contact]]\\n')
+        >>> case = HardCase("two", '# A pair.\n# stops: friction\ntitle = "A"\n[[contact]]\n')
         >>> case.what, case.stops
         ('A pair.', 'friction')
         >>> print(case.written(Way("augmented", "direct")).partition("title")[2])

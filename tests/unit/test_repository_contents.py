@@ -22,7 +22,8 @@ def files() -> Iterator[Path]:
     for folder, subfolders, names in os.walk(ROOT):
         hidden = {name for name in subfolders if name.startswith(".") and name != ".ci"}
         subfolders[:] = set(subfolders) - hidden - NOT_OURS - {"__pycache__"}
-        yield from (Path(folder, name) for name in names)
+        # in a worktree `.git` is a file, and names its repository
+        yield from (Path(folder, name) for name in names if name != ".git")
 
 
 def test_no_path_of_a_machine() -> None:
