@@ -1,7 +1,7 @@
 # `make run` and `make test` need nothing but make, a C++20 compiler and a Python >= 3.12.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help setup run test verify sanitize lint format bench scoreboard docs clean distclean
+.PHONY: help setup run test verify wheel sanitize lint format bench scoreboard docs clean distclean
 
 IN_VENV := tools/venv-run
 EXAMPLE := milled_block
@@ -29,6 +29,9 @@ test: lint ## lint and all tests but the slow ones
 
 verify: lint ## lint and all tests
 	@$(IN_VENV) pytest -n auto -m ""
+
+wheel: setup ## sdist and wheel of the last commit, installed and used in clean environments
+	@.venv/bin/python tools/wheel.py
 
 sanitize: setup ## the programs of tests/cpp under address and undefined-behaviour sanitizers
 	@echo 'int main() {}' | $${CXX:-c++} -x c++ -fsanitize=address,undefined -o /dev/null - 2>/dev/null || \
