@@ -1,7 +1,7 @@
 """Build sdist and wheel from what git has, install and use the wheel in clean environments.
 
-`make wheel` calls this. Nothing of the checkout is used but its last commit, and nothing is left in
-it. Each Python has the wheel with the base dependencies, traces a point, is told what a run of
+`make wheel` calls this. Nothing of the checkout is used but its last commit, and both are left in
+`dist` when they are good. Each Python has the wheel with the base dependencies, traces a point, is told what a run of
 finite elements lacks, gets the extra `fem`, and solves a case. A Python that is not on the machine
 is skipped, and said to be.
 """
@@ -21,6 +21,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 CONSTRAINTS = ROOT / "tools" / "constraints.txt"
+DIST = ROOT / "dist"
 VERSIONS = ("3.12", "3.13")
 #: What is built with beside `build-system.requires`.
 BUILDERS = ("cmake", "ninja")
@@ -197,6 +198,9 @@ def check(folder: Path) -> list[str]:
         place.mkdir()
         use(make_venv(python, place / "venv"), wheel, tree, place)
         shutil.rmtree(place)
+    DIST.mkdir(exist_ok=True)
+    for built in (*folder.glob("*.tar.gz"), wheel):
+        shutil.copy(built, DIST)
     return list(pythons)
 
 
@@ -211,7 +215,7 @@ def main() -> int:
         return 1
     for version in sorted(set(VERSIONS).difference(used)):
         say(f"skipped Python {version}: not found on this machine")
-    say(f"good in Python {' and '.join(used)} ({time.monotonic() - began:.0f} s)")
+    say(f"good in Python {' and '.join(used)}, in {DIST.name} ({time.monotonic() - began:.0f} s)")
     return 0
 
 
