@@ -1,9 +1,9 @@
 """Build sdist and wheel from what git has, install and use the wheel in clean environments.
 
 `make wheel` calls this. Nothing of the checkout is used but its last commit, and both are left in
-`dist` when they are good. Each Python has the wheel with the base dependencies, traces a point, is told what a run of
-finite elements lacks, gets the extra `fem`, and solves a case. A Python that is not on the machine
-is skipped, and said to be.
+`dist` when they are good. Each Python has the wheel with the base dependencies, traces a point, is
+told what a run of finite elements lacks, gets the extra `fem`, and solves a case. A Python that is
+not on the machine is skipped, and said to be.
 """
 
 from __future__ import annotations
