@@ -60,8 +60,8 @@ def registry_page(rooms: Mapping[str, Iterable[Any]]) -> str:
     """Return the page of everything that is registered."""
     parts = [
         "# Surfaces, directions, laws and rules\n",
-        "`anisocontact info` prints the same. An angle is in radians in Python; in a case file "
-        "its key ends in `_deg`.\n",
+        "`anisocontact info` prints the same. In a case file the key of an angle ends in "
+        "`_deg`; Python takes it in degrees by that name, or in radian without `_deg`.\n",
     ]
     for title, entries in rooms.items():
         parts.append(f"## {title}\n")

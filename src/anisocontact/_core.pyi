@@ -21,6 +21,8 @@ class Parameter:
     def fallback(self) -> list[float]: ...
     @property
     def choices(self) -> list[str]: ...
+    @property
+    def isotropic(self) -> list[float]: ...
 
 class Descriptor:
     @property
@@ -85,6 +87,8 @@ class Field:
 
 class FrictionModel:
     def __init__(self, name: str, values: Mapping[str, Sequence[float]]) -> None: ...
+    @property
+    def frictionless(self) -> bool: ...
     def tensor(
         self,
         surface: Surface,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,11 +30,6 @@ def _named(
 ) -> Named:
     e = registry.entry(registry_of(), name, field)
     return name, registry.values(e, parameters)
-
-
-def _isotropic(value: object) -> bool:
-    """Whether a pair of values is a single one, so that no direction is needed."""
-    return isinstance(value, Sequence | np.ndarray) and len(value) == 2 and value[0] == value[1]
 
 
 class NormalLaw:
@@ -83,7 +78,7 @@ class Adhesion:
     Args:
         model: Name in `registry.adhesion_models()`.
         directions: Axes of the tensors; may be left out where both values of every pair are
-            equal.
+            equal, or one number is given for both.
         directions_on: "master" or "slave": the body that carries the directions.
         **parameters: The model's parameters, such as `stiffness`, the eigenvalues of -B
             [stress/length].
@@ -93,8 +88,8 @@ class Adhesion:
             values differ.
 
     Example:
-        >>> Adhesion(stiffness=(1e5, 1e5)).directions is None
-        True
+        >>> Adhesion(stiffness=1e5).named[1]["stiffness"]
+        [100000.0, 100000.0]
     """
 
     def __init__(
@@ -106,7 +101,8 @@ class Adhesion:
         **parameters: object,
     ) -> None:
         self.named = _named(registry.adhesion_models, model, parameters, "adhesion.model")
-        _need_directions("adhesion", directions, self.named, parameters)
+        entry = registry.entry(registry.adhesion_models(), model)
+        _need_directions("adhesion", directions, entry, self.named)
         self.directions = directions
         self.directions_on = _side(directions_on, "adhesion.directions_on")
 
@@ -133,22 +129,27 @@ class Friction:
     Args:
         model: Name in `registry.friction_models()`.
         directions: Axes of the friction tensor; may be left out where both values of every pair
-            are equal.
-        directions_second: Axes of the second surface, for a model of two surfaces.
+            are equal, or one number is given for both.
+        directions_second: Axes of the second surface, for a model of two surfaces that is not the
+            same all around.
         directions_on: "master" or "slave": the body that carries the directions.
         directions_second_on: The body that carries those of the second surface. Slave points alone,
             without a surface, have none: all of them then count on the master.
         sliding_rule: Name in `registry.sliding_rules()`.
         **parameters: Parameters of the model, such as `coefficients`, and of the sliding rule,
-            such as `history`.
+            such as `history`. Coefficients of 0 are contact without friction: there is no
+            tangential force, whatever the adhesion, and every point that touches slips.
+
+    Attributes:
+        frictionless: Whether there is no friction at all.
 
     Raises:
         InputError: Unknown name or parameter, a value out of range, or directions that are missing
             or too many.
 
     Example:
-        >>> Friction(coefficients=(0.3, 0.3)).rule[0]
-        'maximum-dissipation'
+        >>> Friction(coefficients=0.3).rule[0], Friction(coefficients=0).frictionless
+        ('maximum-dissipation', True)
     """
 
     def __init__(
@@ -163,16 +164,20 @@ class Friction:
         **parameters: object,
     ) -> None:
         rule = registry.entry(registry.sliding_rules(), sliding_rule, "friction.sliding_rule")
-        of_rule = {p.name for p in rule.parameters}
+        of_rule = {key for p in rule.parameters for key in (p.name, f"{p.name}_deg")}
         own = {k: v for k, v in parameters.items() if k not in of_rule}
         self.named = _named(registry.friction_models, model, own, "friction.model")
         self.rule: Named = (
             sliding_rule,
             registry.values(rule, {k: v for k, v in parameters.items() if k in of_rule}),
         )
-        _need_directions("friction", directions, self.named, parameters)
-        _need_directions("friction", directions, self.rule, parameters)
-        _need_both(model, directions, directions_second)
+        entry = registry.entry(registry.friction_models(), model)
+        if entry.directions == 2:
+            _need_both(entry, self.named, directions, directions_second)
+        else:
+            _need_directions("friction", directions, entry, self.named)
+            _refuse_second(model, directions_second)
+        _need_directions("friction", directions, rule, self.rule)
         self.directions, self.directions_second = directions, directions_second
         self.directions_on = _side(directions_on, "friction.directions_on")
         self.directions_second_on = _side(directions_second_on, "friction.directions_second_on")
@@ -181,6 +186,7 @@ class Friction:
         except ValueError as error:
             name, _, line = str(error).partition(": ")
             raise InputError(line, field=f"friction.{name}") from None
+        self.frictionless: bool = self.core.frictionless
 
     def tensor(self, surface: Surface, xi: npt.ArrayLike, placement: str = "contra") -> Floats:
         """Friction tensor F of the yield ellipse T.FT = N^2.
@@ -195,7 +201,7 @@ class Friction:
             [Konyukhov Schweizerhof 2006, eq. (36), (43), (57)].
 
         Raises:
-            InputError: A point where a direction field has no direction.
+            InputError: A point where a direction field has no direction, or no friction at all.
 
         Example:
             >>> from anisocontact.surfaces import make_surface
@@ -203,6 +209,8 @@ class Friction:
             >>> Friction(coefficients=(0.5, 0.5)).tensor(plane, [[0, 0]])[0].tolist()
             [[4.0, 0.0], [0.0, 4.0]]
         """
+        if self.frictionless:
+            raise InputError("0 given, F is infinite without friction", field="friction.tensor")
         xi = points(xi, 2, "xi")
         first, second = (d.core if d else None for d in (self.directions, self.directions_second))
         r = self.core.tensor(surface.core, xi, first, second)
@@ -212,33 +220,44 @@ class Friction:
 
 
 def _need_both(
-    model: str, directions: DirectionField | None, second: DirectionField | None
+    entry: Entry, named: Named, directions: DirectionField | None, second: DirectionField | None
 ) -> None:
-    """Checks that a model of two surfaces has the directions of both, and no other has."""
-    two = registry.entry(registry.friction_models(), model).directions == 2
+    """Checks that a model of two surfaces has the directions of both, unless it needs none."""
+    if _same_all_around(entry, named):
+        return
     for name, given in (("directions", directions), ("directions_second", second)):
-        if two and given is None:
+        if given is None:
             raise InputError(
-                f"missing; friction model {model!r} needs the directions of both surfaces",
+                f"missing; friction model {entry.name!r} needs the directions of both surfaces",
                 field=f"friction.{name}",
             )
-    if second is not None and not two:
+
+
+def _refuse_second(model: str, second: DirectionField | None) -> None:
+    if second is not None:
         raise InputError(
             f"given, but friction model {model!r} has one surface with directions",
             field="friction.directions_second",
         )
 
 
+def _same_all_around(entry: Entry, named: Named) -> bool:
+    return all(p.same_all_around(named[1][p.name]) for p in entry.parameters)
+
+
 def _need_directions(
-    what: str, directions: DirectionField | None, named: Named, parameters: dict[str, object]
+    what: str, directions: DirectionField | None, entry: Entry, named: Named
 ) -> None:
     if directions is not None:
         return
-    for name, numbers in named[1].items():
-        if len(numbers) == 2 and not _isotropic(numbers):
+    for p in entry.parameters:
+        numbers = named[1][p.name]
+        if not p.same_all_around(numbers):
+            shown = ", ".join(f"{v:g}" for v in numbers)
+            values = "two different values" if len(numbers) == 2 else "different values"
             raise InputError(
-                f"{what} has two different values of {name} ({parameters.get(name)!r}) "
-                "and no directions; give directions, or equal values",
+                f"{what} has {values} of {p.name} ({shown}) and no directions; give directions, or "
+                "one number",
                 field=f"{what}.directions",
             )
 

@@ -6,7 +6,6 @@ command `anisocontact info` and the conformance tests are made from the same ent
 
 from __future__ import annotations
 
-import difflib
 import math
 import reprlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -17,6 +16,7 @@ import numpy as np
 
 from anisocontact import _core
 from anisocontact.errors import InputError
+from anisocontact.words import meant
 
 _SIZES = {"scalar": 1, "integer": 1, "flag": 1, "choice": 1, "pair": 2, "vector": 3, "axis": 6}
 
@@ -26,7 +26,7 @@ class Parameter:
     """A parameter of an entry.
 
     Args:
-        name: Identifier; with the unit "angle" it is in radians, in a case file `<name>_deg`.
+        name: Identifier; with the unit "angle" it is in radian, `<name>_deg` is in degrees.
         kind: "scalar", "pair", "vector", "axis" (a point and a direction), "array", "integer",
             "integers", "flag" or "choice".
         unit: Dimension, such as "length" or "stress/length"; "1" where there is none.
@@ -36,6 +36,8 @@ class Parameter:
         default: Value where it is not required.
         choices: The words a "choice" may be.
         count: How many numbers a list must have, if its kind does not say so.
+        isotropic: What one number is multiplied with where it is given in the place of a list, to
+            mean the same in all directions; (1, 1) of a pair.
     """
 
     name: str
@@ -47,6 +49,30 @@ class Parameter:
     default: tuple[float, ...] = ()
     choices: tuple[str, ...] = ()
     count: int | None = None
+    isotropic: tuple[float, ...] = ()
+
+    @property
+    def alike(self) -> tuple[float, ...]:
+        """Factors of the numbers of a list that one number stands for; none where it cannot."""
+        return (1.0, 1.0) if self.kind == "pair" else self.isotropic
+
+    def same_all_around(self, numbers: Sequence[float]) -> bool:
+        """Whether values along two axes are the same along all others, so that axes do not count.
+
+        Args:
+            numbers: The numbers of the parameter.
+
+        Returns:
+            True where the parameter has no axes.
+
+        Example:
+            >>> mu = Parameter("mu", "pair", "1", "friction")
+            >>> mu.same_all_around([0.3, 0.3]), mu.same_all_around([0.3, 0.1])
+            (True, False)
+        """
+        if len(numbers) == 4 and self.alike:  # 2 x 2: what commutes with every rotation
+            return numbers[0] == numbers[3] and numbers[1] == -numbers[2]
+        return not self.alike or list(numbers) == [numbers[0] * k for k in self.alike]
 
 
 @dataclass(frozen=True)
@@ -84,6 +110,7 @@ def _entries(kind: str, describe: Callable[[], list[_core.Descriptor]]) -> tuple
                     p.required,
                     tuple(p.fallback),
                     tuple(p.choices),
+                    isotropic=tuple(p.isotropic),
                 )
                 for p in d.parameters
             ),
@@ -194,8 +221,8 @@ def entry(entries: Iterable[Entry], name: str, field: str = "") -> Entry:
         if e.name == name:
             return e
     names = [e.name for e in found]
-    near = difflib.get_close_matches(str(name), names, 1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
+    near = meant(str(name), names)
+    hint = f"; did you mean {near!r}?" if near else ""
     kind = found[0].kind if found else "entry"
     raise InputError(
         f"unknown {kind} {name!r}, there are: {', '.join(names)}{hint}", field=field or kind
@@ -223,11 +250,11 @@ def values(e: Entry, given: Mapping[str, object], prefix: str = "") -> dict[str,
 
     Args:
         e: The entry.
-        given: Values by parameter name; None counts as left out.
+        given: Values by parameter name, angles also by `<name>_deg`; None counts as left out.
         prefix: Dotted path put before the parameter's name in messages.
 
     Returns:
-        A list of numbers for every parameter, defaults filled in.
+        A list of numbers for every parameter, defaults filled in; angles in radian.
 
     Raises:
         InputError: A parameter is unknown, missing, of the wrong form or out of range.
@@ -238,10 +265,11 @@ def values(e: Entry, given: Mapping[str, object], prefix: str = "") -> dict[str,
     """
     path = f"{prefix}." if prefix else ""
     known = {p.name for p in e.parameters}
+    given = in_radian(e.parameters, given, prefix)
     for name in given:
         if name not in known:
-            near = difflib.get_close_matches(name, known, 1)
-            hint = f"; did you mean {near[0]!r}?" if near else ""
+            near = meant(name, sorted(known))
+            hint = f"; did you mean {near!r}?" if near else ""
             allowed = ", ".join(sorted(known)) or "none"
             raise InputError(
                 f"{e.kind} {e.name!r} has no parameter {name!r}, allowed: {allowed}{hint}",
@@ -259,6 +287,70 @@ def values(e: Entry, given: Mapping[str, object], prefix: str = "") -> dict[str,
         else:
             result[p.name] = check(p, v, f"{path}{p.name}")
     return result
+
+
+#: Angle in radian beyond which degrees must have been meant; rounding of a full turn is none.
+FULL_TURN = 2.0 * math.pi * (1.0 + 1e-12)
+
+
+def in_radian(
+    parameters: Iterable[Parameter], given: Mapping[str, object], prefix: str = ""
+) -> dict[str, Any]:
+    """Values with angles in radian, of which those by `<name>_deg` were in degrees.
+
+    Args:
+        parameters: Those of the entry.
+        given: Values by parameter name; others are passed on as they are.
+        prefix: Dotted path put before the parameter's name in messages.
+
+    Returns:
+        The values, with no name in degrees left.
+
+    Raises:
+        InputError: An angle is given twice, is no number, or is in radian and more than a full
+            turn: a slip of degrees.
+
+    Example:
+        >>> angle = Parameter("angle", "scalar", "angle", "an angle")
+        >>> in_radian([angle], {"angle_deg": 180.0})
+        {'angle': 3.141592653589793}
+        >>> in_radian([angle], {"angle": 30.0})
+        Traceback (most recent call last):
+        anisocontact.errors.InputError: angle: 30 given in radian, more than a full turn; ...
+    """
+    path = f"{prefix}." if prefix else ""
+    result = dict(given)
+    for p in parameters:
+        if p.unit != "angle":
+            continue
+        degrees = result.pop(f"{p.name}_deg", None)
+        radian = result.get(p.name)
+        if degrees is not None and radian is not None:
+            text = f"given with {p.name}_deg, one of the two is allowed"
+            raise InputError(text, field=f"{path}{p.name}")
+        if degrees is not None:
+            result[p.name] = math.radians(check(p, degrees, f"{path}{p.name}_deg")[0])
+        elif radian is not None:
+            check_radian(check(p, radian, f"{path}{p.name}")[0], f"{path}{p.name}")
+    return result
+
+
+def check_radian(angle: float, field: str) -> None:
+    """Refuse an angle in radian that must have been meant in degrees.
+
+    Args:
+        angle: The angle, radian.
+        field: Dotted path for the message; its last part is the name of the angle.
+
+    Raises:
+        InputError: It is more than a full turn; the line says how degrees are written.
+    """
+    if abs(angle) > FULL_TURN:
+        name = field.rpartition(".")[2]
+        text = (
+            f"{angle:g} given in radian, more than a full turn; {name}_deg = {angle:g} is degrees"
+        )
+        raise InputError(text, field=field)
 
 
 def check(p: Parameter, given: object, field: str = "") -> list[float]:
@@ -296,9 +388,13 @@ def _numbers(p: Parameter, given: object, field: str) -> list[float]:
         if not isinstance(given, bool):
             raise InputError(f"{given!r} given, true or false is needed", field=field)
         return [float(given)]
+    is_list = _is_list(given)
+    if p.alike and not is_list:
+        if isinstance(given, bool) or not hasattr(given, "__float__"):
+            raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
+        return [float(given) * k for k in p.alike]
     if p.kind in ("axis", "array"):
         return _nested_numbers(p, given, field)
-    is_list = isinstance(given, Iterable) and not isinstance(given, str | bytes)
     items: list[Any] = list(given) if is_list else [given]  # type: ignore[call-overload]
     if any(isinstance(v, bool) or not hasattr(v, "__float__") for v in items):
         raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
@@ -310,6 +406,13 @@ def _numbers(p: Parameter, given: object, field: str) -> list[float]:
     if p.kind in ("integer", "integers") and any(v != int(v) for v in numbers):
         raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
     return numbers
+
+
+def _is_list(given: object) -> bool:
+    """Whether there are several values; an array without axes is one."""
+    if isinstance(given, np.ndarray):
+        return given.ndim > 0
+    return isinstance(given, Iterable) and not isinstance(given, str | bytes)
 
 
 def _nested_numbers(p: Parameter, given: object, field: str) -> list[float]:
@@ -327,10 +430,10 @@ def _nested_numbers(p: Parameter, given: object, field: str) -> list[float]:
 def _form(p: Parameter) -> str:
     forms = {
         "scalar": "one number is",
-        "pair": "two numbers are",
-        "vector": "three numbers are",
+        "pair": "one or two numbers are",
+        "vector": "one or three numbers are" if p.alike else "three numbers are",
         "axis": "a point and a direction, [[x, y, z], [x, y, z]], are",
-        "array": "a list of numbers is",
+        "array": "one number or a list of them is" if p.alike else "a list of numbers is",
         "integer": "a whole number is",
         "integers": "a list of whole numbers is",
     }

@@ -147,7 +147,7 @@ CASES: dict[str, tuple[Callable[[], Any], str]] = {
     ),
     "friction of zero": (
         lambda: Friction(coefficients=(0.3, 0.0), directions=MARKS),
-        "coefficients: (0.3, 0.0) given, must be > 0",
+        "friction.coefficients: 0.3 and 0 given, the yield ellipse needs both > 0, or both 0",
     ),
     "no adhesion": (
         lambda: Adhesion(stiffness=(-1, 1), directions=MARKS),

@@ -78,7 +78,7 @@ WRONG = [
     ('{ x = 0.02, y = 0.01 } }', '{ x = 0.02, y = 0.01 }, "block.tap" = { x = 1 } }',
      "step[1].displacement", "block.top"),
     ('name = "drag"', 'name = "press"', "step[1].name", "step[0]"),
-    ("[material.block]", "[material.blok]", "material.block", "material"),
+    ("[material.block]", "[material.blok]", "material.blok", 'did you mean "block"?'),
     # the mesh
     ("[mesh.box.block]\norigin = [0, 0, 0]\nsize = [1, 1, 0.5]\ncells = [3, 3, 2]\n"
      'cell = "hexahedron"\norder = 1', '[mesh]\nfile = "none.msh"', "mesh.file", "none.msh"),

@@ -7,14 +7,17 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from anisocontact import registry
+from anisocontact.anisotropy import make_directions
 from anisocontact.registry import Entry, Parameter
+from anisocontact.surfaces import make_surface
 
 pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
 
-from anisocontact.case import json_schema, load, validate
+from anisocontact.case import json_schema, load, objects, validate
 from anisocontact.case.model import Registries, case_type
 
 
@@ -35,7 +38,10 @@ def test_angles_are_degrees_in_the_file_and_radians_in_python(case_text):
         "vector = [1, 0, 0] } }\n\n", "vector = [1, 0, 0], angle_deg = 30 } }\n\n"
     )
     directions = validate(tomllib.loads(text)).contact[0].friction.directions
-    assert directions.parameters()["angle"] == math.radians(30)
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    turned = make_directions("constant", vector=(1, 0, 0), angle=math.radians(30))
+    for field in (objects.directions(directions, ""), turned):
+        assert field.axes(plane, [[0, 0]])[0][0, 0] == pytest.approx((np.sqrt(0.75), 0.5, 0))
 
 
 def test_one_number_stands_for_two_equal_ones_and_needs_no_direction(case_text):
@@ -135,9 +141,9 @@ def test_a_new_registry_entry_needs_no_change_of_the_case_file(case_text):
     data = tomllib.loads(case_text)
     data["surface"]["plate"] = {"shape": "dome", "height": 2, "lean_deg": 90}
     plate = kind.model_validate(data).surface["plate"]
-    assert plate.parameters() == {"height": 2.0, "lean": math.pi / 2}
+    assert plate.parameters() == {"height": 2.0, "lean_deg": 90.0}
     assert "SurfaceDome" in kind.model_json_schema()["$defs"]
     del data["surface"]["plate"]["lean_deg"]
     # Left out: the registry's default, 0.5 rad, goes through degrees and back.
-    lean = kind.model_validate(data).surface["plate"].parameters()["lean"]
-    assert lean == pytest.approx(0.5, rel=1e-15)
+    lean = kind.model_validate(data).surface["plate"].parameters()["lean_deg"]
+    assert math.radians(lean) == pytest.approx(0.5, rel=1e-15)

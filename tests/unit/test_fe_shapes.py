@@ -208,7 +208,11 @@ DOME = {"radius": 2.0, "rim": 1.0, "height": 1.0, "cells": (8, 1, 1)}
         ("ball", {"radius": 1.0, "cells": (40000, 1)}, "cells: 1.0e+12 cells given, at most"),
         ("ring", RING | {"outer": 1.0}, "outer: 1 given, must be > inner, 1"),
         ("ring", RING | {"cells": (1, 2, 1)}, "cells: 2 cells around a whole ring given, at least"),
-        ("ring", RING | {"end": 7.0}, "end_deg: 401.07 given, must be > start, 0, and at most 360"),
+        (
+            "ring",
+            RING | {"end": 7.0},
+            "end: 7 given in radian, more than a full turn; end_deg = 7 is degrees",
+        ),
         ("ring", RING | {"start": 1.0, "end": 1.0}, "end_deg: 57.2958 given, must be > start"),
         ("dome", DOME | {"rim": 2.0}, "rim: 2 given, must be < radius, 2"),
         ("dome", DOME | {"height": 0.2}, "height: 0.2 given, must be > 0.267949, the height"),
@@ -226,9 +230,9 @@ def test_bad_shape_is_one_line(name, given, line):
     ("make", "line"),
     [
         (lambda: Placement(scale=-1.0), "scale: -1.0 given, must be > 0"),
-        (lambda: Placement(move=(0, 0)), "move: [0, 0] given, three finite numbers are needed"),
+        (lambda: Placement(move=(0, 0)), "move: (0, 0) given, three finite numbers are needed"),
         (lambda: Rotation((0, 0, 0), 1.0), "axis: [0, 0, 0] given, must not be zero"),
-        (lambda: Rotation((0, 0, 1), math.inf), "angle: inf given, a finite number is needed"),
+        (lambda: Rotation((0, 0, 1), math.inf), "angle: inf given, finite numbers are needed"),
     ],
 )
 def test_bad_placement_is_one_line(make, line):

@@ -63,7 +63,7 @@ def test_wrong_load_is_one_line(values, line):
         (lambda: Turn((0, 0, 0), 1.0), "axis: [0, 0, 0] given, must not be zero"),
         (
             lambda: Turn((0, 0, 1), 1.0, move=(0, 0)),
-            "move: [0, 0] given, three finite numbers are needed",
+            "move: (0, 0) given, three finite numbers are needed",
         ),
     ],
 )

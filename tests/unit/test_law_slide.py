@@ -29,7 +29,7 @@ S, F, T, N = np.eye(2)[None] * 50.0, np.eye(2)[None] / 0.09, [[1.0, 0.5]], [1.0]
             "slip_axes: sliding rule 'slip-ellipse' needs slip_axes",
         ),
         ({"sliding_rule": "slip-ellipse", "slip_axes": (1.0, 0.0)}, "must be > 0"),
-        ({"sliding_rule": "slip-ellipse", "slip_axes": 2.0}, "two numbers are needed"),
+        ({"sliding_rule": "slip-ellipse", "slip_axes": "2"}, "one or two numbers are needed"),
         ({"sliding_rule": "explicit", "history": "center"}, "centre, incremental, kuhn-tucker"),
         ({"history": "centre"}, "has no parameter 'history'"),
     ],

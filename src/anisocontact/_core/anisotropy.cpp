@@ -123,6 +123,7 @@ void bind_anisotropy(nb::module_& m) {
             new (self) FrictionHandle{law::FrictionModels::make(name, Values(values))};
           },
           nb::arg("name"), nb::arg("values"))
+      .def_prop_ro("frictionless", [](const FrictionHandle& f) { return law::frictionless(f.any); })
       .def("tensor", &friction_tensor, nb::arg("surface"), nb::arg("xi"),
            nb::arg("directions").none(), nb::arg("directions_second").none());
 }

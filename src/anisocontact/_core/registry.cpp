@@ -64,7 +64,8 @@ void bind_registry(nb::module_& m) {
       .def_prop_ro("bound", [](const Parameter& p) { return word(p.bound); })
       .def_ro("required", &Parameter::required)
       .def_ro("fallback", &Parameter::fallback)
-      .def_ro("choices", &Parameter::choices);
+      .def_ro("choices", &Parameter::choices)
+      .def_ro("isotropic", &Parameter::isotropic);
   nb::class_<Descriptor>(m, "Descriptor")
       .def_ro("name", &Descriptor::name)
       .def_ro("doc", &Descriptor::doc)

@@ -198,7 +198,7 @@ def _steps(case: Case, model: Model) -> list[Step]:
                     section.increments,
                     displacement,
                     duration=section.duration,
-                    motion={name: given.components() for name, given in section.motion.items()},
+                    motion={name: given.given() for name, given in section.motion.items()},
                     load={name: given.components() for name, given in section.load.items()},
                     pressure=section.pressure,
                     rotation={group: objects.turn(t) for group, t in section.rotation.items()},

@@ -19,6 +19,7 @@ from anisocontact.case.rigid_checks import check_rigid
 from anisocontact.case.section import near
 from anisocontact.errors import InputError
 from anisocontact.surfaces import Surface
+from anisocontact.words import meant
 
 __all__ = ["check"]
 
@@ -61,17 +62,60 @@ def _mesh(case: Case) -> Iterator[InputError]:
         text = "nothing given, mesh.file or a shape such as [mesh.box.<body>] needed"
         yield InputError(text, field="mesh")
     places: dict[str, str] = {}
+    misspelt = _misspelt(case)
+    for name, body in misspelt.items():
+        yield InputError(f'no such body; did you mean "{body}"?', field=f"material.{name}")
     for place, name, section in shaped:
         yield from _tried(objects.body, section, name, place)[1]
         if (first := places.setdefault(name, place)) != place:
             yield InputError(f"{first} has that name already", field=place)
-        if name not in case.material:
+        if name not in case.material and name not in misspelt.values():
             yield InputError("missing; every body needs a material", field=f"material.{name}")
     if places and not case.mesh.from_files:
         for name in case.material:
-            if name not in places:
+            if name not in places and name not in misspelt:
                 text = f"no such body; {near(name, list(places))}"
                 yield InputError(text, field=f"material.{name}")
+
+
+def _shaped(case: Case) -> list[str]:
+    return [name for bodies in case.mesh.shaped().values() for name in bodies]
+
+
+def _misspelt(case: Case) -> dict[str, str]:
+    """Materials of bodies that there are not, each with the body without material it is meant for.
+
+    The bodies of files are known by what contacts and steps name alone.
+    """
+    bodies = _shaped(case)
+    if case.mesh.from_files:
+        bodies += [name.partition(".")[0] for name in _named_groups(case) if "." in name]
+    spare = [name for name in case.material if name not in bodies]
+    lacking = [name for name in dict.fromkeys(bodies) if name not in case.material]
+    found: dict[str, str] = {}
+    for name in spare:
+        close = meant(name, [body for body in lacking if body not in found.values()])
+        if close is not None:
+            found[name] = close
+    return found
+
+
+def _named_groups(case: Case) -> Iterator[str]:
+    for contact in case.contact:
+        yield from (contact.slave, contact.master)
+    for step in case.step:
+        yield from (group for _, group in step.groups())
+    yield from (*case.symmetry, *case.elastic_support)
+    for spring in case.spring.values():
+        yield from (group for group in (spring.group, spring.to) if group is not None)
+
+
+def _bodies(case: Case) -> list[str]:
+    """Names that groups may begin with."""
+    shaped = _shaped(case)
+    if shaped and not case.mesh.from_files:
+        return shaped
+    return [*dict.fromkeys([*shaped, *case.material, *_misspelt(case).values()])]
 
 
 def _names(case: Case) -> Iterator[InputError]:
@@ -179,8 +223,8 @@ def _group(case: Case, name: str, field: str) -> Iterator[InputError]:
     body, dot, group = name.partition(".")
     if not (body and dot and group):
         yield InputError(f'"{name}" given, "body.group" needed', field=field)
-    elif body not in case.material:
-        text = f'"{name}" given, no such body; {near(body, list(case.material))}'
+    elif body not in (bodies := _bodies(case)):
+        text = f'"{name}" given, no such body; {near(body, bodies)}'
         yield InputError(text, field=field)
 
 
@@ -225,8 +269,8 @@ def _steps(case: Case) -> Iterator[InputError]:
                 text = f'"{name}" given, no such spring to ground; {near(name, grounded)}'
                 yield InputError(text, field=f"step[{i}].anchor")
         for body in step.body_force:
-            if body not in case.material:
-                text = f'"{body}" given, no such body; {near(body, list(case.material))}'
+            if body not in (bodies := _bodies(case)):
+                text = f'"{body}" given, no such body; {near(body, bodies)}'
                 yield InputError(text, field=f"step[{i}].body_force")
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -120,14 +119,14 @@ def rotation(section: Rotate) -> Rotation:
     """The rotation of a table."""
     from anisocontact.mesh import Rotation
 
-    return Rotation(section.axis, math.radians(section.angle_deg), section.point)
+    return Rotation(section.axis, angle_deg=section.angle_deg, point=section.point)
 
 
 def turn(section: Turning) -> Turn:
     """The rotation of a facet group along a step."""
     from anisocontact.solver import Turn
 
-    return Turn(section.axis, math.radians(section.angle_deg), section.point, section.move)
+    return Turn(section.axis, angle_deg=section.angle_deg, point=section.point, move=section.move)
 
 
 def interface(section: Laws, master: Surface, place: str, auto: float = 1.0) -> Interface:
@@ -207,8 +206,5 @@ def directions(section: Registered | None, place: str) -> DirectionField | None:
 
 
 def _numbers(section: Registered, auto: float) -> dict[str, Any]:
-    pairs = {p.name for entry in section.entries for p in entry.parameters if p.kind == "pair"}
-    return {
-        name: ((auto, auto) if name in pairs else auto) if value == AUTO else value
-        for name, value in section.parameters().items()
-    }
+    values = section.parameters().items()
+    return {name: auto if value == AUTO else value for name, value in values}

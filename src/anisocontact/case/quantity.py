@@ -74,9 +74,8 @@ class Quantity:
         p = self.parameter
         if isinstance(given, str | Mapping) and p.kind != "choice":
             raise line(f"{shown(given)} given, {self.allowed()} needed")
-        is_pair = p.kind == "pair" and not isinstance(given, list | tuple)
         try:
-            numbers = registry.check(p, [given, given] if is_pair else given)
+            numbers = registry.check(p, given)
         except (OverflowError, TypeError):
             raise line(f"{shown(given)} given, {self.allowed()} needed") from None
         except InputError as error:
@@ -112,9 +111,9 @@ class Quantity:
         words = {
             "scalar": "a number",
             "pair": "one or two numbers",
-            "vector": "three numbers",
+            "vector": "one or three numbers" if self.parameter.alike else "three numbers",
             "axis": "a point and a direction, [[x, y, z], [x, y, z]]",
-            "array": "a list of numbers",
+            "array": "one number or a list" if self.parameter.alike else "a list of numbers",
             "integer": "a whole number",
             "integers": "a list of whole numbers",
             "flag": "true or false",
@@ -161,12 +160,13 @@ class Quantity:
             return {"type": "array", "items": three, "minItems": 2, "maxItems": 2}
         if p.kind == "array":  # of numbers, or of lists of them, as points are
             row = {"type": "array", "items": number}
-            return {"type": "array", "items": {"anyOf": [number, row]}}
+            rows = {"type": "array", "items": {"anyOf": [number, row]}}
+            return {"anyOf": [number, rows]} if p.alike else rows
         array: dict[str, Any] = {"type": "array", "items": number}
         count = _ITEMS.get(p.kind, self.count or p.count)
         if count:
             array |= {"minItems": count, "maxItems": count}
-        return {"anyOf": [number, array]} if p.kind == "pair" else array
+        return {"anyOf": [number, array]} if p.alike else array
 
 
 def number(kind: str, unit: str, doc: str, bound: str = "any", **more: Any) -> Quantity:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import difflib
 import inspect
 import itertools
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
@@ -32,12 +31,9 @@ class Registered(Section):
     entries: ClassVar[tuple[Entry, ...]] = ()
 
     def parameters(self) -> dict[str, Any]:
-        """Values by the parameters' names in Python: angles in radians, "auto" as it stands."""
-        found = {}
-        for p in (p for entry in self.entries for p in entry.parameters):
-            value = getattr(self, key_of(p))
-            found[p.name] = math.radians(value) if p.unit == "angle" else value
-        return found
+        """Values by their keys, angles in degrees; "auto" as it stands."""
+        keys = [key_of(p) for entry in self.entries for p in entry.parameters]
+        return {key: getattr(self, key) for key in keys}
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
@@ -80,17 +79,13 @@ class Motion(Section):
         return self
 
     def components(self) -> dict[str, float | None]:
-        """Values by component as `Step.motion` has them: None where free, turns in radian."""
-        found: dict[str, float | None] = {}
-        for name in ("x", "y", "z"):
-            value = getattr(self, name)
-            if value is not None:
-                found[name] = None if value == FREE else value
-        for name in _TURNS:
-            value = getattr(self, f"{name}_deg")
-            if value is not None:
-                found[name] = None if value == FREE else math.radians(value)
-        return found
+        """Values by component, see `given`."""
+        return {key.removesuffix("_deg"): value for key, value in self.given().items()}
+
+    def given(self) -> dict[str, float | None]:
+        """Values by key: None where free, turns in degrees."""
+        values = ((key, value) for key, value in self if value is not None)
+        return {key: None if value == FREE else value for key, value in values}
 
 
 class Load(Section):

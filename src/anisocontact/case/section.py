@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from typing import Any, Self
 
 from pydantic import (
@@ -15,6 +14,7 @@ from pydantic import (
 from pydantic_core import ErrorDetails, InitErrorDetails
 
 from anisocontact.case.quantity import Quantity, line, shown
+from anisocontact.words import elsewhere, meant
 
 __all__ = ["Section", "near"]
 
@@ -28,9 +28,9 @@ _NEEDED = {
 
 
 def near(name: str, known: list[str]) -> str:
-    """The end of a message: the nearest known name, then all of them."""
-    close = difflib.get_close_matches(name, known, 1)
-    hint = f'did you mean "{close[0]}"? ' if close else ""
+    """The end of a message: the known name that was meant, then all of them."""
+    close = meant(name, known)
+    hint = f'did you mean "{close}"? ' if close else ""
     return f"{hint}allowed: {', '.join(known) or 'none'}"
 
 
@@ -41,8 +41,7 @@ def _key(e: ErrorDetails) -> str:
 
 def _near_key(e: ErrorDetails, kind: type[BaseModel]) -> str | None:
     """The key that was meant by an unknown one, if one is near."""
-    close = difflib.get_close_matches(_key(e), list(kind.model_fields), 1)
-    return close[0] if close and e["type"] == "extra_forbidden" else None
+    return meant(_key(e), kind.model_fields) if e["type"] == "extra_forbidden" else None
 
 
 class Section(BaseModel):
@@ -76,7 +75,9 @@ class Section(BaseModel):
         if kind == "missing":
             return f"missing; {cls._doc(name)}"
         if kind == "extra_forbidden":
-            return f"unknown key; {near(name, list(cls.model_fields))}"
+            known = list(cls.model_fields)
+            there = None if meant(name, known) else elsewhere(name)
+            return f"unknown key; {there or near(name, known)}"
         if kind in _NEEDED:
             # one bracket too few makes a table of what is a list of tables
             brackets = (

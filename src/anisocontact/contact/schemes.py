@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from anisocontact.augmentation import AUTO, NEWTON, UZAWA, Augmentation
@@ -28,6 +29,9 @@ def make_multipliers(
     Raises:
         InputError: A part to be augmented is physical, see `check`.
     """
+    if getattr(getattr(law, "friction", None), "frictionless", False):
+        # there is no tangential force that a multiplier could be
+        augmentation = replace(augmentation, tangential=False)
     check(augmentation, law)
     name = augmentation.multipliers
     if name == AUTO:

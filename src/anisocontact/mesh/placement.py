@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from anisocontact import registry
 from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import Floats, MeshArrays
 from anisocontact.mesh.quality import check_cells
+from anisocontact.registry import Parameter
+
+_ANGLE = Parameter("angle", "scalar", "angle", "angle of a rotation")
+
+
+#: An angle that is not given.
+_MISSING = math.nan
 
 
 @dataclass(frozen=True)
@@ -19,29 +27,36 @@ class Rotation:
 
     Attributes:
         axis: Direction of the axis, of any length but zero.
-        angle: Angle, radian.
+        angle: Angle, radian, at most a full turn.
         point: A point on the axis, length.
+        angle_deg: The angle in degrees instead; None once it has been taken over.
 
     Raises:
-        InputError: The axis is zero, or a number is not finite.
+        InputError: The axis is zero, a number is not finite, or the angle is missing, given twice
+            or more than a full turn in radian.
 
     Example:
-        >>> turn = Rotation((0, 0, 1), math.pi / 2)
+        >>> turn = Rotation((0, 0, 1), angle_deg=90.0)
         >>> turn.apply(np.array([[1.0, 0.0, 2.0]])).round(12).tolist()
         [[0.0, 1.0, 2.0]]
     """
 
     axis: Sequence[float]
-    angle: float
+    angle: float = _MISSING
     point: Sequence[float] = (0.0, 0.0, 0.0)
+    angle_deg: float | None = field(default=None, kw_only=True)
 
     def __post_init__(self) -> None:
         check_vector("axis", self.axis)
         check_vector("point", self.point)
         if not any(self.axis):
             raise InputError(f"{list(self.axis)} given, must not be zero", "axis")
-        if not math.isfinite(self.angle):
-            raise InputError(f"{self.angle!r} given, a finite number is needed", "angle")
+        radian = None if self.angle is _MISSING else self.angle
+        given = registry.in_radian([_ANGLE], {"angle": radian, "angle_deg": self.angle_deg})
+        if given["angle"] is None:
+            raise InputError("missing; in radian, or angle_deg in degrees", "angle")
+        object.__setattr__(self, "angle", given["angle"])
+        object.__setattr__(self, "angle_deg", None)
 
     def matrix(self, share: float = 1.0) -> Floats:
         """Rotation matrix of a share of the angle, (3, 3).
@@ -124,10 +139,13 @@ class Placement:
         return placed
 
 
-def check_vector(field: str, given: Sequence[float]) -> None:
+def check_vector(name: str, given: Sequence[float]) -> None:
     """Refuse what is not three finite numbers."""
-    if len(given) != 3 or not all(math.isfinite(v) for v in given):
-        raise InputError(f"{list(given)} given, three finite numbers are needed", field)
+    try:
+        registry.check(Parameter(name, "vector", "1", ""), given, name)
+    except InputError:
+        text = f"{given!r} given, three finite numbers are needed"
+        raise InputError(text, name) from None
 
 
 #: Nothing scaled, turned or moved.

@@ -1,6 +1,6 @@
 """Rigid bodies: motion of analytic surfaces, prescribed or free."""
 
-from anisocontact.rigid.body import COMPONENTS, Pose, RigidBody
+from anisocontact.rigid.body import COMPONENTS, Pose, RigidBody, turns_in_radian
 from anisocontact.rigid.moving import MovingInterface, motion_derivative
 from anisocontact.rigid.rotation import rotation, rotation_vector, skew, spin_of
 
@@ -14,4 +14,5 @@ __all__ = [
     "rotation_vector",
     "skew",
     "spin_of",
+    "turns_in_radian",
 ]

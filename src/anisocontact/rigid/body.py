@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact import registry
 from anisocontact.errors import InputError
 from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
 
@@ -123,15 +124,16 @@ class RigidBody:
         """Bring the trial to the given components; the others stay as they are.
 
         Args:
-            **components: Translation `x`, `y`, `z`, length, and turn `rx`, `ry`, `rz`, radian.
+            **components: Translation `x`, `y`, `z`, length, and turn `rx`, `ry`, `rz`, radian, or
+                `rx_deg`, `ry_deg`, `rz_deg`.
 
         Raises:
-            InputError: No such component, or no number for it.
+            InputError: No such component, no number for it, or a turn in radian beyond a full one.
         """
         values = self.trial.values
-        for name, value in components.items():
-            if not math.isfinite(value):
-                raise InputError(f"{value!r} given, needs a finite number", name)
+        for name, value in turns_in_radian(components, "").items():
+            if value is None:
+                raise InputError("None given, needs a finite number", name)
             values[component_number(name, name)] = value
         self.place(values)
 
@@ -180,6 +182,43 @@ class RigidBody:
             The vectors in space, (..., 3).
         """
         return np.asarray(vectors @ self.trial.rotation.T)
+
+
+def turns_in_radian(components: Mapping[str, float | None], field: str) -> dict[str, float | None]:
+    """Components of a motion with turns in radian, of which `rx_deg` and the like are in degrees.
+
+    Args:
+        components: Values by component; None where it is free.
+        field: Dotted path of the motion, for messages.
+
+    Returns:
+        Values by names of `COMPONENTS`, in the order given; unknown names are passed on.
+
+    Raises:
+        InputError: A component is given twice, has no finite number, or is a turn in radian of more
+            than a full one.
+
+    Example:
+        >>> turns_in_radian({"x": 1.0, "rz_deg": 180.0}, "motion.die")
+        {'x': 1.0, 'rz': 3.141592653589793}
+    """
+    found: dict[str, float | None] = {}
+    for name, given in components.items():
+        plain = name.removesuffix("_deg")
+        in_degrees = plain != name and plain in COMPONENTS[3:]
+        component = plain if in_degrees else name
+        where = f"{field}.{name}".removeprefix(".")
+        if component in found:
+            raise InputError(f"given twice, as {plain} and {plain}_deg", where)
+        if given is None:
+            found[component] = None
+            continue
+        if not isinstance(given, int | float) or not math.isfinite(given):
+            raise InputError(f"{given!r} given, needs a finite number", where)
+        if name in COMPONENTS[3:]:
+            registry.check_radian(given, where)
+        found[component] = math.radians(given) if in_degrees else given
+    return found
 
 
 def component_number(name: str, field: str) -> int:

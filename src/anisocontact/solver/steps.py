@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.errors import InputError
+from anisocontact.rigid import turns_in_radian
 from anisocontact.solver.turn import Turn
 
 AXES = ("x", "y", "z")
@@ -32,8 +33,8 @@ class Step:
         traction: Facet group -> axis -> force per reference area at the end, stress.
         duration: Time the step takes, > 0, time.
         motion: Rigid body -> component "x", "y", "z" (translation of its reference point, length)
-            or "rx", "ry", "rz" (turn about the axes of space, radian) -> value at the end. None
-            frees the component of a free body.
+            or "rx", "ry", "rz" (turn about the axes of space, radian; "rx_deg", ... in degrees)
+            -> value at the end. None frees the component of a free body.
         load: Rigid body -> freed component -> force, or moment about the reference point, at the
             end. Moments do not turn with the body.
         force: Facet group -> axis -> force on the whole group at the end, as a uniform traction.
@@ -76,10 +77,14 @@ class Step:
             raise self._error("duration", f"{self.duration!r} given, must be > 0")
         for kind in ("displacement", "anchor", *_FORCES):
             self._check_vectors(kind)
-        for kind, bodies in (("motion", self.motion), ("load", self.load)):
-            for body, components in bodies.items():
-                for component, value in components.items():
-                    self._check_value(kind, f"{kind}.{body}.{component}", value)
+        for body, components in self.load.items():
+            for component, value in components.items():
+                self._check_value("load", f"load.{body}.{component}", value)
+        motion = {
+            body: turns_in_radian(components, f"step {self.name!r}.motion.{body}")
+            for body, components in self.motion.items()
+        }
+        object.__setattr__(self, "motion", motion)
         for group, pressure in self.pressure.items():
             self._check_value("pressure", f"pressure.{group}", pressure)
         for group in self.rotation:
@@ -123,7 +128,7 @@ class Step:
         self._check_value(kind, where, value)
 
     def _check_value(self, kind: str, where: str, value: float | None) -> None:
-        if value is None and kind in ("displacement", "motion"):
+        if value is None and kind == "displacement":
             return
         if not isinstance(value, int | float) or not math.isfinite(value):
             raise self._error(where, f"{value!r} given, needs a finite number")

@@ -22,12 +22,13 @@ class Turn(Rotation):
 
     Attributes:
         axis: Direction of the axis, of any length but zero.
-        angle: Angle turned along the step, right-handed, radian; may be many turns.
+        angle: Angle turned along the step, right-handed, radian, at most a full turn.
         point: Where the axis is at the beginning of the step, length.
+        angle_deg: The angle in degrees instead; may be many turns. None once taken over.
         move: How far the axis goes along the step, length.
 
     Raises:
-        InputError: The axis is zero, or a number is not finite.
+        InputError: As of `Rotation`.
 
     Example:
         >>> roll = Turn((0, 1, 0), np.pi / 2, point=(0, 0, 1), move=(np.pi / 2, 0, 0))

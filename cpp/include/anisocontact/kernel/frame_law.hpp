@@ -239,7 +239,9 @@ void react(const InterfaceLaw& l, const PointState& state, FrameInput in,
   if constexpr (tangent) {
     const TrialSlopes by_angle = trial_slopes(l, in, t);
     std::array<Flat, 3> by_force{Flat{1.0, 0.0}, Flat{0.0, 1.0}, Flat{0.0, 0.0}};
-    if (status == Contact::slip)
+    if (law::frictionless(l.friction))
+      by_force = {};
+    else if (status == Contact::slip)
       by_force = l.friction_directions_second.field
                      ? slide_slopes<4>(l, in, by_angle, p, solved, r)
                      : slide_slopes<2>(l, in, by_angle, p, solved, r);

@@ -90,9 +90,14 @@ Transported<S> history(const AnyEvolution& evolution, const PointState& state,
 inline constexpr double on_limit = 1e-10;
 
 /// Solves for T: the trial force where it is inside the ellipse, else what the rule makes of it.
+/// Without friction there is none, whatever the adhesion, and all that would be elastic is slip.
 template <class S>
 law::SlideResult<S> tangential(const InterfaceLaw& l, const law::SlideProblem<S>& p,
                                Contact& status) {
+  if (law::frictionless(l.friction)) {
+    status = Contact::slip;
+    return {{}, {}, p.elastic, true};
+  }
   const S size = law::friction_norm(p.friction, p.trial);
   if (value(size) <= (1.0 + on_limit) * value(p.pressure)) {
     status = Contact::stick;

@@ -117,18 +117,17 @@ class GeneralLinear {
  public:
   static Descriptor describe() {
     const std::string form = ", 2 x 2 along the axes, row by row";
+    const std::vector<double> unit{1.0, 0.0, 0.0, 1.0};
+    const auto full = [&](const char* name, const char* dimension, const char* doc) {
+      return Parameter{name, Kind::array, dimension, doc + form, Bound::any, true, {}, {}, unit};
+    };
+    Parameter rate = full("stiffness_rate", "stress/length/time", "R = -C");
+    rate.required = false;
+    rate.fallback = {0.0, 0.0, 0.0, 0.0};
     return {"general-linear",
             "dT/dt + A T = -S v - R xi_el with full tensors A, S = -B, R = -C, eq. (26).",
-            {{"relaxation", Kind::array, "1/time", "A" + form, Bound::any},
-             {"stiffness_instant", Kind::array, "stress/length", "S = -B, positive definite" + form,
-              Bound::any},
-             {"stiffness_rate",
-              Kind::array,
-              "stress/length/time",
-              "R = -C" + form,
-              Bound::any,
-              false,
-              {0.0, 0.0, 0.0, 0.0}}}};
+            {full("relaxation", "1/time", "A"),
+             full("stiffness_instant", "stress/length", "S = -B, positive definite"), rate}};
   }
   static GeneralLinear make(const Values& v) {
     GeneralLinear m;

@@ -35,6 +35,10 @@ ContraContra<S> friction_tensor(const AnyFriction& f, const ContraContra<S>& a_c
   return std::visit([&](const auto& m) { return m.tensor(a_contra, axes, second); }, f);
 }
 
+inline bool frictionless(const AnyFriction& f) noexcept {
+  return std::visit([](const auto& m) noexcept { return m.frictionless(); }, f);
+}
+
 inline const LinearModel& linear_model(const AnyAdhesion& a) {
   return std::visit([](const auto& m) -> const LinearModel& { return m.model(); }, a);
 }

@@ -26,6 +26,9 @@ struct Parameter {
   bool required{true};
   std::vector<double> fallback{};
   std::vector<std::string> choices{};
+  /// What one number is multiplied with where it is given in the place of a list, to mean the same
+  /// in all directions; none of a pair is 1, 1.
+  std::vector<double> isotropic{};
 };
 
 struct Descriptor {

@@ -49,7 +49,7 @@ def make_shape(name: str, *, cell: str = "hexahedron", order: int = 1, **paramet
         name: Name of a registered shape.
         cell: "hexahedron" or "tetrahedron" (six to each hexahedron).
         order: Order of the displacement, 1 or 2; where the shape is curved cells of order 2 are.
-        **parameters: Its parameters.
+        **parameters: Its parameters; angles in radian, or in degrees by `<name>_deg`.
 
     Returns:
         The shape.
@@ -63,6 +63,7 @@ def make_shape(name: str, *, cell: str = "hexahedron", order: int = 1, **paramet
     """
     entry = registry.entry(shapes(), name, "shape")
     registry.values(entry, parameters)
-    shape: Shape = _SHAPES[name](cell=cell, order=order, **parameters)
+    of_shape: dict[str, Any] = registry.in_radian(entry.parameters, parameters)
+    shape: Shape = _SHAPES[name](cell=cell, order=order, **of_shape)
     checked_blocks(shape)
     return shape

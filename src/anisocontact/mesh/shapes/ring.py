@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from anisocontact import registry
 from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block, Side, graded
@@ -94,7 +95,8 @@ class RingSpec:
         if not 0.0 < self._turn <= 2.0 * math.pi * (1.0 + 1e-12):
             given, start = math.degrees(self.end), math.degrees(self.start)
             text = f"{given:g} given, must be > start, {start:g}, and at most 360 more"
-            raise InputError(text, "end_deg")
+            slip = "; in Python end is in radian" if self.end > registry.FULL_TURN else ""
+            raise InputError(text + slip, "end_deg")
         if full_circle(self._turn) and self.cells[1] < 3:
             text = f"{self.cells[1]} cells around a whole ring given, at least 3 needed"
             raise InputError(text, "cells")

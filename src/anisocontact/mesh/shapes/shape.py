@@ -62,13 +62,15 @@ def core_parameter() -> Parameter:
 
 
 def check_shape(shape: Shape) -> None:
-    """Check the parameters of a shape one by one, and the number of its cells.
+    """Check the parameters of a shape one by one; one number in the place of a pair is made two.
 
     Raises:
         InputError: A value is of the wrong form or out of range.
     """
-    given = {p.name: getattr(shape, p.name) for p in shape.entry.parameters}
-    registry.values(shape.entry, given)
+    for p in shape.entry.parameters:
+        numbers = registry.check(p, getattr(shape, p.name))
+        if p.alike:
+            object.__setattr__(shape, p.name, tuple(numbers))
     if shape.cell not in CELLS:
         raise InputError(f"{shape.cell!r} given, allowed: {', '.join(CELLS)}", "cell")
     if shape.order not in (1, 2):

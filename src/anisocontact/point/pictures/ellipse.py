@@ -52,7 +52,7 @@ def adhesion_domain(interface: Any, row: Table) -> tuple[Floats, Floats] | None:
 def _friction(interface: Any, row: Table) -> Floats | None:
     """F in space, (3, 3)."""
     friction = getattr(interface, "friction", None)
-    if friction is None or not row["status"]:
+    if friction is None or friction.frictionless or not row["status"]:
         return None
     return np.asarray(friction.tensor(interface.surface, row["xi"][None], "spatial")[0])
 

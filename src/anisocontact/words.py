@@ -1,0 +1,153 @@
+"""Words of other codes for what has another name here."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+__all__ = ["elsewhere", "meant"]
+
+#: Name here -> words of Abaqus, Ansys, CalculiX, FEniCS and the literature for it, in small letters
+#: and with one underscore between them.
+_SAME = {
+    "E": "young youngs young_modulus youngs_modulus young's_modulus elastic_modulus modulus "
+    "modulus_of_elasticity emod e_modul",
+    "nu": "poisson poissons poisson_ratio poissons_ratio poisson's_ratio prxy nuxy",
+    "coefficients": "mu mus muk friction_coefficient coefficient coefficient_of_friction cof fric "
+    "static_friction kinetic_friction dynamic_friction mu_s mu_k friction",
+    "penalty": "penalty_stiffness penalty_factor normal_stiffness contact_stiffness fkn eps_n "
+    "epsilon_n kn",
+    "stiffness": "tangential_stiffness stick_stiffness elastic_slip_stiffness shear_stiffness fkt "
+    "eps_t epsilon_t kt penalty",
+    "density": "rho dens mass_density",
+    "directions": "direction orientation axes texture local_axes",
+    "displacement": "boundary bc bcs boundary_condition boundary_conditions dirichlet dirichlet_bc "
+    "dirichletbc support supports fix fixed encastre spc disp prescribed_displacement",
+    "force": "load loads cload nodal_force point_load concentrated_force concentrated_load",
+    "traction": "neumann neumann_bc surface_traction surface_load dload dsload",
+    "pressure": "press surface_pressure",
+    "body_force": "gravity grav acceleration acel volume_force volume_load self_weight bodyforce",
+    "motion": "boundary bc bcs rigid_motion reference_point_displacement",
+    "increments": "substeps nsubst n_increments num_increments number_of_increments inc ninc steps "
+    "n_steps nsteps time_steps",
+    "duration": "time time_period period total_time end_time t_end",
+    "step": "steps load_step load_steps loadstep loadsteps stages",
+    "material": "materials mat mats mp",
+    "contact": "contacts contact_pair contact_pairs interaction interactions surface_interaction",
+    "surface": "surfaces rigid_surface rigid_surfaces analytical_surface",
+    "rigid": "rigid_body rigid_bodies",
+    "mesh": "geometry part parts bodies body grid",
+    "slave": "secondary slave_surface secondary_surface contact_surface source",
+    "master": "primary main master_surface primary_surface main_surface target target_surface",
+    "cells": "elements divisions n_cells ncells subdivisions resolution seeds",
+    "cell": "element element_type cell_type eltype",
+    "order": "degree element_order polynomial_order",
+    "origin": "corner lower position",
+    "size": "lengths extent dimensions dims",
+    "method": "algorithm formulation enforcement",
+    "adjust": "initial_clearance interference_fit shrink",
+    "sliding_rule": "slip_rule flow_rule",
+    "symmetry": "xsymm ysymm zsymm symmetry_planes symmetric",
+    "elastic_support": "foundation elastic_foundation bedding",
+    "smallest_increment": "min_increment minimum_increment minimum_time_increment dtmin",
+    "largest_increment": "max_increment maximum_increment maximum_time_increment dtmax",
+    "linear-elastic": "elastic linear isotropic linear_elasticity hooke hookean lame",
+    "neo-hookean": "neo_hooke neohooke neohookean hyperelastic",
+    "st-venant-kirchhoff": "svk saint_venant_kirchhoff st_venant kirchhoff",
+    "orthotropic": "coulomb isotropic anisotropic",
+    "maximum-dissipation": "associated associative normality return_mapping",
+    "augmented": "augmented_lagrangian augmented_lagrange lagrange lagrange_multipliers mortar alm",
+    "direct": "lu mumps cholesky",
+    "iterative": "gmres cg fgmres krylov",
+}
+
+_STIFFNESS = "the run chooses it (auto), or contact.normal.penalty says it"
+_STRAIN = (
+    'the material says it: "linear-elastic" is small strain, "st-venant-kirchhoff" and '
+    '"neo-hookean" are finite strain'
+)
+_STEPS = (
+    "loads and supports stand in a step, [[step]], with increments and a duration; "
+    "solver.smallest_increment bounds how an increment may be cut"
+)
+#: Word -> where what it stands for is said here, where it is no key of the same table.
+_ELSEWHERE = {
+    "gravity": "a step has it: body_force = { <body> = { z = -9.81, density = ... } }",
+    "density": "body_force of a step takes it; inertia is left out",
+    "mu": "friction = { coefficients = ... } of a contact",
+    "displacement": 'a step has it: displacement = { "body.group" = { x = ... } }',
+    "force": 'a step has it: force = { "body.group" = { x = ... } } on the group, or traction',
+    "E": "the table of the material has E and nu",
+    "nlgeom": _STRAIN,
+    "large_strain": _STRAIN,
+    "large_deformation": _STRAIN,
+    "large_displacement": _STRAIN,
+    "finite_strain": _STRAIN,
+    "plane_strain": "all bodies are in space; symmetry holds a flat facet group in its plane",
+    "plane_stress": "all bodies are in space; symmetry holds a flat facet group in its plane",
+    "thickness": "all bodies are solids in space",
+    "time_step": _STEPS,
+    "timestep": _STEPS,
+    "dt": _STEPS,
+    "time_increment": _STEPS,
+    "initial_increment": _STEPS,
+    "step_size": _STEPS,
+    "penalty": _STIFFNESS,
+    "coefficients": "the table friction of a contact has them: friction = { coefficients = ... }",
+    "temperature": "there is no temperature",
+    "damping": "inertia is left out, and damping with it; contact laws may be viscous",
+    "velocity": "a displacement and the duration of its step; inertia is left out",
+    "units": "any units that go together, such as mm, N and MPa",
+    "max_iterations": "solver.options = { snes_max_it = 50 }",
+    "max_iter": "solver.options = { snes_max_it = 50 }",
+    "maxiter": "solver.options = { snes_max_it = 50 }",
+    "tolerance": "solver.options = { snes_rtol = 1e-8 }",
+    "rtol": "solver.options = { snes_rtol = 1e-8 }",
+}
+
+
+def meant(word: str, known: Iterable[str]) -> str | None:
+    """The known name that a wrong one stands for.
+
+    Args:
+        word: What was written.
+        known: The names there are.
+
+    Returns:
+        What another code calls so, else the name that is spelt most like it; None if none is near.
+
+    Example:
+        >>> meant("youngs_modulus", ["model", "E", "nu"]), meant("ordr", ["cell", "order"])
+        ('E', 'order')
+    """
+    names = list(known)
+    plain = _plain(word)
+    for name in names:
+        if plain in _SAME.get(name, "").split() or plain == _plain(name):
+            return name
+    close = difflib.get_close_matches(word, names, 1)
+    return close[0] if close else None
+
+
+def elsewhere(word: str) -> str | None:
+    """Where what a word stands for is said, if it is no key of the table it was written in.
+
+    Args:
+        word: What was written.
+
+    Returns:
+        A few words; None if nothing is known of it.
+
+    Example:
+        >>> elsewhere("rho")
+        'body_force of a step takes it; inertia is left out'
+    """
+    plain = _plain(word)
+    if plain in _ELSEWHERE:
+        return _ELSEWHERE[plain]
+    same = (name for name, words in _SAME.items() if plain in words.split())
+    return next((_ELSEWHERE[name] for name in same if name in _ELSEWHERE), None)
+
+
+def _plain(word: str) -> str:
+    return word.strip().lower().replace("-", "_").replace(" ", "_")
