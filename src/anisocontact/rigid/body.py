@@ -184,7 +184,7 @@ class RigidBody:
         return np.asarray(vectors @ self.trial.rotation.T)
 
 
-def turns_in_radian(components: Mapping[str, float | None], field: str) -> dict[str, float | None]:
+def turns_in_radian(components: Mapping[str, object], field: str) -> dict[str, float | None]:
     """Components of a motion with turns in radian, of which `rx_deg` and the like are in degrees.
 
     Args:
