@@ -155,3 +155,64 @@ def test_finite_strain_agrees_with_a_dolfinx_script(benchmarks):
     for name in ("normal force pressed", "tangential force at the end"):
         assert ours.values[name] == pytest.approx(script.values[name], rel=1e-7)
     assert 0.0 < runs.share(ours, "contact") < 1.0
+
+
+def test_every_hard_case_is_a_case_file_that_says_what_is_hard(benchmarks, tmp_path):
+    from anisocontact.case import load
+
+    case = benchmarks("scoreboard.case")
+    found = case.all_cases()
+    assert len(found) >= 40
+    for one in found:
+        assert len(one.what) > 20
+        for way in case.WAYS:
+            path = tmp_path / "case.toml"
+            path.write_text(one.written(way))
+            read = load(path).case
+            assert {contact.method for contact in read.contact} == {way.method}, one.name
+            assert read.solver.strategy == way.strategy
+
+
+def outcome(benchmarks, **given):
+    plain = {"case": "one", "method": "penalty", "strategy": "direct", "status": "done"}
+    return benchmarks("scoreboard.outcome").Outcome(**plain | given)
+
+
+def test_what_is_wrong_with_an_outcome(benchmarks):
+    case, fault = benchmarks("scoreboard.case").HardCase, benchmarks("scoreboard.page").fault
+    ends, stops = case("one", "# Ends.\n"), case("one", "# Slides.\n# stops: friction\n")
+    assert fault(outcome(benchmarks), ends) == ""
+    assert fault(outcome(benchmarks, status="refused"), ends) == ""
+    assert fault(outcome(benchmarks, status="stopped", said="chattering"), ends)
+    assert fault(outcome(benchmarks), stops)
+    assert fault(outcome(benchmarks, status="stopped", said="friction holds 1"), stops) == ""
+    assert fault(outcome(benchmarks, status="stopped", said="no convergence"), stops)
+    assert fault(outcome(benchmarks, status="time", said="ended after 300 s"), stops)
+    assert fault(outcome(benchmarks, energy=-0.06), ends)
+    told = ("6 % of the energy is missing",)
+    assert fault(outcome(benchmarks, energy=-0.06, warnings=told), ends) == ""
+
+
+def test_outcomes_are_kept_and_the_page_is_made_from_them(benchmarks, tmp_path):
+    kept = benchmarks("scoreboard.outcome")
+    page, case = benchmarks("scoreboard.page"), benchmarks("scoreboard.case").HardCase
+    found = [
+        outcome(benchmarks, iterations=10, warnings=("hard",)),
+        outcome(benchmarks, method="augmented", iterations=15, cuts=2),
+        outcome(benchmarks, method="augmented", strategy="condensed", status="refused"),
+        outcome(benchmarks, strategy="iterative", status="stopped", said="stuck"),
+    ]
+    kept.store({one.key: one for one in found}, {"commit": "x"}, tmp_path / "outcomes.json")
+    read = kept.load(tmp_path / "outcomes.json")
+    assert read == {one.key: one for one in found}
+    page.write(read, [case("one", "# Ends.\n")], tmp_path)
+    assert (
+        "| `one` | 10 |  | **stopped** | 15, 2 cuts | - |  |"
+        in (tmp_path / "table.md.in").read_text()
+    )
+    totals = (tmp_path / "totals.md.in").read_text()
+    assert "| direct | augmented | 1 of 1 | 15 | 2 |" in totals
+    assert "| condensed | augmented | 0 of 0 | 0 | 0 |" in totals
+    assert (
+        tmp_path / "faults.md.in"
+    ).read_text() == "- `one`, penalty, iterative: stopped: stuck\n"

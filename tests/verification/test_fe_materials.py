@@ -3,6 +3,8 @@ tangent, and bending without locking."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 import ufl
@@ -44,12 +46,53 @@ def _incompressible(axial: float, lateral: float) -> tuple[float, float]:
     )
 
 
+def _rubber(axial: float, lateral: float, slopes: Callable) -> tuple[float, float]:
+    """dW/ds of the principal stretches s for `W(I1, I2) + BULK/2 (J - 1)^2`."""
+    stretches = np.array([axial, lateral, lateral])
+    j, squares = stretches.prod(), stretches**2
+    invariants = np.array(
+        [
+            j ** (-2 / 3) * squares.sum(),
+            j ** (-4 / 3) * 0.5 * (squares.sum() ** 2 - (squares**2).sum()),
+        ]
+    )
+    first = 2 * j ** (-2 / 3) * stretches - 2 / 3 * invariants[0] / stretches
+    second = (
+        2 * j ** (-4 / 3) * stretches * (squares.sum() - squares)
+        - 4 / 3 * invariants[1] / stretches
+    )
+    by_first, by_second = slopes(*invariants)
+    stress = by_first * first + by_second * second + BULK * (j - 1) * j / stretches
+    return float(stress[0]), float(stress[1])
+
+
+def _mooney(axial: float, lateral: float) -> tuple[float, float]:
+    return _rubber(axial, lateral, lambda *_: (0.4, 0.1))
+
+
+def _yeoh(axial: float, lateral: float) -> tuple[float, float]:
+    def slopes(first: float, _: float) -> tuple[float, float]:
+        return 0.5 - 2 * 0.02 * (first - 3) + 3 * 0.01 * (first - 3) ** 2, 0.0
+
+    return _rubber(axial, lateral, slopes)
+
+
 #: First Piola-Kirchhoff stresses along and across, of the stretches along and across.
 STRESS = {
     "st-venant-kirchhoff": _st_venant,
     "neo-hookean": _neo_hookean,
     "neo-hookean-incompressible": _incompressible,
+    "mooney-rivlin": _mooney,
+    "yeoh": _yeoh,
 }
+OWN = {
+    "mooney-rivlin": {"C10": 0.4, "C01": 0.1, "bulk_modulus": BULK},
+    "yeoh": {"C10": 0.5, "C20": -0.02, "C30": 0.01, "bulk_modulus": BULK},
+}
+
+
+def _made(name: str) -> Material:
+    return make_material(name, **OWN.get(name, {"E": E, "nu": NU}))
 
 
 def _uniaxial(name: str) -> float:
@@ -69,8 +112,9 @@ def _pulled(material: Material, cell: str, order: int) -> tuple[float, Problem]:
 
 
 def test_every_nonlinear_material_is_here() -> None:
-    """A registered material is verified here or is the linear one."""
-    assert {m.name for m in materials()} == {*STRESS, "linear-elastic"}
+    """A registered material is verified here, with directions in a file of its own, or linear."""
+    directed = {"orthotropic", "transversely-isotropic"}
+    assert {m.name for m in materials()} == {*STRESS, *directed, "linear-elastic"}
 
 
 @pytest.mark.parametrize(
@@ -79,7 +123,7 @@ def test_every_nonlinear_material_is_here() -> None:
 @pytest.mark.parametrize("name", STRESS)
 def test_uniaxial_tension(name: str, cell: str, order: int) -> None:
     """Uniform stretch 1.4 with free sides: the closed form to 1e-8, the tolerance of Newton."""
-    force, _ = _pulled(make_material(name, E=E, nu=NU), cell, order)
+    force, _ = _pulled(_made(name), cell, order)
     assert force == pytest.approx(_uniaxial(name), rel=1e-8)
 
 
@@ -104,7 +148,7 @@ def test_user_materials() -> None:
 def test_tangent_by_order(name: str) -> None:
     """Central differences of the force approach the tangent: a quarter of the error at half the
     step (asserted between 3.7 and 4.3)."""
-    _, problem = _pulled(make_material(name, E=E, nu=NU), "hexahedron", 1)
+    _, problem = _pulled(_made(name), "hexahedron", 1)
     x, rng = problem.accepted(), np.random.default_rng(1)
     d = rng.normal(size=x.getLocalSize())
     bulk = problem.bulk

@@ -9,23 +9,30 @@ from anisocontact.bulk.hyperelastic import (
     cauchy_stress,
     deformation_gradient,
 )
-from anisocontact.bulk.library import make_material, materials
+from anisocontact.bulk.library import make_material, materials, register_material
 from anisocontact.bulk.linear import LinearBulk
 from anisocontact.bulk.materials import LinearElastic, Material
 from anisocontact.bulk.nonlinear import NonlinearBulk
+from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
+from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
 
 __all__ = [
     "LinearBulk",
     "LinearElastic",
     "Material",
+    "MooneyRivlin",
     "NeoHookean",
     "NeoHookeanIncompressible",
     "NonlinearBulk",
+    "Orthotropic",
     "StVenantKirchhoff",
+    "TransverselyIsotropic",
     "UserEnergy",
     "UserStress",
+    "Yeoh",
     "cauchy_stress",
     "deformation_gradient",
     "make_material",
     "materials",
+    "register_material",
 ]

@@ -44,8 +44,29 @@ def cauchy_stress(material: Any, u: Any) -> Any:
     return material.piola(u) * gradient.T / ufl.det(gradient)
 
 
-class _Hyperelastic(Isotropic, ABC):
-    """An isotropic material by its energy."""
+def volumetric(u: Any, bulk: Any, j: Any) -> Density:
+    """`K/2 (J - 1)^2`, integrated at so few points that cells do not lock.
+
+    One point of a cell, of second-order hexahedra eight: as many constraints as the displacement
+    can meet [Malkus Hughes 1978, equivalence of reduced integration and a pressure of lower order].
+    Hexahedra and second-order tetrahedra do not lock with it; first-order tetrahedra have one point
+    anyway, and do.
+
+    Args:
+        u: Displacement, a DOLFINx function.
+        bulk: Bulk modulus K, UFL, stress.
+        j: det F, UFL.
+
+    Returns:
+        The term and the degree of its quadrature.
+    """
+    element = u.function_space.element.basix_element
+    second_order_hexahedra = element.degree == 2 and element.cell_type.name == "hexahedron"
+    return 0.5 * bulk * (j - 1.0) ** 2, 2 if second_order_hexahedra else 1
+
+
+class Hyperelastic(ABC):
+    """A material by its energy."""
 
     linear = False
 
@@ -63,7 +84,7 @@ class _Hyperelastic(Isotropic, ABC):
         """Terms of the energy for a deformation gradient."""
 
 
-class StVenantKirchhoff(_Hyperelastic):
+class StVenantKirchhoff(Isotropic, Hyperelastic):
     """`W = lambda/2 (tr E)^2 + G E:E` of the Green-Lagrange strain E.
 
     For large rotations at small strain; it softens in strong compression.
@@ -92,7 +113,7 @@ class StVenantKirchhoff(_Hyperelastic):
         ]
 
 
-class NeoHookean(_Hyperelastic):
+class NeoHookean(Isotropic, Hyperelastic):
     """`W = G/2 (tr C - 3 - 2 ln J) + lambda/2 (ln J)^2`, compressible.
 
     Args:
@@ -113,13 +134,10 @@ class NeoHookean(_Hyperelastic):
         return [(0.5 * shear * (first - 3.0 - 2.0 * log_j) + 0.5 * lame * log_j**2, None)]
 
 
-class NeoHookeanIncompressible(_Hyperelastic):
+class NeoHookeanIncompressible(Isotropic, Hyperelastic):
     """`W = G/2 (J^(-2/3) tr C - 3) + K/2 (J - 1)^2`, nearly incompressible without locking.
 
-    The volumetric term is integrated at one point of a cell, of second-order hexahedra at eight,
-    which leaves as many constraints as the displacement can meet [Malkus Hughes 1978, equivalence
-    of reduced integration and a pressure of lower order]. Hexahedra and second-order tetrahedra do
-    not lock with it; first-order tetrahedra have one point anyway, and do.
+    The volumetric term is integrated at fewer points, see `volumetric`.
 
     Args:
         E: Young's modulus at rest, > 0, stress.
@@ -141,13 +159,8 @@ class NeoHookeanIncompressible(_Hyperelastic):
         lame, shear = self.constants(u)
         j = ufl.det(gradient)
         first = ufl.tr(gradient.T * gradient)
-        element = u.function_space.element.basix_element
-        second_order_hexahedra = element.degree == 2 and element.cell_type.name == "hexahedron"
         distortion = 0.5 * shear * (j ** (-2.0 / 3.0) * first - 3.0)
-        return [
-            (distortion, None),
-            (0.5 * (lame + 2.0 / 3.0 * shear) * (j - 1.0) ** 2, 2 if second_order_hexahedra else 1),
-        ]
+        return [(distortion, None), volumetric(u, lame + 2.0 / 3.0 * shear, j)]
 
 
 class UserEnergy:

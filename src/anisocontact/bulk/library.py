@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import Any
 
 from anisocontact import registry
 from anisocontact.bulk.hyperelastic import (
@@ -11,12 +11,47 @@ from anisocontact.bulk.hyperelastic import (
     StVenantKirchhoff,
 )
 from anisocontact.bulk.materials import LinearElastic, Material
+from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
+from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
+from anisocontact.errors import InputError
 from anisocontact.registry import Entry
 
-_MATERIALS: dict[str, Callable[..., Material]] = {
-    material.entry.name: material
-    for material in (LinearElastic, StVenantKirchhoff, NeoHookean, NeoHookeanIncompressible)
+_MATERIALS: dict[str, type[Any]] = {
+    model.entry.name: model
+    for model in (
+        LinearElastic,
+        Orthotropic,
+        TransverselyIsotropic,
+        StVenantKirchhoff,
+        NeoHookean,
+        NeoHookeanIncompressible,
+        MooneyRivlin,
+        Yeoh,
+    )
 }
+
+
+def register_material[T: type[Any]](model: T) -> T:
+    """Let a class be asked for by its name, in Python and in case files that are read afterwards.
+
+    Args:
+        model: Class with an `entry`, whose parameters its constructor takes by name.
+
+    Returns:
+        The class, so that this serves as a decorator.
+
+    Raises:
+        InputError: There is a material of that name.
+
+    Example:
+        >>> register_material(LinearElastic)
+        Traceback (most recent call last):
+        anisocontact.errors.InputError: material: 'linear-elastic' is registered already
+    """
+    if model.entry.name in _MATERIALS:
+        raise InputError(f"{model.entry.name!r} is registered already", field="material")
+    _MATERIALS[model.entry.name] = model
+    return model
 
 
 def materials() -> tuple[Entry, ...]:
@@ -29,10 +64,10 @@ def materials() -> tuple[Entry, ...]:
         >>> [entry.name for entry in materials()][0]
         'linear-elastic'
     """
-    return tuple(m.entry for m in _MATERIALS.values())  # type: ignore[attr-defined]
+    return tuple(model.entry for model in _MATERIALS.values())
 
 
-def make_material(model: str, *, field: str = "", **parameters: float) -> Material:
+def make_material(model: str, *, field: str = "", **parameters: Any) -> Material:
     """Material by name.
 
     Args:
@@ -52,4 +87,5 @@ def make_material(model: str, *, field: str = "", **parameters: float) -> Materi
     """
     entry = registry.entry(materials(), model, f"{field}.model" if field else "model")
     registry.values(entry, parameters, field)
-    return _MATERIALS[model](**parameters, field=field)
+    found: Material = _MATERIALS[model](**parameters, field=field)
+    return found

@@ -102,6 +102,8 @@ class Quantity:
     def default(self) -> Any:
         """The parameter's default as it would stand in a case file."""
         numbers = self.parameter.default
+        if not numbers and self.parameter.kind not in ("array", "integers"):
+            return None  # may be left out, and nothing stands for it
         if self.parameter.unit == "angle":
             numbers = tuple(math.degrees(v) for v in numbers)
         return self.shape(numbers)
