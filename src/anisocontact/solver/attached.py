@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -69,9 +69,23 @@ class Attached(Protocol):
         """Force on the body in the accepted state `u`, over all ranks, (3,)."""
         ...
 
+    def way(self) -> float:
+        """How far it can lead what it holds from the accepted state on, length."""
+        ...
+
     def commit(self, u: Floats) -> float:
         """Accept a state; the work of what moves its far end since the last one."""
         ...
+
+
+class Anchored(Attached, Protocol):
+    """Something whose far end the steps can move.
+
+    Attributes:
+        accepted: Anchor and force in the accepted state, (2, 3), length and force.
+    """
+
+    accepted: Floats
 
 
 @dataclass(frozen=True)
@@ -170,7 +184,7 @@ class Spring:
         """Facet groups that are held."""
         return [self.group] if self.to is None else [self.group, self.to]
 
-    def on(self, model: Model) -> Attached:
+    def on(self, model: Model) -> Anchored:
         """The spring on a model.
 
         Args:
@@ -227,6 +241,9 @@ class _Bed:
     def reaction(self, u: Floats) -> Floats:
         local = self._quadrature.areas @ self._traction(u)
         return np.asarray(self._comm.allreduce(local))
+
+    def way(self) -> float:
+        return 0.0
 
     def commit(self, u: Floats) -> float:
         return 0.0
@@ -287,6 +304,12 @@ class _Spring:
     def reaction(self, u: Floats) -> Floats:
         return self._force(u, self.accepted[0])
 
+    def way(self) -> float:
+        before, force = self.accepted
+        stiff = self._stiffness > 0.0
+        stretch = force[stiff] / self._stiffness[stiff]
+        return float(np.linalg.norm(self._anchor - before) + np.linalg.norm(stretch))
+
     def commit(self, u: Floats) -> float:
         before, force = self.accepted
         self.accepted = np.stack([self._anchor, self._force(u, self._anchor)])
@@ -297,101 +320,3 @@ class _Spring:
 
     def _stretch(self, u: Floats, anchor: Floats) -> Floats:
         return np.asarray(self._weights @ u[self.nodes] - anchor)
-
-
-class Attachments:
-    """The elastic supports and springs of a problem, as one.
-
-    Args:
-        specs: What there is.
-        model: Mesh with named facets.
-
-    Attributes:
-        coupling: Whether there are springs, which couple nodes that share no cell.
-
-    Raises:
-        InputError: An unknown facet group, or two of one name.
-    """
-
-    def __init__(self, specs: Sequence[ElasticSupport | Spring], model: Model) -> None:
-        self._all = [spec.on(model) for spec in specs]
-        springs = [spec for spec in specs if isinstance(spec, Spring)]
-        self._anchored = [spring.name for spring in springs if spring.to is None]
-        self.coupling = bool(springs)
-        #: Their names.
-        self.names = [one.name for one in self._all]
-        for name in self.names:
-            if self.names.count(name) > 1:
-                raise InputError(f"two elastic supports or springs have the name {name!r}")
-
-    def check(self, step: Step) -> None:
-        """Refuse the anchor of a spring that is not there.
-
-        Raises:
-            InputError: Names the springs there are.
-        """
-        for name in step.anchor:
-            if name not in self._anchored:
-                known = ", ".join(self._anchored) or "none"
-                text = f"no spring {name!r} to ground; there are: {known}"
-                raise InputError(text, f"step {step.name!r}.anchor")
-
-    def begin(self, step: Step) -> None:
-        """Take over a step."""
-        for one in self._all:
-            one.begin(step)
-
-    def set_level(self, fraction: float) -> None:
-        """Go to a fraction of the step."""
-        for one in self._all:
-            one.set_level(fraction)
-
-    def add_force(self, u: Floats, out: Floats) -> None:
-        """Add the forces on the bodies at the displacement `u`, both (local nodes, 3)."""
-        for one in self._all:
-            one.add_force(u, out)
-
-    def add_tangent(self, matrix: Mat) -> None:
-        """Add the part of `-d force / d u` that lies in the pattern of the bodies."""
-        for one in self._all:
-            one.add_tangent(matrix)
-
-    def couplings(self) -> list[Couplings]:
-        """The other part of `-d force / d u`."""
-        return [found for one in self._all for found in one.couplings()]
-
-    def blocks(self) -> list[Couplings]:
-        """All of `-d force / d u`."""
-        return [found for one in self._all for found in one.blocks()]
-
-    @property
-    def nodes(self) -> npt.NDArray[np.int32]:
-        """Local nodes of the bodies that they act on."""
-        return np.concatenate([np.zeros(0, dtype=np.int32), *(one.nodes for one in self._all)])
-
-    def energy(self, u: Floats) -> float:
-        """Stored energy, over all ranks, force times length."""
-        return sum(one.energy(u) for one in self._all)
-
-    def reactions(self, u: Floats) -> dict[str, Floats]:
-        """Force of each on the bodies, by facet group of a support or name of a spring, (3,)."""
-        return {one.name: one.reaction(u) for one in self._all}
-
-    def commit(self, u: Floats) -> float:
-        """Accept a state; the work at the anchors since the last one (trapezoidal rule)."""
-        return sum(one.commit(u) for one in self._all)
-
-    def persistent(self) -> Floats:
-        """Anchor and force of every spring in the accepted state, (springs, 2, 3)."""
-        return np.array([spring.accepted for spring in self._springs()]).reshape(-1, 2, 3)
-
-    def restore(self, kept: Floats) -> None:
-        """Go on from what `persistent` gave."""
-        for spring, accepted in zip(self._springs(), kept, strict=True):
-            spring.accepted = accepted.copy()
-
-    def __bool__(self) -> bool:
-        return bool(self._all)
-
-    def _springs(self) -> list[_Spring]:
-        return [one for one in self._all if isinstance(one, _Spring)]

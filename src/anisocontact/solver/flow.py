@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, PETSc
+from anisocontact._fenicsx import PETSc
 from anisocontact.contact import NotHeldError
 from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
@@ -99,11 +99,6 @@ class Flow:
             return []
         nodes = self._nodes[:, None]
         return [(nodes, nodes, np.tile(self.stiffness * np.eye(3), (len(nodes), 1, 1)))]
-
-    def add_tangent(self, matrix: Mat) -> None:
-        """Add what the viscous force changes with the displacement."""
-        for rows, columns, blocks in self.couplings():
-            matrix.setValuesBlockedLocalRCV(rows, columns, blocks, PETSc.InsertMode.ADD_VALUES)
 
     def improve(self, u: Floats, at_work: float) -> bool:
         """Take the next step from a balance of forces.

@@ -35,12 +35,19 @@ class Body:
         nodes: Nodes this rank owns, (n,).
         arms: Their places relative to the centre over the size of the body, (n, 3).
         count: Number of nodes over all ranks.
+        local: All its nodes on this rank, those of other ranks too, (m,).
+        fields: The six rigid motions of unit size at these, three translations and three rotations
+            (times the size of the body), (6, m, 3).
+        size: Root mean square distance of its nodes from the centre, length.
     """
 
     parts: tuple[str, ...]
     nodes: Ints
     arms: Floats
     count: int
+    local: Ints
+    fields: Floats
+    size: float
 
     @property
     def name(self) -> str:
@@ -58,10 +65,10 @@ def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[Body]:
     space, comm = model.space, model.mesh.comm
     owned = space.dofmap.index_map.size_local
     names = list(model.body_names())
-    nodes = {}
+    local, nodes = {}, {}
     for name in names:
-        found = fem.locate_dofs_topological(space, 3, model.cells(name))
-        nodes[name] = found[found < owned].astype(np.int64)
+        found = fem.locate_dofs_topological(space, 3, model.cells(name)).astype(np.int64)
+        local[name], nodes[name] = found, found[found < owned]
     pairs = [(names.index(a), names.index(b)) for a, b in links]
     for i, a in enumerate(names):
         for j, b in enumerate(names[:i]):
@@ -72,17 +79,27 @@ def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[Body]:
     graph = scipy.sparse.coo_array(entries, shape=(len(names), len(names)))
     count, number = connected_components(graph, directed=False)
     groups = [[n for n, k in zip(names, number, strict=True) if k == one] for one in range(count)]
-    return [_body(model, group, [nodes[name] for name in group]) for group in groups]
+    return [_body(model, group, [local[name] for name in group]) for group in groups]
 
 
-def _body(model: Model, parts: list[str], nodes: list[Ints]) -> Body:
+def _body(model: Model, parts: list[str], local: list[Ints]) -> Body:
     comm = model.mesh.comm
-    all_nodes = np.unique(np.concatenate(nodes))
-    x = np.asarray(model.space.tabulate_dof_coordinates())[all_nodes]
-    count = comm.allreduce(len(all_nodes))
-    arms = x - comm.allreduce(x.sum(axis=0)) / count
+    here = np.unique(np.concatenate(local))
+    nodes = here[here < model.space.dofmap.index_map.size_local]
+    places = np.asarray(model.space.tabulate_dof_coordinates())
+    x = places[nodes]
+    count = comm.allreduce(len(nodes))
+    centre = comm.allreduce(x.sum(axis=0)) / count
+    arms = x - centre
     size = np.sqrt(comm.allreduce(float((arms**2).sum())) / count)
-    return Body(tuple(parts), all_nodes, arms / size, count)
+    fields = _fields((places[here] - centre) / size)
+    return Body(tuple(parts), nodes, arms / size, count, here, fields, float(size))
+
+
+def _fields(arms: Floats) -> Floats:
+    """Rigid motions at arms, (6, n, 3)."""
+    shift = np.repeat(np.eye(3)[:, None], len(arms), axis=1)
+    return np.concatenate([shift, np.cross(shift, arms)])
 
 
 def free_modes(body: Body, held: Iterable[Held], comm: Any) -> Floats:

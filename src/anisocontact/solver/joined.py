@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from anisocontact.contact import AnyContact, Contact
 from anisocontact.mesh import Model
 from anisocontact.solver.free_modes import Body, bodies
 
 
-def joined(model: Model, contacts: Sequence[AnyContact], attached: Iterable[str]) -> list[Body]:
-    """Bodies that only supports can hold, those in contact with each other as one.
+def joined(model: Model, contacts: Sequence[AnyContact]) -> list[Body]:
+    """Bodies that only supports and springs can hold, those in contact with each other as one.
 
     Contact between bodies resists what one does to the other, not what they do as one rigid body;
-    contact with itself resists nothing. Bodies in contact with a surface that is given, or held by
-    springs, are left out.
+    contact with itself resists nothing. Bodies in contact with a surface that is given are left
+    out.
 
     Args:
         model: Mesh of the bodies.
         contacts: The contacts.
-        attached: Bodies that springs or elastic supports hold.
     """
-    others, links = set(attached), []
+    others: set[str] = set()
+    links = []
     for contact in contacts:
         if isinstance(contact, Contact):
             others.add(model.body_of(contact.slave))

@@ -11,7 +11,8 @@ from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
 from anisocontact.contact import AnyContact
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
-from anisocontact.solver.attached import Attachments, ElasticSupport, Spring
+from anisocontact.solver.attached import ElasticSupport, Spring
+from anisocontact.solver.attachments import Attachments
 from anisocontact.solver.constraints import Constraints
 from anisocontact.solver.layout import Layout
 from anisocontact.solver.loads import Loads
@@ -83,7 +84,7 @@ def make_parts(
         supports=supports,
         loads=loads,
         constraints=constraints,
-        stabilisation=Stabilisation(model, contacts, scale, holders, stabilised),
+        stabilisation=Stabilisation(model, contacts, scale, attachments, holders, stabilised),
         support_scale=scale,
     )
 

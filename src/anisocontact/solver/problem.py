@@ -194,12 +194,13 @@ class Problem(Following):
             steps: The steps.
 
         Returns:
-            Whether contact alone has to hold one of them.
+            Whether contact alone has to hold one of them that has no springs.
 
         Raises:
             InputError: A body is free to move and in no contact.
         """
-        return contact_must_hold(self._parts, self.model, steps, len(self.u.x.array))
+        size = len(self.u.x.array)
+        return contact_must_hold(self._parts, self.model, self.materials, steps, size)
 
     def set_level(self, fraction: float, dt: float) -> None:
         """Bring the loads to a fraction of the step.
@@ -266,8 +267,10 @@ class Problem(Following):
 
     def contact_lets_go(self, x: Vec) -> str:
         """Why contact does not hold the free bodies in equilibrium; empty if it does."""
-        if not self.stabilisation.watches or self.reduction is not None:
+        if not self.stabilisation.watches:
             return ""
+        if self.reduction is not None:
+            return self.stabilisation.lets_go(self.layout.split(x)[0])
         self._evaluate_at(x)
         return self.stabilisation.lets_go(self._bodies.nodal)
 
@@ -284,13 +287,20 @@ class Problem(Following):
         """Let the bodies flow to the next equilibrium in this attempt, see `Flow`."""
         self.stabilisation.flow.start(self._bodies.nodal)
 
+    def stabilise_at(self, where: npt.NDArray[np.bool_]) -> None:
+        """Keep bodies in reach by springs at these of the nodes alone, (nodes,)."""
+        self.stabilisation.confine(where)
+        self._stabilise()
+
     def _stabilise(self) -> None:
         """Put the springs of stabilisation back to where they start from."""
         self._accepted.begin_way()
         if self.stabilisation.watches:
-            nodal = self.u.x.array.reshape(-1, 3)
-            load = self.layout.assembled(self.loads.force(nodal))
-            self.stabilisation.start(nodal, load.reshape(-1, 3))
+            condensed = self.reduction is not None
+            nodal = self.layout.split(self._accepted.x)[0] if condensed else self._bodies.nodal
+            load = self.loads.force(nodal)
+            self.attached.add_force(nodal, load.reshape(-1, 3))
+            self.stabilisation.start(nodal, self.layout.assembled(load).reshape(-1, 3))
 
     def commit(self, x: Vec) -> None:
         """Accept a state: the history of the contacts advances and energies are summed.

@@ -19,14 +19,19 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc
 from anisocontact.contact import AnyContact, Contact, NotHeldError, facet_size
+from anisocontact.contact.transfer import Couplings
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
-from anisocontact.python_pair import PYTHON_LAWS
+from anisocontact.solver.attachments import Attachments
 from anisocontact.solver.flow import Flow
+from anisocontact.solver.free_body import FreeBody
 from anisocontact.solver.free_modes import Body, Held, bodies, free_modes, named
+from anisocontact.solver.holding import NOTHING as NO_STIFFNESS
+from anisocontact.solver.holding import stiffness, unheld, work
 from anisocontact.solver.joined import joined
 
 Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
 
 #: Force of the springs over the forces at work that an accepted state may have.
 SHARE = 1e-7
@@ -38,37 +43,9 @@ WITHOUT_LOADS, LEAST = 1e-6, 1e-11
 NOTHING = 1e-9
 #: Equilibria after which a body counts as one that flies off.
 MOST = 60
-#: Sticking points that can hold all motions of a body.
-ENOUGH = 3
-
-
-class _Free:
-    """Springs on one body.
-
-    Attributes:
-        body: The body.
-        modes: Its free motions in words.
-        contacts: Contacts that can hold it.
-        size: How far the springs let it move at once: a facet, length.
-        stiffness: Of the springs, force/length.
-        load: Norm of the sum of all loads on it, force.
-        trusted: Whether contact alone is to hold it in this attempt.
-    """
-
-    def __init__(self, body: Body, modes: str, contacts: Sequence[AnyContact], size: float) -> None:
-        self.body, self.modes, self.contacts, self.size = body, modes, contacts, size
-        self.stiffness = self.load = 0.0
-        self.trusted = False
-
-    def sticks(self) -> bool:
-        """Whether enough points stick in the trial, with a known stiffness, to hold it."""
-        laws = ((c, c.interface) for c in self.contacts)
-        stiff = [c for c, i in laws if not isinstance(i, PYTHON_LAWS) and i.penalties()[1] > 0]
-        return sum(c.counts()["stick"] for c in stiff) >= ENOUGH
-
-    def touched(self) -> bool:
-        """Whether one of its contacts is closed in the trial."""
-        return any(c.counts()["stick"] + c.counts()["slip"] > 0 for c in self.contacts)
+#: Sizes of a body by which the loads may carry it on its springs: beyond, contact is to hold it, or
+#: where there is none the springs count as none.
+FAR, LOST = 2.0, 100.0
 
 
 class Stabilisation:
@@ -78,7 +55,8 @@ class Stabilisation:
         model: Mesh of the bodies.
         contacts: The contacts.
         scale: Mean diagonal of the stiffness of the bulk, force/length.
-        attached: Bodies that springs or elastic supports hold.
+        attached: Springs and elastic supports; none if left out.
+        sprung: Bodies that they act on.
         enabled: Whether bodies may be stabilised; if not they have to touch.
 
     Attributes:
@@ -94,7 +72,8 @@ class Stabilisation:
         model: Model,
         contacts: Sequence[AnyContact],
         scale: float,
-        attached: Iterable[str] = (),
+        attached: Attachments | None = None,
+        sprung: Iterable[str] = (),
         enabled: bool = True,
     ) -> None:
         self.enabled = enabled
@@ -106,11 +85,18 @@ class Stabilisation:
         self._contacts = list(contacts)
         self._scale = scale
         self._comm = model.mesh.comm
-        attached = set(attached)
-        self._bodies = [body for body in bodies(model) if not attached & set(body.parts)]
-        self._joined = joined(model, contacts, attached)
-        self._free: list[_Free] = []
-        self._loose: list[_Free] = []
+        self._attached, self._sprung = attached, set(sprung)
+        self._bodies, self._joined = bodies(model), joined(model, contacts)
+        shape = np.shape(model.space.tabulate_dof_coordinates())
+        self._springs, self._joined_springs = (
+            np.zeros((6 * len(group), 6 * len(group)))
+            if attached is None or not attached
+            else stiffness(attached, group, shape, self._comm)
+            for group in (self._bodies, self._joined)
+        )
+        self._free: list[FreeBody] = []
+        self._loose: list[FreeBody] = []
+        self._where: Flags | None = None
         self._held: list[Held] = []
         self._begun: Floats = np.zeros((0, 3))
         self._anchor: Floats = self._begun
@@ -139,12 +125,21 @@ class Stabilisation:
         """Nothing is free."""
         self._free, self._loose, self.notes, self.careful = [], [], [], False
 
-    def begin(self, held: Sequence[Held], step: str, now: bool = True) -> None:
+    @property
+    def contact_alone(self) -> bool:
+        """Whether contact alone has to hold a body that has no springs."""
+        return any(not free.sprung for free in self._loose)
+
+    def begin(
+        self, held: Sequence[Held], step: str, load: Floats | None = None, now: bool = True
+    ) -> None:
         """Find out what a step leaves free.
 
         Args:
             held: Nodes and directions that are held.
             step: Name of the step.
+            load: Forces at its end, contributions of this rank to the local nodes, (nodes, 3);
+                springs are weighed against them.
             now: Whether the step begins now: what touches is known.
 
         Raises:
@@ -152,14 +147,34 @@ class Stabilisation:
         """
         self.clear()
         self._held = list(held)
-        for body in self._joined:
-            modes = free_modes(body, held, self._comm)
-            if len(modes):
-                self._refuse(body, named(modes), step)
-        for body in self._bodies:
-            modes = free_modes(body, held, self._comm)
-            if len(modes):
-                self._add(body, named(modes), step, now)
+        free = [free_modes(body, held, self._comm) for body in self._joined]
+        for far in (np.inf, LOST):
+            loose = self._unheld(self._joined, free, self._joined_springs, load, far)
+            for body, modes in zip(self._joined, loose, strict=True):
+                if len(modes):
+                    self._refuse(body, named(modes), step, weak=far == LOST)
+        free = [free_modes(body, held, self._comm) for body in self._bodies]
+        loose = self._unheld(self._bodies, free, self._springs, load, FAR)
+        for i, (body, modes) in enumerate(zip(self._bodies, loose, strict=True)):
+            if len(modes) and self._of(body):
+                own = self._springs[6 * i : 6 * i + 6, 6 * i : 6 * i + 6]
+                self._add(body, named(modes), free[i], own, step, now)
+
+    def _unheld(
+        self,
+        group: list[Body],
+        free: list[Floats],
+        springs: Floats,
+        load: Floats | None,
+        far: float,
+    ) -> list[Floats]:
+        """Motions of bodies that neither supports nor springs hold, see `unheld`."""
+        if not springs.any():
+            return free
+        force = np.zeros(len(springs))
+        if load is not None:
+            force = self._comm.allreduce(work(group, load))
+        return unheld(group, free, springs, force, NO_STIFFNESS * self._scale, far)
 
     def told(self) -> list[str]:
         """`notes`, each of them once."""
@@ -176,28 +191,42 @@ class Stabilisation:
         self._begun = self._anchor = u.copy()
         self._spent, self._count = 0.0, 0
         for free in self._loose:
+            free.act_on(self._where)
             total = self._comm.allreduce(load[free.body.nodes].sum(axis=0))
             free.load = float(np.linalg.norm(total))
         for free in self._free:
-            needed = free.load / (free.body.count * free.size)
-            free.trusted = not self.careful and free.sticks()
+            needed = free.load / (free.count * free.reach())
+            free.trusted = not self.careful and free.may_hold()
             free.stiffness = 0.0 if free.trusted else max(needed, WITHOUT_LOADS * self._scale)
+
+    def confine(self, where: Flags | None) -> None:
+        """Act on some of the nodes alone from the next `start` on.
+
+        Args:
+            where: Those that keep their unknowns, (nodes,); all if None.
+        """
+        self._where = where
 
     def force(self, u: Floats) -> Floats:
         """Force of the springs on the local nodes, (nodes, 3)."""
         force = self.flow.force(u)
         for free in self._free:
-            nodes = free.body.nodes
+            nodes = free.nodes
             force[nodes] -= free.stiffness * (u[nodes] - self._anchor[nodes])
         return force
 
-    def add_tangent(self, matrix: Mat) -> None:
-        """Add the stiffness of the springs."""
-        self.flow.add_tangent(matrix)
+    def couplings(self) -> list[Couplings]:
+        """What the force of the springs changes with the displacement."""
+        found = self.flow.couplings()
         for free in self._free:
-            nodes = free.body.nodes.astype(PETSc.IntType)[:, None]
-            blocks = np.tile(free.stiffness * np.eye(3), (len(nodes), 1, 1))
-            matrix.setValuesBlockedLocalRCV(nodes, nodes, blocks, PETSc.InsertMode.ADD_VALUES)
+            nodes = free.nodes.astype(PETSc.IntType)[:, None]
+            found.append((nodes, nodes, np.tile(free.stiffness * np.eye(3), (len(nodes), 1, 1))))
+        return found
+
+    def add_tangent(self, matrix: Mat) -> None:
+        """Add what the force of the springs changes with the displacement."""
+        for rows, columns, blocks in self.couplings():
+            matrix.setValuesBlockedLocalRCV(rows, columns, blocks, PETSc.InsertMode.ADD_VALUES)
 
     def improve(self, u: Floats, at_work: float) -> bool:
         """Let the springs go on from an equilibrium.
@@ -253,7 +282,14 @@ class Stabilisation:
         Args:
             u: Displacement of the local nodes in equilibrium, (nodes, 3), length.
         """
-        return any([not free.sticks() or self._far(free, u) for free in self._free if free.trusted])
+        explained = self._prescribed(u) if any(f.trusted and f.sprung for f in self._free) else 0.0
+        return any(
+            [
+                not free.holds() or self._far(free, u, explained if free.sprung else 0.0)
+                for free in self._free
+                if free.trusted
+            ]
+        )
 
     def lost(self, u: Floats) -> str:
         """Bodies that contact has thrown off, with their free motions in words; empty if none is.
@@ -272,7 +308,7 @@ class Stabilisation:
         gone = [one for one in gone if self._carries_nothing(one, u)]
         return "; ".join(f"body {g.body.name!r} has lost all contact: {g.modes}" for g in gone)
 
-    def _carries_nothing(self, free: _Free, u: Floats) -> bool:
+    def _carries_nothing(self, free: FreeBody, u: Floats) -> bool:
         """Whether contact carries neither the loads on a body nor more than round-off."""
         force = np.zeros_like(u)
         for contact in free.contacts:
@@ -282,18 +318,23 @@ class Stabilisation:
             return False
         return bool(carried <= NOTHING * self._scale * free.size)
 
-    def _far(self, free: _Free, u: Floats, explained: float = 0.0) -> bool:
-        nodes = free.body.nodes
+    def _far(self, free: FreeBody, u: Floats, explained: float = 0.0) -> bool:
+        nodes = free.nodes
         way = np.linalg.norm(u[nodes] - self._begun[nodes], axis=1).max(initial=0.0)
         return bool(max(self._comm.allgather(float(way))) > free.size + explained)
 
     def _prescribed(self, u: Floats) -> float:
-        """Farthest that supports and rigid bodies have moved since the attempt began, length."""
+        """Farthest that supports, rigid bodies and springs can have led a body, length.
+
+        Since the attempt began; springs by what their anchors have moved and by their stretch.
+        """
         moved = u - self._begun
         ways = [np.abs(moved[nodes] @ axis).max(initial=0.0) for nodes, axis in self._held]
         for contact in self._contacts:
             if isinstance(contact, Contact) and contact.body is not None:
                 ways.append(contact.body.farthest(contact.current.points))
+        if self._attached is not None:
+            ways.append(self._attached.way())
         return float(np.sqrt(3.0) * max(self._comm.allgather(float(max(ways, default=0.0)))))
 
     def untouched(self) -> bool:
@@ -310,12 +351,16 @@ class Stabilisation:
             self.notes.append(f"equilibrium was lost: {steps} steps of viscous flow to the next")
             self.flow.stop()
 
-    def _add(self, body: Body, modes: str, step: str, now: bool) -> None:
+    def _add(
+        self, body: Body, modes: str, motions: Floats, springs: Floats, step: str, now: bool
+    ) -> None:
         contacts = self._of(body)
         field = f"step {step!r}"
         text = f"body {body.name!r} is free to move: {modes}"
         size = min(facet_size(self._model, c.slave) for c in contacts)
-        free = _Free(body, modes, contacts, size)
+        sprung = motions @ springs @ motions.T if self._sprung & set(body.parts) else None
+        least = NO_STIFFNESS * self._scale
+        free = FreeBody(body, modes, contacts, size, motions, sprung, least)
         self._loose.append(free)
         if not self.enabled:
             if now and not free.touched():
@@ -324,14 +369,23 @@ class Stabilisation:
         self._free.append(free)
         self.notes.append(f"{text}; stabilised until contact holds it")
 
-    def _refuse(self, body: Body, modes: str, step: str) -> NoReturn:
+    def _refuse(self, body: Body, modes: str, step: str, weak: bool) -> NoReturn:
+        several = len(body.parts) > 1
         if not self._of(body):
-            why = "it is in no contact and needs a support"
-        elif len(body.parts) > 1:
-            why = "its parts touch nothing but each other, it needs a support"
+            why = "it is in no contact"
+        elif several:
+            why = "its parts touch nothing but each other"
         else:
-            why = "it touches nothing but itself and needs a support"
-        text = f"body {body.name!r} is free to move: {modes}; {why}"
+            why = "it touches nothing but itself"
+        if weak:
+            why += (
+                f", and its springs give way to the loads by more than {LOST:g} times its size: it"
+            )
+        elif self._sprung & set(body.parts):
+            why += ", and its springs do not hold that: it"
+        else:
+            why += ", it" if several else " and"
+        text = f"body {body.name!r} is free to move: {modes}; {why} needs a support"
         raise InputError(text, f"step {step!r}")
 
     def _of(self, body: Body) -> list[AnyContact]:

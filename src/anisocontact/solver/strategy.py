@@ -148,8 +148,6 @@ def _obstacles(
     if not isinstance(problem.bulk, LinearBulk):
         names = [name for name, law in problem.materials.items() if not law.linear]
         yield f"material.{names[0]} is not linear"
-    if problem.check_held(steps):
-        yield "a body is held by contact alone"
     yield from _asked_solver(prefix, options)
 
 
@@ -186,6 +184,8 @@ def _iterative_obstacles(
 
 def _costs(problem: Problem, steps: Sequence[Step]) -> Iterator[str]:
     """Why `condensed` would not pay, although it can."""
+    if problem.check_held(steps):
+        yield "a body is held by contact alone"
     count = contact_unknowns(problem, steps)
     if count > MOST_CONTACT:
         yield f"{count} contact unknowns, more than {MOST_CONTACT}: their dense matrix does not pay"

@@ -125,6 +125,7 @@ class Condensed:
         if self._system is None or not self._fits(self._system):
             self._condense()
         assert self._system is not None
+        problem.stabilise_at(self._reach.nodes)
         self._trial_load = problem.dead_load()
         supports = np.zeros(self._stiffness.shape[0])
         supports[problem.supports.unknowns] = problem.supports.at(problem.level)
@@ -240,6 +241,7 @@ class Condensed:
             self._bulk.close()
         self._bulk = self._system = None
         self._problem.reduction = None
+        self._problem.stabilisation.confine(None)
 
     def _nodal(self) -> Floats:
         """Accepted displacement of the nodes, true for those in reach, (nodes, 3), length."""

@@ -52,7 +52,7 @@ class ContactSystem(Following):
         led: Which unknowns of free rigid bodies are prescribed.
         raw_forces: Forces of contacts and of what bodies are attached to, on all nodes, (n,).
         forces: The same with those of constrained unknowns handed on.
-        way: States that bodies that flow have gone through since the last `set_level`.
+        way: States that bodies that flow or fall have gone through since the last `set_level`.
         force_scale: Norm of the forces at work in the last evaluation: loads, contacts or supports.
         round_off: Residual that floating point leaves in the last evaluation, force.
         tolerance: Residual over the forces at work at which Newton stops.
@@ -70,7 +70,7 @@ class ContactSystem(Following):
     ) -> None:
         self.bulk, self.contacts, self._in_reach = bulk, problem.contacts, in_reach
         self._attached, self._rigid = problem.attached, problem.rigid
-        self._flow = problem.stabilisation.flow
+        self._stabilisation = problem.stabilisation
         self._gathering = gathering
         self._nodal, self._v = nodal, nodal.reshape(-1).copy()
         self.led = self._rigid.held()
@@ -164,7 +164,7 @@ class ContactSystem(Following):
         self._evaluated = u
         failed = self._respond(u)
         own = u[: len(self.bulk.contact)]
-        forces = self.forces + self.handed(self._flow.force(self._nodal).reshape(-1))
+        forces = self.forces + self.handed(self._stabilisation.force(self._nodal).reshape(-1))
         residual = self.bulk.schur_times(own) - self._g - forces[self.bulk.contact]
         of_bodies = self._rigid.residual(self._values, 1.0)[~self.led]
         residual = np.concatenate([residual, of_bodies])
@@ -199,7 +199,7 @@ class ContactSystem(Following):
         self.evaluate(x)
         blocks = [part for c in self.contacts for part in couplings(c)]
         blocks += self._rigid.couplings(len(self._v) // 3) + self._attached.blocks()
-        blocks += self._flow.couplings()
+        blocks += self._stabilisation.couplings()
         self._tangent.take(blocks)
         out.assemble()
         return False
@@ -207,11 +207,13 @@ class ContactSystem(Following):
     def improve(self, x: Vec) -> bool:
         """Better multipliers of the contacts from equilibrium; see `Problem.improve`."""
         self.evaluate(x)
-        changed = self._flow.improve(self._nodal, self.force_scale)
-        if changed:
+        stabilisation = self._stabilisation
+        changed = stabilisation.improve(self._nodal, self.force_scale)
+        flows = stabilisation.flow.flows
+        if changed and (flows or stabilisation.untouched()):
             self.way.append(self.state(x.array_r))
-        else:
-            changed = any([contact.improve() for contact in self.contacts])
+        if not (changed and flows):
+            changed = any([contact.improve() for contact in self.contacts]) or changed
         if changed:
             self._evaluated = None
         return changed
@@ -219,8 +221,8 @@ class ContactSystem(Following):
     def soften(self) -> bool:
         """Softer penalties after a solution that failed; see `Problem.soften`."""
         self._evaluated = None
-        if self._flow.flows:
-            return not self.outgrown and self._flow.soften()
+        if self._stabilisation.flow.flows:
+            return not self.outgrown and self._stabilisation.flow.soften()
         return any([contact.soften() for contact in self.contacts])
 
     def mult(self, _: Mat, x: Vec, y: Vec) -> None:

@@ -1,0 +1,145 @@
+"""A body that only contact can hold, and whether it does."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact import AnyContact, Contact
+from anisocontact.contact.transfer import Couplings
+from anisocontact.python_pair import PYTHON_LAWS
+from anisocontact.solver.free_modes import Body
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
+
+#: Share of a facet by which a body on springs that touches may move at once.
+TOUCHING = 0.01
+#: Points in contact that can hold all motions of a body.
+ENOUGH = 3
+
+
+@dataclass
+class FreeBody:
+    """A body with motions that neither supports nor springs hold.
+
+    Attributes:
+        body: The body.
+        modes: These motions in words.
+        contacts: Contacts that can hold it.
+        size: How far stabilisation lets it move at once: a facet, length.
+        motions: Its motions that no support holds, (k, 6).
+        springs: Stiffness of springs and elastic supports in them, (k, k), force/length; None for a
+            body without.
+        least: Stiffness that counts as none, force/length.
+        nodes: Nodes of this rank that stabilisation acts on.
+        count: Their number over all ranks.
+        stiffness: Of stabilisation at each of them, force/length.
+        load: Norm of the sum of all loads on it, force.
+        trusted: Whether contact and springs alone are to hold it in this attempt.
+    """
+
+    body: Body
+    modes: str
+    contacts: Sequence[AnyContact]
+    size: float
+    motions: Floats
+    springs: Floats | None
+    least: float
+    nodes: Ints = field(init=False)
+    count: int = field(init=False)
+    stiffness: float = 0.0
+    load: float = 0.0
+    trusted: bool = False
+
+    def __post_init__(self) -> None:
+        self.act_on(None)
+
+    def act_on(self, where: Flags | None) -> None:
+        """Let stabilisation act on some of the nodes alone, all if None; flags of nodes."""
+        self.nodes, self.count = self.body.nodes, self.body.count
+        if where is not None:  # on one process
+            self.nodes = self.nodes[where[self.nodes]]
+            self.count = max(len(self.nodes), 1)
+
+    def may_hold(self) -> bool:
+        """Whether contact is likely to hold it without stabilisation, from where it is now.
+
+        Enough points stick, with a known stiffness; a body on springs may slide as well.
+        """
+        return self._count("stick", "slip") >= ENOUGH if self.sprung else self.sticks()
+
+    def holds(self) -> bool:
+        """Whether contact holds it in the trial, and springs where it has some."""
+        return self._stiff() if self.sprung else self.sticks()
+
+    @property
+    def sprung(self) -> bool:
+        """Whether springs or elastic supports act on it."""
+        return self.springs is not None
+
+    def sticks(self) -> bool:
+        """Whether enough points stick in the trial, with a known stiffness, to hold it."""
+        return self._count("stick") >= ENOUGH
+
+    def reach(self) -> float:
+        """How far stabilisation lets it move at once, length.
+
+        A facet; one on springs no farther than it takes to touch: beside stiff springs that hold
+        some of its motions it would turn in the others.
+        """
+        if not self.sprung:
+            return self.size
+        near = [
+            np.abs(c.current.response.gap[c.located(c.state)]).min(initial=np.inf)
+            for c in self.contacts
+        ]
+        least = min(self.contacts[0].space.mesh.comm.allgather(float(min(near))))
+        return float(min(max(2.0 * least, TOUCHING * self.size), self.size))
+
+    def touched(self) -> bool:
+        """Whether one of its contacts is closed in the trial."""
+        return any(c.counts()["stick"] + c.counts()["slip"] > 0 for c in self.contacts)
+
+    def _count(self, *statuses: str) -> int:
+        laws = ((c, c.interface) for c in self.contacts)
+        stiff = [c for c, i in laws if not isinstance(i, PYTHON_LAWS) and i.penalties()[1] > 0]
+        return sum(c.counts()[status] for c in stiff for status in statuses)
+
+    def _stiff(self) -> bool:
+        """Whether contact and springs have stiffness in all motions that no support holds.
+
+        A rank has the couplings of its own slave points alone: on several, points are counted.
+        """
+        assert self.springs is not None
+        if self.contacts[0].space.mesh.comm.size > 1:
+            return self.may_hold()
+        projected = self.springs.copy()
+        for contact in self.contacts:
+            parts = (contact,) if isinstance(contact, Contact) else contact.passes
+            for part in parts:
+                for blocks in part.couplings():
+                    projected += self.motions @ self._projected(blocks) @ self.motions.T
+        sizes = np.linalg.svd(projected, compute_uv=False)
+        return bool(sizes.min(initial=np.inf) > self.least)
+
+    def _projected(self, couplings: Couplings) -> Floats:
+        """Couplings of nodes in the six rigid motions of the body, other bodies at rest, (6, 6)."""
+        rows, columns, blocks = couplings
+        count = 1 + max(
+            int(self.body.local.max()), int(rows.max(initial=0)), int(columns.max(initial=0))
+        )
+        fields = np.zeros((6, count + 1, 3))  # the last one stands for no node
+        fields[:, self.body.local] = self.body.fields
+        here, there = (
+            fields[:, nodes].reshape(6, len(nodes), 3 * nodes.shape[1]) for nodes in (rows, columns)
+        )
+        if blocks.ndim == 5:
+            blocks = blocks.transpose(0, 1, 3, 2, 4).reshape(
+                len(rows), here.shape[2], there.shape[2]
+            )
+        return np.asarray(np.einsum("ipr,prc,jpc->ij", here, blocks, there, optimize=True))
