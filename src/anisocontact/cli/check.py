@@ -6,6 +6,7 @@ import argparse
 
 from anisocontact.case import load
 from anisocontact.case.build import Built, build
+from anisocontact.cli.output import say
 
 __all__ = ["command", "contents"]
 
@@ -13,7 +14,7 @@ __all__ = ["command", "contents"]
 def command(arguments: argparse.Namespace) -> int:
     """Build the case and say what is in it."""
     for line in contents(build(load(arguments.case))):
-        print(line)
+        say(line)
     return 0
 
 

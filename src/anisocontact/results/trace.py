@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import html
 import io
 import json
 from pathlib import Path
@@ -112,14 +111,14 @@ def _report(
     summary: dict[str, Any],
 ) -> None:
     from anisocontact.point.pictures import save
-    from anisocontact.results.report.page import Picture, document, figure, table
+    from anisocontact.results.report.page import Picture, as_html, document, figure, table
 
     title = summary["title"]
     files = save(history, interface, folder / "pictures", title, compared, label)
-    heading = html.escape(title or "anisocontact")
+    heading = as_html(title or "anisocontact")
     body = [f"<h1>{heading}</h1>"]
     if summary["message"]:
-        text = html.escape(summary["message"])
+        text = as_html(summary["message"])
         body.append(f'<p class="stopped">{text}. What converged is shown.</p>')
     body += [
         table([_numbers(summary)]),

@@ -13,6 +13,7 @@ from typing import Any
 
 from anisocontact import __version__
 from anisocontact.contact import facet_size
+from anisocontact.errors import printable
 from anisocontact.results.checkpoint import keep_checkpoint
 from anisocontact.results.collection import Collection
 from anisocontact.results.files import Disk, clear, clear_drafts, write_text
@@ -165,12 +166,12 @@ class Writer:
         self._write_summary()
 
     def log(self, text: str) -> None:
-        """Add a line to `run.log`."""
+        """Add a line to `run.log`; what does not print in it is written as an escape."""
         self._disk.write(lambda: self._append(text))
 
     def _append(self, text: str) -> None:
         with (self.folder / "run.log").open("a", encoding="utf-8") as file:
-            file.write(text + "\n")
+            file.write(printable(text) + "\n")
 
     def accept(self, accepted: Accepted) -> None:
         """Write an accepted increment: table and summary, and fields where they are due.
@@ -241,7 +242,8 @@ class Writer:
         self.summary["status"] = "stopped"
         self.summary["message"] = message
         with suppress(OSError):
-            self._append(details or message)
+            for line in (details or message).splitlines():
+                self._append(line)
             write_text(self.folder / "summary.json", self._text())
 
     def _report(self) -> None:
