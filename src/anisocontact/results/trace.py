@@ -12,6 +12,7 @@ from anisocontact import __version__
 from anisocontact.point import History
 from anisocontact.point.balance import PointInterface
 from anisocontact.results.files import clear, replacing, write_text
+from anisocontact.results.no_energy import told
 
 __all__ = ["write_trace"]
 
@@ -74,8 +75,8 @@ def write_trace(
         "title": title,
         "version": __version__,
         "wall_time_s": round(wall_time, 3),
-        **history.summary(),
-        "compare": [{"label": name, **run.summary()} for name, run in compared.items()],
+        **_told(history),
+        "compare": [{"label": name, **_told(run)} for name, run in compared.items()],
     }
     write_text(folder / "summary.json", json.dumps(summary, indent=2, allow_nan=False) + "\n")
     if case:
@@ -87,6 +88,11 @@ def write_trace(
     if pictures and len(history):
         _report(folder, history, interface, compared, label, summary)
     return summary
+
+
+def _told(history: History) -> dict[str, Any]:
+    summary = history.summary()
+    return summary | ({"energy": told(summary["energy"])} if "energy" in summary else {})
 
 
 def _joined(runs: dict[str, History]) -> str:

@@ -18,6 +18,7 @@ from anisocontact.results.checkpoint import keep_checkpoint
 from anisocontact.results.collection import Collection
 from anisocontact.results.files import Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
+from anisocontact.results.no_energy import told
 from anisocontact.results.paraview import Bodies, slave_points
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
@@ -117,6 +118,8 @@ class Writer:
         for name, value in state["summary"].items():
             if name not in ("title", "version", "ranks", "unknowns"):
                 self.summary[name] = value
+        energy = self.summary["energy"]  # JSON has null for what is not a number
+        self.summary["energy"] = {n: math.nan if v is None else v for n, v in energy.items()}
         self._began -= state["summary"]["wall_time_s"]
         self._at_start = list(state["at_start"])
         self._increments, self._written = state["increments"], state["written"]
@@ -294,7 +297,9 @@ class Writer:
         self._disk.write(lambda: write_text(self.folder / "summary.json", text))
 
     def _text(self) -> str:
-        return json.dumps(_finite(self.summary), indent=2, allow_nan=False) + "\n"
+        energy = told(self.summary.get("energy", {}))
+        content = _finite(self.summary | {"energy": energy})
+        return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
 def _constants(problem: Problem, masters: Sequence[str]) -> list[dict[str, Any]]:
