@@ -6,7 +6,6 @@ import argparse
 
 from anisocontact.case import load
 from anisocontact.case.build import Built, build
-from anisocontact.cli.output import say
 
 __all__ = ["command", "contents"]
 
@@ -14,7 +13,7 @@ __all__ = ["command", "contents"]
 def command(arguments: argparse.Namespace) -> int:
     """Build the case and say what is in it."""
     for line in contents(build(load(arguments.case))):
-        say(line)
+        print(line)
     return 0
 
 
@@ -48,4 +47,5 @@ def contents(built: Built) -> list[str]:
     for step in built.steps:
         driven = ", ".join(step.driven()) or "nothing new"
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
+    lines += [f"warning   {text}" for text in built.solver.cautions]
     return lines

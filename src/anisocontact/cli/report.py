@@ -7,7 +7,6 @@ import sys
 from pathlib import Path
 
 from anisocontact.cli.main import DONE
-from anisocontact.cli.output import say
 from anisocontact.errors import InputError
 
 __all__ = ["command"]
@@ -30,6 +29,6 @@ def command(arguments: argparse.Namespace) -> int:
     except OSError as error:
         raise InputError(f"'{folder}' cannot be written: {error.strerror or error}") from None
     for line in failed:
-        say(f"warning: {line}", sys.stderr)
-    say(f"report    {folder / 'report.html'}")
+        print(f"warning: {line}", file=sys.stderr)
+    print(f"report    {folder / 'report.html'}")
     return DONE
