@@ -11,7 +11,7 @@ import contextlib
 import ctypes
 import re
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,12 @@ import numpy.typing as npt
 
 try:
     from mpi4py import MPI  # isort: skip
+
+    import petsc4py  # isort: skip
+
+    # PETSc would answer signals itself: a closed pipe, a hang-up and TERM with a block of advice
+    # for debugging. They belong to the program; a script that has loaded PETSc before has chosen.
+    petsc4py.init(["anisocontact", "-no_signal_handler"])
 
     import basix
     import basix.ufl
@@ -32,9 +38,12 @@ try:
     from petsc4py import PETSc as _PETSc
 except ImportError as missing:
     raise ImportError(
-        "the finite-element level needs DOLFINx 0.11 with PETSc: "
-        "pip install 'anisocontact[fem]', or fenics-dolfinx from conda-forge"
+        "the finite-element level is not installed, or not whole: pip install 'anisocontact[fem]', "
+        f"or fenics-dolfinx 0.11 from conda-forge ({missing})"
     ) from missing
+
+from anisocontact.errors import MachineError
+from anisocontact.machine import MEMORY, lack_of_compiler
 
 __all__ = [
     "MPI",
@@ -49,7 +58,9 @@ __all__ = [
     "call_petsc",
     "cell_nodes",
     "cell_permutation",
+    "check_memory",
     "compiled",
+    "compiled_expression",
     "corner_weights",
     "create_force",
     "create_mesh",
@@ -92,29 +103,50 @@ _MODULE = re.compile(r"\(e\.g\. remove (.+?\.c)\)")
 def compiled(form: Any, comm: MPI.Comm) -> Any:
     """A form as machine code: `fem.form`, also where a process was killed while it compiled.
 
-    FFCx marks a form that is being compiled by a file in its cache and gives up after ten seconds
-    of waiting for whoever wrote it. A slow compilation is waited for, what a dead one has left is
-    removed.
-
     Args:
         form: UFL form.
         comm: Communicator of its mesh.
 
     Returns:
         The DOLFINx form.
+
+    Raises:
+        MachineError: It cannot be compiled on this machine.
+    """
+    return _from_cache(lambda: fem.form(form), comm)
+
+
+def compiled_expression(expression: Any, points: Floats, comm: MPI.Comm) -> Any:
+    """An expression at points of each cell as machine code: `fem.Expression`, as `compiled`."""
+    return _from_cache(lambda: fem.Expression(expression, points), comm)
+
+
+def _from_cache(compile_: Callable[[], Any], comm: MPI.Comm) -> Any:
+    """What FFCx compiles, or has compiled before.
+
+    It marks a form that is being compiled by a file in its cache and gives up after ten seconds
+    of waiting for whoever wrote it. A slow compilation is waited for, what a dead one has left is
+    removed.
     """
     while True:
         try:
-            return fem.form(form)
+            return compile_()
         except (TimeoutError, RuntimeError) as error:
             if _WAITED not in str(error):
-                raise
+                raise _not_compiled(error) from error
             if comm.rank == 0 and (found := _MODULE.search(str(error))):
                 mark = Path(found[1])
                 with contextlib.suppress(FileNotFoundError):
                     if time.time() - mark.stat().st_mtime > ABANDONED:
                         mark.unlink()
             comm.barrier()
+        except Exception as error:
+            raise _not_compiled(error) from error
+
+
+def _not_compiled(error: Exception) -> Exception:
+    """What the machine lacks, or the error itself."""
+    return lack_of_compiler(Path(dolfinx.jit.get_options()["cache_dir"])) or error
 
 
 def create_mesh(comm: MPI.Comm, cell: str, degree: int, cells: Nodes, points: Floats) -> Any:
@@ -291,6 +323,34 @@ def prescribed_rows(bcs: Sequence[Any]) -> Ints:
     """Owned unknowns that Dirichlet conditions prescribe, local numbers."""
     rows = [dofs[:owned] for dofs, owned in (bc.dof_indices() for bc in bcs)]
     return np.unique(np.concatenate([np.empty(0, dtype=np.int32), *rows])).astype(np.int32)
+
+
+#: What MUMPS calls INFOG(1) where it could allocate no memory, or no more than it was allowed to.
+_NO_MEMORY = (-5, -7, -13, -19)
+#: ... and where the workspace that it had estimated was too small.
+_TOO_SMALL = (-8, -9, -11, -12, -14, -15, -17, -20)
+
+
+def check_memory(pc: Any) -> None:
+    """Say so where a factorisation has failed for memory, and not for its matrix.
+
+    Args:
+        pc: Preconditioner that has failed; the call is collective.
+
+    Raises:
+        MachineError: There was too little memory.
+    """
+    direct = pc.getType() in (PETSc.PC.Type.LU, PETSc.PC.Type.CHOLESKY)
+    mumps = direct and pc.getFactorSolverType() == PETSc.Mat.SolverType.MUMPS
+    code = pc.getFactorMatrix().getMumpsInfog(1) if mumps else 0
+    if code in _TOO_SMALL:
+        raise MachineError(
+            f"the workspace of MUMPS was too small (INFOG(1) = {code})",
+            "solver.options = { mat_mumps_icntl_14 = 200 } gives it three times as much",
+        )
+    if code in _NO_MEMORY or pc.getFailedReason() == PETSc.PC.FailedReason.OUTMEMORY:
+        name = f"MUMPS (INFOG(1) = {code})" if mumps else "PETSc"
+        raise MachineError(f"{name} had no memory for the factors of a matrix", MEMORY)
 
 
 def has_petsc(*functions: str) -> bool:

@@ -1,8 +1,46 @@
-"""What a user can get wrong, said in one line."""
+"""What a user can get wrong, and what a machine can lack, said in one line."""
 
 from __future__ import annotations
 
-__all__ = ["InputError"]
+import unicodedata
+
+__all__ = ["InputError", "MachineError", "one_line", "printable"]
+
+
+def printable(text: str) -> str:
+    r"""A text as it may be shown anywhere: what does not print is written as an escape.
+
+    Control characters move the cursor of a terminal or change its state, marks of direction turn
+    a line around, halves of surrogates have no bytes.
+
+    Args:
+        text: Any text, from a case file for instance.
+
+    Returns:
+        The text; line breaks are escapes, too.
+
+    Example:
+        >>> print(printable("drag\x1b[31m"))
+        drag\x1b[31m
+    """
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() or _is_space(c) else repr(c)[1:-1] for c in text)
+
+
+def _is_space(character: str) -> bool:
+    # no other spaces than " " count as printable
+    return unicodedata.category(character) == "Zs"
+
+
+def one_line(message: object) -> str:
+    r"""A message on one line: line breaks in it become spaces, what does not print an escape.
+
+    Example:
+        >>> one_line(ValueError("a\n  b"))
+        'a b'
+    """
+    return printable(" ".join(str(message).split()))
 
 
 class InputError(ValueError):
@@ -26,5 +64,21 @@ class InputError(ValueError):
         line = " ".join(message.split())
         if field and not line.startswith(f"{field}:"):
             line = f"{field}: {line}"
-        super().__init__("".join(c if c.isprintable() else repr(c)[1:-1] for c in line))
+        super().__init__(printable(line))
         self.field = field
+
+
+class MachineError(RuntimeError):
+    """The machine lacks what a run needs: one line says what, and the cure.
+
+    Args:
+        lack: What is missing or failed.
+        cure: What to do about it.
+
+    Example:
+        >>> str(MachineError("no C compiler found", "install one, or name one in CC"))
+        'no C compiler found: install one, or name one in CC'
+    """
+
+    def __init__(self, lack: str, cure: str) -> None:
+        super().__init__(one_line(f"{lack}: {cure}"))

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import io
+import warnings
 from pathlib import Path
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from anisocontact.errors import printable
 from anisocontact.whole_files import replacing
 
-__all__ = ["ACCENT", "GREY", "STATUS_COLOURS", "STEP_COLOURS", "new_figure", "save"]
+__all__ = ["ACCENT", "GREY", "STATUS_COLOURS", "STEP_COLOURS", "new_figure", "plain", "save"]
 
 GREY = "#6b7280"
 ACCENT = "#b91c1c"
@@ -35,6 +37,20 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
+def plain(text: str) -> str:
+    """A name or a text of the user as Matplotlib shows it letter by letter.
+
+    Two dollars would make a formula of what is between them.
+
+    Args:
+        text: The text.
+
+    Returns:
+        The text, for titles and labels.
+    """
+    return printable(text).replace("$", r"\$")
+
+
 def save(figure: Figure, path: Path) -> None:
     """Write a picture as PNG, without the date so that equal runs give equal files.
 
@@ -43,6 +59,9 @@ def save(figure: Figure, path: Path) -> None:
         path: The file; it is written whole or not at all.
     """
     out = io.BytesIO()
-    figure.savefig(out, format="png", metadata={"Software": None})
+    with warnings.catch_warnings():
+        # letters of a name that the font has not are drawn as boxes
+        warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from font", UserWarning)
+        figure.savefig(out, format="png", metadata={"Software": None})
     with replacing(path) as draft:
         draft.write_bytes(out.getvalue())

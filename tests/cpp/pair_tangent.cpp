@@ -71,7 +71,8 @@ law::AnyAdhesion adhesion(Random& r) {
       return law::AdhesionModels::make("general-linear",
                                        Values({{"relaxation", {0.5, 0.1, -0.2, 0.4}},
                                                {"stiffness_instant", {60.0, 5.0, -3.0, 25.0}},
-                                               {"stiffness_rate", {1.0, 0.2, 0.1, 2.0}}}));
+                                               {"stiffness_rate", {1.0, 0.2, 0.1, 2.0}},
+                                               {"energy", {1.0}}}));
   }
 }
 
@@ -197,7 +198,8 @@ double difference(const kernel::PointState& a, const kernel::PointState& b) {
                      &kernel::PointState::slip_accumulated, &kernel::PointState::dissipation,
                      &kernel::PointState::dissipation_viscous, &kernel::PointState::energy_adhesion,
                      &kernel::PointState::energy_normal})
-    numbers.add(a.*field, b.*field);
+    if (!std::isnan(a.*field) || !std::isnan(b.*field))  // neither has an energy
+      numbers.add(a.*field, b.*field);
   const bool same = a.status == b.status && a.facet == b.facet;
   return same ? std::max(pairs.relative(), numbers.relative()) : INFINITY;
 }

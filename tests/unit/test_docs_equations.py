@@ -1,8 +1,10 @@
 """The theory pages: every equation has its row, and every name in them exists.
 
 Requirement: docs/theory/equations.md lists equations 1 to 124, each with the code that implements
-it and the test that pins it; docs/theory/notation.md and errata.md name what there is. Tests are
-looked up in their source, not run.
+it, where that runs, and the test that pins it. What is said to run in a run can be reached by one,
+what is said not to cannot, by the names in the text of the core and by imports.
+docs/theory/notation.md and errata.md name what there is. Tests are looked up in their source, not
+run.
 """
 
 from __future__ import annotations
@@ -16,6 +18,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tests.unit import code_that_runs
 
 from anisocontact import registry
 
@@ -32,7 +35,7 @@ def cells(line: str) -> list[str]:
 
 
 def equations() -> list[list[str]]:
-    """Rows of the table: number, meaning, code, test."""
+    """Rows of the table: number, meaning, code, where it runs, test."""
     lines = (THEORY / "equations.md").read_text().splitlines()
     return [cells(line) for line in lines if re.match(r"^\| \(\d+\) \|", line)]
 
@@ -149,18 +152,64 @@ def missing_tests(text: str) -> Iterator[str]:
 
 def test_every_equation_has_one_row() -> None:
     assert [row[0] for row in ROWS] == [f"({k})" for k in range(1, 125)]
-    assert all(len(row) == 4 for row in ROWS)
+    assert all(len(row) == 5 for row in ROWS)
 
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: row[0])
 def test_names_of_an_equation_exist(row: list[str]) -> None:
     """A meaning, a name in the code or the word none, and at least one test."""
-    _, meaning, code, test = row
+    _, meaning, code, _, test = row
     assert meaning
     assert TOKEN.search(code) or code.startswith("none: ")
     assert list(unknown(code)) == []
     assert any(TEST.match(token) for token in TOKEN.findall(test))
     assert list(missing_tests(test)) == []
+
+
+def of_core(code: str) -> set[str]:
+    """Names of the core in a cell, without their rooms."""
+    return {t.rpartition("::")[2] for t in TOKEN.findall(code) if "::" in t}
+
+
+def in_a_run(token: str) -> bool:
+    """Whether a run may reach a Python name: imports it, or its class, or names the method."""
+    module, *path = token.split(".")
+    if module not in code_that_runs.modules():
+        return False
+    if len(path) == 1 and path[0][0].islower():
+        return code_that_runs.imported(module, path[0])
+    return len(path) == 1 or code_that_runs.named(path[-1])
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row[0])
+def test_code_runs_where_it_says(row: list[str]) -> None:
+    """Of the code of a run all of the core can be reached; of other code nothing can."""
+    _, _, code, where, _ = row
+    assert where in ("run", "run, scripts", "scripts", "pictures", "–")
+    assert (where == "–") == code.startswith("none: ")
+    core, python = of_core(code), set(filter(is_python, TOKEN.findall(code)))
+    runs = core & code_that_runs.reached()
+    if where == "run":
+        assert runs == core
+        assert core or any(map(in_a_run, python))
+    elif where == "run, scripts":
+        assert runs
+    else:
+        assert not runs
+    if where == "pictures":
+        assert not any(map(in_a_run, python))
+        assert all(t.split(".")[0] in code_that_runs.in_pictures() for t in python)
+    if where == "scripts":
+        assert not any(in_a_run(t) for t in python if len(t.split(".")) == 2)
+
+
+def test_what_does_not_run_is_seen() -> None:
+    """The way in which the column is checked: some that run, and some that only scripts call."""
+    reached = code_that_runs.reached()
+    assert {"update_pair", "CommittedPoint", "Covariant", "add_residual", "trial"} <= reached
+    assert not {"spatial_basis", "convective_velocity", "pull_back_contra"} & reached
+    assert not in_a_run("adhesion_domain.force_domain") and not in_a_run("anisotropy.tensor")
+    assert in_a_run("contact.Contact") and in_a_run("surfaces.Surface.project")
 
 
 @pytest.mark.parametrize(

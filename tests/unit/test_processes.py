@@ -16,7 +16,7 @@ pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
 from anisocontact.cli import main
 from anisocontact.results.read import Results
 
-#: `anisocontact` with an error, or Ctrl-C, in the fourth evaluation on the ranks that are given.
+#: `anisocontact` with an error, or a signal, in the fourth evaluation on the ranks that are given.
 SCRIPT = """
 import os, signal, sys
 from anisocontact.cli import main
@@ -32,8 +32,10 @@ def prepared():
     def failing(self, x):
         count[0] += 1
         if count[0] == 4 and str(self.comm.rank) in where:
-            if what == "interrupt":
-                os.kill(os.getpid(), signal.SIGINT)
+            if what in ("SIGINT", "SIGTERM"):
+                os.kill(os.getpid(), getattr(signal, what))
+            elif what == "memory":
+                raise MemoryError("Unable to allocate 74.5 GiB")
             elif what == "raise":
                 raise ValueError("it failed")
         return evaluate(self, x)
@@ -117,12 +119,27 @@ def test_a_law_in_python_that_fails_on_one_rank(case: Path) -> None:
 
 @pytest.mark.mpi
 @pytest.mark.slow
-@pytest.mark.parametrize("where", ["1", "01"])
-def test_interrupt(case: Path, where: str) -> None:
-    """Ctrl-C, on one rank or on all, ends the run after the increment; it can go on."""
-    done = run(case, where, "interrupt")
+def test_memory_that_ends_on_one_rank(case: Path) -> None:
+    """One line for all of them; it is no mistake of the program."""
+    done = run(case, "1", "memory")
     assert done.returncode == 3, done.stderr
-    assert done.stderr.count("error: stopped: interrupted after step") == 1
+    assert done.stderr.count("out of memory (Unable to allocate 74.5 GiB): take") == 1
+    assert "internal" not in done.stderr and "Abort(" not in done.stderr
+    summary = json.loads((case.parent / "out" / "summary.json").read_text())
+    assert summary["message"].startswith("out of memory")
+
+
+@pytest.mark.mpi
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("where", "what", "said"),
+    [("1", "SIGINT", ""), ("01", "SIGINT", "interrupted"), ("0", "SIGTERM", "terminated")],
+)
+def test_interrupt(case: Path, where: str, what: str, said: str) -> None:
+    """Ctrl-C or TERM, on one rank or on all, ends the run after the increment; it can go on."""
+    done = run(case, where, what)
+    assert done.returncode == 3, done.stderr
+    assert done.stderr.count(f"error: stopped: {said or 'interrupted'} after step") == 1
     assert (case.parent / "out" / "checkpoint.npz").is_file()
 
 

@@ -247,6 +247,7 @@ def test_sliding_force_has_the_transpose_of_b() -> None:
             "general-linear",
             relaxation=[0.0] * 4,
             stiffness_instant=s.ravel(),
+            energy="none",
             directions=marks(0.0),
         ),
         Friction(coefficients=(0.3, 0.1), directions=marks(0.5), sliding_rule="explicit"),

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import signal
-import threading
 import traceback
-from collections.abc import Iterator
-from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
-from types import FrameType
 from typing import Any, Protocol
 
 from anisocontact.case.build import Built
 from anisocontact.case.law_file import fingerprints
-from anisocontact.errors import InputError
+from anisocontact.errors import InputError, one_line
+from anisocontact.machine import lack
 from anisocontact.results.checkpoint import NAME, Stored, distribute
 from anisocontact.results.files import WriteError
 from anisocontact.results.writer import Writer
+from anisocontact.signals import interrupt, on_signals, said_of
 from anisocontact.solver import Accepted, Cut, Progress, StoppedError
 
 __all__ = ["Listener", "Outcome", "RunError", "run"]
@@ -35,11 +33,11 @@ class Listener(Protocol):
     def cut(self, cut: Cut) -> None:
         """An increment has failed and is tried again in smaller parts."""
 
-    def warning(self, text: str) -> None:
-        """Something has happened that the user should look at."""
-
     def stopping(self) -> None:
         """The run has been asked to stop and will, after the increment."""
+
+    def lost(self) -> str:
+        """Why nobody can be told any more, in a few words; empty while somebody can."""
 
 
 @dataclass(frozen=True)
@@ -70,8 +68,9 @@ def run(
 ) -> Outcome:
     """Solve the steps of a case and write its results.
 
-    A first Ctrl-C, or the signal TERM, ends the run after the current increment, a second one at
-    once. After every accepted increment the folder has a checkpoint.
+    A first Ctrl-C, or the signals TERM and HUP, end the run after the current increment, as does a
+    listener that has been lost; a Ctrl-C after that ends it at once. After every accepted
+    increment the folder has a checkpoint.
 
     Args:
         built: The case with its problem.
@@ -89,7 +88,6 @@ def run(
     text = built.file.path.read_text(encoding="utf-8")
     laws = fingerprints(built.file.case.contact, built.file.resolve)
     facts = {"case": text, "laws": laws}
-    together = built.problem.together
     if checkpoint is not None:
         solver = built.solver
         solver.restore(distribute(checkpoint, built.problem.model, solver.persistent()))
@@ -98,24 +96,48 @@ def run(
     except WriteError as error:
         return Outcome("stopped", str(error), Path(folder), goes_on=checkpoint is not None)
     writer.strategy(built.solver.choice.name, built.solver.choice.reason)
+    asked = _Asked(listener)
+    with on_signals(asked.by_signal):
+        _run_and_close(built, writer, asked, facts)
+    summary = writer.summary
+    status, message = summary["status"], summary["message"]
+    goes_on = (writer.folder / NAME).is_file()
+    return Outcome(status, message, writer.folder, tuple(summary["warnings"]), goes_on)
+
+
+def _run_and_close(built: Built, writer: Writer, asked: _Asked, facts: dict[str, Any]) -> None:
+    """Run the steps and close the results, however it ends.
+
+    Raises:
+        RunError: Something unforeseen happened.
+        MachineError: The machine lacks something, and other processes are stuck.
+        KeyboardInterrupt: The run was interrupted at once, and other processes are stuck.
+    """
+    together = built.problem.together
     try:
-        status, message = _solve(built, writer, listener, facts)
-    except KeyboardInterrupt:
-        status, message = "stopped", "interrupted"
+        status, message = _solve(built, writer, asked, facts)
+    except KeyboardInterrupt as error:
+        status, message = "stopped", str(error) or "interrupted"
         if together.met() is None:
             writer.abandon(message)
             raise
     except Exception as error:
-        text = " ".join(f"{type(error).__name__}: {error}".split())
+        lacking = lack(error)
+        text = one_line(f"{type(error).__name__}: {error}")
+        status, message = "stopped", str(lacking or f"internal error: {text}")
         if together.met() is None:
-            writer.abandon(f"internal error: {text}", traceback.format_exc())
-        else:
-            writer.log(traceback.format_exc())
-            writer.close("stopped", f"internal error: {text}")
-        raise RunError(f"{text}; details in {writer.folder / 'run.log'}") from error
+            writer.abandon(message, traceback.format_exc())
+            raise lacking or RunError(f"{text}; {_details(writer)}") from error
+        for line in traceback.format_exc().splitlines():
+            writer.log(line)
+        if lacking is None:
+            writer.close(status, message)
+            raise RunError(f"{text}; {_details(writer)}") from error
     writer.close(status, message)
-    warnings = tuple(writer.summary["warnings"])
-    return Outcome(status, message, writer.folder, warnings, (writer.folder / NAME).is_file())
+
+
+def _details(writer: Writer) -> str:
+    return f"details in {writer.folder / 'run.log'}"
 
 
 def _writer(built: Built, folder: str | Path, text: str, checkpoint: Stored | None) -> Writer:
@@ -133,25 +155,17 @@ def _writer(built: Built, folder: str | Path, text: str, checkpoint: Stored | No
     )
 
 
-def _solve(
-    built: Built, writer: Writer, listener: Listener, facts: dict[str, Any]
-) -> tuple[str, str]:
-    told = threading.Event()
+def _solve(built: Built, writer: Writer, asked: _Asked, facts: dict[str, Any]) -> tuple[str, str]:
+    listener = asked.listener
 
     def on_iteration(progress: Progress) -> None:
         writer.log(_iteration_line(progress))
         listener.iteration(progress)
-        if interrupted.is_set() and not told.is_set():
-            told.set()
-            listener.stopping()
+        asked.tell()
 
     def on_cut(cut: Cut) -> None:
         writer.cut(cut)
         listener.cut(cut)
-
-    def on_warning(text: str) -> None:
-        writer.log(f"warning: {text}")
-        listener.warning(text)
 
     def keep() -> None:
         place = built.solver.place
@@ -160,18 +174,19 @@ def _solve(
 
     comm = built.problem.comm
     try:
-        with _interrupt() as interrupted:
+        keep()
+        if comm.allreduce(bool(asked.why())):
+            return "stopped", asked.why()
+        for accepted in built.solver.run(on_iteration, on_cut, writer.log):
+            writer.accept(accepted)
             keep()
-            for accepted in built.solver.run(on_iteration, on_cut, writer.log, on_warning):
-                writer.accept(accepted)
-                keep()
-                listener.accepted(accepted, writer.summary)
-                writer.log(accepted_line(accepted, writer.summary))
-                for said in ran_off_lines(accepted):
-                    writer.log(said)
-                if comm.allreduce(interrupted.is_set()):
-                    where = f"step {accepted.step!r}, increment {accepted.increment}"
-                    return "stopped", f"interrupted after {where}"
+            listener.accepted(accepted, writer.summary)
+            writer.log(accepted_line(accepted, writer.summary))
+            for said in ran_off_lines(accepted):
+                writer.log(said)
+            if comm.allreduce(bool(asked.why())):
+                where = f"step {accepted.step!r}, increment {accepted.increment}"
+                return "stopped", f"{asked.why() or 'interrupted'} after {where}"
     except StoppedError as stop:
         writer.log(f"stopped: {stop}")
         writer.log_culprits(stop.culprits)
@@ -223,23 +238,34 @@ def _force_text(force: list[float]) -> str:
     return f"({', '.join(f'{v if abs(v) > least else 0.0:.4g}' for v in force)})"
 
 
-@contextmanager
-def _interrupt() -> Iterator[threading.Event]:
-    """An event that the first Ctrl-C or TERM sets; the second one interrupts at once."""
-    asked = threading.Event()
-    if threading.current_thread() is not threading.main_thread():
-        yield asked  # only the main thread may handle signals
-        return
+@dataclass
+class _Asked:
+    """Whether a run has been asked to stop, by a signal or because nobody listens any more.
 
-    def handle(number: int, frame: FrameType | None) -> None:
-        if asked.is_set():
-            signal.default_int_handler(number, frame)
-        asked.set()
+    Args:
+        listener: Is told, once.
+    """
 
-    signals = (signal.SIGINT, signal.SIGTERM)
-    before = [signal.signal(number, handle) for number in signals]
-    try:
-        yield asked
-    finally:
-        for number, handler in zip(signals, before, strict=True):
-            signal.signal(number, handler)
+    listener: Listener
+    _signal: int = field(default=0, init=False)
+    _told: bool = field(default=False, init=False)
+
+    def by_signal(self, number: int) -> None:
+        """Take a signal; a Ctrl-C after another one interrupts at once.
+
+        Other signals come twice without anybody meaning it: from the shell and the terminal, or
+        from a launcher and the batch system.
+        """
+        if self._signal and number == signal.SIGINT:
+            interrupt(number)
+        self._signal = self._signal or number
+
+    def why(self) -> str:
+        """Why it is to stop, in a few words; empty if it is not."""
+        return said_of(self._signal) if self._signal else self.listener.lost()
+
+    def tell(self) -> None:
+        """Say that a signal has been taken."""
+        if self._signal and not self._told:
+            self._told = True
+            self.listener.stopping()

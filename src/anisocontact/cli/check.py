@@ -6,6 +6,7 @@ import argparse
 
 from anisocontact.case import load
 from anisocontact.case.build import Built, build
+from anisocontact.cli.output import say
 
 __all__ = ["command", "contents"]
 
@@ -13,7 +14,7 @@ __all__ = ["command", "contents"]
 def command(arguments: argparse.Namespace) -> int:
     """Build the case and say what is in it."""
     for line in contents(build(load(arguments.case))):
-        print(line)
+        say(line)
     return 0
 
 
@@ -47,5 +48,4 @@ def contents(built: Built) -> list[str]:
     for step in built.steps:
         driven = ", ".join(step.driven()) or "nothing new"
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
-    lines += [f"warning   {text}" for text in built.solver.cautions]
     return lines

@@ -9,16 +9,20 @@ from collections.abc import Sequence
 from importlib import import_module
 
 from anisocontact import __version__
-from anisocontact.errors import InputError
+from anisocontact.cli.output import outputs, say
+from anisocontact.errors import InputError, one_line
+from anisocontact.machine import lack
 from anisocontact.processes import started_together
+from anisocontact.signals import ended_by_signals
 
 __all__ = ["BAD_INPUT", "DONE", "INTERNAL", "STOPPED", "build_parser", "main"]
 
 DONE, INTERNAL, BAD_INPUT, STOPPED = 0, 1, 2, 3
 
 _EPILOG = """\
-exit codes: 0 done, 2 bad input (nothing is written), 3 stopped before the end (what converged
-is kept), 1 an error of the program itself
+exit codes: 0 done, 2 bad input (nothing is written), 3 stopped before the end (by a signal, or
+because something does not converge or the machine lacks something; what converged is kept),
+1 an error of the program itself
 """
 
 
@@ -83,33 +87,45 @@ def main(argv: Sequence[str] | None = None) -> int:
     # NumPy and SciPy bring a pool of threads each, which wait for each other in products that the
     # memory bounds; it is read when they are imported. Contacts have threads of their own.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    together = started_together()
-    if together is None:
-        return _run(arguments)
-    together.quiet()
-    return together.finish(_run(arguments))
+    with ended_by_signals():
+        together = started_together()
+        if together is None:
+            return _run(arguments)
+        together.quiet()
+        return together.finish(_run(arguments))
 
 
 def _run(arguments: argparse.Namespace) -> int:
     """Run a command; its exit code."""
+    with outputs() as (out, _):
+        code = _ended(arguments)
+        out.flush()
+        # a reader that has gone has a right to; what has stopped because of it has said so
+        if code == DONE and out.failure is not None and not out.gone:
+            say(f"error: {out.why}", sys.stderr)
+            return STOPPED
+        return code
+
+
+def _ended(arguments: argparse.Namespace) -> int:
+    """Run a command and say what is wrong; its exit code."""
     try:
         command = import_module(f"anisocontact.cli.{arguments.command}")
         code: int = command.command(arguments)
-        sys.stdout.flush()
         return code
     except InputError as error:
         for one in getattr(error, "errors", [error]):
-            print(f"error: {one}", file=sys.stderr)
+            say(f"error: {one}", sys.stderr)
         return BAD_INPUT
-    except KeyboardInterrupt:
-        print("error: interrupted", file=sys.stderr)
+    except KeyboardInterrupt as error:
+        say(f"error: {str(error) or 'interrupted'}", sys.stderr)
         return STOPPED
-    except BrokenPipeError:  # the reader of our output has gone; that is its right
-        sys.stdout = None
-        return DONE
     except Exception as error:
-        text = " ".join(f"{type(error).__name__}: {error}".split())
-        print(f"error: internal: {text}", file=sys.stderr)
+        lacking = lack(error)
+        if lacking is not None:
+            say(f"error: {lacking}", sys.stderr)
+            return STOPPED
+        say(f"error: internal: {one_line(f'{type(error).__name__}: {error}')}", sys.stderr)
         return INTERNAL
 
 

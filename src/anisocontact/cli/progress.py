@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, TextIO
+from typing import Any, TextIO, cast
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 
 from anisocontact.case.run import Listener, accepted_line, points_text, ran_off_lines
+from anisocontact.cli.output import Output, say
+from anisocontact.errors import printable
 from anisocontact.solver import Accepted, Cut, Progress, Step
 
 __all__ = ["progress_on"]
@@ -21,20 +23,22 @@ STOPPING = "stopping after this increment; a second Ctrl-C stops at once"
 
 
 @contextmanager
-def progress_on(stream: TextIO, steps: Sequence[Step]) -> Iterator[Listener]:
+def progress_on(stream: Output, steps: Sequence[Step]) -> Iterator[Listener]:
     """A listener that shows the run on a stream."""
     if not stream.isatty():
         yield Lines(stream)
         return
     columns = (
-        TextColumn("{task.description}"),
+        TextColumn("{task.description}", markup=False),
         BarColumn(bar_width=24),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
-        TextColumn("{task.fields[state]}"),
+        TextColumn("{task.fields[state]}", markup=False),
     )
-    with Bar(*columns, console=Console(file=stream)) as bar:
-        yield Terminal(bar, steps)
+    # names of the user are shown as they are, brackets and all
+    console = Console(file=cast(TextIO, stream), markup=False, emoji=False, highlight=False)
+    with Bar(*columns, console=console) as bar:
+        yield Terminal(bar, steps, stream)
 
 
 class Lines:
@@ -44,7 +48,7 @@ class Lines:
         stream: Where they go.
     """
 
-    def __init__(self, stream: TextIO) -> None:
+    def __init__(self, stream: Output) -> None:
         self._stream = stream
 
     def iteration(self, progress: Progress) -> None:
@@ -53,19 +57,19 @@ class Lines:
     def accepted(self, accepted: Accepted, numbers: dict[str, Any]) -> None:
         """Print the increment."""
         for text in (accepted_line(accepted, numbers), *ran_off_lines(accepted)):
-            print(text, file=self._stream, flush=True)
+            say(text, self._stream)
 
     def cut(self, cut: Cut) -> None:
         """Print the cut."""
-        print(cut, file=self._stream, flush=True)
-
-    def warning(self, text: str) -> None:
-        """Print it."""
-        print(f"warning: {text}", file=self._stream, flush=True)
+        say(str(cut), self._stream)
 
     def stopping(self) -> None:
         """Print it."""
-        print(STOPPING, file=self._stream, flush=True)
+        say(STOPPING, self._stream)
+
+    def lost(self) -> str:
+        """Why nobody reads this."""
+        return self._stream.why
 
 
 class Terminal:
@@ -74,10 +78,12 @@ class Terminal:
     Args:
         bar: Where it is drawn.
         steps: The steps.
+        stream: Where the bar goes.
     """
 
-    def __init__(self, bar: Bar, steps: Sequence[Step]) -> None:
+    def __init__(self, bar: Bar, steps: Sequence[Step], stream: Output) -> None:
         self._bar = bar
+        self._stream = stream
         self._increments = {step.name: step.increments for step in steps}
         self._task = bar.add_task("start", total=sum(self._increments.values()), state="")
 
@@ -86,7 +92,9 @@ class Terminal:
         counts = "; ".join(points_text(points) for points in progress.contacts.values())
         self._bar.update(
             self._task,
-            description=f"{progress.step} {progress.increment}/{self._increments[progress.step]}",
+            description=printable(
+                f"{progress.step} {progress.increment}/{self._increments[progress.step]}"
+            ),
             state=f"iteration {progress.iteration:2}  residual {progress.residual:.0e}  {counts}",
         )
 
@@ -96,17 +104,19 @@ class Terminal:
             return
         self._bar.update(self._task, advance=1)
         if accepted.increment == self._increments[accepted.step]:
-            text = accepted_line(accepted, numbers)
-            self._bar.console.print(text, highlight=False, soft_wrap=True)
+            self._say(accepted_line(accepted, numbers))
 
     def cut(self, cut: Cut) -> None:
         """Show the cut beside the bar."""
         self._bar.update(self._task, state=f"cut to {cut.next_size:.3g} of the increment")
 
-    def warning(self, text: str) -> None:
-        """Print it above the bar."""
-        self._bar.console.print(f"warning: {text}", markup=False, highlight=False, soft_wrap=True)
-
     def stopping(self) -> None:
         """Print it above the bar."""
-        self._bar.console.print(STOPPING, highlight=False, soft_wrap=True)
+        self._say(STOPPING)
+
+    def lost(self) -> str:
+        """Why nobody sees this."""
+        return self._stream.why
+
+    def _say(self, line: str) -> None:
+        self._bar.console.print(printable(line), soft_wrap=True)

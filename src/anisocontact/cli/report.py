@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 from anisocontact.cli.main import DONE
+from anisocontact.cli.output import say
 from anisocontact.errors import InputError
 
 __all__ = ["command"]
@@ -29,6 +30,6 @@ def command(arguments: argparse.Namespace) -> int:
     except OSError as error:
         raise InputError(f"'{folder}' cannot be written: {error.strerror or error}") from None
     for line in failed:
-        print(f"warning: {line}", file=sys.stderr)
-    print(f"report    {folder / 'report.html'}")
+        say(f"warning: {line}", sys.stderr)
+    say(f"report    {folder / 'report.html'}")
     return DONE

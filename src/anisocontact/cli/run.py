@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING
 from anisocontact.case import load
 from anisocontact.case.restart import checkpoint_of
 from anisocontact.cli.main import DONE, INTERNAL, STOPPED
+from anisocontact.cli.output import Output, say
 from anisocontact.results.files import check_folder
 
 if TYPE_CHECKING:
+    from anisocontact.case.run import Outcome
     from anisocontact.results.checkpoint import Stored
 
 __all__ = ["command"]
@@ -35,26 +37,34 @@ def command(arguments: argparse.Namespace) -> int:
     from anisocontact.cli.progress import progress_on
 
     built = build(file)
-    print("\n".join(contents(built)), flush=True)
+    for line in contents(built):
+        say(line)
     if arguments.restart:
-        print(_beginning(checkpoint), flush=True)
+        say(_beginning(checkpoint))
+    shown = Output.of(sys.stdout)
     try:
-        with progress_on(sys.stdout, built.steps) as listener:
+        with progress_on(shown, built.steps) as listener:
             outcome = run(built, folder, listener, checkpoint)
     except RunError as error:
-        print(f"error: internal: {error}", file=sys.stderr)
+        say(f"error: internal: {error}", sys.stderr)
         return INTERNAL
     for warning in outcome.warnings:
-        print(f"warning: {warning}", file=sys.stderr)
+        say(f"warning: {warning}", sys.stderr)
     if outcome.status == "done":
-        print(f"done      {folder}")
+        say(f"done      {folder}")
         return DONE
+    if not shown.gone:
+        _explain(outcome, arguments, folder)
+    return STOPPED
+
+
+def _explain(outcome: Outcome, arguments: argparse.Namespace, folder: Path) -> None:
+    """Say why a run stopped, and how it goes on."""
     kept = f"; what converged is in {folder}" if folder.is_dir() else ""
-    print(f"error: stopped: {outcome.message}{kept}", file=sys.stderr)
+    say(f"error: stopped: {outcome.message}{kept}", sys.stderr)
     if outcome.goes_on:
         words = ["anisocontact", "run", str(arguments.case), "-o", str(folder), "--restart"]
-        print(f"to go on: {shlex.join(words)}", file=sys.stderr)
-    return STOPPED
+        say(f"to go on: {shlex.join(words)}", sys.stderr)
 
 
 def _beginning(checkpoint: Stored | None) -> str:

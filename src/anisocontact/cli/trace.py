@@ -9,6 +9,7 @@ from pathlib import Path
 
 from anisocontact.case.trace import load_trace
 from anisocontact.cli.main import DONE, STOPPED
+from anisocontact.cli.output import say
 from anisocontact.interface import Interface
 from anisocontact.point import Group, History, Load, StoppedError, drive
 from anisocontact.results.files import check_folder
@@ -41,12 +42,12 @@ def command(arguments: argparse.Namespace) -> int:
         case=trace.text,
     )
     if message:
-        print(f"error: {message}; what converged is in {folder}", file=sys.stderr)
+        say(f"error: {message}; what converged is in {folder}", sys.stderr)
         return STOPPED
     x, f = (", ".join(f"{v:.6g}" for v in summary[key]) for key in ("reference", "force"))
-    print(f"steps     {summary['steps']}, {summary['newton_iterations']} iterations")
-    print(f"end       position ({x}), force ({f})")
-    print(f"done      {folder}")
+    say(f"steps     {summary['steps']}, {summary['newton_iterations']} iterations")
+    say(f"end       position ({x}), force ({f})")
+    say(f"done      {folder}")
     return DONE
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import dolfinx, fem, ufl
+from anisocontact._fenicsx import compiled_expression, dolfinx, fem, ufl
 from anisocontact.bulk import cauchy_stress
 from anisocontact.contact import AnyContact
 from anisocontact.results.dataset import DataSet, vertices
@@ -152,7 +152,8 @@ def _point_data(number: int, contact: AnyContact) -> dict[str, npt.NDArray[Any]]
 def _stress_at(problem: Problem, body: str, space: Any) -> Any:
     stress = cauchy_stress(problem.materials[body], problem.u)
     components = ufl.as_vector([stress[i, j] for i, j in _SYMMETRIC])
-    return fem.Expression(components, space.element.interpolation_points)
+    points = space.element.interpolation_points
+    return compiled_expression(components, points, problem.model.mesh.comm)
 
 
 #: Nodes of a tetrahedron of VTK with four or ten of them, seen in a mirror.

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import csv
-import html
 import io
 import json
 from pathlib import Path
@@ -13,6 +12,7 @@ from anisocontact import __version__
 from anisocontact.point import History
 from anisocontact.point.balance import PointInterface
 from anisocontact.results.files import clear, replacing, write_text
+from anisocontact.results.no_energy import told
 
 __all__ = ["write_trace"]
 
@@ -75,8 +75,8 @@ def write_trace(
         "title": title,
         "version": __version__,
         "wall_time_s": round(wall_time, 3),
-        **history.summary(),
-        "compare": [{"label": name, **run.summary()} for name, run in compared.items()],
+        **_told(history),
+        "compare": [{"label": name, **_told(run)} for name, run in compared.items()],
     }
     write_text(folder / "summary.json", json.dumps(summary, indent=2, allow_nan=False) + "\n")
     if case:
@@ -88,6 +88,11 @@ def write_trace(
     if pictures and len(history):
         _report(folder, history, interface, compared, label, summary)
     return summary
+
+
+def _told(history: History) -> dict[str, Any]:
+    summary = history.summary()
+    return summary | ({"energy": told(summary["energy"])} if "energy" in summary else {})
 
 
 def _joined(runs: dict[str, History]) -> str:
@@ -112,14 +117,14 @@ def _report(
     summary: dict[str, Any],
 ) -> None:
     from anisocontact.point.pictures import save
-    from anisocontact.results.report.page import Picture, document, figure, table
+    from anisocontact.results.report.page import Picture, as_html, document, figure, table
 
     title = summary["title"]
     files = save(history, interface, folder / "pictures", title, compared, label)
-    heading = html.escape(title or "anisocontact")
+    heading = as_html(title or "anisocontact")
     body = [f"<h1>{heading}</h1>"]
     if summary["message"]:
-        text = html.escape(summary["message"])
+        text = as_html(summary["message"])
         body.append(f'<p class="stopped">{text}. What converged is shown.</p>')
     body += [
         table([_numbers(summary)]),

@@ -13,14 +13,16 @@ from typing import Any
 
 from anisocontact import __version__
 from anisocontact.contact import facet_size
+from anisocontact.errors import printable
 from anisocontact.results.checkpoint import keep_checkpoint
 from anisocontact.results.collection import Collection
 from anisocontact.results.files import Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
+from anisocontact.results.no_energy import told
 from anisocontact.results.paraview import Bodies, slave_points
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
-from anisocontact.results.warnings import at_end, at_start, of_models, worst, worst_of_models
+from anisocontact.results.warnings import at_end, at_start, worst
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
 from anisocontact.solver.persistent import Persistent
 
@@ -116,6 +118,8 @@ class Writer:
         for name, value in state["summary"].items():
             if name not in ("title", "version", "ranks", "unknowns"):
                 self.summary[name] = value
+        energy = self.summary["energy"]  # JSON has null for what is not a number
+        self.summary["energy"] = {n: math.nan if v is None else v for n, v in energy.items()}
         self._began -= state["summary"]["wall_time_s"]
         self._at_start = list(state["at_start"])
         self._increments, self._written = state["increments"], state["written"]
@@ -165,12 +169,12 @@ class Writer:
         self._write_summary()
 
     def log(self, text: str) -> None:
-        """Add a line to `run.log`."""
+        """Add a line to `run.log`; what does not print in it is written as an escape."""
         self._disk.write(lambda: self._append(text))
 
     def _append(self, text: str) -> None:
         with (self.folder / "run.log").open("a", encoding="utf-8") as file:
-            file.write(text + "\n")
+            file.write(printable(text) + "\n")
 
     def accept(self, accepted: Accepted) -> None:
         """Write an accepted increment: table and summary, and fields where they are due.
@@ -193,7 +197,6 @@ class Writer:
         self.summary["newton_iterations"] += accepted.iterations
         self.summary["time"] = accepted.time
         self._take(numbers)
-        self.summary.update(worst_of_models(accepted, self.summary))
         if accepted.done == 1.0:
             self._increments += 1
             last = accepted.increment == self._steps[accepted.step_index].increments
@@ -227,7 +230,7 @@ class Writer:
         self.summary["status"] = status
         self.summary["message"] = message
         found = at_end(self._problem.contacts, self.summary["contacts"], self.summary["energy"])
-        self.summary["warnings"] = [*self._at_start, *found, *of_models(self.summary)]
+        self.summary["warnings"] = [*self._at_start, *found]
         self._write_summary()
         if self._pictures:
             self._disk.write(self._report)
@@ -242,7 +245,8 @@ class Writer:
         self.summary["status"] = "stopped"
         self.summary["message"] = message
         with suppress(OSError):
-            self._append(details or message)
+            for line in (details or message).splitlines():
+                self._append(line)
             write_text(self.folder / "summary.json", self._text())
 
     def _report(self) -> None:
@@ -293,7 +297,9 @@ class Writer:
         self._disk.write(lambda: write_text(self.folder / "summary.json", text))
 
     def _text(self) -> str:
-        return json.dumps(_finite(self.summary), indent=2, allow_nan=False) + "\n"
+        energy = told(self.summary.get("energy", {}))
+        content = _finite(self.summary | {"energy": energy})
+        return json.dumps(content, indent=2, allow_nan=False) + "\n"
 
 
 def _constants(problem: Problem, masters: Sequence[str]) -> list[dict[str, Any]]:

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import SNES, Mat, PETSc, Vec
+from anisocontact._fenicsx import SNES, Mat, PETSc, Vec, check_memory
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.persistent import Arrays
 
@@ -237,6 +237,7 @@ class Newton:
         if reason == PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
             # PETSc would say of every later one that it failed, too
             ksp = self.snes.getKSP()
+            check_memory(ksp.getPC())
             ksp.reset()
             ksp.getPC().setFailedReason(PETSc.PC.FailedReason.NOERROR)
         return NewtonResult(self.snes.getIterationNumber(), self._residuals, text)

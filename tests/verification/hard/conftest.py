@@ -58,14 +58,6 @@ def to_the_end(tmp_path) -> Callable[..., Run]:
         times = [a.time for a in accepted]
         assert times == sorted(times)
         assert times[-1] == pytest.approx(sum(s.duration for s in built.steps), rel=1e-14)
-        print(
-            "STAT",
-            len(accepted),
-            sum(a.iterations for a in accepted),
-            len(cuts),
-            sorted({(c.reason[:40], c.culprits[0].kind if c.culprits else "") for c in cuts}),
-            accepted[-1].energies,
-        )
         notes = built.problem.stabilisation.told()
         return Run(accepted, cuts, built.problem, built.solver.choice.name, notes)
 

@@ -26,7 +26,8 @@ struct PointState {
   double slip_accumulated{0.0};      ///< length of the sliding path
   double dissipation{0.0};           ///< by friction, per area
   double dissipation_viscous{0.0};   ///< by the viscosity of the laws, per area
-  double energy_adhesion{0.0};       ///< elastic energy of the tangential law, per area
+  double energy_adhesion{0.0};       ///< elastic energy of the tangential law, per area; not a
+                                     ///< number where the law stores none, as what is viscous
   double energy_normal{0.0};         ///< elastic energy of the normal law, per area
   double offset{0.0};                ///< gap at which the surfaces count as touching
   double multiplier{0.0};  ///< N at no gap: the normal multiplier of an augmented Lagrangian

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "anisocontact/law/linear_model.hpp"
+#include "anisocontact/law/passivity.hpp"
 #include "anisocontact/registry/descriptor.hpp"
 
 namespace anisocontact::law {
@@ -127,17 +127,31 @@ class GeneralLinear {
     return {"general-linear",
             "dT/dt + A T = -S v - R xi_el with full tensors A, S = -B, R = -C, eq. (26).",
             {full("relaxation", "1/time", "A"),
-             full("stiffness_instant", "stress/length", "S = -B, positive definite"), rate}};
+             full("stiffness_instant", "stress/length", "S = -B, positive definite"),
+             rate,
+             {"energy",
+              Kind::choice,
+              "1",
+              "stored: the tensors must be passive, so that they store an energy and create none; "
+              "none: others are taken too, and no energy is told",
+              Bound::any,
+              false,
+              {0.0},
+              {"stored", "none"}}}};
   }
   static GeneralLinear make(const Values& v) {
     GeneralLinear m;
     m.model_.a = matrix(v, "relaxation", 1.0);
     m.model_.b = matrix(v, "stiffness_instant", -1.0);
     m.model_.c = matrix(v, "stiffness_rate", -1.0);
-    if (!positive(m.model_.b, -1.0))
+    m.model_.stores = !v.has("energy") || v.scalar("energy") == 0.0;
+    if (!(detail::least_eigenvalue(detail::combined(-1.0, m.model_.b, 0.0, m.model_.b)) > 0.0))
       throw std::invalid_argument("stiffness_instant: its symmetric part is not positive definite");
-    if (!(m.model_.a[0][0] >= 0.0 && m.model_.a[1][1] >= 0.0 && !negative(m.model_.a)))
-      throw std::invalid_argument("relaxation: its symmetric part has a negative eigenvalue");
+    if (const double least = detail::least_real_part(m.model_.a);
+        !(least >= -1e-9 * detail::largest(m.model_.a)))
+      throw std::invalid_argument("relaxation: has an eigenvalue with the real part " +
+                                  std::to_string(least) + ", must be >= 0");
+    if (m.model_.stores) Passivity(m.model_).require();
     return m;
   }
   const LinearModel& model() const { return model_; }
@@ -150,15 +164,6 @@ class GeneralLinear {
                                   " values given, 4 needed (2 x 2, row by row)");
     return {{{sign * l[0], sign * l[1]}, {sign * l[2], sign * l[3]}}};
   }
-  /// Determinant of the symmetric part.
-  static double symmetric_det(const AxesMatrix& m) {
-    const double s = 0.5 * (m[0][1] + m[1][0]);
-    return m[0][0] * m[1][1] - s * s;
-  }
-  static bool positive(const AxesMatrix& m, double sign) {
-    return sign * m[0][0] > 0.0 && symmetric_det(m) > 0.0;
-  }
-  static bool negative(const AxesMatrix& m) { return symmetric_det(m) < 0.0; }
   LinearModel model_;
 };
 

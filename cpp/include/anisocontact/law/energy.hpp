@@ -1,6 +1,8 @@
 #pragma once
 // Elastic energy and viscous dissipation of the linear models, per area.
 
+#include <limits>
+
 #include "anisocontact/law/linear_model.hpp"
 #include "anisocontact/law/normal.hpp"
 
@@ -11,39 +13,17 @@ struct Energies {
   double viscous{0.0};  ///< dissipated in the step
 };
 
-namespace detail {
-
-using Pair = std::array<double, 2>;
-
-inline Pair apply(const AxesMatrix& m, const Pair& u) {
-  return {m[0][0] * u[0] + m[0][1] * u[1], m[1][0] * u[0] + m[1][1] * u[1]};
-}
-inline double inner(const Pair& u, const Pair& v) { return u[0] * v[0] + u[1] * v[1]; }
-
-/// m^-1 u; of a rank-one or zero m its pseudo-inverse on the diagonal, where a zero stiffness
-/// stores nothing.
-inline Pair solve(const AxesMatrix& m, const Pair& u) {
-  const double d = m[0][0] * m[1][1] - m[0][1] * m[1][0];
-  if (d != 0.0)
-    return {(m[1][1] * u[0] - m[0][1] * u[1]) / d, (m[0][0] * u[1] - m[1][0] * u[0]) / d};
-  return {m[0][0] != 0.0 ? u[0] / m[0][0] : 0.0, m[1][1] != 0.0 ? u[1] / m[1][1] : 0.0};
-}
-
-/// K = -A^-1 C, the stiffness at rest.
-inline AxesMatrix at_rest(const LinearModel& m) {
-  const Pair c0 = solve(m.a, {m.c[0][0], m.c[1][0]}), c1 = solve(m.a, {m.c[0][1], m.c[1][1]});
-  return {{{-c0[0], -c1[0]}, {-c0[1], -c1[1]}}};
-}
-
-}  // namespace detail
-
 /// Energy 1/2 x.K x + 1/2 t_1.K_1^-1 t_1 of a spring K beside Maxwell elements K_1 = -B - K that
 /// carry t_1 = t + K x and lose t_1.K_1^-1 A t_1 per time; of Kelvin-Voigt (w = 0) 1/2 x.(-C) x
-/// and the loss v.(-B) v.
+/// and the loss v.(-B) v. Not a number of a model that stores none.
 inline Energies energies(const LinearModel& m, const AxesComponents<double>& axes,
                          const Covector<double>& stored, const Vector<double>& elastic,
                          const Vector<double>& increment, double dt) {
   using namespace detail;
+  if (!m.stores) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    return {none, none};
+  }
   const auto& lower = axes.lower;
   const auto dual = reciprocal(lower, axes.upper);
   const Pair x{dot(lower[0], elastic), dot(lower[1], elastic)};
@@ -51,10 +31,8 @@ inline Energies energies(const LinearModel& m, const AxesComponents<double>& axe
     const Pair v{dot(lower[0], increment) / dt, dot(lower[1], increment) / dt};
     return {-0.5 * inner(x, apply(m.c, x)), -dt * inner(v, apply(m.b, v))};
   }
-  const AxesMatrix k = at_rest(m);
-  AxesMatrix k1;
-  for (std::size_t i = 0; i < 2; ++i)
-    for (std::size_t j = 0; j < 2; ++j) k1[i][j] = -m.b[i][j] - k[i][j];
+  const AxesMatrix k = stiffness_at_rest(m).value_or(AxesMatrix{});
+  const AxesMatrix k1 = combined(-1.0, m.b, -1.0, k);
   const Pair t{dot(stored, dual[0]), dot(stored, dual[1])};
   const Pair kx = apply(k, x);
   const Pair t1{t[0] + kx[0], t[1] + kx[1]};

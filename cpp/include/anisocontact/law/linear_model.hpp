@@ -4,22 +4,37 @@
 // w = 1 is the rate form; w = 0 with A = I gives T = B v + C dxi_el (Kelvin-Voigt).
 
 #include <array>
+#include <optional>
 
 #include "anisocontact/anisotropy/field.hpp"
+#include "anisocontact/law/axes_matrix.hpp"
 #include "anisocontact/tensor/tangent.hpp"
 
 namespace anisocontact::law {
-
-/// Components along the axes e_a of the adhesion directions: T = t_a e_a, slip read as e_a . xi.
-using AxesMatrix = std::array<std::array<double, 2>, 2>;
-
-inline AxesMatrix diagonal(double a, double b) { return {{{a, 0.0}, {0.0, b}}}; }
 
 /// w, A, B, C of a linear model: w dt_a/dt + A_ab t_b = B_ab (e_b . v) + C_ab (e_b . xi_el).
 struct LinearModel {
   double w{1.0};
   AxesMatrix a{}, b{}, c{};
+  bool stores{true};  ///< whether there is an energy that it stores
 };
+
+/// K with A K = R = -C, the stiffness at rest. A singular A leaves a choice: the smallest, none
+/// where R is zero, else r (x) r/(q . r) of A = p (x) q and R = p (x) r. Empty where there is none.
+inline std::optional<AxesMatrix> stiffness_at_rest(const LinearModel& m) {
+  if (m.c == AxesMatrix{}) return AxesMatrix{};
+  if (detail::determinant(m.a) != 0.0) {
+    const detail::Pair first = detail::solve(m.a, {-m.c[0][0], -m.c[1][0]}),
+                       second = detail::solve(m.a, {-m.c[0][1], -m.c[1][1]});
+    return AxesMatrix{{{first[0], second[0]}, {first[1], second[1]}}};
+  }
+  const std::size_t i = detail::inner(m.a[0], m.a[0]) >= detail::inner(m.a[1], m.a[1]) ? 0 : 1;
+  const detail::Pair r{-m.c[i][0], -m.c[i][1]};
+  const double scale = detail::inner(m.a[i], r);
+  if (scale == 0.0) return std::nullopt;
+  return AxesMatrix{
+      {{r[0] * r[0] / scale, r[0] * r[1] / scale}, {r[1] * r[0] / scale, r[1] * r[1] / scale}}};
+}
 
 /// The same tensors in the convective basis of the surface.
 template <class S>

@@ -15,8 +15,12 @@
 
 namespace anisocontact::law {
 
+/// A list of rules, each of which must be one: what one lacks is said here, not where it is used.
+template <SlidingRule... Rule>
+using RuleRegistry = Registry<Rule...>;
+
 using SlidingRules =
-    Registry<MaximumDissipation, Explicit, Radial, LinearRule, Coaxial, SlipEllipse>;
+    RuleRegistry<MaximumDissipation, Explicit, Radial, LinearRule, Coaxial, SlipEllipse>;
 using AnyRule = SlidingRules::Any;
 
 using AdhesionModels = Registry<Elastic, Maxwell, KelvinVoigt, StandardLinearSolid, GeneralLinear>;

@@ -76,13 +76,13 @@ bool is_strip(const SlideProblem<S>& p) {
 }
 
 /// dxi_sl that a change of force T - T_tr stands for; in the strip the slip of least length (the
-/// force then lies in the range of S).
+/// force then lies in the range of S), by the pseudo-inverse S^T/(S : S). S need not be symmetric.
 template <class S>
 Vector<S> slip_from_force(const SlideProblem<S>& p, const Covector<S>& change) {
   if (!is_strip(p)) return inverse(p.stiffness) * change;
-  const ContraContra<S> a_contra = inverse(p.a_co);
-  const S tr = trace(p.stiffness * a_contra);
-  return (S(1.0) / (tr * tr)) * (a_contra * (p.stiffness * (a_contra * change)));
+  const ContraContra<S> a = inverse(p.a_co);
+  const ContraContra<S> up = a * transpose(p.stiffness) * a;
+  return (S(1.0) / contract(p.stiffness, transpose(up))) * (up * change);
 }
 
 }  // namespace anisocontact::law

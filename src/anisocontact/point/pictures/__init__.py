@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from anisocontact.figure_style import plain
 from anisocontact.figure_style import save as write
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
@@ -41,13 +42,14 @@ def save(
     """
     target = Path(folder)
     target.mkdir(parents=True, exist_ok=True)
+    title = plain(title)
     figures = {
         "path": path_on_surface(history, interface, title=title),
         "forces": force_plane(history, interface, title=title),
         "time": over_time(history, title=title),
     }
     if compared:
-        runs = {label: history, **compared}
+        runs = {plain(name): run for name, run in {label: history, **compared}.items()}
         figures["compare"] = compare(runs, interface, title=title)
     files = [target / f"{name}.png" for name in figures]
     for file, figure in zip(files, figures.values(), strict=True):

@@ -55,7 +55,9 @@ def over_time(history: History, *, title: str = "") -> Figure:
     slip.set_ylabel("length")
     for name, (label, colour, style) in _ENERGIES.items():
         values = history.steps["energy"][name] - history.steps["energy"][name][0]
-        if name in ("external", "residual") or np.abs(values).max() > 0.0:
+        if np.isnan(values).any():
+            energy.plot([], [], style, color=colour, label=f"{label}: no energy")
+        elif name in ("external", "residual") or np.abs(values).max() > 0.0:
             energy.plot(t, values, style, color=colour, label=label)
     energy.set(ylabel="energy since the first row", xlabel="time")
     for panel in panels:

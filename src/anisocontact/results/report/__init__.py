@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from anisocontact.figure_style import save
 from anisocontact.results.files import write_text
+from anisocontact.results.no_energy import told
 from anisocontact.results.report import curves, maps, shape
 from anisocontact.results.report.page import Picture, page
 from anisocontact.results.report.run_data import RunData
@@ -15,7 +16,7 @@ from anisocontact.results.report.run_data import RunData
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["write_report"]
+__all__ = ["page", "step_rows", "write_report"]
 
 #: Of each contact: name of the picture, who draws it, heading and caption.
 _OF_CONTACT: tuple[tuple[str, Callable[[RunData, int], Figure], str, str], ...] = (
@@ -67,7 +68,7 @@ def write_report(folder: str | Path) -> list[str]:
     run = RunData(folder)
     failed: list[str] = []
     pictures = _pictures(run, folder / "pictures", failed) if run.moments else []
-    write_text(folder / "report.html", page(run.summary, _step_rows(run), pictures))
+    write_text(folder / "report.html", page(run.summary, step_rows(run), pictures))
     return failed
 
 
@@ -129,7 +130,15 @@ def _closed(run: RunData, number: int) -> bool:
         return False
 
 
-def _step_rows(run: RunData) -> list[dict[str, Any]]:
+def step_rows(run: RunData) -> list[dict[str, Any]]:
+    """Numbers of each step of a run.
+
+    Args:
+        run: What is in its folder.
+
+    Returns:
+        A row a step, by column.
+    """
     rows = []
     for name, at in run.steps:
         iterations = run.history["newton_iterations"][at]
@@ -144,12 +153,6 @@ def _step_rows(run: RunData) -> list[dict[str, Any]]:
             end = {key: run.history[f"contacts.{number}.force.{key}"][at[-1]] for key in "xyz"}
             where = f"on {contact['slave']} at the end [force]"
             row |= {f"force {axis} {where}": float(v) for axis, v in end.items()}
-        rows.append(
-            row
-            | {
-                "residual of the energies [force length]": float(
-                    run.history["energy.residual"][at[-1]]
-                )
-            }
-        )
+        residual = float(run.history["energy.residual"][at[-1]])
+        rows.append(row | told({"residual of the energies [force length]": residual}))
     return rows

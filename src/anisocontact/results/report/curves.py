@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.ticker import MaxNLocator
 
-from anisocontact.figure_style import ACCENT, GREY, STEP_COLOURS, new_figure
+from anisocontact.figure_style import ACCENT, GREY, STEP_COLOURS, new_figure, plain
 from anisocontact.results.report.run_data import RunData
 
 if TYPE_CHECKING:
@@ -139,7 +139,7 @@ def _path(run: RunData, axes: Axes, points: Floats) -> None:
     start = np.zeros((1, 2))
     for (name, rows), colour in zip(run.steps, cycle(STEP_COLOURS)):
         path = np.vstack([start, points[rows]])
-        axes.plot(*path.T, "o-", color=colour, ms=2.5, lw=1.2, label=name)
+        axes.plot(*path.T, "o-", color=colour, ms=2.5, lw=1.2, label=plain(name))
         axes.plot(*path[-1], "s", color=colour, ms=6)
         start = path[-1:]
 
@@ -176,7 +176,7 @@ def _name_steps(run: RunData, axes: Axes, at: Floats) -> None:
     for name, start, end, colour in _spans(run, at):
         narrow = end - start < 0.1 * (at[-1] - at[0])
         axes.annotate(
-            name,
+            plain(name),
             (0.5 * (start + end), 1.0),
             xycoords=("data", "axes fraction"),
             xytext=(0, 4),

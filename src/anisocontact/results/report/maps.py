@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
-from anisocontact.figure_style import STATUS_COLOURS, new_figure
+from anisocontact.figure_style import STATUS_COLOURS, new_figure, plain
 from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import Moment, RunData
 
@@ -30,7 +30,7 @@ def pressure(run: RunData, contact: int) -> Figure:
     figure, panels = _panels(run, contact, moments)
     top = max(float(view.data["pressure"].max()) for _, view, _ in panels)
     for axes, view, moment in panels:
-        axes.set_title(moment.title)
+        axes.set_title(plain(moment.title))
         image = view.draw_touching(
             axes, view.data["pressure"], cmap="viridis", vmin=0.0, vmax=top or 1.0
         )
@@ -45,7 +45,7 @@ def status(run: RunData, contact: int) -> Figure:
     colours = ListedColormap(STATUS_COLOURS)
     for axes, view, moment in panels:
         view.draw(axes, view.data["status"], cmap=colours, norm=BoundaryNorm([0, 1, 2, 3], 3))
-        axes.set_title(moment.title)
+        axes.set_title(plain(moment.title))
     _legend(figure, ["open", "stick", "slip"])
     return figure
 
@@ -62,7 +62,7 @@ def traction(run: RunData, contact: int) -> Figure:
         axes.set_title(f"along the {name} axis of friction")
         _arrows(axes, view, i)
     figure.colorbar(image, ax=[left, right], label="tangential traction on the slave [stress]")
-    figure.suptitle(f"{run.moments[-1].title}; arrows: direction of the axis")
+    figure.suptitle(f"{plain(run.moments[-1].title)}; arrows: direction of the axis")
     _legend(figure, ["open"])
     return figure
 

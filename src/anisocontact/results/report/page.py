@@ -9,7 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-__all__ = ["Picture", "document", "figure", "page", "table"]
+from anisocontact.errors import printable
+
+__all__ = ["Picture", "as_html", "document", "figure", "page", "table"]
 
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #111827; max-width: 72rem; margin: 2rem auto;
@@ -53,7 +55,7 @@ def page(
     Returns:
         The page.
     """
-    title = html.escape(summary["title"] or "anisocontact")
+    title = as_html(summary["title"] or "anisocontact")
     body = [f"<h1>{title}</h1>", *_state(summary), *_overview(summary)]
     if steps:
         body += ["<h2>Steps</h2>", table(steps)]
@@ -65,6 +67,11 @@ def page(
     body += ["<h2>Energies at the end [force length]</h2>", table([summary["energy"]])]
     body += [figure(picture) for picture in pictures]
     return document(title, body)
+
+
+def as_html(text: str) -> str:
+    """A text as HTML shows it; what does not print in it is written as an escape."""
+    return html.escape(printable(text))
 
 
 def document(title: str, body: Sequence[str]) -> str:
@@ -88,11 +95,11 @@ def document(title: str, body: Sequence[str]) -> str:
 def _state(summary: dict[str, Any]) -> list[str]:
     lines = []
     if summary["status"] != "done":
-        text = html.escape(summary["message"])
+        text = as_html(summary["message"])
         lines.append(
             f'<p class="stopped">Stopped before the end: {text}. What converged is shown.</p>'
         )
-    lines += [f'<p class="warning">{html.escape(text)}</p>' for text in summary["warnings"]]
+    lines += [f'<p class="warning">{as_html(text)}</p>' for text in summary["warnings"]]
     return lines
 
 
@@ -112,7 +119,7 @@ def _overview(summary: dict[str, Any]) -> list[str]:
         "All numbers are in the units of the case: [length], [force], [stress] and so on stand for "
         f"whatever the case file was written in. Made by anisocontact {summary['version']}."
     )
-    return [table([row]), f"<p>{html.escape(note)}</p>"]
+    return [table([row]), f"<p>{as_html(note)}</p>"]
 
 
 def _contacts(summary: dict[str, Any]) -> list[dict[str, Any]]:
@@ -191,7 +198,7 @@ def table(rows: Sequence[dict[str, Any]]) -> str:
     """Rows of numbers as a table."""
     if not rows:
         return "<p>None.</p>"
-    head = "".join(f"<th>{html.escape(str(key))}</th>" for key in rows[0])
+    head = "".join(f"<th>{as_html(str(key))}</th>" for key in rows[0])
     body = "".join(
         "<tr>" + "".join(f"<td>{_cell(value)}</td>" for value in row.values()) + "</tr>"
         for row in rows
@@ -200,13 +207,13 @@ def table(rows: Sequence[dict[str, Any]]) -> str:
 
 
 def _cell(value: Any) -> str:
-    return f"{value:.5g}" if isinstance(value, float) else html.escape(str(value))
+    return f"{value:.5g}" if isinstance(value, float) else as_html(str(value))
 
 
 def figure(picture: Picture) -> str:
     """A picture with heading and caption, inside the page."""
     data = base64.b64encode(picture.path.read_bytes()).decode("ascii")
-    title, caption = html.escape(picture.title), html.escape(picture.caption)
+    title, caption = as_html(picture.title), as_html(picture.caption)
     return (
         f'<h2>{title}</h2>\n<figure><img alt="{title}" src="data:image/png;base64,{data}">'
         f"<figcaption>{caption}</figcaption></figure>"

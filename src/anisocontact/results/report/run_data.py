@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.figure_style import plain
 from anisocontact.results.read import Results
 from anisocontact.results.report.frame import ContactView
 
@@ -113,7 +114,7 @@ class RunData:
             paths = {name: self._path(column) for name, column in columns.items()}
             longest = max(paths, key=lambda name: paths[name][-1], default=None)
             if longest is not None and paths[longest][-1] > 0.0:
-                return text.format(longest), paths[longest]
+                return text.format(plain(longest)), paths[longest]
         return "time [time]", self.history["time"]
 
     def _path(self, column: str) -> Floats:

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact._fenicsx import PETSc
+from anisocontact._fenicsx import PETSc, check_memory
 from anisocontact.solver.condensed.factor import Eliminated, aij, singular, solves
 
 Ints = npt.NDArray[np.int64]
@@ -61,7 +61,10 @@ class BlockedFactor(Eliminated):
             self._pc.setUp()
         except PETSc.Error:  # PETSc's own factorisation raises at a pivot that is zero
             return False
-        return bool(self._pc.getFailedReason() == 0)
+        if self._pc.getFailedReason() == 0:
+            return True
+        check_memory(self._pc)
+        return False
 
     def _eliminated(self, matrix: scipy.sparse.csr_array, border: Ints) -> Floats:
         of_border = matrix[border].tocsr()

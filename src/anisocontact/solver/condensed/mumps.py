@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact._fenicsx import PETSc, call_petsc, has_petsc
+from anisocontact._fenicsx import PETSc, call_petsc, check_memory, has_petsc
 from anisocontact.solver.condensed.factor import Eliminated, aij, mirror, singular, solves
 
 Ints = npt.NDArray[np.int64]
@@ -63,6 +63,7 @@ class MumpsFactor(Eliminated):
             if self._factor.getMumpsInfog(1) not in _TOO_SMALL:
                 break
         if self._pc.getFailedReason() != 0:
+            check_memory(self._pc)
             self.close()
             raise singular()
         # of the solutions that MUMPS offers: the interior, border at zero

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from anisocontact._fenicsx import Mat, PETSc, Vec
+from anisocontact._fenicsx import Mat, PETSc, Vec, check_memory
 from anisocontact.solver.iterative.split import Split, sparse
 
 #: Diagonal over its largest entry below which a coarse unknown moves nothing.
@@ -67,6 +67,7 @@ class CoarseLevel:
         self._solver.setUp()
         failed = self._solver.getPC().getFailedReason() != 0
         if failed:  # else every later factorisation would be said to have failed too
+            check_memory(self._solver.getPC())
             self._solver.reset()
         return not failed
 

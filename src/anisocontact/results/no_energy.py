@@ -1,0 +1,33 @@
+"""Energies of a run as people read them: one that does not exist is said to be none."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+__all__ = ["NO_ENERGY", "told"]
+
+#: What stands for an energy that there is not.
+NO_ENERGY = "no energy"
+
+
+def told(energy: Mapping[str, Any]) -> dict[str, Any]:
+    """Energies by name, where a law of adhesion may store none.
+
+    Args:
+        energy: Energies, force times length; not a number where there is none, or null as a
+            checkpoint has it.
+
+    Returns:
+        The same, with the words "no energy" there.
+
+    Example:
+        >>> told({"friction": 2.0, "adhesion": float("nan")})
+        {'friction': 2.0, 'adhesion': 'no energy'}
+    """
+    return {name: NO_ENERGY if _none(value) else value for name, value in energy.items()}
+
+
+def _none(value: Any) -> bool:
+    return value is None or (isinstance(value, float) and math.isnan(value))

@@ -1,0 +1,64 @@
+"""Signals that ask a process to end: the terminal is closed, a batch system, Ctrl-C."""
+
+from __future__ import annotations
+
+import signal
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+__all__ = ["ended_by_signals", "interrupt", "on_signals", "said_of"]
+
+#: Ctrl-C, what batch systems send, a terminal that is closed.
+_ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_SAID = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated", signal.SIGHUP: "hung up"}
+
+
+@contextmanager
+def on_signals(act: Callable[[int], None]) -> Iterator[None]:
+    """Let a function answer the signals that ask the process to end.
+
+    A signal that whoever started the process wants ignored stays ignored, as `nohup` does.
+
+    Args:
+        act: Takes the number of the signal, in the main thread between two instructions.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield  # only the main thread may handle signals
+        return
+
+    def handle(number: int, frame: FrameType | None) -> None:
+        act(number)
+
+    answered = [number for number in _ENDING if signal.getsignal(number) != signal.SIG_IGN]
+    before = [signal.signal(number, handle) for number in answered]
+    try:
+        yield
+    finally:
+        for number, handler in zip(answered, before, strict=True):
+            signal.signal(number, handler)
+
+
+@contextmanager
+def ended_by_signals() -> Iterator[None]:
+    """Raise KeyboardInterrupt, which says what happened, where the process is asked to end."""
+    with on_signals(interrupt):
+        yield
+
+
+def interrupt(number: int) -> None:
+    """Raise what ends the process at once.
+
+    Args:
+        number: Number of the signal.
+
+    Raises:
+        KeyboardInterrupt: Always.
+    """
+    raise KeyboardInterrupt(said_of(number))
+
+
+def said_of(number: int) -> str:
+    """What is said of a process that a signal has ended: "interrupted" and so on."""
+    return _SAID[signal.Signals(number)]
