@@ -204,7 +204,8 @@ def test_a_body_goes_with_its_supports() -> None:
     """In the air, held along x and y and carried by three lengths: its supports explain the way."""
     problem = _block(5.0)
     cuts: list[Cut] = []
-    step = Step("aside", 1, {"block.top": {"x": 3.0, "y": 0.0}})
+    aside = {"x": 3.0, "y": 0.0}
+    step = Step("aside", 1, {"block.top": aside, "block.bottom": aside})
     (accepted,) = Solver(problem, [step]).run(on_cut=cuts.append)
     counts = accepted.contacts["block.bottom"]
     assert counts["open"] == sum(counts.values())

@@ -32,6 +32,8 @@ class LinearBulk:
 
     #: Length whose strain is round-off where nothing moves: none, `K 0` is exactly zero.
     rest_length = 0.0
+    #: Whether `energy` is that of all bodies.
+    stores = True
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
         self.stiffness = create_stiffness(

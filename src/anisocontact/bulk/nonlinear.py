@@ -39,6 +39,8 @@ class NonlinearBulk:
         self._work = compiled(work, self._comm)
         self._tangent = compiled(ufl.derivative(work, self._u, du), self._comm)
         self._energy = None if energy is None else compiled(energy, self._comm)
+        #: Whether `energy` is that of all bodies: every material has one.
+        self.stores = energy is not None
         self.stiffness = create_stiffness(self._tangent)
         self._force = create_force(self._work)
         #: Length whose strain is round-off where nothing moves: F = I + grad(u) is rounded over

@@ -33,6 +33,9 @@ class Listener(Protocol):
     def cut(self, cut: Cut) -> None:
         """An increment has failed and is tried again in smaller parts."""
 
+    def warning(self, text: str) -> None:
+        """Something has happened that the user should look at."""
+
     def stopping(self) -> None:
         """The run has been asked to stop and will, after the increment."""
 
@@ -167,6 +170,10 @@ def _solve(built: Built, writer: Writer, asked: _Asked, facts: dict[str, Any]) -
         writer.cut(cut)
         listener.cut(cut)
 
+    def on_warning(text: str) -> None:
+        writer.log(f"warning: {text}")
+        listener.warning(text)
+
     def keep() -> None:
         place = built.solver.place
         begun = {"begun": place.step + place.begun}
@@ -177,7 +184,7 @@ def _solve(built: Built, writer: Writer, asked: _Asked, facts: dict[str, Any]) -
         keep()
         if comm.allreduce(bool(asked.why())):
             return "stopped", asked.why()
-        for accepted in built.solver.run(on_iteration, on_cut, writer.log):
+        for accepted in built.solver.run(on_iteration, on_cut, writer.log, on_warning):
             writer.accept(accepted)
             keep()
             listener.accepted(accepted, writer.summary)

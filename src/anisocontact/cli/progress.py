@@ -63,6 +63,10 @@ class Lines:
         """Print the cut."""
         say(str(cut), self._stream)
 
+    def warning(self, text: str) -> None:
+        """Print it."""
+        say(f"warning: {text}", self._stream)
+
     def stopping(self) -> None:
         """Print it."""
         say(STOPPING, self._stream)
@@ -109,6 +113,10 @@ class Terminal:
     def cut(self, cut: Cut) -> None:
         """Show the cut beside the bar."""
         self._bar.update(self._task, state=f"cut to {cut.next_size:.3g} of the increment")
+
+    def warning(self, text: str) -> None:
+        """Print it above the bar."""
+        self._say(f"warning: {text}")
 
     def stopping(self) -> None:
         """Print it above the bar."""

@@ -50,6 +50,27 @@ class Snapshot:
         return np.concatenate([forces.sum(axis=0), moments.sum(axis=0)])
 
 
+@dataclass(frozen=True)
+class Slid:
+    """What slip has come to at slave points since the start.
+
+    Attributes:
+        way: Length of the sliding path, (n,), length.
+        work: What friction has dissipated, (n,), energy/area.
+        touching: Where there is contact, (n,).
+    """
+
+    way: Floats
+    work: Floats
+    touching: npt.NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, state: State) -> Slid:
+        """That of a state."""
+        touching = state["status"] != STATUS.index("open")
+        return cls(state["slip_accumulated"].copy(), state["dissipation"].copy(), touching)
+
+
 class ContactRecord:
     """History of the slave points of one contact: it advances with `commit` only.
 
@@ -91,6 +112,7 @@ class ContactRecord:
         self._trial: Snapshot | None = None
         self._start = state
         self._multipliers: Multipliers | None = None
+        self._way: list[Slid] = []
 
     @property
     def points(self) -> Floats:
@@ -127,6 +149,8 @@ class ContactRecord:
         """Make the trial the history."""
         if self._trial is not None:
             self._accepted = self._trial
+            if self._way:
+                self.last.state["dissipation"] = self._dissipated()
             self.state = self.last.state
             if self._multipliers is not None and self._multipliers.tangential:
                 # a force that is a multiplier does no work on elastic slip
@@ -135,6 +159,27 @@ class ContactRecord:
         if self._multipliers is not None:
             self._multipliers.commit()
         self._begin()
+
+    def pass_through(self) -> None:
+        """Remember the trial as a state that bodies which flow have gone through."""
+        self._way.append(Slid.of(self.trial.state))
+
+    def _dissipated(self) -> Floats:
+        """What friction has dissipated since the start, with the way there taken piece by piece.
+
+        The law takes the slip from the accepted state at once, `D = -T . s` with the force of the
+        end. Along a way on which the force has changed the sum of the means is right to second
+        order; while a point has not slipped its force at yield is taken for that of the next state.
+        """
+        before, total = Slid.of(self.state), self.state["dissipation"].copy()
+        slid, force = np.zeros_like(total), np.zeros_like(total)
+        for now in (*self._way, Slid.of(self.last.state)):
+            way, work = now.way - before.way, now.work - before.work
+            at_yield = np.divide(work, way, out=force.copy(), where=way > 0.0)
+            first = np.where(slid > 0.0, force, at_yield)
+            total += np.where(now.touching, 0.5 * (first + at_yield) * (way - slid), 0.0)
+            slid, force = way, at_yield
+        return np.asarray(total)
 
     def roll_back(self) -> None:
         """Forget the trial."""
@@ -230,6 +275,7 @@ class ContactRecord:
     def _begin(self) -> None:
         """Let trials start from the committed state."""
         self._start = self.state
+        self._way = []
         if self._multipliers is not None:
             self._start = self._multipliers.begin(self.state, self.located(self.state))
             self._stiffen(self._multipliers.level)

@@ -7,8 +7,11 @@ from typing import Any
 
 from anisocontact.contact import AnyContact, initial_overlap
 from anisocontact.interface import STATUS
+from anisocontact.solver import Accepted
+from anisocontact.solver.imbalance import LARGE
+from anisocontact.solver.rotations import CURE, WARNED
 
-__all__ = ["at_end", "at_start", "worst"]
+__all__ = ["at_end", "at_start", "of_models", "worst", "worst_of_models"]
 
 #: Share of the facet size beyond which a penetration or an elastic slip is worth a warning.
 DEEP = 0.05
@@ -53,6 +56,49 @@ def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> d
         key, when, now = f"worst_{name}", f"worst_{name}_time", entry[f"max_{name}"]
         grown = key not in before or now > before[key]
         found |= {key: now, when: time} if grown else {key: before[key], when: before[when]}
+    return found
+
+
+def worst_of_models(accepted: Accepted, before: Mapping[str, Any]) -> dict[str, Any]:
+    """Largest turn of each body at small strain and largest residual of the energies so far.
+
+    Args:
+        accepted: An accepted increment.
+        before: What this gave at the one before; empty at the start.
+
+    Returns:
+        "turned", by body, and "energy_residual", as JSON can have them.
+    """
+    turned = dict(before.get("turned", {}))
+    for name, now in accepted.turned.items():
+        if name not in turned or now.angle > turned[name]["angle"]:
+            entry = {"angle": now.angle, "strain": now.strain, "stress": now.stress}
+            turned[name] = entry | {"time": accepted.time, "text": str(now)}
+    left = dict(before.get("energy_residual", {}))
+    share = accepted.imbalance.share
+    if not left or share > left["worst_share"]:
+        cause = accepted.imbalance.cause
+        left |= {"worst_share": share, "worst_time": accepted.time, "cause": cause}
+    return {"turned": turned, "energy_residual": left | {"share": share}}
+
+
+def of_models(summary: Mapping[str, Any]) -> list[str]:
+    """Bodies that turned beyond small strain, and energies that do not balance.
+
+    Args:
+        summary: Content of the summary, with what `worst_of_models` gave.
+    """
+    found = [
+        f"body {name!r}, at small strain, {turned['text']}, at time {turned['time']:.4g}; {CURE}"
+        for name, turned in summary.get("turned", {}).items()
+        if turned["angle"] > WARNED
+    ]
+    left = summary.get("energy_residual")
+    if left and left["worst_share"] > LARGE:
+        found.append(
+            f"the balance of energy left {left['worst_share']:.0%} of the work open at time "
+            f"{left['worst_time']:.4g}, {left['share']:.1%} at the end: {left['cause']}"
+        )
     return found
 
 

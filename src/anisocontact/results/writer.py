@@ -22,7 +22,7 @@ from anisocontact.results.no_energy import told
 from anisocontact.results.paraview import Bodies, slave_points
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
-from anisocontact.results.warnings import at_end, at_start, worst
+from anisocontact.results.warnings import at_end, at_start, of_models, worst, worst_of_models
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
 from anisocontact.solver.persistent import Persistent
 
@@ -197,6 +197,7 @@ class Writer:
         self.summary["newton_iterations"] += accepted.iterations
         self.summary["time"] = accepted.time
         self._take(numbers)
+        self.summary.update(worst_of_models(accepted, self.summary))
         if accepted.done == 1.0:
             self._increments += 1
             last = accepted.increment == self._steps[accepted.step_index].increments
@@ -230,7 +231,7 @@ class Writer:
         self.summary["status"] = status
         self.summary["message"] = message
         found = at_end(self._problem.contacts, self.summary["contacts"], self.summary["energy"])
-        self.summary["warnings"] = [*self._at_start, *found]
+        self.summary["warnings"] = [*self._at_start, *found, *of_models(self.summary)]
         self._write_summary()
         if self._pictures:
             self._disk.write(self._report)

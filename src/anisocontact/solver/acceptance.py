@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from anisocontact._fenicsx import Vec
 from anisocontact.solver.culprits import inverted_cells
 from anisocontact.solver.problem import Problem
+from anisocontact.solver.rotations import CURE, WARNED
 from anisocontact.solver.steps import Culprit
 
 
@@ -50,8 +51,22 @@ def contact_lets_go(problem: Problem, x: Vec) -> Refusal | None:
     return Refusal(reason) if reason else None
 
 
+def turned_too_far(problem: Problem, x: Vec) -> Refusal | None:
+    """Refuse states in which a body at small strain has turned beyond what its model can tell.
+
+    Smaller parts help where it had hardly turned before, since it may have jumped.
+    """
+    found = {name: t for name, t in problem.turned(x).items() if t.too_far}
+    if not found:
+        return None
+    name = max(found, key=lambda body: found[body].angle)
+    before = problem.rotations.accepted.get(name)
+    reason = f"body {name!r}, at small strain, {found[name]}; {CURE}"
+    return Refusal(reason, final=before is not None and before.angle > WARNED)
+
+
 #: All checks, in the order in which they are asked.
-CHECKS: tuple[Check, ...] = (cells_inside_out, contact_lets_go)
+CHECKS: tuple[Check, ...] = (cells_inside_out, contact_lets_go, turned_too_far)
 
 
 def refused(problem: Problem, x: Vec) -> Refusal | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from anisocontact._fenicsx import Vec
-from anisocontact.solver.acceptance import Refusal, refused
+from anisocontact.solver.acceptance import refused
 from anisocontact.solver.culprits import find_culprits
 from anisocontact.solver.newton import NewtonResult
 from anisocontact.solver.problem import Problem
@@ -72,6 +72,7 @@ class Attempts:
         self._newton = newton
         self._watch = watch
         self._share = 1.0
+        self._final = False
 
     def solve(self, first: Vec, last: Vec, small: bool = False) -> Outcome:
         """Solve and commit, or roll back.
@@ -86,19 +87,17 @@ class Attempts:
         """
         spent = 0
         found: list[Culprit] = []
-        reason, final = "", False
         ways = self._ways(first, last)
         for way in ways:
-            result, refusal = self._attempt(way)
+            result, culprits = self._attempt(way)
             spent += result.iterations
-            if refusal is None:
+            if not result.reason:
                 return Outcome(replace(result, iterations=spent))
-            reason, final = refusal.reason, refusal.final
-            found = _graver(found, list(refusal.culprits))
+            found = _graver(found, culprits)
             if way is ways[-1] and found[:1] and found[0].kind == "flipping":
                 ways += self._against_flipping(way, small)
-        result = replace(result, iterations=spent, reason=_reason(reason, found))
-        return Outcome(result, tuple(found), final)
+        result = replace(result, iterations=spent, reason=_reason(result.reason, found))
+        return Outcome(result, tuple(found), self._final)
 
     def _ways(self, first: Vec, last: Vec) -> list[_Way]:
         searching, full = _Way(first, full_steps=False), _Way(last)
@@ -114,26 +113,24 @@ class Attempts:
             return [_Way(failed.start, flowing=True)]
         return []
 
-    def _attempt(self, way: _Way) -> tuple[NewtonResult, Refusal | None]:
-        """Solve in one way; None where its state was accepted."""
+    def _attempt(self, way: _Way) -> tuple[NewtonResult, list[Culprit]]:
         problem = self._problem
         self._watch.clear()
-        self._share = 1.0
+        self._share, self._final = 1.0, False
         x = way.start.copy()
         try:
             if way.flowing:
                 problem.flow()
             result = self._newton.solve(x, way.full_steps, self._damping if way.damped else None)
-            if result.reason:
-                problem.stabilisation.careful = True
-                culprits = find_culprits(problem, self._watch, self._newton.residual)
-                return result, Refusal(result.reason, tuple(culprits))
-            refusal = refused(problem, x)
-            if refusal is None:
+            refusal = None if result.reason else refused(problem, x)
+            if not result.reason and refusal is None:
                 problem.commit(x)
-            else:
-                problem.stabilisation.careful = True
-            return result, refusal
+                return result, []
+            problem.stabilisation.careful = True
+            if refusal is not None:
+                self._final = refusal.final
+                return replace(result, reason=refusal.reason), list(refusal.culprits)
+            return result, find_culprits(problem, self._watch, self._newton.residual)
         except (Exception, KeyboardInterrupt):
             problem.together.met()
             raise

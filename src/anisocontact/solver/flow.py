@@ -13,13 +13,14 @@ accepted is equilibrium without viscosity.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import PETSc
-from anisocontact.contact import NotHeldError
+from anisocontact.contact import AnyContact, NotHeldError
 from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
 
@@ -38,6 +39,13 @@ PATIENCE = 3
 SLOW = 0.1
 #: Steps after which the flow is given up.
 MOST_STEPS = 60
+
+
+def pass_through(contacts: Sequence[AnyContact]) -> None:
+    """Let contacts remember a state that the bodies flow through, for the work of friction."""
+    for contact in contacts:
+        for part in contact.parts:
+            part.pass_through()
 
 
 class Flow:

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from anisocontact._fenicsx import PETSc, Vec
 from anisocontact.solver.persistent import Arrays
+from anisocontact.solver.reduction import Kept
 
 if TYPE_CHECKING:
     from anisocontact.solver.problem import Problem
@@ -17,6 +18,7 @@ Floats = npt.NDArray[np.float64]
 
 #: In front of the names of what `Interior` needs.
 PENDING = "pending_"
+_NEVER = "the interior has to be solved for before anything is accepted"
 
 
 class Interior:
@@ -59,7 +61,7 @@ class Interior:
 
     def commit(self, x: Vec) -> float:
         """Never: a run begins with `recover`."""
-        raise AssertionError("the interior has to be solved for before anything is accepted")
+        raise AssertionError(_NEVER)
 
     def reactions(self) -> dict[str, Floats]:
         """Force of the supports of each facet group on the bodies, (3,), force."""
@@ -71,10 +73,19 @@ class Interior:
         self.recover()
         return self._problem.energies()["elastic"]
 
-    def mean(self, group: str, weights: Floats) -> Floats:
+    def mean(self, group: str, weights: Floats, x: Vec | None = None) -> Floats:
         """Sum of the displacements of all nodes times their weights, (3,), length."""
+        assert x is None, _NEVER
         self.recover()
         return self._problem.mean_displacement(group, weights)
+
+    def kept(self, x: Vec) -> Kept:
+        """Never: no trial state is asked of."""
+        raise AssertionError(_NEVER)
+
+    def displacement(self, x: Vec) -> Floats:
+        """Never: no trial state is asked of."""
+        raise AssertionError(_NEVER)
 
 
 def _solve(matrix: PETSc.Mat, right: Vec, left: Vec) -> None:

@@ -17,6 +17,7 @@ from anisocontact.solver.accepted import AcceptedState
 from anisocontact.solver.attached import ElasticSupport, Spring
 from anisocontact.solver.balance import Balance, balance
 from anisocontact.solver.configuration import Configuration
+from anisocontact.solver.flow import pass_through
 from anisocontact.solver.following import Following
 from anisocontact.solver.interior import PENDING, Interior
 from anisocontact.solver.memory import BEGUN, Memory, persistent_points, restore_points
@@ -24,6 +25,7 @@ from anisocontact.solver.outcome import energies, reactions
 from anisocontact.solver.parts import make_parts
 from anisocontact.solver.persistent import Persistent, under
 from anisocontact.solver.reduction import Reduction
+from anisocontact.solver.rotations import Rotations, Turned
 from anisocontact.solver.step_begin import begin_step, contact_must_hold
 from anisocontact.solver.steps import Step
 from anisocontact.solver.tangent import Tangent, led_unknowns
@@ -53,6 +55,7 @@ class Problem(Following):
         layout: Where the unknowns are.
         together: The processes of the run, when one of them fails.
         reduction: Who answers for the bulk; None where every state is one of all unknowns.
+        rotations: How far bodies at small strain have turned.
         force_scale: Norm of the forces at work in the last evaluation: of supports, contacts,
             loads or supports still to be moved, the largest.
         round_off: Residual that floating point leaves in the last evaluation, force; never more
@@ -91,6 +94,7 @@ class Problem(Following):
         self._tangent = Tangent(parts, model.space)
         self._bodies = Configuration(parts, model, materials)
         self.reduction: Reduction | None = None
+        self.rotations = Rotations(model, materials)
         self.force_scale = 0.0
         self.round_off = 0.0
         self._balance = Balance.none(self._owned)
@@ -262,6 +266,7 @@ class Problem(Following):
         if moved and (flows or self.stabilisation.untouched()):
             self._accepted.go_on(x, self._balance.outside)
         if moved and flows:
+            pass_through(self.contacts)
             return True
         return any([contact.improve() for contact in self.contacts]) or moved
 
@@ -273,6 +278,15 @@ class Problem(Following):
             return self.stabilisation.lets_go(self.layout.split(x)[0])
         self._evaluate_at(x)
         return self.stabilisation.lets_go(self._bodies.nodal)
+
+    def turned(self, x: Vec) -> dict[str, Turned]:
+        """How far bodies at small strain have turned in a state in equilibrium, by name."""
+        if not self.rotations:
+            return {}
+        if self.reduction is not None:
+            return self.rotations.reduced(self.reduction, x, self._level == 1.0)
+        self._evaluate_at(x)
+        return self.rotations.at(self._bodies.nodal)
 
     def soften(self) -> bool:
         """After a solution that failed: softer penalties of augmented contacts; whether any.
@@ -314,6 +328,7 @@ class Problem(Following):
         for contact in self.contacts:
             contact.commit()
         self.stabilisation.commit()
+        self.rotations.commit()
 
     def complete(self, u: Floats, contact_force: Floats, load: Floats) -> None:
         """Bring the accepted state of all unknowns up to date.
@@ -349,7 +364,8 @@ class Problem(Following):
         if self.reduction is not None:
             nodal |= {f"{PENDING}{name}": v for name, v in self.reduction.pending().items()}
         points = persistent_points(self.contacts)
-        return Persistent(nodal, points, common | self._tangent.persistent())
+        common |= {"rotations": self.rotations.persistent()} | self._tangent.persistent()
+        return Persistent(nodal, points, common)
 
     def restore(self, kept: Persistent, steps: Sequence[Step]) -> None:
         """Go on from what `persistent` gave.
@@ -366,6 +382,7 @@ class Problem(Following):
             self.begin(step, again=True)
         self._memory.restore(kept)
         self._tangent.restore(kept.common)
+        self.rotations.restore(kept.common["rotations"])
         restore_points(self.contacts, kept.points, self._bodies.nodal)
         pending = under(PENDING, kept.nodal)
         self.reduction = Interior(self, pending) if pending else None
@@ -416,6 +433,11 @@ class Problem(Following):
         else:
             elastic = self._bodies.elastic(self._accepted.x)
         return energies(self._parts, elastic, self._accepted.work, self._bodies.nodal)
+
+    def stiffness_energy(self) -> float:
+        """Energy of all nodes held but one, `sum of K_ii u_i^2`: the scale of what is rounded."""
+        owned = self._accepted.displacement
+        return float(self._comm.allreduce(float(self.bulk.diagonal.array_r @ owned**2)))
 
     def _commit_bulk(self, x: Vec) -> float:
         self._evaluate_at(x)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
@@ -11,6 +12,22 @@ from anisocontact._fenicsx import Vec
 from anisocontact.solver.persistent import Arrays
 
 Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What is known of a state without the interior.
+
+    Attributes:
+        nodes: Nodes whose displacement is, (nodes,).
+        u: Displacements, true at these, (nodes, 3), length.
+        along_loads: Mean displacement along all loads, length.
+    """
+
+    nodes: Flags
+    u: Floats
+    along_loads: float
 
 
 class Reduction(Protocol):
@@ -40,6 +57,20 @@ class Reduction(Protocol):
         """Elastic energy of the accepted state."""
         ...
 
-    def mean(self, group: str, weights: Floats) -> Floats:
-        """Sum of the displacements of all nodes times their weights, (3,), length."""
+    def mean(self, group: str, weights: Floats, x: Vec | None = None) -> Floats:
+        """Sum of the displacements of all nodes times their weights, (3,) or (3, k), length.
+
+        Args:
+            group: Name under which the weights are known.
+            weights: Weight of each node, (nodes,) or (nodes, k).
+            x: All unknowns of a trial state in equilibrium; the accepted one if not given.
+        """
+        ...
+
+    def kept(self, x: Vec) -> Kept:
+        """What is known of a trial state in equilibrium without the interior."""
+        ...
+
+    def displacement(self, x: Vec) -> Floats:
+        """Displacement of all nodes in a trial state in equilibrium, (nodes, 3), length."""
         ...

@@ -9,9 +9,12 @@ import numpy as np
 
 from anisocontact._fenicsx import Vec
 from anisocontact.limits import Limits
+from anisocontact.solver.alarms import Alarms
 from anisocontact.solver.attempts import Attempts, Outcome
 from anisocontact.solver.culprits import NAMED
+from anisocontact.solver.energy_watch import EnergyWatch
 from anisocontact.solver.interior import PENDING
+from anisocontact.solver.led_turns import led_turns
 from anisocontact.solver.loads import check_steps
 from anisocontact.solver.newton import NewtonResult, OptionValue
 from anisocontact.solver.pace import Pace
@@ -61,10 +64,12 @@ class Solver:
     Attributes:
         choice: The strategy and why it was taken.
         place: How far the run has come.
+        cautions: What the steps ask for that is at the limit of a model, a line each.
 
     Raises:
-        InputError: A step names an unknown facet group, shared nodes get two values, or the
-            strategy cannot solve the problem.
+        InputError: A step names an unknown facet group, shared nodes get two values, the strategy
+            cannot solve the problem, or supports lead a body at small strain through a turn of more
+            than five degrees.
 
     Example:
         >>> from anisocontact.bulk import make_material
@@ -92,6 +97,7 @@ class Solver:
         self.limits = limits or Limits()
         planes = problem.constraints.planes
         check_steps(problem.model, problem.materials, self.steps, planes)
+        self.cautions = led_turns(problem.model, problem.materials, self.steps)
         for step in self.steps:
             problem.attached.check(step)
         problem.rigid.check(self.steps)
@@ -105,12 +111,14 @@ class Solver:
         self._on_iteration: Callable[[Progress], None] | None = None
         self._on_cut: Callable[[Cut], None] | None = None
         self._watch = StatusWatch(problem.contacts)
+        self._energy = EnergyWatch(problem)
 
     def run(
         self,
         on_iteration: Callable[[Progress], None] | None = None,
         on_cut: Callable[[Cut], None] | None = None,
         on_note: Callable[[str], None] | None = None,
+        on_warning: Callable[[str], None] | None = None,
     ) -> Iterator[Accepted]:
         """Solve increment by increment.
 
@@ -118,6 +126,8 @@ class Solver:
             on_iteration: Called at the start of each attempt and after each Newton iteration.
             on_cut: Called when an increment failed and is cut.
             on_note: Called with what is worth a line in a log.
+            on_warning: Called with what the user should look at, as soon as it happens; goes to
+                `on_note` if not given.
 
         Yields:
             Every accepted increment, or part of one; the problem holds its state until the next.
@@ -126,6 +136,9 @@ class Solver:
             StoppedError: An increment did not converge; the problem holds the last accepted one.
         """
         self._on_iteration, self._on_cut = on_iteration, on_cut
+        note = on_note or (lambda _: None)
+        warn = on_warning or (lambda text: note(f"warning: {text}"))
+        self._energy.begin()
         self._newton = newton = make_newton(
             self.choice,
             self.problem,
@@ -133,14 +146,17 @@ class Solver:
             self._prefix,
             self._options,
             self._report,
-            on_note or (lambda _: None),
+            note,
             self._kept,
         )
-        attempts = Attempts(self.problem, newton, self._watch)
+        attempts, alarms = Attempts(self.problem, newton, self._watch), Alarms()
         try:
             while self.place.step < len(self.steps):
                 step = self.steps[self.place.step]
-                yield from self._step(attempts, step)
+                for accepted in self._step(attempts, step):
+                    for text in alarms.of(accepted):
+                        warn(text)
+                    yield accepted
                 self.place = self._beginning(self.place.step + 1, self.place.time + step.duration)
         except (Exception, KeyboardInterrupt):
             self.problem.together.met()
@@ -153,6 +169,7 @@ class Solver:
     def persistent(self) -> Persistent:
         """State of the problem and of the run after the last accepted part, of this rank."""
         kept = self.problem.persistent()
+        kept.common["energy_watch"] = self._energy.persistent()
         place, pace = self.place, self.place.pace
         numbers = asdict(pace)
         del numbers["limits"]
@@ -170,6 +187,7 @@ class Solver:
         step, time, begun = (numbers.pop(name) for name in ("step", "time", "begun"))
         before = None
         self.problem.restore(kept, self.steps[: step + begun])
+        self._energy.restore(kept.common["energy_watch"])
         self._kept = kept.strategy and kept.strategy | under(PENDING, kept.nodal)
         # without its interior it is no state to extrapolate from
         whole = self.problem.reduction is None or (self.choice.name == CONDENSED and self._kept)
@@ -247,7 +265,8 @@ class Solver:
         return self.place.time + _whole(increment, done) * (step.duration / step.increments)
 
     def _accepted(self, step: Step, increment: int, done: float, result: NewtonResult) -> Accepted:
-        contacts = self.problem.contacts
+        contacts, energies = self.problem.contacts, self.problem.energies()
+        ran_off = {c.name: c.ran_off for c in contacts if len(c.ran_off)}
         return Accepted(
             step=step.name,
             step_index=self.place.step,
@@ -259,8 +278,10 @@ class Solver:
             contacts={c.name: c.counts() for c in contacts},
             resultants={c.name: c.resultant() for c in contacts},
             reactions=self.problem.reactions(),
-            energies=self.problem.energies(),
-            ran_off={c.name: c.ran_off for c in contacts if len(c.ran_off)},
+            energies=energies,
+            ran_off=ran_off,
+            turned=self.problem.rotations.accepted,
+            imbalance=self._energy.after(energies, bool(ran_off)),
         )
 
 

@@ -11,6 +11,8 @@ import numpy.typing as npt
 
 from anisocontact.errors import InputError
 from anisocontact.rigid import turns_in_radian
+from anisocontact.solver.imbalance import Imbalance
+from anisocontact.solver.rotations import Turned
 from anisocontact.solver.turn import Turn
 
 AXES = ("x", "y", "z")
@@ -175,6 +177,8 @@ class Accepted:
         energies: See `Problem.energies`.
         ran_off: Slave points that left the end of their master in it, by name of the contact, each
             (k, 3), length; contacts without any are left out.
+        turned: How far each body at small strain has turned, by name.
+        imbalance: What is left open in the balance of energy.
     """
 
     step: str
@@ -189,6 +193,8 @@ class Accepted:
     reactions: dict[str, Floats]
     energies: dict[str, float]
     ran_off: dict[str, Floats]
+    turned: dict[str, Turned]
+    imbalance: Imbalance
 
 
 @dataclass(frozen=True)

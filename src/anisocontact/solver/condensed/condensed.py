@@ -11,11 +11,12 @@ import scipy.sparse
 
 from anisocontact._fenicsx import Vec
 from anisocontact.solver.condensed.parts import Condensation, connected
-from anisocontact.solver.condensed.patterns import Response, State
+from anisocontact.solver.condensed.patterns import Probe, State
 from anisocontact.solver.condensed.reach import Reach
 from anisocontact.solver.condensed.system import ContactSystem
 from anisocontact.solver.persistent import Arrays
 from anisocontact.solver.problem import Problem
+from anisocontact.solver.reduction import Kept
 from anisocontact.solver.steps import Step
 
 Floats = npt.NDArray[np.float64]
@@ -57,7 +58,8 @@ class Condensed:
         self._forces: Floats = np.zeros(n)
         self._stale = False
         self._held: dict[tuple[str, int], int] = {}
-        self._means: dict[str, Response] = {}
+        self._means: dict[str, tuple[Probe, Floats]] = {}
+        self._whole: tuple[State, Floats] | None = None
         problem.reduction = self
         if kept:
             self._restore(kept)
@@ -169,26 +171,56 @@ class Condensed:
             Work from outside since the last one, force times length.
         """
         system, problem = self.system, self._problem
-        own = system.new_vector()
-        own.array[:] = x.array_r[system.places]
-        system.evaluate(own)
-        before, after = self._state, system.state(own.array_r)
+        before, after = self._state, self._trial(x)
         assert before is not None
         work = sum(starmap(system.patterns.work, pairwise([before, *system.way, after])))
         self._state, self._load, self._forces = after, self._trial_load, system.raw_forces
         self._stale = True
         return work + problem.attached.commit(self._nodes_of(x))
 
+    def _trial(self, x: Vec) -> State:
+        """The state of the contact unknowns of a vector of all unknowns."""
+        own = self.system.new_vector()
+        own.array[:] = x.array_r[self.system.places]
+        self.system.evaluate(own)
+        return self.system.state(own.array_r)
+
+    def kept(self, x: Vec) -> Kept:
+        """What is known of a trial state in equilibrium without the interior."""
+        given = np.zeros(self._stiffness.shape[0], dtype=np.bool_)
+        given[self.system.bulk.prescribed] = True
+        state, forces = self._trial(x), float(np.abs(self._trial_load).sum())
+        work = self.system.patterns.load_work(state)
+        return Kept(
+            self._reach.nodes | given.reshape(-1, 3).all(axis=1),
+            self._nodes_of(x),
+            work / forces if forces > 0.0 else 0.0,
+        )
+
+    def displacement(self, x: Vec) -> Floats:
+        """Displacement of all nodes in a trial state in equilibrium, (nodes, 3), length."""
+        state = self._trial(x)
+        self._whole = (state, self._solved(state, x))
+        return self._whole[1].reshape(-1, 3)
+
     def recover(self) -> None:
         """Bring the state of the whole bulk up to date: one solution with the interior."""
         if self._stale and self._state is not None:
             self._stale = False
-            u = self.system.patterns.displacement(self._state)
-            fixed = self.system.bulk.prescribed
-            u[fixed] = self._problem.accepted().array_r[fixed]  # without rounding
-            if self._gathering is not None:
-                u = self._gathering.T @ u
+            state, accepted = self._state, self._problem.accepted()
+            if self._whole is not None and self._whole[0].same(state):
+                u = self._whole[1]
+            else:
+                u = self._solved(state, accepted)
+            self._whole = None
             self._problem.complete(u, self._forces, self._load)
+
+    def _solved(self, state: State, x: Vec) -> Floats:
+        """Displacements of all nodes, (n,), with those of `x` where they are prescribed."""
+        u = self.system.patterns.displacement(state)
+        fixed = self.system.bulk.prescribed
+        u[fixed] = x.array_r[fixed]  # without rounding
+        return u if self._gathering is None else self._gathering.T @ u
 
     def reactions(self) -> dict[str, Floats]:
         """Force of the supports of each facet group on the bodies, (3,), force."""
@@ -208,25 +240,34 @@ class Condensed:
         assert self._state is not None
         return self.system.patterns.energy(self._state)
 
-    def mean(self, group: str, weights: Floats) -> Floats:
-        """Mean displacement of nodes of the accepted state, (3,), length.
+    def mean(self, group: str, weights: Floats, x: Vec | None = None) -> Floats:
+        """Mean displacement of nodes, (3,) or (3, k), length.
 
         Args:
             group: Name under which the weights are known.
-            weights: Share of each node, (nodes,).
+            weights: Share of each node, (nodes,) or (nodes, k).
+            x: All unknowns of a trial state in equilibrium; the accepted one if not given.
         """
-        assert self._state is not None
-        patterns, fixed = self.system.patterns, self.system.bulk.prescribed
-        each = np.zeros((len(self._load), 3))
-        for axis in range(3):
-            each[axis::3, axis] = weights
-        each = self.system.handed(each)
-        supports = each[fixed]
         if group not in self._means:
-            each[fixed] = 0.0
-            self._means[group] = patterns.respond(each)
-        free = patterns.work_of(self._means[group], self._state)
-        return np.asarray(free + supports.T @ self._problem.accepted().array_r[fixed])
+            self._means[group] = self._probe(weights)
+        probe, supports = self._means[group]
+        state = self._state if x is None else self._trial(x)
+        assert state is not None
+        at = self._problem.accepted() if x is None else x
+        free = self.system.patterns.work_of(probe, state)
+        found = free + supports.T @ at.array_r[self.system.bulk.prescribed]
+        return np.asarray(found.reshape(3, *weights.shape[1:]))
+
+    def _probe(self, weights: Floats) -> tuple[Probe, Floats]:
+        """Weights as forces on the free unknowns, and those of the prescribed ones."""
+        each = np.zeros((len(weights), 3, 3, weights[0].size))
+        for axis in range(3):
+            each[:, axis, axis] = weights.reshape(len(weights), -1)
+        forces = self.system.handed(each.reshape(self._stiffness.shape[0], -1))
+        fixed = self.system.bulk.prescribed
+        supports = forces[fixed]
+        forces[fixed] = 0.0
+        return self.system.patterns.probe(forces), supports
 
     @property
     def system(self) -> ContactSystem:

@@ -75,6 +75,11 @@ class State:
     b: Floats
     at_supports: Floats
 
+    def same(self, other: State) -> bool:
+        """Whether another state is this one."""
+        pairs = ((self.u, other.u), (self.a, other.a), (self.b, other.b))
+        return all(np.array_equal(mine, its) for mine, its in pairs)
+
 
 @dataclass(frozen=True)
 class Response:
@@ -89,6 +94,21 @@ class Response:
     force: Floats
     answer: Floats
     passed_on: Floats
+
+
+@dataclass
+class Probe:
+    """Forces whose work in many states is asked for.
+
+    Attributes:
+        response: What the bulk makes of them.
+        lifted: Their work on the patterns of displacements, (k, number of those).
+        loaded: Their work on the answers to the patterns of forces, (k, number of those).
+    """
+
+    response: Response
+    lifted: Floats
+    loaded: Floats
 
 
 class Patterns:
@@ -214,13 +234,20 @@ class Patterns:
         on_contact = forces[bulk.contact] - (bulk.stiffness @ answer)[bulk.contact]
         return Response(forces, answer, on_contact)
 
-    def work_of(self, response: Response, state: State) -> Floats:
-        """Work `f . u` of each force of a response in a state, (k,)."""
+    def probe(self, forces: Floats) -> Probe:
+        """Forces, (n, k), zero where prescribed, for `work_of`."""
+        nothing = np.zeros((forces.shape[1], 0))
+        return Probe(self.respond(forces), nothing, nothing)
+
+    def work_of(self, probe: Probe, state: State) -> Floats:
+        """Work `f . u` of each force of a probe in a state, (k,)."""
         a, b = self._padded(state)
-        lifted = response.force.T @ (self._lifts @ a)
-        return np.asarray(
-            response.passed_on.T @ state.u + lifted + response.answer.T @ (self._forces @ b)
-        )
+        own = probe.response
+        if probe.lifted.shape[1] != len(a):
+            probe.lifted = own.force.T @ self._lifts
+        if probe.loaded.shape[1] != len(b):
+            probe.loaded = own.answer.T @ self._forces
+        return np.asarray(own.passed_on.T @ state.u + probe.lifted @ a + probe.loaded @ b)
 
     def load(self, a: Floats, b: Floats) -> Floats:
         """Load g on the contact unknowns, (c,), force."""
@@ -231,6 +258,10 @@ class Patterns:
         """Work `f . u` of each pattern of forces in a state, (number of forces,)."""
         a, b = self._padded(state)
         return np.asarray(self._passed_on.T @ state.u + self._lift_work.T @ a + self._load_work @ b)
+
+    def load_work(self, state: State) -> float:
+        """Work `f . u` of the loads of a state, force times length."""
+        return float(self._padded(state)[1] @ self.works(state))
 
     def outside(self, state: State) -> Floats:
         """Forces from outside along each pattern of displacements: all but those of contact."""

@@ -16,6 +16,7 @@ from anisocontact.solver.balance import LOAD_SHARE, ROUND_OFF
 from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor
 from anisocontact.solver.condensed.parts import Condensation
 from anisocontact.solver.condensed.patterns import Patterns, State
+from anisocontact.solver.flow import pass_through
 from anisocontact.solver.following import Following
 from anisocontact.solver.newton import TOLERANCE
 from anisocontact.solver.problem import Problem
@@ -212,7 +213,9 @@ class ContactSystem(Following):
         flows = stabilisation.flow.flows
         if changed and (flows or stabilisation.untouched()):
             self.way.append(self.state(x.array_r))
-        if not (changed and flows):
+        if changed and flows:
+            pass_through(self.contacts)
+        else:
             changed = any([contact.improve() for contact in self.contacts]) or changed
         if changed:
             self._evaluated = None

@@ -1,0 +1,32 @@
+"""What is said of a run as soon as it happens, each once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from anisocontact.solver.rotations import CURE, WARNED
+from anisocontact.solver.steps import Accepted
+
+
+class Alarms:
+    """Warnings that accepted increments give reason to."""
+
+    def __init__(self) -> None:
+        self._told: set[str] = set()
+
+    def of(self, accepted: Accepted) -> list[str]:
+        """What has not been said before, with where it happened."""
+        where = f"step {accepted.step!r}, increment {accepted.increment}"
+        found = dict(_found(accepted))
+        fresh = [text for key, text in found.items() if key not in self._told]
+        self._told |= set(found)
+        return [f"{where}: {text}" for text in fresh]
+
+
+def _found(accepted: Accepted) -> Iterator[tuple[str, str]]:
+    """Reasons for a warning, by what they are about."""
+    for name, turned in accepted.turned.items():
+        if turned.angle > WARNED:
+            yield f"turned {name}", f"body {name!r}, at small strain, {turned}; {CURE}"
+    if accepted.imbalance.large:
+        yield "energy", str(accepted.imbalance)

@@ -1,0 +1,102 @@
+"""The balance of energy along a run.
+
+In equilibrium with exact integrals along the path the residual of the balance is zero. What is
+left is the error of taking forces at the ends of increments for those on the way, and it says more
+of a coarse path than any force does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.solver.imbalance import Imbalance
+from anisocontact.solver.problem import Problem
+
+Floats = npt.NDArray[np.float64]
+
+#: Share of points that begin or end contact in an increment beyond which they make the residual.
+MANY = 0.05
+#: What makes a residual, the first that applies to an increment.
+CAUSES = (
+    "slave points slid off the end of a master",
+    "bodies jumped to another equilibrium",
+    "contact began or ended within increments, more of them are needed where it does",
+    "too few increments, forces at their ends stand for those on the way",
+)
+_ROUND_OFF = 4.0 * float(np.finfo(np.float64).eps)
+
+
+class EnergyWatch:
+    """Follows the balance of energy along a run.
+
+    Args:
+        problem: The problem, in any accepted state.
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem = problem
+        self._work = self._external = self._residual = self._flow = 0.0
+        self._open = np.zeros(len(problem.contacts), dtype=np.int64)
+        self._parts = np.zeros(len(CAUSES))
+        self._begun = False
+
+    def begin(self) -> None:
+        """Start from the accepted state, unless a run goes on."""
+        if self._begun:
+            return
+        self._begun = True
+        energies = self._problem.energies()
+        self._take(energies)
+        self._work = abs(self._external)
+        self._open = self._counted()
+
+    def after(self, energies: Mapping[str, float], ran_off: bool) -> Imbalance:
+        """The balance after an accepted increment.
+
+        Args:
+            energies: See `Problem.energies`.
+            ran_off: Whether slave points left the end of a master in it.
+        """
+        before = self._residual, self._external, self._flow
+        self._take(energies)
+        self._work += abs(self._external - before[1])
+        opened, self._open = self._open, self._counted()
+        changed = np.abs(self._open - opened).sum() > MANY * self._points()
+        signs = (ran_off, self._flow != before[2], changed, True)
+        self._parts[signs.index(True)] += self._residual - before[0]
+        share = self._share(energies)
+        return Imbalance(share, CAUSES[int(np.abs(self._parts).argmax())] if share > 0.0 else "")
+
+    def persistent(self) -> Floats:
+        """What the next increments depend on."""
+        now = [float(self._begun), self._work, self._external, self._residual, self._flow]
+        return np.concatenate([now, self._parts, self._open])
+
+    def restore(self, kept: Floats) -> None:
+        """Go on from what `persistent` gave."""
+        begun, self._work, self._external, self._residual, self._flow = map(float, kept[:5])
+        self._begun = bool(begun)
+        self._parts, counted = np.split(kept[5:], [len(CAUSES)])
+        self._open = counted.astype(np.int64)
+
+    def _take(self, energies: Mapping[str, float]) -> None:
+        self._external, self._residual = energies["external"], energies["residual"]
+        self._flow = energies["flow"]
+
+    def _share(self, energies: Mapping[str, float]) -> float:
+        residual = abs(self._residual)
+        if not (self._problem.bulk.stores and np.isfinite(residual)):
+            return 0.0
+        told = ("external", "residual")
+        held = sum(abs(value) for name, value in energies.items() if name not in told)
+        rounded = _ROUND_OFF * self._problem.stiffness_energy()
+        return 0.0 if residual <= rounded else residual / max(self._work, held)
+
+    def _counted(self) -> npt.NDArray[np.int64]:
+        return np.array([c.counts()["open"] for c in self._problem.contacts], dtype=np.int64)
+
+    def _points(self) -> int:
+        return sum(sum(contact.counts().values()) for contact in self._problem.contacts)
