@@ -298,7 +298,7 @@ def answer(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> La
     n, own = state.internal.shape
     try:
         result = law.update(state, kinematics)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise InputError(f"the law {type(law).__name__} failed: {where_failed(error)}") from error
     shapes: dict[str, tuple[int, ...]] = {
         **dict.fromkeys(("traction", "slip", "d_pressure"), (n, 2)),
@@ -320,7 +320,7 @@ def answer(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> La
     return result
 
 
-def where_failed(error: Exception) -> str:
+def where_failed(error: BaseException) -> str:
     """An error of somebody's code in one line: file and line, and what it says."""
     at: tuple[str | None, int | None] = (None, None)
     if isinstance(error, SyntaxError):

@@ -8,11 +8,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-__all__ = ["ended_by_signals", "interrupt", "on_signals", "said_of"]
+__all__ = ["ended_by_signals", "interrupt", "on_signals"]
 
 #: Ctrl-C, what batch systems send, a terminal that is closed.
 _ENDING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-_SAID = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated", signal.SIGHUP: "hung up"}
 
 
 @contextmanager
@@ -42,23 +41,15 @@ def on_signals(act: Callable[[int], None]) -> Iterator[None]:
 
 @contextmanager
 def ended_by_signals() -> Iterator[None]:
-    """Raise KeyboardInterrupt, which says what happened, where the process is asked to end."""
+    """Raise KeyboardInterrupt where the process is asked to end, as Ctrl-C does."""
     with on_signals(interrupt):
         yield
 
 
-def interrupt(number: int) -> None:
-    """Raise what ends the process at once.
-
-    Args:
-        number: Number of the signal.
+def interrupt(_: int) -> None:
+    """Raise what ends the process at once, whatever the signal.
 
     Raises:
         KeyboardInterrupt: Always.
     """
-    raise KeyboardInterrupt(said_of(number))
-
-
-def said_of(number: int) -> str:
-    """What is said of a process that a signal has ended: "interrupted" and so on."""
-    return _SAID[signal.Signals(number)]
+    raise KeyboardInterrupt

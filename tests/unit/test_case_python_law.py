@@ -139,6 +139,9 @@ FAULTY = [
     (("def update", "def change"), "law: Smooth has no method update"),
     (("block, none, block", "block, q, block"), "smooth.py, line 11: NameError: name 'q'"),
     (("(none, none, block", "(none[1:], none, block"), "traction: the law returned an array of"),
+    (("class Smooth", "import sys\nsys.exit()\nclass Smooth"), "line 6: SystemExit"),
+    (("n = len", "raise SystemExit(0)\n        n = len"), "smooth.py, line 9: SystemExit: 0"),
+    (("internal = 0", "__init__ = lambda self: exit(0)"), "SystemExit: 0"),
 ]
 
 
@@ -174,7 +177,7 @@ def test_restart_with_another_law(tmp_path, capsys):
     assert main(["run", str(path), "-o", str(out), "--restart"]) == 0
     (tmp_path / "smooth.py").write_text(SMOOTH + "\n# another\n", encoding="utf-8")
     assert main(["run", str(path), "-o", str(out), "--restart"]) == 2
-    assert "'smooth.py' is not the law any more" in capsys.readouterr().err
+    assert "'smooth.py' has changed since the run" in capsys.readouterr().err
     (tmp_path / "smooth.py").unlink()
     assert main(["run", str(path), "-o", str(out), "--restart"]) == 2
     assert capsys.readouterr().err == (

@@ -131,15 +131,12 @@ def test_memory_that_ends_on_one_rank(case: Path) -> None:
 
 @pytest.mark.mpi
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("where", "what", "said"),
-    [("1", "SIGINT", ""), ("01", "SIGINT", "interrupted"), ("0", "SIGTERM", "terminated")],
-)
-def test_interrupt(case: Path, where: str, what: str, said: str) -> None:
+@pytest.mark.parametrize(("where", "what"), [("1", "SIGINT"), ("01", "SIGINT"), ("0", "SIGTERM")])
+def test_interrupt(case: Path, where: str, what: str) -> None:
     """Ctrl-C or TERM, on one rank or on all, ends the run after the increment; it can go on."""
     done = run(case, where, what)
     assert done.returncode == 3, done.stderr
-    assert done.stderr.count(f"error: stopped: {said or 'interrupted'} after step") == 1
+    assert done.stderr.count("error: stopped: interrupted after step") == 1
     assert (case.parent / "out" / "checkpoint.npz").is_file()
 
 

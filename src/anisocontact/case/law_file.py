@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib.util
 import sys
 from collections.abc import Callable, Iterator
@@ -32,7 +31,7 @@ from anisocontact.surfaces import Surface
 if TYPE_CHECKING:
     from anisocontact.case.model import ContactSection
 
-__all__ = ["PythonSection", "fingerprints", "interface", "law_of", "pair_law"]
+__all__ = ["PythonSection", "interface", "law_of", "pair_law"]
 
 #: How the history enters a step: a law of one's own sees it turned to where the point is.
 _EVOLUTION = "transport"
@@ -150,38 +149,11 @@ def law_of(
             raise InputError(text + near(given.law, known), "law")
         try:
             law: TangentialLaw = kind(**given.arguments)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             text = f"{given.law} refuses them: {where_failed(error)}"
             raise InputError(text, "arguments") from None
         _check_law(law, given.law)
         return law
-
-
-def fingerprints(contacts: list[ContactSection], resolve: Callable[[str], Path]) -> dict[str, str]:
-    """What the files with laws contain, for telling whether they have changed.
-
-    Args:
-        contacts: Tables of the contacts.
-        resolve: From a path in the case file to where that is.
-
-    Returns:
-        SHA-256 of each file, by its path in the case file.
-
-    Raises:
-        InputError: A file is missing or cannot be read.
-    """
-    found = {}
-    for i, section in enumerate(contacts):
-        if section.python is not None:
-            with objects.within(f"contact[{i}].python"):
-                given = section.python.file
-                path = _found(resolve, given)
-                try:
-                    found[given] = hashlib.sha256(path.read_bytes()).hexdigest()
-                except OSError as error:
-                    text = f"'{given}' cannot be read: {error.strerror}"
-                    raise InputError(text, "file") from None
-    return found
 
 
 def _found(resolve: Callable[[str], Path], given: str) -> Path:
@@ -201,7 +173,7 @@ def _module(path: Path, given: str) -> ModuleType:
     try:
         with _beside(path):
             spec.loader.exec_module(module)
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise InputError(f"'{given}' cannot be run: {where_failed(error)}", "file") from None
     return module
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from anisocontact.case.law_file import fingerprints
+from anisocontact.case.named_files import check_files
 from anisocontact.errors import InputError
 from anisocontact.results.files import MARKS
 
@@ -42,7 +42,7 @@ def checkpoint_of(folder: Path, file: CaseFile) -> Stored | None:
         before = tomllib.loads(stored.facts["case"])
         now = tomllib.loads(file.path.read_text(encoding="utf-8"))
         check_same(before, now, stored.facts["begun"])
-        _check_laws(stored.facts["laws"], fingerprints(file.case.contact, file.resolve))
+        check_files(stored.facts["files"], file)
         return stored
     if not any((folder / mark).is_file() for mark in MARKS):
         raise InputError(f"--restart: '{folder}' holds no run to go on with")
@@ -52,16 +52,6 @@ def checkpoint_of(folder: Path, file: CaseFile) -> Stored | None:
             "run without --restart into another folder"
         )
     return None
-
-
-def _check_laws(before: Mapping[str, str], now: Mapping[str, str]) -> None:
-    """Refuse a law in Python whose file has become another one."""
-    for name, fingerprint in now.items():
-        if fingerprint != before[name]:
-            raise InputError(
-                f"--restart: '{name}' is not the law any more that the run that is to go on had: "
-                "run without --restart"
-            )
 
 
 def check_same(before: Mapping[str, Any], now: Mapping[str, Any], begun: int) -> None:

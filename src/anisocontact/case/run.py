@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from anisocontact.case.build import Built
-from anisocontact.case.law_file import fingerprints
+from anisocontact.case.named_files import fingerprints
 from anisocontact.errors import InputError, one_line
 from anisocontact.machine import lack
 from anisocontact.results.checkpoint import NAME, Stored, distribute
 from anisocontact.results.files import WriteError
 from anisocontact.results.writer import Writer
-from anisocontact.signals import interrupt, on_signals, said_of
+from anisocontact.signals import interrupt, on_signals
 from anisocontact.solver import Accepted, Cut, Progress, StoppedError
 
 __all__ = ["Listener", "Outcome", "RunError", "run"]
@@ -89,8 +89,7 @@ def run(
         RunError: Something unforeseen happened; `run.log` has the details.
     """
     text = built.file.path.read_text(encoding="utf-8")
-    laws = fingerprints(built.file.case.contact, built.file.resolve)
-    facts = {"case": text, "laws": laws}
+    facts = {"case": text, "files": _read_once(built)}
     if checkpoint is not None:
         solver = built.solver
         solver.restore(distribute(checkpoint, built.problem.model, solver.persistent()))
@@ -119,8 +118,8 @@ def _run_and_close(built: Built, writer: Writer, asked: _Asked, facts: dict[str,
     together = built.problem.together
     try:
         status, message = _solve(built, writer, asked, facts)
-    except KeyboardInterrupt as error:
-        status, message = "stopped", str(error) or "interrupted"
+    except KeyboardInterrupt:
+        status, message = "stopped", "interrupted"
         if together.met() is None:
             writer.abandon(message)
             raise
@@ -137,6 +136,22 @@ def _run_and_close(built: Built, writer: Writer, asked: _Asked, facts: dict[str,
             writer.close(status, message)
             raise RunError(f"{text}; {_details(writer)}") from error
     writer.close(status, message)
+
+
+def _read_once(built: Built) -> dict[str, str]:
+    """Fingerprints of the files of a case, read by the first process for all."""
+    comm = built.problem.comm
+    found: dict[str, str] = {}
+    error = None
+    if comm.rank == 0:
+        try:
+            found = fingerprints(built.file)
+        except InputError as mistake:
+            error = mistake
+    found, error = comm.bcast((found, error))
+    if error is not None:
+        raise error
+    return found
 
 
 def _details(writer: Writer) -> str:
@@ -269,7 +284,7 @@ class _Asked:
 
     def why(self) -> str:
         """Why it is to stop, in a few words; empty if it is not."""
-        return said_of(self._signal) if self._signal else self.listener.lost()
+        return "interrupted" if self._signal else self.listener.lost()
 
     def tell(self) -> None:
         """Say that a signal has been taken."""

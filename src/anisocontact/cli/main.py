@@ -117,10 +117,10 @@ def _ended(arguments: argparse.Namespace) -> int:
         for one in getattr(error, "errors", [error]):
             say(f"error: {one}", sys.stderr)
         return BAD_INPUT
-    except KeyboardInterrupt as error:
-        say(f"error: {str(error) or 'interrupted'}", sys.stderr)
+    except KeyboardInterrupt:
+        say("error: interrupted", sys.stderr)
         return STOPPED
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         lacking = lack(error)
         if lacking is not None:
             say(f"error: {lacking}", sys.stderr)

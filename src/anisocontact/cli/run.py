@@ -13,8 +13,10 @@ from anisocontact.case.restart import checkpoint_of
 from anisocontact.cli.main import DONE, INTERNAL, STOPPED
 from anisocontact.cli.output import Output, say
 from anisocontact.results.files import check_folder
+from anisocontact.results.lock import locked
 
 if TYPE_CHECKING:
+    from anisocontact.case.read import CaseFile
     from anisocontact.case.run import Outcome
     from anisocontact.results.checkpoint import Stored
 
@@ -25,12 +27,26 @@ def command(arguments: argparse.Namespace) -> int:
     """Solve a case; 0 if it is done, 3 if it stopped before its end."""
     file = load(arguments.case)
     folder = Path(arguments.output or Path("results") / file.name)
-    if arguments.restart:
-        checkpoint = checkpoint_of(folder, file)
-    else:
+    if not arguments.restart:
         check_folder(folder, arguments.overwrite)
-        checkpoint = None
 
+    from anisocontact._fenicsx import MPI
+
+    with locked(folder, MPI.COMM_WORLD) as warning:
+        if warning:
+            say(f"warning: {warning}", sys.stderr)
+        checkpoint = None
+        if arguments.restart:
+            checkpoint = checkpoint_of(folder, file)
+        else:  # once more: another run may just have ended
+            check_folder(folder, arguments.overwrite)
+        return _run(arguments, file, folder, checkpoint)
+
+
+def _run(
+    arguments: argparse.Namespace, file: CaseFile, folder: Path, checkpoint: Stored | None
+) -> int:
+    """Solve a case into a folder that is ours alone."""
     from anisocontact.case.build import build
     from anisocontact.case.run import RunError, run
     from anisocontact.cli.check import contents

@@ -7,12 +7,13 @@ import sys
 import time
 from pathlib import Path
 
-from anisocontact.case.trace import load_trace
+from anisocontact.case.trace import Trace, load_trace
 from anisocontact.cli.main import DONE, STOPPED
 from anisocontact.cli.output import say
 from anisocontact.interface import Interface
 from anisocontact.point import Group, History, Load, StoppedError, drive
 from anisocontact.results.files import check_folder
+from anisocontact.results.lock import locked
 from anisocontact.results.trace import write_trace
 
 __all__ = ["command"]
@@ -23,6 +24,15 @@ def command(arguments: argparse.Namespace) -> int:
     trace = load_trace(arguments.case)
     folder = Path(arguments.output or Path("results") / trace.name)
     check_folder(folder, arguments.overwrite)
+    with locked(folder) as warning:
+        if warning:
+            say(f"warning: {warning}", sys.stderr)
+        check_folder(folder, arguments.overwrite)  # another run may just have ended
+        return _drive_into(folder, trace)
+
+
+def _drive_into(folder: Path, trace: Trace) -> int:
+    """Drive a point into a folder that is ours alone."""
     began = time.perf_counter()
     history, message = _driven(trace.interface, trace.load, trace.group)
     compared = {}

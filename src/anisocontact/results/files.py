@@ -13,6 +13,7 @@ from anisocontact.errors import InputError
 from anisocontact.whole_files import replacing
 
 __all__ = [
+    "LOCK",
     "Disk",
     "WriteError",
     "check_folder",
@@ -41,6 +42,8 @@ OWN = (
     "checkpoint",
     "run.log",
 )
+#: The file that is locked while a run goes on; a crash leaves it there, unlocked.
+LOCK = ".lock"
 #: Name of a file that is being written.
 _DRAFT = re.compile(r"\..+-\d+\.(csv|html|json|log|npz|png|pvd|pvtp|pvtu|toml|vtp|vtu)")
 #: Files that show that a folder is that of a run.
@@ -115,7 +118,7 @@ def check_folder(folder: Path, overwrite: bool = False) -> None:
             that of a run.
     """
     try:
-        found = sorted(entry.name for entry in folder.iterdir())
+        found = sorted(entry.name for entry in folder.iterdir() if entry.name != LOCK)
     except FileNotFoundError:
         there = next(parent for parent in folder.absolute().parents if parent.exists())
         if not os.access(there, os.W_OK | os.X_OK):

@@ -1,0 +1,69 @@
+"""The files that a case file names, and whether they are what they were."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING
+
+from anisocontact.errors import InputError
+
+if TYPE_CHECKING:
+    from anisocontact.case.read import CaseFile
+
+__all__ = ["check_files", "fingerprints"]
+
+
+def named(file: CaseFile) -> Iterator[tuple[str, str]]:
+    """Place in the case file, and path as it is written there, of each file it names."""
+    mesh = file.case.mesh
+    if mesh.file is not None:
+        yield "mesh.file", mesh.file
+    for name, section in mesh.files.items():
+        yield f"mesh.files.{name}.path", section.path
+    for i, contact in enumerate(file.case.contact):
+        if contact.python is not None:
+            yield f"contact[{i}].python.file", contact.python.file
+
+
+def fingerprints(file: CaseFile) -> dict[str, str]:
+    """What the files that a case names contain: meshes, and laws in Python.
+
+    Args:
+        file: The case.
+
+    Returns:
+        SHA-256 of each file, by its path in the case file.
+
+    Raises:
+        InputError: A file is missing or cannot be read.
+    """
+    found: dict[str, str] = {}
+    for place, given in named(file):
+        if given in found:
+            continue
+        try:
+            with file.resolve(given).open("rb") as opened:
+                found[given] = hashlib.file_digest(opened, "sha256").hexdigest()
+        except FileNotFoundError:
+            raise InputError(f"'{given}' given, no such file", place) from None
+        except OSError as error:
+            raise InputError(f"'{given}' cannot be read: {error.strerror}", place) from None
+    return found
+
+
+def check_files(before: Mapping[str, str], file: CaseFile) -> None:
+    """Refuse to go on with files that have become other ones.
+
+    Args:
+        before: Fingerprints of the run that is to go on.
+        file: The case as it is now, with the same paths.
+
+    Raises:
+        InputError: Names the first file that has changed.
+    """
+    now = fingerprints(file)
+    for place, given in named(file):
+        if now[given] != before[given]:
+            text = f"'{given}' has changed since the run that is to go on began"
+            raise InputError(f"{text}: run without --restart", place)

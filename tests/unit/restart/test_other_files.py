@@ -1,0 +1,192 @@
+"""A run that goes on needs the files that it began with, and its folder for itself."""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import os
+import signal
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import main
+from anisocontact.errors import InputError
+from anisocontact.results.lock import locked
+
+#: One hexahedron: body "block" with the facets "block.bottom" and "block.top" of unit size.
+MESH = """$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+2 1 "block.bottom"
+2 2 "block.top"
+3 3 "block"
+$EndPhysicalNames
+$Nodes
+8
+1 0 0 0
+2 1 0 0
+3 1 1 0
+4 0 1 0
+5 0 0 1
+6 1 0 1
+7 1 1 1
+8 0 1 1
+$EndNodes
+$Elements
+3
+1 3 2 1 1 4 3 2 1
+2 3 2 2 2 5 6 7 8
+3 5 2 3 3 1 2 3 4 5 6 7 8
+$EndElements
+"""
+
+
+@pytest.fixture(params=["file", "files"])
+def meshed(request: pytest.FixtureRequest, case: Path) -> Path:
+    """The case with a mesh file beside it, named in either way."""
+    (case.parent / "block.msh").write_text(MESH)
+    text = case.read_text()
+    table = {
+        "file": '[mesh]\nfile = "block.msh"\n',
+        "files": '[mesh.files.b]\npath = "block.msh"\n',
+    }
+    first, last = text.index("[mesh.box.block]"), text.index("[material.block]")
+    case.write_text(text[:first] + table[request.param] + text[last:])
+    return case
+
+
+def run(case: Path, *more: str) -> int:
+    return main(["run", str(case), "-o", str(case.parent / "out"), *more])
+
+
+def test_restart_with_another_mesh(meshed: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A mesh file of which anything has changed is refused by its name, and before it is read.
+
+    Here the facets get another order: the same nodes, the same positions.
+    """
+    assert run(meshed) == 0
+    assert run(meshed, "--restart") == 0
+    capsys.readouterr()
+    mesh = meshed.parent / "block.msh"
+    mesh.write_text(MESH.replace("1 4 3 2 1", "1 3 2 1 4"))
+    assert run(meshed, "--restart") == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: mesh.file")
+    assert "'block.msh' has changed since the run that is to go on began" in error
+    mesh.unlink()
+    assert run(meshed, "--restart") == 2
+    assert "'block.msh' given, no such file" in capsys.readouterr().err
+    mesh.write_text(MESH)
+    assert run(meshed, "--restart") == 0
+
+
+#: Keeps a folder until it is told to end, or killed.
+HOLDER = """
+import sys
+from pathlib import Path
+from anisocontact.results.lock import locked
+with locked(Path(sys.argv[1])) as warning:
+    print("locked" + warning, flush=True)
+    sys.stdin.read()
+"""
+
+
+def holder(folder: Path) -> subprocess.Popen[str]:
+    command = [sys.executable, "-c", HOLDER, str(folder)]
+    pipe = subprocess.PIPE
+    other = subprocess.Popen(command, stdin=pipe, stdout=pipe, text=True)
+    assert other.stdout is not None
+    assert other.stdout.readline() == "locked\n"
+    return other
+
+
+@pytest.mark.parametrize("more", [[], ["--overwrite"], ["--restart"]])
+def test_two_runs_into_one_folder(
+    case: Path, more: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The second one is refused in a line that names the first, whatever it wants to do there.
+
+    A crash of the first one frees the folder.
+    """
+    out = case.parent / "out"
+    if more:
+        assert run(case) == 0
+    files = {path.name for path in out.iterdir()} if more else set()
+    with holder(out) as other:
+        capsys.readouterr()
+        assert run(case, *more) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert line.startswith(
+            f"error: results folder '{out}' is in use by process {other.pid} on "
+        )
+        other.send_signal(signal.SIGKILL)
+    assert {path.name for path in out.iterdir()} == files | {".lock"}
+    assert run(case, *more) == 0
+    assert ".lock" not in {path.name for path in out.iterdir()}
+
+
+def test_a_trace_has_its_folder_for_itself(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case = Path(__file__).parents[3] / "examples" / "point" / "sledge.toml"
+    arguments = ["trace", str(case), "-o", str(tmp_path / "out")]
+    with holder(tmp_path / "out") as other:
+        assert main(arguments) == 2
+        assert f"is in use by process {other.pid} on " in capsys.readouterr().err
+        other.communicate()
+    assert main(arguments) == 0
+
+
+def test_a_folder_that_was_made_for_nothing_goes_again(tmp_path: Path) -> None:
+    with locked(tmp_path / "a" / "b"):
+        assert (tmp_path / "a" / "b" / ".lock").is_file()
+    assert not (tmp_path / "a").exists()
+    with locked(tmp_path / "a" / "b"):
+        (tmp_path / "a" / "mine").touch()
+    assert [path.name for path in (tmp_path / "a").iterdir()] == ["mine"]
+
+
+def test_one_after_the_other_from_many(tmp_path: Path) -> None:
+    """However runs follow each other, there is never more than one: the file comes and goes."""
+    inside, most, got = [0], [0], [0]
+
+    def enter() -> None:
+        for _ in range(200):
+            try:
+                with locked(tmp_path):
+                    inside[0] += 1
+                    most[0] = max(most[0], inside[0])
+                    got[0] += 1
+                    inside[0] -= 1
+            except InputError:
+                pass
+
+    threads = [threading.Thread(target=enter) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert most == [1]
+    assert got[0] > 0
+
+
+def test_a_file_system_without_locks(
+    case: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It is said, and the run goes on."""
+
+    def no_locks(number: int, operation: int) -> None:
+        raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
+
+    monkeypatch.setattr(fcntl, "flock", no_locks)
+    assert run(case) == 0
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"warning: results folder '{case.parent / 'out'}' cannot be locked")
