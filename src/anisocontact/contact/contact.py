@@ -18,15 +18,19 @@ from anisocontact.contact.quadrature import Surfaced, chosen_degree, facet_quadr
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.contact.semismooth import Base, Semismooth
 from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.whereabouts import Seen, Whereabouts, turned
 from anisocontact.errors import InputError
 from anisocontact.interface import Interface, Response, SlaveSurface, State
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
 from anisocontact.python_law import PythonInterface, common
 from anisocontact.rigid import MovingInterface, RigidBody
+from anisocontact.surfaces import PROJECTION_STATUS
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
+
+_INTERIOR = PROJECTION_STATUS.index("interior")
 
 #: What answers for the surface and its laws.
 type Master = Interface | PythonInterface | MovingInterface
@@ -101,7 +105,7 @@ class Contact(ContactRecord):
         self._moved: Surfaced | None = None
         self._base: Base | None = None
         points = self.quadrature.reference
-        self._facets = facets
+        self._facets, self._size = facets, facet_size(model, slave)
         self._carries = isinstance(interface, Interface) and interface.takes_slave()
         self._slave = self._surface(self.quadrature.tangents)
         state = adjusted(interface.initial_state(points), adjust)
@@ -118,7 +122,7 @@ class Contact(ContactRecord):
         if augmentation is not None and body is not None and body.free:
             # the body is as compliant as its springs, which penalties of `newton` do not know of
             augmentation = augmentation.in_cycles_unless_told()
-        self._augment(augmentation, facet_size(model, slave), interface)
+        self._augment(augmentation, self._size, interface)
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
@@ -200,6 +204,44 @@ class Contact(ContactRecord):
     def outward(self) -> Floats:
         """Outward normals of the slave at its points in the reference configuration, (n, 3)."""
         return self.quadrature.outward(self.space, self._facets)
+
+    def whereabouts(self, u: Floats) -> Whereabouts:
+        """Where the points of the trial are beside the surface, in its frame.
+
+        Args:
+            u: Displacement of the local nodes in the trial, (nodes, 3), length.
+        """
+        trial, tangents = self.current, self.quadrature.tangents.reshape(-1, 2, 3)
+        moved = self.quadrature.moved(u).tangents.reshape(-1, 2, 3)
+        outward = turned(self.outward(), tangents, moved)
+        before, now, normal = self.points, trial.points, trial.response.normal
+        if self.body is not None:
+            before, now = self.body.to_body(before, accepted=True), self.body.to_body(now)
+            turn = self.body.trial.rotation
+            outward, normal = outward @ turn, normal @ turn
+        everywhere = np.ones(len(now), dtype=bool)
+        return Whereabouts(
+            before=before,
+            now=now,
+            outward=outward,
+            closed=trial.response.status != 0,
+            located=everywhere,
+            had=everywhere,
+            normal=normal,
+            areas=trial.areas,
+            size=self._size,
+            reach=np.inf,
+            look=self._look,
+            comm=self._comm,
+        )
+
+    def look(self, x: Floats) -> Seen:
+        """The surface where it is now from points of space, (n, 3), length."""
+        return self._look(x if self.body is None else self.body.to_body(x))
+
+    def _look(self, x: Floats, _: object = None) -> Seen:
+        hit = self.interface.surface.project(x)
+        return Seen(hit.status == _INTERIOR, hit.gap, hit.dgap_dx)
 
     def probe(
         self, laws: tuple[NormalLaw, Adhesion, Friction], state: State

@@ -23,6 +23,7 @@ from anisocontact.contact.semismooth import Base, Semismooth
 from anisocontact.contact.sides import check_sides, initial_state, located, make_sides
 from anisocontact.contact.transfer import Couplings, Transfer
 from anisocontact.contact.transfer_work import transfer_work
+from anisocontact.contact.whereabouts import Seen, Whereabouts, carried
 from anisocontact.errors import InputError
 from anisocontact.facets import FacetProjections
 from anisocontact.interface import PairLaw, Response, State
@@ -361,6 +362,35 @@ class FacetContact(ContactRecord):
     def outward(self) -> Floats:
         """Outward normals of the slave at its points in the reference configuration, (n, 3)."""
         return self._points.outward
+
+    def whereabouts(self, u: Floats) -> Whereabouts:
+        """Where the points of the trial are beside the master, in its frame; collective.
+
+        Args:
+            u: Displacement of the local nodes in the trial, (nodes, 3), length.
+        """
+        now = self._sides.reference + self._gathered.everywhere(u)
+        then = self._gathered.everywhere(self._committed[0])
+        nodes = np.unique(self._sides.master.nodes)
+        trial = self.current
+        return Whereabouts(
+            before=carried(self.points, then[nodes], now[nodes]),
+            now=trial.points,
+            outward=self._points.outward_at(now),
+            closed=trial.response.status != 0,
+            located=self.located(trial.response.state),
+            had=self.located(self.state),
+            normal=trial.response.normal,
+            areas=trial.areas,
+            size=self._points.size,
+            reach=self.reach,
+            look=self._sides.look,
+            comm=self._comm,
+        )
+
+    def look(self, x: Floats) -> Seen:
+        """The master where it is now from points of space, (n, 3), length."""
+        return self._sides.look(x)
 
     def probe(
         self, laws: tuple[NormalLaw, Adhesion, Friction], state: State

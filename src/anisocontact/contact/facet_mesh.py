@@ -244,7 +244,7 @@ class SlavePoints:
         self.weight = share * (weights if current_area else weights * stretch)
         sign = np.where(np.repeat(facets.flip, q), -1.0, 1.0)
         cross = np.cross(tangents[:, 0], tangents[:, 1])
-        self.outward = (sign / stretch)[:, None] * cross
+        self.outward, self._sign = (sign / stretch)[:, None] * cross, sign
         area, facets_in_all = comm.allreduce(np.array([(weights * stretch).sum(), count]))
         self.size = float(np.sqrt(area / max(facets_in_all, 1.0)))
 
@@ -259,3 +259,10 @@ class SlavePoints:
     def positions(self, now: Floats) -> Floats:
         """Positions of the points, (n, 3), from those of the nodes, (nodes, 3), length."""
         return np.asarray(self._interpolation @ now[: self._interpolation.shape[1]])
+
+    def outward_at(self, now: Floats) -> Floats:
+        """Outward normals, (n, 3), from the positions of the nodes, (nodes, 3), length."""
+        tangents = np.einsum("pkd,pki->pdi", self.gradient, now[self.nodes])
+        cross = self._sign[:, None] * np.cross(tangents[:, 0], tangents[:, 1])
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray(cross / np.linalg.norm(cross, axis=1)[:, None])

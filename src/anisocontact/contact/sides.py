@@ -23,6 +23,7 @@ from anisocontact.contact.facet_mesh import (
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.overlap import largest_radius
 from anisocontact.contact.record import Snapshot
+from anisocontact.contact.whereabouts import Seen
 from anisocontact.errors import InputError
 from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSets, FacetSurface
 from anisocontact.interface import State
@@ -87,6 +88,19 @@ class Sides:
         """
         self.surface.update(now)
         return self.surface.project(self.points.positions(now), hint, self.reach, self.excluded)
+
+    def look(self, x: Floats, which: npt.NDArray[np.int64] | None = None) -> Seen:
+        """The master where it is now from points.
+
+        Args:
+            x: Points, (n, 3), length.
+            which: Their numbers, where they are slave points: what these cannot meet is not seen.
+        """
+        if self.excluded is None or which is None:
+            hit = self.surface.project(x)
+        else:
+            hit = self.surface.project(x, None, self.reach, self.excluded.take(which))
+        return Seen(located(hit), np.nan_to_num(hit.gap), np.nan_to_num(hit.normal))
 
     def lost(self, before: State, now: Snapshot) -> Floats:
         """Points that had a facet below them and now lie beyond the border, (n, 3)."""

@@ -150,16 +150,19 @@ class RigidBody:
         lever = np.linalg.norm(points - self.position, axis=1).max(initial=0.0)
         return float(np.linalg.norm(shift) + turn * lever)
 
-    def to_body(self, points: Floats) -> Floats:
+    def to_body(self, points: Floats, accepted: bool = False) -> Floats:
         """Points of space where the body has them in its first configuration, (n, 3).
 
         Args:
             points: Points in space, (n, 3), length.
+            accepted: Whether with the body in its accepted pose, not at its trial.
 
         Returns:
             The points in the body, (n, 3), length.
         """
-        return np.asarray((points - self.position) @ self.trial.rotation + self.reference)
+        pose = self.accepted if accepted else self.trial
+        place = self.reference + pose.translation
+        return np.asarray((points - place) @ pose.rotation + self.reference)
 
     def out_of_body(self, points: Floats) -> Floats:
         """Points of the first configuration where they are in space, (n, 3).

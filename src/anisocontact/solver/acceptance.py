@@ -65,8 +65,14 @@ def turned_too_far(problem: Problem, x: Vec) -> Refusal | None:
     return Refusal(reason, final=before is not None and before.angle > WARNED)
 
 
+def behind_a_master(problem: Problem, x: Vec) -> Refusal | None:
+    """Refuse states in which a body is behind its master."""
+    found = problem.behind_a_master(x)
+    return Refusal(f"contact {found.contact!r}: {found.why}", (found,)) if found else None
+
+
 #: All checks, in the order in which they are asked.
-CHECKS: tuple[Check, ...] = (cells_inside_out, contact_lets_go, turned_too_far)
+CHECKS: tuple[Check, ...] = (cells_inside_out, behind_a_master, contact_lets_go, turned_too_far)
 
 
 def refused(problem: Problem, x: Vec) -> Refusal | None:

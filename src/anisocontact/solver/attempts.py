@@ -16,7 +16,7 @@ from anisocontact.solver.watch import StatusWatch
 #: Smallest share of a correction that is taken while the status of points alternates.
 LEAST_SHARE = 1.0 / 64.0
 #: Kinds of culprits, the gravest first.
-GRAVITY = ("law", "inverted", "flipping", "residual")
+GRAVITY = ("law", "inverted", "flipping", "behind", "residual")
 
 
 @dataclass(frozen=True)

@@ -33,6 +33,7 @@ class FreeBody:
         contacts: Contacts that can hold it.
         size: How far stabilisation lets it move at once: a facet, length.
         motions: Its motions that no support holds, (k, 6).
+        left: Those of them that springs do not hold either, (j, 6).
         springs: Stiffness of springs and elastic supports in them, (k, k), force/length; None for a
             body without.
         least: Stiffness that counts as none, force/length.
@@ -48,6 +49,7 @@ class FreeBody:
     contacts: Sequence[AnyContact]
     size: float
     motions: Floats
+    left: Floats
     springs: Floats | None
     least: float
     nodes: Ints = field(init=False)
@@ -65,6 +67,10 @@ class FreeBody:
         if where is not None:  # on one process
             self.nodes = self.nodes[where[self.nodes]]
             self.count = max(len(self.nodes), 1)
+
+    def moves_along(self, direction: Floats) -> float:
+        """Share of a unit translation in its motions that only contact can hold, 0 to 1."""
+        return float(np.linalg.norm(self.left[:, :3] @ direction))
 
     def may_hold(self) -> bool:
         """Whether contact is likely to hold it without stabilisation, from where it is now.

@@ -17,6 +17,7 @@ from anisocontact.solver.constraints import Constraints
 from anisocontact.solver.layout import Layout
 from anisocontact.solver.loads import Loads
 from anisocontact.solver.rigid import RigidBodies
+from anisocontact.solver.sides_kept import SidesKept
 from anisocontact.solver.stabilisation import Stabilisation
 from anisocontact.solver.supports import Supports
 
@@ -35,6 +36,7 @@ class Parts:
         loads: Loads on the bodies.
         constraints: Ties and symmetry planes.
         stabilisation: Springs that keep bodies in reach.
+        sides: Finds bodies behind their masters.
         support_scale: Force for a unit of length in the rows of given unknowns, force/length.
     """
 
@@ -47,6 +49,7 @@ class Parts:
     loads: Loads
     constraints: Constraints
     stabilisation: Stabilisation
+    sides: SidesKept
     support_scale: float
 
 
@@ -85,6 +88,7 @@ def make_parts(
         loads=loads,
         constraints=constraints,
         stabilisation=Stabilisation(model, contacts, scale, attachments, holders, stabilised),
+        sides=SidesKept(contacts, model),
         support_scale=scale,
     )
 

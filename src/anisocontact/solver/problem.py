@@ -27,7 +27,7 @@ from anisocontact.solver.persistent import Persistent, under
 from anisocontact.solver.reduction import Reduction
 from anisocontact.solver.rotations import Rotations, Turned
 from anisocontact.solver.step_begin import begin_step, contact_must_hold
-from anisocontact.solver.steps import Step
+from anisocontact.solver.steps import Culprit, Step
 from anisocontact.solver.tangent import Tangent, led_unknowns
 
 Floats = npt.NDArray[np.float64]
@@ -274,10 +274,18 @@ class Problem(Following):
         """Why contact does not hold the free bodies in equilibrium; empty if it does."""
         if not self.stabilisation.watches:
             return ""
+        return self.stabilisation.lets_go(self._nodal_at(x))
+
+    def behind_a_master(self, x: Vec) -> Culprit | None:
+        """A body that is behind its master in equilibrium; None if all are where they may be."""
+        return self._parts.sides.objection(self._nodal_at(x), self.reduction is None)
+
+    def _nodal_at(self, x: Vec) -> Floats:
+        """Displacement of the local nodes, true for all that can be touched, (nodes, 3), length."""
         if self.reduction is not None:
-            return self.stabilisation.lets_go(self.layout.split(x)[0])
+            return self.layout.split(x)[0]
         self._evaluate_at(x)
-        return self.stabilisation.lets_go(self._bodies.nodal)
+        return self._bodies.nodal
 
     def turned(self, x: Vec) -> dict[str, Turned]:
         """How far bodies at small strain have turned in a state in equilibrium, by name."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from typing import NoReturn
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from anisocontact.solver.interior import PENDING
 from anisocontact.solver.led_turns import led_turns
 from anisocontact.solver.loads import check_steps
 from anisocontact.solver.newton import NewtonResult, OptionValue
+from anisocontact.solver.overload import too_much_load
 from anisocontact.solver.pace import Pace
 from anisocontact.solver.persistent import Arrays, Persistent, under
 from anisocontact.solver.problem import Problem
@@ -233,11 +235,7 @@ class Solver:
         pace, result = self.place.pace, outcome.result
         tried, cuts = pace.part, pace.cuts
         if outcome.final or not pace.cut():
-            points = np.array([c.position for c in outcome.culprits if c.kind == "law"])
-            text = f"{cuts} cuts, the last part was {tried:.2g} of the increment" if cuts else ""
-            raise StoppedError(
-                step.name, pace.increment, result.reason, outcome.culprits[:NAMED], points, text
-            )
+            self._stop(step, outcome, f"{cuts} cuts, the last part was {tried:.2g}" if cuts else "")
         if self._on_cut is not None:
             self._on_cut(
                 Cut(
@@ -252,6 +250,17 @@ class Solver:
                     culprits=outcome.culprits[:NAMED],
                 )
             )
+
+    def _stop(self, step: Step, outcome: Outcome, tried: str) -> NoReturn:
+        """Say why an increment has no solution."""
+        increment, culprits = self.place.pace.increment, outcome.culprits
+        reason = too_much_load(self.problem, increment / step.increments)
+        if reason:
+            culprits = ()
+        points = np.array([c.position for c in culprits if c.kind == "law"])
+        text = f"{tried} of the increment" if tried else ""
+        reason = reason or outcome.result.reason
+        raise StoppedError(step.name, increment, reason, culprits[:NAMED], points, text)
 
     def _report(self, iteration: int, residual: float) -> None:
         self._watch.note()

@@ -117,6 +117,11 @@ class Stabilisation:
         return bool(self._loose)
 
     @property
+    def loose(self) -> list[FreeBody]:
+        """Bodies that only contact can hold, with springs or without."""
+        return self._loose
+
+    @property
     def trusts(self) -> bool:
         """Whether contact alone is to hold a body in this attempt."""
         return any(free.trusted for free in self._free)
@@ -158,7 +163,7 @@ class Stabilisation:
         for i, (body, modes) in enumerate(zip(self._bodies, loose, strict=True)):
             if len(modes) and self._of(body):
                 own = self._springs[6 * i : 6 * i + 6, 6 * i : 6 * i + 6]
-                self._add(body, named(modes), free[i], own, step, now)
+                self._add(body, modes, free[i], own, step, now)
 
     def _unheld(
         self,
@@ -352,15 +357,15 @@ class Stabilisation:
             self.flow.stop()
 
     def _add(
-        self, body: Body, modes: str, motions: Floats, springs: Floats, step: str, now: bool
+        self, body: Body, left: Floats, motions: Floats, springs: Floats, step: str, now: bool
     ) -> None:
-        contacts = self._of(body)
+        contacts, modes = self._of(body), named(left)
         field = f"step {step!r}"
         text = f"body {body.name!r} is free to move: {modes}"
         size = min(facet_size(self._model, c.slave) for c in contacts)
         sprung = motions @ springs @ motions.T if self._sprung & set(body.parts) else None
         least = NO_STIFFNESS * self._scale
-        free = FreeBody(body, modes, contacts, size, motions, sprung, least)
+        free = FreeBody(body, modes, contacts, size, motions, left, sprung, least)
         self._loose.append(free)
         if not self.enabled:
             if now and not free.touched():

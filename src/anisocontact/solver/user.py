@@ -27,6 +27,7 @@ from anisocontact.solver.balance import ROUND_OFF
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.following import Following
 from anisocontact.solver.newton import Newton, OptionValue
+from anisocontact.solver.sides_kept import SidesKept
 
 Floats = npt.NDArray[np.float64]
 
@@ -84,6 +85,7 @@ class ContactProblem(Following):
                     f"rigid body {body.name!r} is free; a script can only move it", "contacts"
                 )
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
+        self._sides = SidesKept(contacts)
         self.force_scale = self.round_off = 0.0
         trial = ufl.TrialFunction(space)
         tangent = ufl.derivative(F, u, trial) if J is None else J
@@ -111,7 +113,8 @@ class ContactProblem(Following):
             Number of Newton iterations.
 
         Raises:
-            RuntimeError: No convergence; `u` and the history are as before.
+            RuntimeError: No convergence, or a body is behind its master; `u` and the history are as
+                before.
             InputError: The time increment is not positive.
         """
         if not dt > 0.0:
@@ -121,12 +124,16 @@ class ContactProblem(Following):
         x = self.new_vector()
         x.array[:] = before[: self._owned]
         result = self.newton.solve(x)
-        if result.reason:
+        reason = result.reason
+        if not reason:
+            self.evaluate(x)
+            found = self._sides.objection(self.u.x.array.reshape(-1, 3))
+            reason = f"contact {found.contact!r}: {found.why}" if found else ""
+        if reason:
             self.u.x.array[:] = before
             for contact in self.contacts:
                 contact.roll_back()
-            raise RuntimeError(result.reason)
-        self.evaluate(x)
+            raise RuntimeError(reason)
         for part in (*self.contacts, *self._bodies):
             part.commit()
         return result.iterations

@@ -1,0 +1,147 @@
+"""Bodies are where they may be: in front of their masters.
+
+Balance of forces does not say so. A block that has turned over hangs below its plane by its bottom;
+one that has been thrown through a thin plate is free of it. Such states are found here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact import AnyContact, Contact, FacetContact
+from anisocontact.mesh import Model
+from anisocontact.solver.free_modes import Body, bodies
+from anisocontact.solver.steps import Culprit
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+type Place = tuple[float, float, float]
+
+#: Most nodes of a body on a rank that are looked at.
+MOST_NODES = 200
+#: Share of them behind the master beyond which a body is behind it.
+MOST_BEHIND = 0.5
+#: Depth over the size of the body that is not penetration of a penalty.
+DEEP = 0.05
+
+
+@dataclass(frozen=True)
+class _Watched:
+    """Nodes of a slave's body that were in front of the master at first.
+
+    Attributes:
+        one: The pass.
+        name: Name of its contact.
+        body: The body; None where slave and master are one.
+        nodes: Nodes of this rank.
+        places: Where they were, (n, 3), length.
+    """
+
+    one: Contact | FacetContact
+    name: str
+    body: Body | None
+    nodes: Ints
+    places: Floats
+
+
+class SidesKept:
+    """Finds bodies that have got behind their masters.
+
+    Args:
+        contacts: The contacts, in the reference configuration.
+        model: Mesh of the bodies; where there is none slave points alone are looked at.
+    """
+
+    def __init__(self, contacts: Sequence[AnyContact], model: Model | None = None) -> None:
+        groups = [] if model is None else bodies(model)
+        self._watched = [
+            _alone(one, contact.name)
+            if model is None
+            else _watched(model, one, contact.name, groups)
+            for contact in contacts
+            for one in ((contact,) if isinstance(contact, Contact) else contact.passes)
+        ]
+
+    def objection(self, u: Floats, whole: bool = True) -> Culprit | None:
+        """The first body that is not where it may be, the same on all ranks; None if all are.
+
+        Args:
+            u: Displacement of the local nodes in the state evaluated last, (nodes, 3), length.
+            whole: Whether it is true for all nodes, not for those that can be touched alone.
+        """
+        for watched in self._watched:
+            found = list(self._objections(watched, u, whole))
+            if found:
+                return found[0]
+        return None
+
+    def _objections(self, watched: _Watched, u: Floats, whole: bool) -> Iterator[Culprit]:
+        """All of them, as every rank has to ask all."""
+        where = watched.one.whereabouts(u)
+        comm = where.comm
+        name = watched.one.slave.partition(".")[0]
+        behind, depth, place = self._behind(watched, u if whole else None)
+        pressed = where.from_behind()
+        gone, below = where.through()
+        far = f", the farthest of it {depth:.3g} behind" if depth > 0.0 else ""
+        counts = np.array([np.count_nonzero(pressed), len(gone)])
+        turned, through = (int(n) for n in comm.allreduce(counts))
+        if turned:
+            text = f"body {name!r} has turned over: {turned} slave points are pressed from behind"
+            yield self._culprit(watched, text + far, np.flatnonzero(pressed))
+        if through:
+            deepest = max(comm.allgather(float(below.max(initial=0.0))))
+            text = f"body {name!r} has gone through its master: {through} slave points"
+            yield self._culprit(watched, f"{text} are up to {deepest:.3g} behind it", gone)
+        # out of contact a body may be anywhere that it has not come to through the master
+        if comm.allreduce(int(np.count_nonzero(where.closed))) and behind > MOST_BEHIND:
+            text = f"body {name!r} is behind its master with {behind:.0%} of it"
+            yield Culprit("behind", place, text + far, watched.name)
+
+    def _behind(self, watched: _Watched, u: Floats | None) -> tuple[float, float, Place]:
+        """Share of a body behind the master that was in front of it, how far at most, and where."""
+        if watched.body is None or u is None:
+            return 0.0, 0.0, (0.0, 0.0, 0.0)
+        comm = watched.one.space.mesh.comm
+        x = watched.places + u[watched.nodes]
+        seen = watched.one.look(x)
+        depth = np.where(seen.on, -seen.gap, 0.0)
+        behind = depth > DEEP * watched.body.size
+        count, total = comm.allreduce(np.array([float(behind.sum()), float(len(behind))]))
+        deepest = (0.0, [0.0, 0.0, 0.0])
+        if len(depth):
+            first = int(np.argmax(depth))
+            deepest = (float(depth[first]), x[first].tolist())
+        most, (x0, x1, x2) = max(comm.allgather(deepest))
+        return float(count / max(total, 1.0)), most, (x0, x1, x2)
+
+    def _culprit(self, watched: _Watched, why: str, points: npt.NDArray[np.int64]) -> Culprit:
+        """With the first of the points over all ranks."""
+        one, local = watched.one, None
+        if len(points):
+            first = int(points[0])
+            x, y, z = one.current.points[first].tolist()
+            local = ((x, y, z), first, int(one.facet_of_point[first]))
+        known = [place for place in one.space.mesh.comm.allgather(local) if place is not None]
+        position, point, facet = known[0]
+        return Culprit("behind", position, why, watched.name, point, facet)
+
+
+def _alone(one: Contact | FacetContact, name: str) -> _Watched:
+    return _Watched(one, name, None, np.zeros(0, dtype=np.int64), np.zeros((0, 3)))
+
+
+def _watched(model: Model, one: Contact | FacetContact, name: str, groups: list[Body]) -> _Watched:
+    places = np.asarray(model.space.tabulate_dof_coordinates())
+    slave = model.body_of(one.slave)
+    body = next(group for group in groups if slave in group.parts)
+    if isinstance(one, FacetContact) and model.body_of(one.master) in body.parts:
+        return _alone(one, name)
+    nodes = body.nodes[:: max(1, len(body.nodes) // MOST_NODES)]
+    seen = one.look(places[nodes])
+    nodes = nodes[seen.on & (seen.gap > -DEEP * body.size)]
+    return _Watched(one, name, body, nodes, places[nodes])

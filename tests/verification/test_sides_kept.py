@@ -1,0 +1,266 @@
+"""Bodies stay in front of their masters; loads that friction cannot hold are named."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from anisocontact._fenicsx import Vec
+from anisocontact.anisotropy import make_directions
+from anisocontact.bulk import make_material
+from anisocontact.contact import Contact, FacetContact, TwoHalfPass
+from anisocontact.interface import Interface, PairLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.limits import Limits
+from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.rigid import RigidBody
+from anisocontact.solver import Problem, Solver, Step, StoppedError
+from anisocontact.solver.newton import Newton, NewtonResult
+from anisocontact.surfaces import make_surface
+
+type Floats = np.ndarray[Any, np.dtype[np.float64]]
+type Move = Callable[[Floats], Floats]
+
+MU, ANGLE = (0.2, 0.4), np.radians(30.0)
+CLAMP = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
+
+
+def _laws(unit: float = 1.0) -> tuple[NormalLaw, Adhesion, Friction]:
+    axes = make_directions("constant", vector=(1, 0, 0), angle=ANGLE)
+    return (
+        NormalLaw(penalty=1e4 / unit),
+        Adhesion(stiffness=(1e4 / unit, 1e4 / unit)),
+        Friction(coefficients=MU, directions=axes),
+    )
+
+
+def _problem(master: str, unit: float = 1.0, cell: str = "hexahedron", order: int = 1) -> Problem:
+    """A block of unit size that stands at z = 0 on a master of this kind."""
+    size = (unit, unit, unit)
+    boxes = {"block": BoxSpec((0, 0, 0), size, (2, 2, 2), cell, order)}
+    meshed = master.startswith("plate")
+    thick = 0.05 * unit
+    if meshed:
+        corner = (-unit, -unit, -thick)
+        boxes["base"] = BoxSpec(corner, (3 * unit, 3 * unit, thick), (6, 6, 1), cell, order)
+    model = build_box(boxes)
+    rubber = make_material("neo-hookean", E=1000.0, nu=0.3)
+    contact = _contact(model, master, unit)
+    return Problem(model, dict.fromkeys(boxes, rubber), [contact])
+
+
+def _contact(model: Model, master: str, unit: float) -> Contact | FacetContact | TwoHalfPass:
+    laws = _laws(unit)
+    if master == "plate":
+        return FacetContact(model, "block.bottom", "base.top", law=PairLaw(*laws))
+    if master == "plate from both sides":
+        return TwoHalfPass(model, "block.bottom", "base.top", law=PairLaw(*laws))
+    if master == "plane":
+        surface = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        return Contact(model, "block.bottom", Interface(surface, *laws))
+    centre = (0.5 * unit, 0.5 * unit, -0.4 * unit)
+    roll = make_surface("cylinder", point=centre, axis=(0, 1, 0), radius=0.4 * unit)
+    body = RigidBody("roll", centre) if master == "rigid roll" else None
+    law = Interface(roll, *_laws(unit)[:2], Friction(coefficients=0.3))
+    return Contact(model, "block.bottom", law, body=body)
+
+
+def _state(problem: Problem, move: Move) -> Vec:
+    """All unknowns with the block moved and the rest where it was."""
+    x = problem.new_vector()
+    places = problem.model.space.tabulate_dof_coordinates()
+    block = places[:, 2] > -1e-9 * np.ptp(places[:, 2])
+    if "base" in problem.model.body_names():
+        base = problem.model.space.dofmap.list[problem.model.cells("base")]
+        block[np.unique(base)] = False
+    u = np.zeros_like(places)
+    u[block] = move(places[block]) - places[block]
+    x.array[:] = u.reshape(-1)
+    return x
+
+
+def _said(problem: Problem, move: Move) -> str:
+    x = _state(problem, move)
+    problem.begin(Step("any", 1, CLAMP if "base" in problem.model.body_names() else {}))
+    problem.set_level(1.0, 1.0)
+    found = problem.behind_a_master(x)
+    problem.roll_back()
+    return "" if found is None else f"{found.contact}: {found.why}"
+
+
+def _turned(degrees: float, unit: float = 1.0, sink: float = 1e-3) -> Move:
+    """Turned about the line y along one side of the bottom, and pressed in a little."""
+
+    def move(x: Floats) -> Floats:
+        turn = Rotation.from_rotvec([0.0, np.radians(degrees), 0.0])
+        edge = np.array([unit, 0.0, 0.0])
+        return np.asarray(turn.apply(x - edge) + edge - [0.0, 0.0, sink * unit])
+
+    return move
+
+
+def _shifted(*by: float) -> Move:
+    return lambda x: x + np.array(by)
+
+
+MASTERS = ("plane", "plate", "plate from both sides")
+
+
+@pytest.mark.parametrize("master", MASTERS)
+@pytest.mark.parametrize("unit", [1.0, 1e6])
+def test_a_block_that_has_turned_over(master: str, unit: float) -> None:
+    """Upside down below its master, with the slave's facets pressed from behind.
+
+    Requirement: a state in balance of this kind is none; it is told with body, contact and how far
+    behind. Source: a face in contact faces its master. The block is as high as one unit.
+    """
+    problem = _problem(master, unit)
+
+    def over(x: Floats) -> Floats:
+        return np.asarray(x * [1.0, -1.0, -1.0] + [0.0, unit, 1e-3 * unit * -1.0])
+
+    said = _said(problem, over)
+    assert "block.bottom: body 'block' has turned over: " in said
+    assert f"the farthest of it {unit:.3g} behind" in said
+
+
+@pytest.mark.parametrize("master", MASTERS)
+def test_a_block_that_has_sunk_in(master: str) -> None:
+    """Pressed into its master by 0.7 of its height, against a penalty that holds it there."""
+    said = _said(_problem(master), _shifted(0, 0, -0.7))
+    assert "body 'block' is behind its master with 67% of it, the farthest of it 0.7 behind" in said
+
+
+@pytest.mark.parametrize("master", MASTERS)
+def test_a_block_that_swings_through(master: str) -> None:
+    """Tipped over an edge by 150 degrees: it hangs by that edge, its bottom above the master."""
+    said = _said(_problem(master), _turned(150.0, sink=0.2))
+    assert "body 'block' has turned over: " in said
+
+
+@pytest.mark.parametrize("master", [*MASTERS[1:], "roll", "rigid roll"])
+@pytest.mark.parametrize(("cell", "order"), [("hexahedron", 1), ("tetrahedron", 2)])
+def test_a_block_that_has_gone_through(master: str, cell: str, order: int) -> None:
+    """In one increment from above a thin plate, or a roll, to below: free of it on the other side.
+
+    Requirement: the way of the points tells it, the closest point does not.
+    """
+    problem = _problem(master, cell=cell, order=order)
+    assert "body 'block' has gone through its master: " in _said(problem, _shifted(0, 0, -2.5))
+
+
+def _around(degrees: float) -> Move:
+    """Turned about the axis of the roll."""
+
+    def move(x: Floats) -> Floats:
+        turn = Rotation.from_rotvec([0.0, np.radians(degrees), 0.0])
+        axis = np.array([0.5, 0.0, -0.4])
+        return np.asarray(turn.apply(x - axis) + axis)
+
+    return move
+
+
+ALLOWED: dict[str, tuple[tuple[str, ...], Move]] = {
+    "pressed": (MASTERS, _shifted(0, 0, -0.01)),
+    "lifted": (MASTERS, _shifted(0, 0, 3.0)),
+    "tipped": (MASTERS, _turned(40.0)),
+    "on its side": (MASTERS, _turned(89.0, sink=-1e-3)),
+    "over an edge of the plate": (MASTERS[1:], _shifted(1.6, 0, -1e-3)),
+    "beside the plate": (MASTERS[1:], _shifted(2.5, 0, -1e-3)),
+    "around the roll": (("roll", "rigid roll"), _around(170.0)),
+    "around it backwards": (("roll", "rigid roll"), _around(-100.0)),
+}
+
+
+@pytest.mark.parametrize("name", list(ALLOWED))
+def test_where_a_block_may_be(name: str) -> None:
+    """No alarm where bodies press, lift, tip, hang over an edge, lie beside, or go around."""
+    masters, move = ALLOWED[name]
+    for master in masters:
+        assert _said(_problem(master), move) == ""
+
+
+def test_beneath_the_plate_by_the_way_around() -> None:
+    """Off the edge, down beside the plate, and beneath it: nothing is touched, nothing is said."""
+    problem = _problem("plate")
+    problem.begin(Step("any", 1, CLAMP))
+    for by in ((2.5, 0, 0.0), (2.5, 0, -2.0), (0, 0, -2.0)):
+        problem.set_level(1.0, 1.0)
+        x = _state(problem, _shifted(*by))
+        assert problem.behind_a_master(x) is None
+        problem.commit(x)
+
+
+@pytest.mark.parametrize("strategy", ["direct", "iterative"])
+def test_a_state_on_the_other_side_is_not_accepted(
+    strategy: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A Newton method that turns the block over and calls that equilibrium: the run stops."""
+    problem = _problem("plane")
+    over = _state(problem, lambda x: x * [1.0, -1.0, -1.0] + [0.0, 1.0, -1e-3]).array.copy()
+
+    def thrown(self: Newton, x: Vec, *_: Any) -> NewtonResult:
+        x.array[:] = over
+        return NewtonResult(1, [0.0], "")
+
+    monkeypatch.setattr(Newton, "solve", thrown)
+    step = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+    said = "contact 'block.bottom': body 'block' has turned over: .* farthest of it 1 behind"
+    with pytest.raises(StoppedError, match=said):
+        list(Solver(problem, [step], limits=Limits(smallest=0.25)).run())
+
+
+def _flat(master: str, law: str, tilt: float) -> tuple[Problem, Rotation]:
+    """A flat free block on a plane or a plate, all of it turned about x."""
+    turn = Rotation.from_rotvec([np.radians(tilt), 0.0, 0.0])
+    boxes = {"block": BoxSpec((0, 0, 0), (1, 1, 0.25), (2, 2, 1))}
+    if master == "plate":
+        boxes["base"] = BoxSpec((-0.7, -0.7, -0.5), (2.4, 2.4, 0.5), (5, 5, 1))
+    model = build_box(boxes)
+    model.mesh.geometry.x[:] = turn.apply(model.mesh.geometry.x)
+    contact: Contact | FacetContact
+    if master == "plate":
+        contact = FacetContact(model, "block.bottom", "base.top", law=PairLaw(*_laws()))
+    else:
+        plane = make_surface("plane", point=(0, 0, 0), normal=turn.apply([0.0, 0.0, 1.0]))
+        contact = Contact(model, "block.bottom", Interface(plane, *_laws()))
+    material = make_material(law, E=1000.0, nu=0.3)
+    return Problem(model, dict.fromkeys(boxes, material), [contact]), turn
+
+
+@pytest.mark.parametrize("law", ["linear-elastic", "neo-hookean"])
+@pytest.mark.parametrize(("master", "tilt"), [("plane", 0.0), ("plane", 60.0), ("plate", 0.0)])
+def test_loads_beyond_friction_are_named(master: str, tilt: float, law: str) -> None:
+    """A free block pressed by 1 and pulled along x by 2, where friction holds 0.22.
+
+    Requirement: the line tells the load of the increment, the direction, and `mu N` along it.
+    Source: `mu` of the friction ellipse along x. The four digits that are shown.
+    """
+    problem, turn = _flat(master, law, tilt)
+    normal = turn.apply([0.0, 0.0, -1.0])
+    press = dict(zip("xyz", normal.tolist(), strict=True))
+    steps = [
+        Step("press", 1, CLAMP if master == "plate" else {}, force={"block.top": press}),
+        Step("pull", 1, force={"block.top": {"x": 2.0}}),
+    ]
+    mu = 1.0 / np.hypot(np.cos(ANGLE) / MU[0], np.sin(ANGLE) / MU[1])
+    with pytest.raises(StoppedError) as error:
+        list(Solver(problem, steps, limits=Limits(smallest=0.25), strategy="direct").run())
+    text = str(error.value)
+    assert "the loads on body 'block' come to 2 along (1, 0, 0), and friction holds " in text
+    assert "no convergence" not in text
+    if master == "plane":
+        assert f"holds {mu:.4g} there at most, {mu:.4g} of the normal force 1:" in text
+
+
+def test_loads_that_friction_holds_are_not_to_blame() -> None:
+    """A run that stops for another reason says that reason."""
+    problem, _ = _flat("plane", "linear-elastic", 0.0)
+    steps = [Step("press", 1, force={"block.top": {"z": -1.0, "x": 0.1}})]
+    with pytest.raises(StoppedError, match="no convergence in 0 Newton iterations"):
+        options = {"snes_max_it": 0}
+        list(Solver(problem, steps, options=options, limits=Limits(smallest=0.5)).run())
