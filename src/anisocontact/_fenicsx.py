@@ -348,7 +348,7 @@ def check_memory(pc: Any) -> None:
             f"the workspace of MUMPS was too small (INFOG(1) = {code})",
             "solver.options = { mat_mumps_icntl_14 = 200 } gives it three times as much",
         )
-    if code in _NO_MEMORY or pc.getFailedReason() == PETSc.PC.FailedReason.OUTMEMORY:
+    if code in _NO_MEMORY or pc.getFailedReason() == PETSc.PC.FailedReason.FACTOR_OUTMEMORY:
         name = f"MUMPS (INFOG(1) = {code})" if mumps else "PETSc"
         raise MachineError(f"{name} had no memory for the factors of a matrix", MEMORY)
 
