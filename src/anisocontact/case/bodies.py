@@ -1,4 +1,4 @@
-"""Tables of the bodies: built-in shapes, gmsh files, and where they stand."""
+"""Tables of the bodies: built-in shapes, mesh files, and where they stand."""
 
 from __future__ import annotations
 
@@ -46,27 +46,27 @@ class Shaped(Placed):
 
 
 class MeshFile(Placed):
-    """Bodies of a gmsh file: its physical volumes; its physical surfaces are facet groups."""
+    """Bodies of a mesh file: its volume groups; its surface groups are facet groups."""
 
-    path: str = Field(description="gmsh file, relative to the case file")
+    path: str = Field(description="mesh file (.msh, .inp), relative to the case file")
     bodies: list[str] | None = Field(
-        None, description="physical volumes to take, all of them if left out"
+        None, description="volume groups to take, all of them if left out"
     )
     rename: dict[str, str] = Field(
-        default_factory=dict, description="physical volume = name of the body, where they differ"
+        default_factory=dict, description="volume group = name of the body, where they differ"
     )
 
 
 class Mesh(Section):
-    """The bodies: from gmsh files, from built-in shapes, or from both."""
+    """The bodies: from mesh files, from built-in shapes, or from both."""
 
     file: str | None = Field(
         None,
-        description="gmsh file, relative to the case file; physical volumes that have a material "
-        "are the bodies, physical surfaces the facet groups",
+        description="mesh file (gmsh's .msh, .inp of Abaqus or CalculiX), relative to the case "
+        "file; volume groups that have a material are the bodies, surface groups the facet groups",
     )
     files: dict[str, MeshFile] = Field(
-        default_factory=dict, description="several gmsh files, each under a name of its own"
+        default_factory=dict, description="several mesh files, each under a name of its own"
     )
 
     def shaped(self) -> dict[str, dict[str, Any]]:

@@ -1,9 +1,11 @@
-"""Meshes with named bodies and facet groups: built-in shapes and gmsh files."""
+"""Meshes with named bodies and facet groups: built-in shapes and mesh files."""
 
-from anisocontact.mesh.build import Body, GmshFile, Source, build_box, build_mesh
+from anisocontact.mesh.build import Body, GmshFile, MeshFile, Source, build_box, build_mesh
 from anisocontact.mesh.gmsh import read_gmsh
+from anisocontact.mesh.inp import read_inp
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.placement import Placement, Rotation
+from anisocontact.mesh.readers import register_reader, whole_reader
 from anisocontact.mesh.shapes import (
     BallSpec,
     BoxSpec,
@@ -14,6 +16,7 @@ from anisocontact.mesh.shapes import (
     make_shape,
     shapes,
 )
+from anisocontact.mesh.whole import WholeMesh
 
 __all__ = [
     "BallSpec",
@@ -22,15 +25,20 @@ __all__ = [
     "CylinderSpec",
     "DomeSpec",
     "GmshFile",
+    "MeshFile",
     "Model",
     "Placement",
     "RingSpec",
     "Rotation",
     "Shape",
     "Source",
+    "WholeMesh",
     "build_box",
     "build_mesh",
     "make_shape",
     "read_gmsh",
+    "read_inp",
+    "register_reader",
     "shapes",
+    "whole_reader",
 ]

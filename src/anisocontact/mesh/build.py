@@ -12,11 +12,11 @@ from anisocontact._fenicsx import MPI
 from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import MeshArrays, rename_bodies
 from anisocontact.mesh.blocks import mesh_blocks
-from anisocontact.mesh.gmsh import gmsh_arrays
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.placement import IN_PLACE, Placement
 from anisocontact.mesh.quality import check_cells
+from anisocontact.mesh.readers import file_arrays
 from anisocontact.mesh.shapes import BoxSpec, Shape, checked_blocks
 
 
@@ -53,8 +53,10 @@ class Body:
 
 
 @dataclass(frozen=True)
-class GmshFile:
-    """The bodies of a gmsh file; see `read_gmsh`.
+class MeshFile:
+    """The bodies of a mesh file: gmsh's, or that of another code, by the ending of its name.
+
+    See `read_gmsh`, `read_inp` and `register_reader`.
 
     Attributes:
         path: The file.
@@ -72,8 +74,12 @@ class GmshFile:
 
     def arrays(self, comm: Any = MPI.COMM_SELF) -> MeshArrays:
         """The bodies in place; see `Source`."""
-        mesh = gmsh_arrays(Path(self.path), self.bodies, self.field, comm)
+        mesh = file_arrays(Path(self.path), self.bodies, self.field, comm)
         return self.placement.apply(rename_bodies(mesh, self.rename))
+
+
+#: The name of before files of other codes were read.
+GmshFile = MeshFile
 
 
 def build_mesh(sources: Iterable[Source]) -> Model:

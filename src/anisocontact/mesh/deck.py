@@ -1,0 +1,121 @@
+"""Lines of Abaqus and CalculiX input: keywords, their options, and the data below them.
+
+Format: the keyword reference of either; names and keywords do not tell small letters from capitals,
+`**` begins a comment, and a keyword line that ends with a comma goes on in the next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.errors import InputError
+
+#: How deep files may include others.
+DEPTH = 10
+
+
+@dataclass(frozen=True)
+class Card:
+    """A keyword with what belongs to it.
+
+    Attributes:
+        name: The keyword in capitals, without blanks: `SOLIDSECTION`.
+        options: Option in capitals -> value as written; empty where it has none.
+        data: The lines below it, without comments.
+        line: Number of its line in its file, for messages.
+    """
+
+    name: str
+    options: dict[str, str]
+    data: tuple[str, ...]
+    line: int
+
+    def option(self, name: str) -> str:
+        """Value of an option that has to be there.
+
+        Raises:
+            InputError: It is not.
+        """
+        if not self.options.get(name):
+            raise InputError(f"line {self.line}: *{self.name} needs the option {name}")
+        return self.options[name]
+
+    def fields(self) -> Iterator[list[str]]:
+        """The entries of each line of data, without blanks and without what is left empty."""
+        for line in self.data:
+            entries = [entry.strip() for entry in line.split(",")]
+            yield [entry for entry in entries if entry]
+
+    def numbers(self) -> npt.NDArray[np.float64]:
+        """All numbers of the data, one after the other.
+
+        Raises:
+            InputError: Something else is among them.
+        """
+        words = ",".join(self.data).replace(",", " ").split()
+        try:
+            return np.array(words, dtype=np.float64)
+        except ValueError:
+            raise InputError(
+                f"line {self.line}: the data of *{self.name} are not all numbers"
+            ) from None
+
+
+def read_cards(path: Path, depth: int = 0) -> list[Card]:
+    """The cards of a file and of those that it includes, in their order.
+
+    Args:
+        path: The file.
+        depth: How many files have included this one.
+
+    Returns:
+        The cards.
+
+    Raises:
+        InputError: It does not begin with a keyword, or an included file is missing.
+        OSError: It cannot be read.
+    """
+    cards: list[Card] = []
+    head: tuple[str, int] | None = None
+    data: list[str] = []
+    for number, raw in enumerate(path.read_text("utf-8", errors="replace").splitlines(), 1):
+        line = raw.strip()
+        if not line or line.startswith("**"):
+            continue
+        if head is not None and not data and head[0].endswith(","):
+            head = (head[0] + line, head[1])
+        elif line.startswith("*"):
+            cards += _finished(head, data, path, depth)
+            head, data = (line, number), []
+        elif head is None:
+            raise InputError(f"line {number}: data in front of the first keyword")
+        else:
+            data.append(line)
+    return cards + _finished(head, data, path, depth)
+
+
+def _finished(head: tuple[str, int] | None, data: list[str], path: Path, depth: int) -> list[Card]:
+    """A card, or those of the file that it includes; none where nothing has begun."""
+    if head is None:
+        return []
+    text, number = head
+    keyword, *rest = text[1:].split(",")
+    options = {}
+    for option in rest:
+        name, _, value = option.partition("=")
+        if name.strip():
+            options["".join(name.split()).upper()] = value.strip().strip('"')
+    card = Card("".join(keyword.split()).upper(), options, tuple(data), number)
+    if card.name != "INCLUDE":
+        return [card]
+    other = path.parent / card.option("INPUT")
+    if depth == DEPTH:
+        raise InputError(f"line {number}: more than {DEPTH} files include each other")
+    if not other.is_file():
+        raise InputError(f"line {number}: the included file {str(other)!r} does not exist")
+    return read_cards(other, depth + 1)

@@ -1,0 +1,97 @@
+"""Mesh files by the ending of their name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from anisocontact._fenicsx import MPI
+from anisocontact.errors import InputError
+from anisocontact.mesh.arrays import MeshArrays
+from anisocontact.mesh.gmsh import gmsh_arrays
+from anisocontact.mesh.inp import read_inp
+from anisocontact.mesh.whole import WholeMesh
+
+#: Reads the bodies of a file: path, which bodies (all if None), where the path was written, the
+#: processes, each of which gets its share.
+type Reader = Callable[[Path, Sequence[str] | None, str, Any], MeshArrays]
+
+_READERS: dict[str, Reader] = {}
+
+
+def register_reader(*suffixes: str) -> Callable[[Reader], Reader]:
+    """Let a function read the files whose names end so.
+
+    Args:
+        suffixes: Endings with the dot, in small letters.
+
+    Returns:
+        A decorator.
+
+    Example:
+        >>> @register_reader(".none")
+        ... def read_none(path, bodies, field, comm):
+        ...     raise InputError("nothing is in it", field)
+        >>> file_arrays(Path("a.none"))
+        Traceback (most recent call last):
+        anisocontact.errors.InputError: mesh.file: mesh file 'a.none' does not exist
+    """
+
+    def register(read: Reader) -> Reader:
+        for suffix in suffixes:
+            _READERS[suffix] = read
+        return read
+
+    return register
+
+
+def whole_reader(read: Callable[[Path], WholeMesh]) -> Reader:
+    """A reader of a format that every process reads as a whole.
+
+    Args:
+        read: Reads a file; raises InputError, or OSError where it cannot be read.
+
+    Returns:
+        The reader.
+    """
+
+    def arrays(path: Path, bodies: Sequence[str] | None, field: str, comm: Any) -> MeshArrays:
+        try:
+            return read(path).arrays(bodies).shared(comm)
+        except InputError as problem:
+            raise InputError(f"mesh file {str(path)!r}: {problem}", field) from None
+        except OSError as problem:
+            text = f"mesh file {str(path)!r} cannot be read: {problem.strerror}"
+            raise InputError(text, field) from None
+
+    return arrays
+
+
+def file_arrays(
+    path: Path,
+    bodies: Sequence[str] | None = None,
+    field: str = "mesh.file",
+    comm: Any = MPI.COMM_SELF,
+) -> MeshArrays:
+    """Plain arrays of a mesh file of any kind that is known.
+
+    Args:
+        path: The file; the ending of its name says what it is, gmsh's if it has none that is known.
+        bodies: Which bodies; all of them if not given.
+        field: Where the path was written, for messages.
+        comm: Processes, each of which gets its share.
+
+    Returns:
+        The arrays.
+
+    Raises:
+        InputError: The file is missing or damaged, or has no such body.
+    """
+    if not path.is_file():
+        raise InputError(f"mesh file {str(path)!r} does not exist", field)
+    return _READERS.get(path.suffix.lower(), gmsh_arrays)(path, bodies, field, comm)
+
+
+register_reader(".msh")(gmsh_arrays)
+register_reader(".inp")(whole_reader(read_inp))

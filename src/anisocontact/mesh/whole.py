@@ -1,0 +1,241 @@
+"""A mesh that a reader of other formats has read as a whole, and what becomes of it.
+
+Readers hand over nodes and sets as their format has them, in the order of VTK and of
+Abaqus; here they become the arrays of all meshes.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import cell_nodes, facet_nodes, middle_nodes
+from anisocontact.errors import InputError
+from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
+from anisocontact.mesh.merge import merge
+from anisocontact.mesh.quality import check_cells
+
+Nodes = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+
+#: Corners of a cell in VTK's order -> DOLFINx's, which goes along one axis after the other.
+CORNERS = {"tetrahedron": [0, 1, 2, 3], "hexahedron": [0, 1, 3, 2, 4, 5, 7, 6]}
+#: Corners that the middle nodes of VTK's quadratic cells lie between, in their order.
+EDGES = {
+    "tetrahedron": [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
+    "hexahedron": [
+        *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
+        *((0, 4), (1, 5), (2, 6), (3, 7)),
+    ],
+}
+#: Corners of the faces that have a middle node in VTK's hexahedra of 27 nodes, in their order.
+FACES = [(0, 3, 7, 4), (1, 2, 6, 5), (0, 1, 5, 4), (3, 2, 6, 7), (0, 1, 2, 3), (4, 5, 6, 7)]
+
+
+@dataclass
+class WholeMesh:
+    """Nodes, cells and names.
+
+    Attributes:
+        points: Places of the nodes, (nodes, 3), length.
+        cells: For each kind of element: cell, nodes (elements, nodes of an element).
+        bodies: Body of each element, in the order of `cells`; empty where it is in none.
+        node_sets: Name -> nodes.
+        surfaces: Name -> corners of facets, an array for each number of corners.
+        left_out: Elements that are no solids -> how many there are.
+    """
+
+    points: Floats
+    cells: list[tuple[str, Nodes]] = field(default_factory=list)
+    bodies: list[Sequence[str]] = field(default_factory=list)
+    node_sets: dict[str, Nodes] = field(default_factory=dict)
+    surfaces: dict[str, list[Nodes]] = field(default_factory=dict)
+    left_out: dict[str, int] = field(default_factory=dict)
+
+    def add_cells(self, cell: str, nodes: Nodes, bodies: Sequence[str]) -> None:
+        """Add elements of one kind with the body of each."""
+        self.cells.append((cell, nodes))
+        self.bodies.append(bodies)
+
+    def arrays(self, bodies: Sequence[str] | None = None) -> MeshArrays:
+        """The arrays of bodies.
+
+        Args:
+            bodies: Which; all of them if not given.
+
+        Returns:
+            Cells in DOLFINx's order, quadratic ones with a node in each face and in their middle,
+            where the shape functions of fewer nodes say that these are.
+
+        Raises:
+            InputError: A body is unknown, cells are of several kinds, flat or inverted, or a facet
+                of a surface belongs to no cell.
+        """
+        known = list(dict.fromkeys(name for labels in self.bodies for name in labels if name))
+        for name in bodies or ():
+            if name not in known:
+                near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+                hint = f"did you mean {near[0]!r}?" if near else f"there are: {', '.join(known)}"
+                raise InputError(f"no body {name!r}; {hint}")
+        wanted = known if bodies is None else bodies
+        kinds: dict[tuple[str, int], list[tuple[Nodes, list[str]]]] = {}
+        for (cell, nodes), labels in zip(self.cells, self.bodies, strict=True):
+            taken = np.isin(np.array(labels), list(wanted))
+            if taken.any():
+                own = [label for label in labels if label in wanted]
+                kinds.setdefault((cell, nodes.shape[1]), []).append((nodes[taken], own))
+        if not kinds:
+            raise InputError("no element is in a body")
+        joined = {
+            kind: (np.concatenate([n for n, _ in parts]), [x for _, own in parts for x in own])
+            for kind, parts in kinds.items()
+        }
+        self._check_apart(joined)
+        return merge([self._of_kind(cell, *part) for (cell, _), part in joined.items()])
+
+    @staticmethod
+    def _check_apart(kinds: Mapping[tuple[str, int], tuple[Nodes, list[str]]]) -> None:
+        """Refuse kinds of elements that share nodes: no mesh has cells of both."""
+        said = " and ".join(f"{cell}s of {n} nodes" for cell, n in sorted(kinds))
+        nodes = np.concatenate([np.unique(rows) for rows, _ in kinds.values()])
+        if len(np.unique(nodes)) < len(nodes) or len({cell for cell, _ in kinds}) > 1:
+            raise InputError(f"{said}: a mesh has cells of one kind")
+        names = [name for _, labels in kinds.values() for name in dict.fromkeys(labels)]
+        for name in names:
+            if names.count(name) > 1:
+                raise InputError(f"body {name!r} has {said}, one kind is needed")
+
+    def _of_kind(self, cell: str, nodes: Nodes, labels: Sequence[str]) -> MeshArrays:
+        """The arrays of elements of one kind with the body of each."""
+        names = list(dict.fromkeys(labels))
+        points, cells, degree = _in_order(cell, nodes, self.points)
+        used, compact = np.unique(cells, return_inverse=True)
+        numbers = np.full(len(points), -1, dtype=np.int64)
+        numbers[used] = np.arange(len(used))
+        rows = np.array(labels)
+        places = {name: np.flatnonzero(rows == name) for name in names}
+        mesh = MeshArrays(
+            cell, degree, points[used], compact.reshape(cells.shape), places, {}, degree
+        )
+        check_cells(mesh)
+        groups = _Groups(mesh, names)
+        for name, parts in self.surfaces.items():
+            for corners in parts:
+                groups.add_surface(name, numbers[corners])
+        for name, found in self.node_sets.items():
+            if name not in self.surfaces:
+                groups.add_nodes(name, numbers[found])
+        return replace(mesh, facets=groups.facets)
+
+
+def _in_order(cell: str, nodes: Nodes, points: Floats) -> tuple[Floats, Nodes, int]:
+    """Points, cells in DOLFINx's order, and their degree."""
+    order = CORNERS[cell]
+    corners = nodes[:, order]
+    count = len(order) + len(EDGES[cell])
+    if nodes.shape[1] == len(order):
+        return points, corners, 1
+    cells = np.empty((len(nodes), len(cell_nodes(cell, 2))), dtype=np.int64)
+    cells[:, : len(order)] = corners
+    given = {frozenset(edge): len(order) + k for k, edge in enumerate(EDGES[cell])}
+    if nodes.shape[1] > count:
+        given |= {frozenset(face): count + k for k, face in enumerate(FACES)}
+        cells[:, -1] = nodes[:, -1]
+    missing = []
+    for ends, places in middle_nodes(cell):
+        for end, place in zip(ends, places, strict=True):
+            own = frozenset(order[k] for k in end)
+            if own in given:
+                cells[:, place] = nodes[:, given[own]]
+            else:
+                edges = [given[frozenset(edge)] for edge in EDGES[cell] if own.issuperset(edge)]
+                missing.append((place, corners[:, end], nodes[:, edges]))
+    if missing:
+        points = _with_faces(points, cells, missing)
+        middle = 0.25 * (points[nodes[:, 8:20]].sum(axis=1) - points[nodes[:, :8]].sum(axis=1))
+        cells[:, -1] = len(points) + np.arange(len(cells))
+        points = np.concatenate([points, middle])
+    return points, cells, 2
+
+
+def _with_faces(
+    points: Floats, cells: Nodes, missing: Sequence[tuple[int, Nodes, Nodes]]
+) -> Floats:
+    """The points with one in each face, where the shape functions of eight nodes have its middle.
+
+    Args:
+        points: Places of the nodes.
+        cells: Gets the numbers of the new ones.
+        missing: Column of the cells, corners of the face and middle nodes of its edges.
+    """
+    corners = np.concatenate([rows for _, rows, _ in missing])
+    edges = np.concatenate([rows for _, _, rows in missing])
+    _, first, face = np.unique(
+        np.sort(corners, axis=1), axis=0, return_index=True, return_inverse=True
+    )
+    middles = 0.5 * points[edges[first]].sum(axis=1) - 0.25 * points[corners[first]].sum(axis=1)
+    numbers = (len(points) + face.reshape(-1)).reshape(len(missing), -1)
+    for (place, _, _), found in zip(missing, numbers, strict=True):
+        cells[:, place] = found
+    return np.concatenate([points, middles])
+
+
+class _Groups:
+    """Facet groups of a mesh by the corners or nodes of a format's sets.
+
+    Args:
+        mesh: The cells.
+        names: Bodies in the order of their labels.
+    """
+
+    def __init__(self, mesh: MeshArrays, names: Sequence[str]) -> None:
+        local = CELL_FACETS[mesh.cell]
+        sides = mesh.cells[:, local].reshape(-1, local.shape[1])
+        keys, self._first, self._side, counts = np.unique(
+            np.sort(sides, axis=1),
+            axis=0,
+            return_index=True,
+            return_inverse=True,
+            return_counts=True,
+        )
+        self._known = {tuple(key): k for k, key in enumerate(keys.tolist())}
+        self._free = counts == 1
+        full = facet_nodes(mesh.cell, mesh.degree)
+        self._nodes = mesh.cells[:, full].reshape(-1, full.shape[1])
+        self._corners, self._names = keys, list(names)
+        self._body = np.repeat(mesh.labels, len(local))
+        self.facets: dict[str, Nodes] = {}
+
+    def add_surface(self, name: str, corners: Nodes) -> None:
+        """Add a surface by the corners of its facets, -1 for those of bodies that are not taken.
+
+        Raises:
+            InputError: Some lie inside the mesh, or are facets of no cell.
+        """
+        rows = np.sort(corners[(corners >= 0).all(axis=1)], axis=1).tolist()
+        places = [self._known.get(tuple(row), -1) for row in rows]
+        loose = places.count(-1)
+        if loose:
+            text = f"{loose} of {len(places)} facets belong to no cell of a body"
+            raise InputError(f"facet group {name!r}: {text}")
+        found = np.unique(np.array(places, dtype=np.int64))
+        self._add(name, found[self._free[found]])
+
+    def add_nodes(self, name: str, nodes: Nodes) -> None:
+        """Add the facets at the boundary with all corners among some nodes, if there are any."""
+        marked = np.zeros(int(self._corners.max(initial=0)) + 1, dtype=bool)
+        marked[nodes[(nodes >= 0) & (nodes < len(marked))]] = True
+        self._add(name, np.flatnonzero(marked[self._corners].all(axis=1) & self._free))
+
+    def _add(self, name: str, found: Nodes) -> None:
+        rows = self._first[found]
+        for label, body in enumerate(self._names):
+            own = rows[self._body[rows] == label]
+            if len(own):
+                key = f"{body}.{name}"
+                before = self.facets.get(key, np.zeros((0, self._nodes.shape[1]), dtype=np.int64))
+                self.facets[key] = np.concatenate([before, self._nodes[own]])

@@ -1,0 +1,297 @@
+"""Input of Abaqus and CalculiX as meshes: bodies, groups, instances, curved cells, mistakes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact._fenicsx import dolfinx, fem, ufl
+from anisocontact.errors import InputError
+from anisocontact.mesh import GmshFile, Placement, Rotation, build_mesh
+from anisocontact.mesh.readers import file_arrays
+
+CUBE = """\
+*HEADING
+** a cube of side 2 and, as a set of its own, nothing else
+*Node, nset=Nall
+ 1, 0., 0.
+ 2, 2., 0., 0.
+ 30, 2., 2., 0.
+ 4, 0., 2., 0.
+ 5, 0., 0., 2.
+ 6, 2., 0., 2.
+ 7, 2., 2., 2.
+ 8, 0., 2., 2.
+*ELEMENT, TYPE=C3D8R, ELSET=Cube
+ 100, 1, 2, 30, 4,
+ 5, 6, 7, 8
+*NSET, NSET=Low, GENERATE
+ 1, 2
+*NSET, NSET=Low
+ 30, 4
+*NSET, NSET=corner
+ 7
+*SURFACE, NAME=Upper, TYPE=ELEMENT
+ cube, S2
+*SURFACE, NAME=side, TYPE=ELEMENT
+ 100, S3
+*SOLID SECTION, ELSET=CUBE,
+ MATERIAL=steel
+*STEP
+*STATIC
+*END STEP
+"""
+
+
+def written(tmp_path: Path, text: str, name: str = "mesh.inp") -> Path:
+    path = tmp_path / name
+    path.write_text(text)
+    return path
+
+
+def areas(model, group: str) -> tuple[float, list[float]]:
+    """Area of a group and its mean outward normal."""
+    facets = np.sort(model.facets(group))
+    model.mesh.topology.create_connectivity(2, 3)
+    tags = dolfinx.mesh.meshtags(model.mesh, 2, facets, np.ones(len(facets), dtype=np.int32))
+    ds = ufl.Measure("ds", domain=model.mesh, subdomain_data=tags)(1)
+    n = ufl.FacetNormal(model.mesh)
+    one = fem.assemble_scalar(fem.form(fem.Constant(model.mesh, 1.0) * ds))
+    normal = [fem.assemble_scalar(fem.form(n[i] * ds)) for i in range(3)]
+    return one, normal
+
+
+def volume(model) -> float:
+    dx = ufl.dx(domain=model.mesh)
+    return float(fem.assemble_scalar(fem.form(fem.Constant(model.mesh, 1.0) * dx)))
+
+
+def test_sections_are_bodies_and_sets_are_groups(tmp_path):
+    model = build_mesh([GmshFile(written(tmp_path, CUBE))])
+    assert model.body_names() == ["cube"]
+    # all nodes hold all faces; one node holds none
+    assert sorted(model.facet_names()) == ["cube.low", "cube.nall", "cube.side", "cube.upper"]
+    assert volume(model) == pytest.approx(8.0)
+    for group, area, normal in (
+        ("cube.low", 4.0, [0, 0, -4]),
+        ("cube.upper", 4.0, [0, 0, 4]),
+        ("cube.side", 4.0, [0, -4, 0]),
+        ("cube.nall", 24.0, [0, 0, 0]),
+    ):
+        found = areas(model, group)
+        assert found[0] == pytest.approx(area)
+        assert found[1] == pytest.approx(normal, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("face", "normal"),
+    [*enumerate([(0, 0, -1), (0, 0, 1), (0, -1, 0), (1, 0, 0), (0, 1, 0), (-1, 0, 0)], 1)],
+)
+def test_every_face_of_a_hexahedron(tmp_path, face, normal):
+    text = CUBE.replace("cube, S2", f"Cube, S{face}")
+    found = areas(build_mesh([GmshFile(written(tmp_path, text))]), "cube.upper")
+    assert found[1] == pytest.approx(4.0 * np.array(normal), abs=1e-12)
+
+
+TET = """\
+*NODE
+1, 0, 0, 0
+2, 1, 0, 0
+3, 0, 1, 0
+4, 0, 0, 1
+5, .5, 0, 0
+6, .5, .5, 0
+7, 0, .5, 0
+8, 0, 0, .5
+9, .5, 0, .5
+10, 0, .5, .5
+*ELEMENT, TYPE=C3D10, ELSET=tet
+1, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10
+*SURFACE, NAME=face
+1, S{face}
+"""
+
+
+@pytest.mark.parametrize(
+    ("face", "normal"), [*enumerate([(0, 0, -1), (0, -1, 0), (1, 1, 1), (-1, 0, 0)], 1)]
+)
+def test_every_face_of_a_tetrahedron(tmp_path, face, normal):
+    """Middle nodes off their edges would make other volumes; normals tell the faces apart."""
+    model = build_mesh([GmshFile(written(tmp_path, TET.format(face=face)))])
+    assert model.body_names() == ["body"]
+    assert volume(model) == pytest.approx(1 / 6)
+    assert areas(model, "body.face")[1] == pytest.approx(0.5 * np.array(normal), abs=1e-12)
+
+
+def ring_of_twenty_nodes(n: int) -> str:
+    """A quarter of a ring of radii 1 and 2 and height 1, middle nodes on its circles."""
+    numbers: dict[tuple[float, ...], int] = {}
+    lines = []
+    corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+    corners += [(x, y, 1) for x, y, _ in corners]
+    pairs = [(0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)]
+    pairs += [(k, k + 4) for k in range(4)]
+    local = [np.array(c, float) for c in corners]
+    local += [0.5 * (local[a] + local[b]) for a, b in pairs]
+    for i in range(n):
+        for j in range(n):
+            keys = [tuple(np.round(2 * np.add(x, (i, j, 0))).tolist()) for x in local]
+            row = [numbers.setdefault(key, len(numbers) + 1) for key in keys]
+            lines += [f"{len(lines) // 2 + 1}, " + ", ".join(map(str, row[:15])) + ","]
+            lines += [", ".join(map(str, row[15:]))]
+    nodes = []
+    for (a, b, c), number in numbers.items():
+        r, angle = 1 + a / (2 * n), 0.5 * np.pi * b / (2 * n)
+        nodes.append(f"{number}, {r * np.cos(angle)!r}, {r * np.sin(angle)!r}, {c / 2}")
+    wall = (
+        f"*SURFACE, NAME=outer\n{', S4\n'.join(str(n * (n - 1) + k + 1) for k in range(n))}, S4\n"
+    )
+    text = "*NODE\n" + "\n".join(nodes).replace("np.float64(", "").replace(")", "")
+    return text + "\n*ELEMENT, TYPE=C3D20\n" + "\n".join(lines) + "\n" + wall
+
+
+def test_twenty_nodes_keep_their_curves(tmp_path):
+    """Faces and cells get middle nodes where the shape functions of 20 nodes have them.
+
+    Source: volume 3 pi / 4 and area pi of the quarter ring. Tolerance: quadratic arcs have errors
+    of the fourth order: a sixteenth at half of the cells (asserted between 13 and 19).
+    """
+    errors = []
+    for n in (1, 2):
+        model = build_mesh([GmshFile(written(tmp_path, ring_of_twenty_nodes(n)))])
+        assert model.order == 2
+        found = volume(model), areas(model, "body.outer")[0]
+        errors.append(np.abs(np.array(found) - [0.75 * np.pi, np.pi]))
+    assert np.all((errors[0] / errors[1] > 13.0) & (errors[0] / errors[1] < 19.0))
+    assert errors[1][0] < 1e-3 * 0.75 * np.pi
+
+
+INSTANCES = """\
+*PART, NAME=Brick
+{nodes}*ELSET, ELSET=all
+100
+*SOLID SECTION, ELSET=all, MATERIAL=x
+*SURFACE, NAME=Upper
+all, S2
+*END PART
+*ASSEMBLY, NAME=a
+*INSTANCE, NAME=first, PART=Brick
+*END INSTANCE
+*INSTANCE, NAME=second, PART=BRICK
+10., 0., 0.
+10., 0., 0., 10., 1., 0., 90.
+*END INSTANCE
+*NSET, NSET=held, INSTANCE=second
+1, 2, 30, 4
+*SURFACE, NAME=pressed
+first.Upper_set, S1
+*ELSET, ELSET=Upper_set, INSTANCE=first
+100
+*END ASSEMBLY
+"""
+
+
+def test_instances_are_placed_copies_of_parts(tmp_path):
+    nodes = CUBE[CUBE.index("*Node") : CUBE.index("*NSET, NSET=Low, G")]
+    text = INSTANCES.format(nodes=nodes).replace("first.Upper_set, S1", "Upper_set, S1")
+    # a set may stand behind the surface that names it
+    model = build_mesh([GmshFile(written(tmp_path, text))])
+    assert model.body_names() == ["first", "second"]
+    assert volume(model) == pytest.approx(16.0)
+    assert areas(model, "first.pressed")[1] == pytest.approx([0, 0, -4], abs=1e-12)
+    # turned by 90 degrees about y: up is along x, below is along -x
+    assert areas(model, "second.upper")[1] == pytest.approx([4, 0, 0], abs=1e-12)
+    assert areas(model, "second.held")[1] == pytest.approx([-4, 0, 0], abs=1e-12)
+
+
+def test_it_stands_where_it_is_put_and_bodies_are_renamed(tmp_path):
+    path = written(tmp_path, CUBE)
+    put = Placement(scale=0.5, rotate=Rotation((0, 0, 1), angle_deg=90.0), move=(1.0, 0.0, 0.0))
+    model = build_mesh([GmshFile(path, rename={"cube": "block"}, placement=put)])
+    assert model.body_names() == ["block"]
+    assert volume(model) == pytest.approx(1.0)
+    assert areas(model, "block.side")[1] == pytest.approx([1, 0, 0], abs=1e-12)
+
+
+def test_a_file_may_include_others(tmp_path):
+    head, tail = CUBE.split("*ELEMENT")
+    written(tmp_path, head, "nodes.inp")
+    path = written(tmp_path, f"*INCLUDE, INPUT=nodes.inp\n*ELEMENT{tail}")
+    assert file_arrays(path).points.shape == (8, 3)
+
+
+MISTAKES = [
+    (CUBE.replace(" 7, 2., 2., 2.\n", ""), "element 100 has node 7, which is not there"),
+    (CUBE.replace("5, 6, 7, 8", "5, 6"), "line 12: *ELEMENT: elements C3D8R need 8 nodes each"),
+    (CUBE.replace("C3D8R", "S8R"), "no solid element (C3D4, C3D10, C3D8, C3D20); there are: 2 S8R"),
+    (CUBE.replace("2., 0., 2.", "two, 0., 2."), "line 3: *NODE: its data cannot be read"),
+    (CUBE.replace("*HEADING", "*NGEN\n1, 2"), "*NGEN: is not read; write nodes and elements out"),
+    (CUBE.replace("*HEADING", "1, 2, 3"), "line 1: data in front of the first keyword"),
+    (CUBE.replace("*HEADING", "*INCLUDE, INPUT=none.inp"), "does not exist"),
+    (CUBE.replace("cube, S2", "cube, S7"), "face 'S7' given, S1 to S6 are read"),
+    (CUBE.replace("cube, S2", "cube, SPOS"), "face 'SPOS' given, S1 to S6 are read"),
+    (CUBE.replace("TYPE=C3D8R, ", ""), "*ELEMENT needs the option TYPE"),
+    (CUBE.replace("1, 2, 30, 4,\n 5, 6, 7, 8", "5, 6, 7, 8, 1, 2, 30, 4"), "flat or inverted"),
+]
+
+
+@pytest.mark.parametrize(("text", "said"), MISTAKES, ids=[said for _, said in MISTAKES])
+def test_what_is_wrong_is_one_line(tmp_path, text, said):
+    with pytest.raises(InputError) as caught:
+        file_arrays(written(tmp_path, text), field="mesh.file")
+    line = str(caught.value)
+    assert line.startswith("mesh.file: mesh file")
+    assert said in line
+    assert "\n" not in line
+
+
+def test_bodies_of_unlike_cells_are_refused(tmp_path):
+    more = CUBE.replace(
+        "*NSET, NSET=Low, G", "*ELEMENT, TYPE=C3D4\n7, 1, 2, 30, 5\n*NSET, NSET=Low, G"
+    )
+    with pytest.raises(InputError, match="hexahedrons of 8 nodes and tetrahedrons of 4 nodes"):
+        file_arrays(
+            written(tmp_path, more.replace("*SOLID SECTION, ELSET=CUBE,\n MATERIAL=steel\n", ""))
+        )
+
+
+def test_a_case_file_takes_it(tmp_path, monkeypatch):
+    """Source: the same block as a built-in shape, whose force is the same to rounding."""
+    from anisocontact.case import load
+    from anisocontact.case.build import build
+
+    monkeypatch.chdir(tmp_path)
+    written(tmp_path, CUBE)
+    case = """
+[surface.plate]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+[material.cube]
+model = "linear-elastic"
+E = 1000
+nu = 0.3
+[[contact]]
+slave = "cube.{low}"
+master = "plate"
+friction = {{ coefficients = 0.3 }}
+[[step]]
+name = "press"
+increments = 1
+displacement = {{ "cube.{upper}" = {{ x = 0.01, y = 0, z = -0.01 }} }}
+"""
+    shape = "[mesh.box.cube]\norigin = [0, 0, 0]\nsize = [2, 2, 2]\ncells = [1, 1, 1]\n"
+    forces = []
+    for mesh, low, upper in (
+        ('[mesh]\nfile = "mesh.inp"\n', "low", "upper"),
+        (shape, "bottom", "top"),
+    ):
+        Path("case.toml").write_text(mesh + case.format(low=low, upper=upper))
+        (end,) = build(load("case.toml")).solver.run()
+        ((force, _),) = end.resultants.values()
+        forces.append(force)
+    assert forces[0] == pytest.approx(forces[1], rel=1e-9)
