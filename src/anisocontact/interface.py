@@ -59,7 +59,7 @@ class PairLaw:
     Example:
         >>> adhesion, friction = Adhesion(stiffness=(1e5, 1e5)), Friction(coefficients=(0.3, 0.3))
         >>> law = PairLaw(NormalLaw(penalty=1e5), adhesion, friction)
-        >>> law.stiffened(10.0, tangential=False).penalties()
+        >>> law.stiffened(10.0).penalties()
         (1000000.0, 100000.0)
     """
 
@@ -96,17 +96,17 @@ class PairLaw:
             [one.on_slave != (mirrored and one.field is not None) for one in self.carried],
         )
 
-    def stiffened(self, factor: float, tangential: bool) -> PairLaw:
-        """The laws with larger penalties.
+    def stiffened(self, normal: float, tangential: float = 1.0) -> PairLaw:
+        """The laws with other penalties.
 
         Args:
-            factor: How many times as large they are.
-            tangential: Whether the stiffness of adhesion is a penalty, too.
+            normal: How many times as large the normal penalty is.
+            tangential: How many times as large the stiffness of adhesion is, if it is a penalty.
 
         Returns:
             The laws; those given are unchanged.
         """
-        return PairLaw(*_stiffened(self, factor, tangential))
+        return PairLaw(*_stiffened(self, normal, tangential))
 
     def penalties(self) -> tuple[float, float]:
         """Normal penalty and least stiffness of adhesion, stress/length."""
@@ -180,19 +180,19 @@ class Interface:
             [one.on_slave for one in self.carried],
         )
 
-    def stiffened(self, factor: float, tangential: bool) -> Interface:
-        """The interface with larger penalties.
+    def stiffened(self, normal: float, tangential: float = 1.0) -> Interface:
+        """The interface with other penalties.
 
         Args:
-            factor: How many times as large they are.
-            tangential: Whether the stiffness of adhesion is a penalty, too.
+            normal: How many times as large the normal penalty is.
+            tangential: How many times as large the stiffness of adhesion is, if it is a penalty.
 
         Returns:
             The interface; the one given is unchanged.
         """
         return Interface(
             self.surface,
-            *_stiffened(self, factor, tangential),
+            *_stiffened(self, normal, tangential),
             evolution=self.evolution,
             threads=self.threads,
         )
@@ -302,10 +302,10 @@ def _check_evolution(evolution: str, adhesion: Adhesion) -> None:
 
 
 def _stiffened(
-    of: PairLaw | Interface, factor: float, tangential: bool
+    of: PairLaw | Interface, normal: float, tangential: float
 ) -> tuple[NormalLaw, Adhesion, Friction]:
-    adhesion = of.adhesion.stiffened(factor) if tangential else of.adhesion
-    return of.normal.stiffened(factor), adhesion, of.friction
+    adhesion = of.adhesion if tangential == 1.0 else of.adhesion.stiffened(tangential)
+    return of.normal.stiffened(normal), adhesion, of.friction
 
 
 def _penalties(of: PairLaw | Interface) -> tuple[float, float]:

@@ -147,11 +147,11 @@ class PythonInterface:
         )
         self.dtype = state_type(law.internal)
 
-    def stiffened(self, factor: float, tangential: bool) -> PythonInterface:
-        """The interface with a normal penalty `factor` times as large."""
-        normal = self.normal.stiffened(factor)
+    def stiffened(self, normal: float, _: float = 1.0) -> PythonInterface:
+        """The interface with a normal penalty `normal` times as large."""
+        stiffer = self.normal.stiffened(normal)
         return PythonInterface(
-            self.surface, normal, self.law, directions=self.directions, threads=self.threads
+            self.surface, stiffer, self.law, directions=self.directions, threads=self.threads
         )
 
     def penalties(self) -> tuple[float, float]:

@@ -67,7 +67,7 @@ class PythonPairLaw:
         ...         own = state.internal
         ...         return LawResult(none, none, block, none, block, block, own, zero, zero)
         >>> law = PythonPairLaw(NormalLaw(penalty=1e3), Smooth())
-        >>> law.stiffened(10.0, tangential=False).penalties()
+        >>> law.stiffened(10.0).penalties()
         (10000.0, 1.0)
     """
 
@@ -103,10 +103,10 @@ class PythonPairLaw:
         core = _core.FramedPairs(self.normal.named, field, mirrored, on_slave)
         return PythonPairs(self.law, core, mirrored)
 
-    def stiffened(self, factor: float, tangential: bool) -> PythonPairLaw:
-        """The laws with a normal penalty `factor` times as large."""
+    def stiffened(self, normal: float, _: float = 1.0) -> PythonPairLaw:
+        """The laws with a normal penalty `normal` times as large."""
         return PythonPairLaw(
-            self.normal.stiffened(factor),
+            self.normal.stiffened(normal),
             self.law,
             directions=self.directions,
             directions_on=self.carried[0].on,

@@ -330,8 +330,8 @@ class Contact(ContactRecord):
     def _in_space(self, vectors: Floats) -> Floats:
         return vectors if self.body is None else self.body.to_space(vectors)
 
-    def _begin(self) -> None:
-        super()._begin()
+    def _start_from(self, start: State) -> None:
+        super()._start_from(start)
         self._base = None
 
     def _stiffness(self, diagonal: Floats) -> float:
@@ -340,15 +340,14 @@ class Contact(ContactRecord):
         stiffness, area = self._comm.allreduce(local)
         return float(stiffness / area)
 
-    def _stiffen(self, factor: float) -> None:
-        """Multiply the penalties of the law with a factor."""
-        self._master = self._on_body(factor)
+    def _stiffen(self, normal: float, tangential: float) -> None:
+        """Multiply the penalties of the law."""
+        self._master = self._on_body(normal, tangential)
         if self._semismooth is not None:
-            self._stiff = self._on_body(factor * self._semismooth.ratio)
+            self._stiff = self._on_body(*self._semismooth.stiff_factors)
 
-    def _on_body(self, factor: float) -> Master:
-        tangential = self._multipliers is not None and self._multipliers.tangential
-        stiff = self.interface.stiffened(factor, tangential)
+    def _on_body(self, normal: float, tangential: float) -> Master:
+        stiff = self.interface.stiffened(normal, tangential)
         return stiff if self.body is None else MovingInterface(stiff, self.body)
 
     def _tangents(self, state: State) -> Floats:

@@ -13,6 +13,7 @@ from anisocontact.augmentation import Augmentation
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.facet_answer import PairKernel, Question, ask
 from anisocontact.contact.gathering import gather, gather_named
+from anisocontact.contact.held_feet import footing, on_held_facets
 from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.point_blocks import add_rows, point_blocks
 from anisocontact.contact.point_tangent import PointTangent
@@ -124,6 +125,7 @@ class FacetContact(ContactRecord):
         self._now = sides.reference
         self._hint = sides.project(self._now)
         self._answer: dict[str, Any] = {}
+        self._held: Mask = np.zeros(len(self._points.nodes), dtype=bool)
         self._transfer = Transfer(sides) if overlaps else None
         self._handed: Mask = np.zeros(len(self._points.nodes), dtype=bool)
         state = adjusted(initial_state(self._hint, law.dtype), adjust)
@@ -434,24 +436,47 @@ class FacetContact(ContactRecord):
         """Of both surfaces, one behind the other."""
         return self._sides.stiffness(diagonal)
 
-    def _stiffen(self, factor: float) -> None:
-        """Multiply the penalties of the law with a factor."""
-        self._law = self._with(factor)
+    def _stiffen(self, normal: float, tangential: float) -> None:
+        """Multiply the penalties of the law."""
+        self._law = self._with(normal, tangential)
         if self._semismooth is not None:
-            self._stiff = self._with(factor * self._semismooth.ratio)
+            self._stiff = self._with(*self._semismooth.stiff_factors)
 
-    def _with(self, factor: float) -> PairKernel:
-        tangential = self._multipliers is not None and self._multipliers.tangential
-        return self.interface.stiffened(factor, tangential).pairs(self._mirrored)
+    def _with(self, normal: float, tangential: float) -> PairKernel:
+        return self.interface.stiffened(normal, tangential).pairs(self._mirrored)
+
+    def _start_from(self, start: State) -> None:
+        super()._start_from(start)
+        self._base = self._linear = None
 
     def _begin(self) -> None:
         super()._begin()
-        self._base = self._linear = None
+        self._held = np.zeros(len(self._points.nodes), dtype=bool)
 
     def _tangents(self, state: State) -> Floats:
         """Tangents of the master of now, (n, 2, 3), length; any where a point has no facet."""
         return self._sides.tangents(state)
 
     def _project(self, now: Floats) -> FacetProjections:
-        self._hint = self._sides.project(now, self._hint)
+        before = self._hint
+        self._hint = self._sides.project(now, before)
+        if self._held.any():
+            self._hint = on_held_facets(self._sides, now, self._hint, before.facet, self._held)
         return self._hint
+
+    def footing(self) -> npt.NDArray[np.int64]:
+        """As of `ContactRecord`."""
+        return footing(self._hint, self._gathered.globally(self._hint.facet))
+
+    def hold(self, points: Mask) -> None:
+        """As of `ContactRecord`."""
+        self._held |= points
+
+    def strayed(self) -> Floats:
+        """As of `ContactRecord`."""
+        wrong = np.zeros(len(self._held))
+        if self._held.any():
+            closest = self._sides.project(self._now, self._hint)
+            both = self._held & located(closest) & located(self._hint)
+            wrong[both] = np.abs(closest.gap - self._hint.gap)[both]
+        return wrong

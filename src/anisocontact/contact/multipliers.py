@@ -11,7 +11,7 @@ the displacements in one Newton iteration, `Uzawa` holds them while Newton's met
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -32,7 +32,8 @@ SHARE = 1e-5
 #: Sliding rule whose history is another force than the one that acts: no fixed point of a step.
 _EXPLICIT = "explicit"
 
-_OPEN, _STICK = STATUS.index("open"), STATUS.index("stick")
+#: Codes of a status.
+OPEN, STICK = STATUS.index("open"), STATUS.index("stick")
 
 
 def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
@@ -139,7 +140,7 @@ class Step:
     @property
     def remembers(self) -> npt.NDArray[np.bool_]:
         """Points that were in contact and have a tangential history, (n, 1)."""
-        return np.asarray(self.start["status"] != _OPEN)[:, None]
+        return np.asarray(self.start["status"] != OPEN)[:, None]
 
 
 class Multipliers:
@@ -161,17 +162,19 @@ class Multipliers:
         tangential: Whether there are multipliers of the tangential part.
     """
 
-    #: Whether the multipliers change in every iteration of Newton's method.
-    follows: ClassVar[bool] = False
-
     def __init__(
         self, augmentation: Augmentation, size: float, penalties: tuple[float, float], comm: Any
     ) -> None:
         self.tangential = augmentation.tangential
-        self.level = self.factor = 1.0
+        self.level = self.factor = self._proportion = 1.0
         self._limit = augmentation.tolerance * size
         self._penalties = penalties
         self._comm = comm
+
+    @property
+    def factors(self) -> tuple[float, float]:
+        """What normal penalty and stiffness of adhesion are multiplied with now."""
+        return self.factor, self.factor * self._proportion if self.tangential else 1.0
 
     def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
         """What the trials of the next increment start from.
@@ -184,11 +187,25 @@ class Multipliers:
         """
         start = state.copy()
         start["multiplier"] = state["pressure"]
-        touching = located & (state["status"] == _OPEN) & (state["gap"] <= self._limit)
+        touching = located & (state["status"] == OPEN) & (state["gap"] <= self._limit)
         start["gap"][touching] = np.minimum(state["gap"][touching], 0.0)
         if self.tangential:
-            start["status"][touching] = _STICK
+            start["status"][touching] = STICK
         return start
+
+    def suit(self, stiffness: float) -> None:
+        """Bring the penalties to the stiffness of the bodies, whatever was given.
+
+        Args:
+            stiffness: Traction per displacement of the surfaces, stress/length.
+        """
+        normal, tangential = self._penalties
+        self.level, self._proportion = stiffness / normal, normal / tangential
+
+    @property
+    def follower(self) -> Any:
+        """Multipliers that follow every correction now; None where they are held meanwhile."""
+        return None
 
     def commit(self) -> None:
         """Keep what the increment has shown to be right."""
@@ -207,9 +224,16 @@ class Multipliers:
         """
         raise NotImplementedError
 
-    def soften(self) -> bool:
-        """After a solution that failed: take what is easier to solve with; whether there is any."""
-        return False
+    def soften(self, _: State) -> State | None:
+        """After a solution that failed: take what is easier to solve with.
+
+        Args:
+            start: What the trials started from.
+
+        Returns:
+            What the next trial starts from; None if there is nothing else to be tried.
+        """
+        return None
 
     def values(self, step: Step) -> tuple[Floats, Floats]:
         """Multipliers, and what the trial answers to them: N and T as a vector, (n, 4) each."""
@@ -223,7 +247,7 @@ class Multipliers:
 
     def _violation(self, change: Floats) -> float:
         """Largest penetration or elastic slip over all ranks that a change stands for, length."""
-        stiffness = np.array(self._penalties) * self.factor
+        stiffness = np.array(self._penalties) * self.factors
         each = np.maximum(
             np.abs(change[:, 0]) / stiffness[0],
             np.linalg.norm(change[:, 1:], axis=1) / stiffness[1],

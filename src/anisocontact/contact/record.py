@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.augmentation import Augmentation
 from anisocontact.contact.multipliers import AugmentedLaw, Frames, Multipliers, Step
-from anisocontact.contact.schemes import make_multipliers
+from anisocontact.contact.schemes import USUAL, make_multipliers
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.interface import STATUS, Response, State
 
@@ -113,6 +113,7 @@ class ContactRecord:
         self._start = state
         self._multipliers: Multipliers | None = None
         self._way: list[Slid] = []
+        self._ways: Mapping[str, Multipliers] = {}
 
     @property
     def points(self) -> Floats:
@@ -145,6 +146,27 @@ class ContactRecord:
             return np.zeros((0, 3))
         return self._trial.points[self._trial.response.failed]
 
+    def footing(self) -> npt.NDArray[np.int64]:
+        """The facet of the master, or feature of one, below each point in the trial, a code (n,).
+
+        Facets are numbered in the whole group; a smooth master is one.
+        """
+        return np.zeros(len(self.trial.status), dtype=np.int64)
+
+    def hold(self, points: npt.NDArray[np.bool_]) -> None:
+        """Hold points on the facet that they are on until the trial is kept or forgotten.
+
+        Args:
+            points: Which, (n,).
+        """
+
+    def strayed(self) -> Floats:
+        """How wrong the gaps of held points are: against those of the closest points, (n,), length.
+
+        It is zero where a point is above the facet on which it is held.
+        """
+        return np.zeros(len(self.trial.status))
+
     def commit(self) -> None:
         """Make the trial the history."""
         if self._trial is not None:
@@ -158,6 +180,7 @@ class ContactRecord:
             self._trial = None
         if self._multipliers is not None:
             self._multipliers.commit()
+        self._multipliers = self._ways.get(USUAL)
         self._begin()
 
     def pass_through(self) -> None:
@@ -184,6 +207,7 @@ class ContactRecord:
     def roll_back(self) -> None:
         """Forget the trial."""
         self._trial = None
+        self._multipliers = self._ways.get(USUAL)
         self._begin()
 
     def improve(self) -> bool:
@@ -201,9 +225,23 @@ class ContactRecord:
         better = self._multipliers.improve(self._step(self.current))
         if better is None:
             return False
-        self._start = better
-        self._stiffen(self._multipliers.factor)
+        self._start_from(better)
         return True
+
+    @property
+    def ways(self) -> tuple[str, ...]:
+        """Ways to the multipliers in an increment, see `schemes`; none without augmentation."""
+        return tuple(self._ways)
+
+    def take_way(self, name: str) -> None:
+        """Find the multipliers in another way until the trial is kept or forgotten.
+
+        Args:
+            name: One of the names in `schemes`; a contact that does not have it goes on as usual.
+        """
+        if name in self._ways:
+            self._multipliers = self._ways[name]
+            self._begin()
 
     def soften(self) -> bool:
         """Take softer penalties after a solution that failed.
@@ -211,15 +249,18 @@ class ContactRecord:
         Returns:
             Whether to try again; False for a contact without augmentation.
         """
-        if self._multipliers is None or not self._multipliers.soften():
+        if self._multipliers is None:
             return False
-        self._stiffen(self._multipliers.factor)
+        start = self._multipliers.soften(self._start)
+        if start is None:
+            return False
+        self._start_from(start)
         return True
 
     @property
     def follows(self) -> bool:
         """Whether multipliers follow every step of Newton's method."""
-        return self._multipliers is not None and self._multipliers.follows
+        return self._semismooth is not None
 
     def held(self) -> bool:
         """Whether multipliers that follow are what the trial answers to them."""
@@ -233,8 +274,10 @@ class ContactRecord:
             diagonal: Diagonal of the stiffness of the bodies, of the nodes this rank owns,
                 (nodes, 3), force/length.
         """
-        if self._semismooth is not None:
-            self._semismooth.suit(self._stiffness(diagonal))
+        if self._ways:
+            stiffness = self._stiffness(diagonal)
+            for way in self._ways.values():
+                way.suit(stiffness)
             self._begin()
 
     def _stiffness(self, diagonal: Floats) -> float:
@@ -254,7 +297,7 @@ class ContactRecord:
 
     @property
     def _semismooth(self) -> Semismooth | None:
-        return self._multipliers if isinstance(self._multipliers, Semismooth) else None
+        return None if self._multipliers is None else self._multipliers.follower
 
     def _step(self, trial: Snapshot) -> Step:
         """A trial with the frames of the master."""
@@ -269,7 +312,8 @@ class ContactRecord:
     def _augment(self, augmentation: Augmentation | None, size: float, law: AugmentedLaw) -> None:
         if augmentation is None:
             return
-        self._multipliers = make_multipliers(augmentation, law, size, self._comm)
+        self._ways = make_multipliers(augmentation, law, size, self._comm)
+        self._multipliers = self._ways[USUAL]
         self._begin()
 
     def _begin(self) -> None:
@@ -277,15 +321,20 @@ class ContactRecord:
         self._start = self.state
         self._way = []
         if self._multipliers is not None:
-            self._start = self._multipliers.begin(self.state, self.located(self.state))
-            self._stiffen(self._multipliers.level)
+            self._start_from(self._multipliers.begin(self.state, self.located(self.state)))
+
+    def _start_from(self, start: State) -> None:
+        """Let trials start from other multipliers, perhaps with other penalties."""
+        assert self._multipliers is not None
+        self._start = start
+        self._stiffen(*self._multipliers.factors)
 
     def located(self, state: State) -> npt.NDArray[np.bool_]:
         """Whether each point of a state has a surface below it, (n,)."""
         raise NotImplementedError
 
-    def _stiffen(self, factor: float) -> None:
-        """Multiply the penalties of the law with a factor."""
+    def _stiffen(self, normal: float, tangential: float) -> None:
+        """Multiply the normal penalty and the stiffness of adhesion of the law."""
         raise NotImplementedError
 
     def _tangents(self, state: State) -> Floats:

@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 from anisocontact.augmentation import AUTO, NEWTON, UZAWA, Augmentation
 from anisocontact.contact.multipliers import AugmentedLaw, Multipliers, check, follows
-from anisocontact.contact.semismooth import Semismooth
+from anisocontact.contact.nested import Nested
+from anisocontact.contact.semismooth import Semismooth, Softer
 from anisocontact.contact.uzawa import Uzawa
 
-#: Class of each way.
-WAYS: Mapping[str, type[Multipliers]] = {NEWTON: Semismooth, UZAWA: Uzawa}
+#: Ways of an increment, the usual one and what is tried where that fails: with smaller penalties,
+#: in cycles.
+USUAL, SOFTER, IN_CYCLES = "usual", "softer", "in cycles"
+
+#: Classes of the ways that a scheme has.
+SCHEMES: Mapping[str, Mapping[str, type[Multipliers]]] = {
+    NEWTON: {USUAL: Semismooth, SOFTER: Softer},
+    UZAWA: {USUAL: Uzawa},
+    AUTO: {USUAL: Semismooth, SOFTER: Softer, IN_CYCLES: Nested},
+}
 
 
 def make_multipliers(
     augmentation: Augmentation, law: AugmentedLaw, size: float, comm: Any
-) -> Multipliers:
-    """Multipliers for a law.
+) -> dict[str, Multipliers]:
+    """Multipliers for a law, by the ways of an increment.
 
     Args:
         augmentation: What is asked for.
@@ -29,11 +37,9 @@ def make_multipliers(
     Raises:
         InputError: A part to be augmented is physical, see `check`.
     """
-    if getattr(getattr(law, "friction", None), "frictionless", False):
-        # there is no tangential force that a multiplier could be
-        augmentation = replace(augmentation, tangential=False)
     check(augmentation, law)
     name = augmentation.multipliers
-    if name == AUTO:
-        name = NEWTON if follows(augmentation, law) else UZAWA
-    return WAYS[name](augmentation, size, law.penalties(), comm)
+    if name == AUTO and not follows(augmentation, law):
+        name = UZAWA
+    ways = SCHEMES[name].items()
+    return {way: kind(augmentation, size, law.penalties(), comm) for way, kind in ways}

@@ -19,7 +19,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.multipliers import SHARE, Frames, Multipliers, Step
+from anisocontact.contact.multipliers import OPEN, SHARE, STICK, Frames, Multipliers, Step
 from anisocontact.interface import State
 
 Floats = npt.NDArray[np.float64]
@@ -64,18 +64,42 @@ class Semismooth(Multipliers):
         ratio: What the penalties are multiplied with in the derivative.
     """
 
-    follows: ClassVar[bool] = True
-
     share: float = 1.0
     ratio: ClassVar[float] = RATIO
 
-    def suit(self, stiffness: float) -> None:
-        """Bring the penalties to the stiffness of the bodies, where the iteration converges best.
+    @property
+    def follower(self) -> Semismooth:
+        """Itself."""
+        return self
+
+    @property
+    def stiff_factors(self) -> tuple[float, float]:
+        """`factors` in the derivative."""
+        normal, tangential = self.factors
+        return self.ratio * normal, self.ratio * tangential if self.tangential else 1.0
+
+    def begin_from(self, step: Step) -> State:
+        """What the trials start from after equilibrium with penalties: what it answers.
+
+        A point whose gap has closed carries friction from where it came to lie.
 
         Args:
-            stiffness: Traction per displacement of the surfaces, stress/length.
+            step: The trial in equilibrium.
         """
-        self.level = stiffness / self._penalties[0]
+        _, found = self.values(step)
+        self.share = 1.0
+        new = step.start.copy()
+        new["multiplier"] = found[:, 0]
+        if not self.tangential:
+            return new
+        new["stored"] = np.einsum("nid,nd->ni", step.before.tangents, found[:, 1:])
+        closed = (new["status"] == OPEN) & (step.answer.status != OPEN)
+        for name in ("xi", "origin", "facet"):
+            new[name][closed] = step.answer.state[name][closed]
+        for name in ("gap", "elastic", "stored"):
+            new[name][closed] = 0.0
+        new["status"][closed] = STICK
+        return new
 
     def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
         """What the trials of the next increment start from, see `Multipliers.begin`."""
@@ -108,7 +132,7 @@ class Semismooth(Multipliers):
         shifted[step.answer.pressure == 0.0] = 0.0
         state, trial = step.start.copy(), step.answer.state
         state["multiplier"] = shifted[:, 0]
-        deep = (given[:, 0] - found[:, 0]) / (self.factor * self._penalties[0])
+        deep = (given[:, 0] - found[:, 0]) / (self.factors[0] * self._penalties[0])
         slip = deep[:, None] * step.now.normal
         if self.tangential:
             state["stored"] = np.einsum("nid,nd->ni", step.before.tangents, shifted[:, 1:])
@@ -140,3 +164,21 @@ class Semismooth(Multipliers):
         given, _ = self.values(step)
         turned = step.before.turned_to(step.now, given[:, 1:])
         return np.asarray(given[:, :1] * step.now.normal + turned)
+
+
+class Softer(Semismooth):
+    """The same with smaller penalties in the projections: fewer points change their status at once.
+
+    A softer penalty moves the boundary between the cases of P less from one step to the next, at
+    the price of more steps where no status changes; the answer is the same.
+    """
+
+    #: Shares of the penalties that suit the bodies: normal, tangential.
+    SHARES: ClassVar[tuple[float, float]] = (0.3, 0.1)
+
+    def suit(self, stiffness: float) -> None:
+        """Bring the penalties to a share of the stiffness of the bodies, see `Multipliers.suit`."""
+        super().suit(stiffness)
+        normal, tangential = self.SHARES
+        self.level *= normal
+        self._proportion *= tangential / normal

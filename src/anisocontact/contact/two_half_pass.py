@@ -122,6 +122,20 @@ class TwoHalfPass(ContactRecord):
             half.roll_back()
         super().roll_back()
 
+    def footing(self) -> npt.NDArray[np.int64]:
+        """Of both passes, see `ContactRecord.footing`."""
+        return np.concatenate([half.footing() for half in self.passes])
+
+    def hold(self, points: npt.NDArray[np.bool_]) -> None:
+        """In both passes, see `ContactRecord.hold`."""
+        first = len(self.passes[0].state)
+        for half, its in zip(self.passes, np.split(points, [first]), strict=True):
+            half.hold(its)
+
+    def strayed(self) -> Floats:
+        """Of both passes, see `ContactRecord.strayed`."""
+        return np.concatenate([half.strayed() for half in self.passes])
+
     @property
     def parts(self) -> tuple[ContactRecord, ...]:
         """Both passes."""

@@ -49,6 +49,9 @@ class Uzawa(Multipliers):
         self._mixing = Mixing(comm)
         self._status: npt.NDArray[np.int8] | None = None
 
+    def suit(self, _: float) -> None:
+        """The penalties are those given; the level is found from increment to increment."""
+
     def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
         """What the trials of the next increment start from, see `Multipliers.begin`."""
         self._cycles = []
@@ -61,23 +64,26 @@ class Uzawa(Multipliers):
         """Keep the level that the increment has shown to be right."""
         self.level = self._found
 
-    def soften(self) -> bool:
+    def soften(self, start: State) -> State | None:
         """After a solution that failed: take penalties that are easier to solve with.
 
+        Args:
+            start: What the trials started from.
+
         Returns:
-            Whether there is something else to be tried, with the multipliers of the last cycle.
+            The same, with the multipliers of the last cycle; None if nothing else can be tried.
         """
         if not self._cycles:
             if self._found < SOFTEST * self.level:
-                return False
+                return None
             self.factor = self._found = self._found / RAISE
-            return True
+            return start
         if not self._raised or len(self._cycles) > MOST_CYCLES:
-            return False
+            return None
         self.factor /= RAISE
         self._raised, self._waits = False, PATIENCE
         self._mixing = Mixing(self._comm)
-        return True
+        return start
 
     def improve(self, step: Step) -> State | None:
         """Better multipliers from a trial in equilibrium, see `Multipliers.improve`."""

@@ -11,10 +11,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from anisocontact._fenicsx import Vec
-from anisocontact.solver.culprits import inverted_cells
+from anisocontact.solver.culprits import inverted_cells, strayed
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.rotations import CURE, WARNED
 from anisocontact.solver.steps import Culprit
+
+#: Error of the gap of a point that is held on a facet, over the size of a facet, that is none.
+STRAYED = 1e-3
 
 
 @dataclass(frozen=True)
@@ -51,6 +54,13 @@ def contact_lets_go(problem: Problem, x: Vec) -> Refusal | None:
     return Refusal(reason) if reason else None
 
 
+def held_points_stray(problem: Problem, _: Vec) -> Refusal | None:
+    """Refuse states in which points are held on a facet that is not the one below them."""
+    found = strayed(problem, STRAYED)
+    text = f"{len(found)} slave points at a rim of facets have left the facet they were held on"
+    return Refusal(text, tuple(found)) if found else None
+
+
 def turned_too_far(problem: Problem, x: Vec) -> Refusal | None:
     """Refuse states in which a body at small strain has turned beyond what its model can tell.
 
@@ -72,7 +82,13 @@ def behind_a_master(problem: Problem, x: Vec) -> Refusal | None:
 
 
 #: All checks, in the order in which they are asked.
-CHECKS: tuple[Check, ...] = (cells_inside_out, behind_a_master, contact_lets_go, turned_too_far)
+CHECKS: tuple[Check, ...] = (
+    cells_inside_out,
+    held_points_stray,
+    behind_a_master,
+    contact_lets_go,
+    turned_too_far,
+)
 
 
 def refused(problem: Problem, x: Vec) -> Refusal | None:

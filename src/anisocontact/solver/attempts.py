@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from anisocontact._fenicsx import Vec
+from anisocontact.contact.schemes import IN_CYCLES, SOFTER, USUAL
 from anisocontact.solver.acceptance import refused
 from anisocontact.solver.culprits import find_culprits
 from anisocontact.solver.newton import NewtonResult
@@ -16,7 +17,7 @@ from anisocontact.solver.watch import StatusWatch
 #: Smallest share of a correction that is taken while the status of points alternates.
 LEAST_SHARE = 1.0 / 64.0
 #: Kinds of culprits, the gravest first.
-GRAVITY = ("law", "inverted", "flipping", "behind", "residual")
+GRAVITY = ("law", "inverted", "flipping", "hopping", "behind", "residual")
 
 
 @dataclass(frozen=True)
@@ -43,12 +44,16 @@ class _Way:
         full_steps: Whether there is no line search.
         damped: Whether corrections are taken in shares while the status of points alternates.
         flowing: Whether the bodies flow.
+        multipliers: Way to the multipliers of augmented contacts.
+        spare: Whether its failure says nothing of what holds the bodies.
     """
 
     start: Vec
     full_steps: bool = True
     damped: bool = False
     flowing: bool = False
+    multipliers: str = USUAL
+    spare: bool = False
 
 
 class Attempts:
@@ -59,7 +64,8 @@ class Attempts:
     status of points alternated, a third one takes a share of each correction: half as much as
     before where it still alternates, twice as much where it does not. Where that does not help
     either and the part is small, the last one lets the bodies flow, see `Flow`. Where contact may
-    hold free bodies without springs, an attempt without them comes before all these.
+    hold free bodies without springs, an attempt without them comes before all these. Multipliers
+    that follow every correction have ways of their own, see `_following`.
 
     Args:
         problem: The problem.
@@ -101,9 +107,10 @@ class Attempts:
 
     def _ways(self, first: Vec, last: Vec) -> list[_Way]:
         searching, full = _Way(first, full_steps=False), _Way(last)
-        # without line search both would be the same
-        ways = [full] if self._problem.follows and first is last else [searching, full]
-        return [searching, *ways] if self._problem.stabilisation.trusts else ways
+        trusts = self._problem.stabilisation.trusts
+        if self._problem.follows:
+            return _following(searching, full, IN_CYCLES in self._problem.ways, trusts)
+        return [searching, searching, full] if trusts else [searching, full]
 
     def _against_flipping(self, failed: _Way, small: bool) -> list[_Way]:
         """What is left to be tried where the status of points alternates."""
@@ -121,12 +128,13 @@ class Attempts:
         try:
             if way.flowing:
                 problem.flow()
+            problem.take_way(way.multipliers)
             result = self._newton.solve(x, way.full_steps, self._damping if way.damped else None)
             refusal = None if result.reason else refused(problem, x)
             if not result.reason and refusal is None:
                 problem.commit(x)
                 return result, []
-            problem.stabilisation.careful = True
+            problem.stabilisation.careful |= not way.spare
             if refusal is not None:
                 self._final = refusal.final
                 return replace(result, reason=refusal.reason), list(refusal.culprits)
@@ -146,6 +154,28 @@ class Attempts:
         return self._share
 
 
+def _following(first: _Way, last: _Way, cycles: bool, trusts: bool) -> list[_Way]:
+    """Ways where multipliers follow every correction, each from the accepted history.
+
+    Full steps, then cycles that begin with penalties, where there are any, then shares of
+    corrections with smaller penalties.
+
+    Args:
+        first: From the extrapolated state.
+        last: From the accepted state.
+        cycles: Whether multipliers can be found in cycles instead.
+        trusts: Whether the first attempt has no springs where contact may hold free bodies.
+    """
+    usual = replace(first, spare=cycles)
+    again = replace(first, multipliers=IN_CYCLES) if cycles else first
+    ways = [again] if trusts or cycles else []
+    if trusts and cycles:
+        ways.append(again)
+    if first.start is not last.start:
+        ways.append(replace(last, multipliers=again.multipliers))
+    return [usual, *ways, replace(last, multipliers=SOFTER, damped=True)]
+
+
 def _graver(before: list[Culprit], now: list[Culprit]) -> list[Culprit]:
     """The graver one of two findings, the later one of equals."""
     if not before or not now:
@@ -163,4 +193,6 @@ def _reason(reason: str, culprits: list[Culprit]) -> str:
         return "cells are turned inside out"
     if kind == "flipping":
         return f"{reason}; the status of {len(culprits)} slave points alternates (chattering)"
+    if kind == "hopping":
+        return f"{reason}; {len(culprits)} slave points hop between facets"
     return reason

@@ -7,6 +7,8 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.contact import facet_size
+from anisocontact.contact.held_feet import facet_of
 from anisocontact.interface import FAILURE, STATUS
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Culprit
@@ -28,9 +30,16 @@ def find_culprits(problem: Problem, watch: StatusWatch, residual: Floats) -> lis
 
     Returns:
         Over all ranks, the same on each: points without answer of their law, else inverted cells,
-        else points whose status alternates, else the node that is farthest from equilibrium.
+        else points whose status alternates, else points that hop between facets, else the node
+        that is farthest from equilibrium.
     """
-    for kind in (_of_laws(problem, watch), _inverted(problem), _alternating(problem, watch)):
+    kinds = (
+        _of_laws(problem, watch),
+        _inverted(problem),
+        _alternating(problem, watch),
+        _hopping(problem, watch),
+    )
+    for kind in kinds:
         found = _everywhere(problem, list(kind))
         if found:
             return found
@@ -56,6 +65,35 @@ def _alternating(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
             names = " and ".join(STATUS[code] for code in np.unique(seen))
             why = f"the status alternates between {names}"
             yield _slave_point(problem, watch, i, int(point), "flipping", why)
+
+
+def _hopping(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
+    for i, flags in enumerate(watch.feet.hopping()):
+        for point in np.flatnonzero(flags):
+            facets = np.unique(facet_of(watch.feet.history(i)[:, point]))
+            names = " and ".join(str(facet) for facet in facets)
+            why = f"the point hops between facets {names} of the other side"
+            if len(facets) == 1:
+                why = f"the point hops between facet {names} of the other side and its rim"
+            yield _slave_point(problem, watch, i, int(point), "hopping", why)
+
+
+def strayed(problem: Problem, far: float) -> list[Culprit]:
+    """Points that are held on a facet while another one is below them, over all ranks.
+
+    Args:
+        problem: The problem as the last evaluation left it.
+        far: Error of the gap, over the size of a slave facet, beyond which they count.
+    """
+    watch = StatusWatch(problem.contacts)
+    found = []
+    for i, contact in enumerate(problem.contacts):
+        wrong = contact.strayed()
+        size = facet_size(problem.model, contact.slave)
+        for point in np.flatnonzero(wrong > far * size):
+            why = f"held on a facet at its rim: the gap is wrong by {wrong[point] / size:.1g} of it"
+            found.append(_slave_point(problem, watch, i, int(point), "hopping", why))
+    return _everywhere(problem, found)
 
 
 def _slave_point(

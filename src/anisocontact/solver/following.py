@@ -36,3 +36,13 @@ class Following:
         """Let multipliers take only a share of the next correction."""
         for contact in self.contacts:
             contact.take_share(share)
+
+    @property
+    def ways(self) -> frozenset[str]:
+        """Ways to the multipliers that a contact has, see `ContactRecord.ways`."""
+        return frozenset(way for contact in self.contacts for way in contact.ways)
+
+    def take_way(self, name: str) -> None:
+        """Find multipliers in another way in this attempt, see `ContactRecord.take_way`."""
+        for contact in self.contacts:
+            contact.take_way(name)

@@ -33,10 +33,9 @@ DIVERGED = 1e8
 #: A line search whose residual keeps more than this share of itself over so many corrections
 #: stands in front of a jump of the law, and would stay there.
 STUCK, STUCK_OVER = 0.5, 8
-#: Smallest share of a correction that is taken where multipliers follow.
-LEAST_SHARE = 1.0 / 8.0
-#: Two corrections have gained something where the residual is below this share of the least before.
-GAINED = 0.9
+#: With multipliers that follow a residual rises and falls while points find their status; it goes
+#: round in circles where the least of so many is more than this share of the least before.
+IDLE, IDLE_OVER = 0.5, 5
 
 
 class SingularError(RuntimeError):
@@ -155,7 +154,6 @@ class Newton:
         self._on_iteration = on_iteration
         self._residuals: list[float] = []
         self._damping: Callable[[], float] | None = None
-        self._share = 1.0
         self.snes = PETSc.SNES().create(problem.comm)
         self.snes.setOptionsPrefix(prefix)
         self.snes.setFunction(self._function, problem.new_vector())
@@ -200,11 +198,11 @@ class Newton:
         """
         self._damping = damping
         search = self.snes.getLineSearch()
-        full_steps = full_steps or self._problem.follows
-        search.setType("basic" if full_steps else self._line_search)
         spent = 0
         last = x.copy()
         while True:
+            full = full_steps or self._problem.follows
+            search.setType("basic" if full else self._line_search)
             result = self._equilibrium(x)
             spent += result.iterations
             try:
@@ -255,28 +253,11 @@ class Newton:
             self.snes.getKSP().reset()
 
     def _damp(self, _: Vec, direction: Vec) -> bool:
-        share = self._pace() if self._damping is None else self._damping()
+        share = 1.0 if self._damping is None else self._damping()
         self._problem.take_share(share)
         if share != 1.0:
             direction.scale(share)
         return share != 1.0
-
-    def _pace(self) -> float:
-        """Share of the next correction where no line search can tell how far to go.
-
-        Half as much as before where two corrections have gained nothing, twice as much where the
-        residual falls as it should.
-        """
-        if not self._problem.follows:
-            return 1.0
-        known = self._residuals
-        if len(known) < 3:
-            self._share = 1.0
-        elif min(known[-2:]) > GAINED * min(known[:-2]):
-            self._share = max(0.5 * self._share, LEAST_SHARE)
-        elif known[-1] < (1.0 - 0.5 * self._share) * known[-2]:
-            self._share = min(2.0 * self._share, 1.0)
-        return self._share
 
     def _converged(
         self, snes: SNES, iteration: int, norms: tuple[float, float, float]
@@ -294,7 +275,16 @@ class Newton:
             return reasons.CONVERGED_FNORM_RELATIVE
         if relative > DIVERGED * min(self._residuals[1:], default=np.inf):
             return reasons.DIVERGED_DTOL
+        if self._idles():
+            return reasons.DIVERGED_LOCAL_MIN
         return reasons.DIVERGED_LINE_SEARCH if self._stuck() else reasons.ITERATING
+
+    def _idles(self) -> bool:
+        """Whether the last corrections, with multipliers that follow, have gained too little."""
+        known = self._residuals
+        if not self._problem.follows or len(known) < IDLE_OVER + 3:
+            return False
+        return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
 
     def _stuck(self) -> bool:
         """Whether a line search gains next to nothing."""
@@ -312,6 +302,8 @@ class Newton:
             reasons.DIVERGED_LINEAR_SOLVE: "the tangent matrix could not be factorised "
             "(a body without support?)",
             reasons.DIVERGED_LINE_SEARCH: "the line search got stuck, residual {r:.1e}",
+            reasons.DIVERGED_LOCAL_MIN: "corrections of the multipliers gain nothing, "
+            "residual {r:.1e}",
             reasons.DIVERGED_DTOL: "the Newton iteration diverged, residual {r:.1e}",
         }
         text = known.get(reason, f"SNES stopped with reason {reason}")

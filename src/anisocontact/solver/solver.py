@@ -264,6 +264,9 @@ class Solver:
 
     def _report(self, iteration: int, residual: float) -> None:
         self._watch.note()
+        self._watch.feet.note(residual)
+        if not self.problem.stabilisation.flow.flows:  # bodies that flow go far in an attempt
+            self._watch.feet.hold()
         if self._on_iteration is not None:
             counts = {c.name: c.counts() for c in self.problem.contacts}
             step = self.steps[self.place.step].name

@@ -203,8 +203,9 @@ class Culprit:
 
     Attributes:
         kind: "law" (a slave point without answer), "flipping" (a slave point whose status
-            alternates), "inverted" (a cell turned inside out), "behind" (a body behind its master)
-            or "residual" (the node that is farthest from equilibrium).
+            alternates), "hopping" (one that hops between facets), "inverted" (a cell turned inside
+            out), "behind" (a body behind its master) or "residual" (the node that is farthest from
+            equilibrium).
         position: Where it is, (x, y, z), length.
         why: What is wrong with it.
         contact: Name of the contact of a slave point.

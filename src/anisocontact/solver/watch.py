@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact import AnyContact
+from anisocontact.solver.feet_watch import FeetWatch
 
 Codes = npt.NDArray[np.int8]
 Flags = npt.NDArray[np.bool_]
@@ -24,15 +25,20 @@ class StatusWatch:
 
     Args:
         contacts: The contacts.
+
+    Attributes:
+        feet: Remembers what they had below them.
     """
 
     def __init__(self, contacts: Sequence[AnyContact]) -> None:
         self._contacts = list(contacts)
+        self.feet = FeetWatch(contacts)
         self._seen: deque[list[Codes]] = deque(maxlen=MEMORY)
 
     def clear(self) -> None:
         """Forget everything: another attempt begins."""
         self._seen.clear()
+        self.feet.clear()
 
     def note(self) -> None:
         """Take the status of the last evaluation."""

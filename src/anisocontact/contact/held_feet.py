@@ -1,0 +1,100 @@
+"""Slave points that are held on a facet of the master while equilibrium is sought.
+
+Where two facets meet at an angle the closest point jumps from one to the other, and with it the
+normal. A point whose equilibrium is there hops to and fro from one correction to the next. Held, it
+is projected on its facet as if that went on beyond its sides: there the gap is wrong by how far it
+is outside times the angle, see `ContactRecord.strayed`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.sides import Sides, located
+from anisocontact.facets import FACET_STATUS, FEATURES, FacetProjections, FacetSurface
+
+Mask = npt.NDArray[np.bool_]
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+#: How far beyond its sides a facet goes on, in its coordinates, which run from 0 to 1.
+BEYOND = 0.1
+#: Corrections of a foot, and the last one that is good enough: facets are nearly flat.
+MOST, ENOUGH = 12, 1e-14
+
+
+def footing(hit: FacetProjections, facets: Ints) -> npt.NDArray[np.int64]:
+    """A code of the feature of a facet that each point has below it, (n,).
+
+    Args:
+        hit: Projections of the points.
+        facets: The facets, in the numbers that are wanted, (n,).
+    """
+    return np.asarray(facets.astype(np.int64) * len(FEATURES) + hit.feature)
+
+
+def facet_of(codes: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+    """Facets in codes of `footing`."""
+    return codes // len(FEATURES)
+
+
+def on_held_facets(
+    sides: Sides, now: Floats, hit: FacetProjections, on: Ints, held: Mask
+) -> FacetProjections:
+    """Projections of which some are on a given facet, continued beyond its sides.
+
+    Args:
+        sides: Both sides; the surface is where it is now.
+        now: Positions of the nodes, (nodes, 3), length.
+        hit: Closest points of the slave points.
+        on: Facet that a held point is on, (n,).
+        held: Points that are held, (n,).
+
+    Returns:
+        The same for points that are not held, for those beyond the border of the surface, and for
+        those that are farther than `BEYOND` from their facet.
+    """
+    which = np.flatnonzero(held & (on >= 0) & located(hit))
+    if not which.size:
+        return hit
+    x, facets = sides.points.positions(now)[which], on[which]
+    start = np.where((hit.facet[which] == facets)[:, None], hit.xi[which], 0.5)
+    xi, foot, normal = _feet(sides.surface, x, facets, start)
+    near = _outside(sides.master.topology, xi) <= BEYOND
+    which, facets = which[near], facets[near]
+    new = {one.name: getattr(hit, one.name).copy() for one in fields(hit)}
+    new["facet"][which], new["xi"][which] = facets, xi[near]
+    new["position"][which], new["normal"][which] = foot[near], normal[near]
+    new["gap"][which] = np.einsum("nd,nd->n", x - foot, normal)[near]
+    new["status"][which] = FACET_STATUS.index("on")
+    new["feature"][which] = FEATURES.index("interior")
+    new["entity"][which], new["edge"][which] = -1, 0.0
+    return replace(hit, **new)
+
+
+def _feet(
+    surface: FacetSurface, x: Floats, facets: Ints, start: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Coordinates, positions and normals where x - rho is normal to a facet, by Newton's method."""
+    xi = start
+    for _ in range(MOST):
+        jet = surface.jet(facets, xi)
+        rest = x - jet.position
+        curved = np.einsum("nkd,nd->nk", jet.d2, rest)[:, [[0, 1], [1, 2]]]
+        matrix = np.einsum("nid,njd->nij", jet.d1, jet.d1) - curved
+        step = np.linalg.solve(matrix, np.einsum("nid,nd->ni", jet.d1, rest)[..., None])[..., 0]
+        xi = xi + step
+        if np.abs(step).max() <= ENOUGH:
+            break
+    jet = surface.jet(facets, xi)
+    cross = np.cross(jet.d1[:, 0], jet.d1[:, 1])
+    return xi, jet.position, cross / np.linalg.norm(cross, axis=1)[:, None]
+
+
+def _outside(topology: str, xi: Floats) -> Floats:
+    """How far coordinates are beyond the sides of a facet, (n,); negative inside."""
+    last = xi.sum(axis=1) if topology.startswith("tri") else xi.max(axis=1)
+    return np.asarray(np.maximum(-xi.min(axis=1), last - 1.0))

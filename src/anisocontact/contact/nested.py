@@ -1,0 +1,85 @@
+"""Multipliers in cycles around Newton's method, of which the last is one semismooth iteration.
+
+The first cycle is a contact with penalties, which a line search leads to equilibrium from far off.
+From there most points have the status that they will have, and the semismooth iteration takes the
+violations away in a few corrections. Where it does not, cycles go on from where they were.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.augmentation import Augmentation
+from anisocontact.contact.multipliers import Multipliers, Step
+from anisocontact.contact.penalty import PENALTY_FACTOR
+from anisocontact.contact.semismooth import Semismooth
+from anisocontact.contact.uzawa import Uzawa
+from anisocontact.interface import State
+
+#: Cycles after which the semismooth iteration is tried.
+TRIED_AFTER = (1, 3, 6)
+
+
+class Nested(Uzawa):
+    """Cycles of `Uzawa` that end in `Semismooth`, made like all `Multipliers`.
+
+    Nothing of them lasts: an increment that was solved like this leaves no level of penalties.
+
+    Args:
+        augmentation: What is asked for.
+        size: Facet size, length.
+        penalties: Normal penalty and least tangential stiffness, stress/length.
+        comm: Communicator of the mesh.
+    """
+
+    def __init__(
+        self, augmentation: Augmentation, size: float, penalties: tuple[float, float], comm: Any
+    ) -> None:
+        super().__init__(augmentation, size, penalties, comm)
+        self._last = Semismooth(augmentation, size, penalties, comm)
+        self._ends = False
+        self._next: State | None = None
+
+    def suit(self, stiffness: float) -> None:
+        """Bring the penalties to the stiffness of the bodies: `PENALTY_FACTOR` times of it."""
+        Multipliers.suit(self, PENALTY_FACTOR * stiffness)
+        self._last.suit(stiffness)
+
+    @property
+    def follower(self) -> Semismooth | None:
+        """The multipliers that follow every correction, while they do."""
+        return self._last if self._ends else None
+
+    @property
+    def factors(self) -> tuple[float, float]:
+        """What normal penalty and stiffness of adhesion are multiplied with now."""
+        return self._last.factors if self._ends else super().factors
+
+    def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
+        """What the trials of the next increment start from, see `Multipliers.begin`."""
+        self._ends, self._next = False, None
+        self._last.begin(state, located)
+        return super().begin(state, located)
+
+    def commit(self) -> None:
+        """Keep nothing."""
+
+    def improve(self, step: Step) -> State | None:
+        """Better multipliers from a trial in equilibrium, see `Multipliers.improve`."""
+        if self._ends:
+            return None
+        self._next = super().improve(step)
+        if self._next is None or len(self._cycles) not in TRIED_AFTER:
+            return self._next
+        self._ends = True
+        return self._last.begin_from(step)
+
+    def soften(self, start: State) -> State | None:
+        """After a solution that failed, see `Multipliers.soften`: cycles go on."""
+        if not self._ends:
+            return super().soften(start)
+        self._ends = False
+        return self._next

@@ -1,0 +1,154 @@
+"""Points that hop between facets of unequal normal: how they are seen, held and named."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.contact import FacetContact
+from anisocontact.contact.held_feet import BEYOND, facet_of
+from anisocontact.interface import PairLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.solver.acceptance import held_points_stray
+from anisocontact.solver.culprits import find_culprits
+from anisocontact.solver.feet_watch import FeetWatch
+from anisocontact.solver.watch import StatusWatch
+
+#: Slope of both facets of the base, which fall towards their common side at x = 1.
+SLOPE = 0.2
+
+
+def _over_a_valley() -> tuple[FacetContact, Any, Any]:
+    """A block of a facet above a valley of two, displacements by its place, and the model."""
+    boxes = {
+        "block": BoxSpec((0.9, 0.4, 0), (0.2, 0.2, 0.2), (1, 1, 1)),
+        "base": BoxSpec((0, 0, -1), (2, 1, 1), (2, 1, 1)),
+    }
+    model = build_box(boxes)
+    penalty = 10.0
+    law = PairLaw(
+        NormalLaw(penalty=penalty),
+        Adhesion(stiffness=(penalty, penalty)),
+        Friction(coefficients=(0.3, 0.3)),
+    )
+    contact = FacetContact(
+        model, "block.bottom", "base.top", law=law, degree=1, reach=1.0, current_area=False
+    )
+    x = model.space.tabulate_dof_coordinates()
+    base = np.unique(contact.master_facets)
+
+    def moved(by: float, up: float) -> np.ndarray:
+        u = np.zeros_like(x)
+        u[base, 2] = SLOPE * np.abs(x[base, 0] - 1.0)
+        u[np.unique(contact.slave_facets)] = [by, 0.0, up]
+        return u
+
+    return contact, moved, model
+
+
+def test_a_held_point_stays_on_its_facet():
+    """Beyond the side its gap is that of the facet continued: a plane through it.
+
+    Source: a plane of slope s through the side, gap = (z - s (1 - x)) / sqrt(1 + s^2); the other
+    facet would give z - s (x - 1). They differ by 2 s (x - 1) / sqrt(1 + s^2). Tolerance: rounding.
+    """
+    contact, moved, _ = _over_a_valley()
+    contact.update(moved(-0.05, -0.02), 1.0)
+    left = contact.footing()
+    contact.hold(np.ones(len(left), dtype=bool))
+    contact.update(moved(0.05, -0.02), 1.0)
+    np.testing.assert_array_equal(contact.footing(), left)
+    held = (-0.02 + SLOPE * 0.05) / np.hypot(1.0, SLOPE)
+    np.testing.assert_allclose(contact.trial.gap, held, atol=1e-14)
+    np.testing.assert_allclose(contact.strayed(), 2 * SLOPE * 0.05 / np.hypot(1.0, SLOPE))
+    contact.roll_back()
+    contact.update(moved(0.05, -0.02), 1.0)
+    assert np.all(contact.footing() != left)
+    np.testing.assert_array_equal(contact.strayed(), 0.0)
+
+
+def test_a_point_far_from_its_facet_is_let_go():
+    """Farther than `BEYOND` from the facet it was held on, a point goes to the closest one."""
+    contact, moved, _ = _over_a_valley()
+    contact.update(moved(-0.05, -0.02), 1.0)
+    left = contact.footing()
+    contact.hold(np.ones(len(left), dtype=bool))
+    contact.update(moved(2.0 * BEYOND, -0.02), 1.0)
+    assert np.all(contact.footing() != left)
+
+
+@pytest.mark.parametrize(("by", "refuses"), [(1e-4, False), (0.05, True)])
+def test_states_with_strayed_points_are_refused(by, refuses):
+    """An error of the gap beyond a thousandth of a facet is no solution; its place is named.
+
+    By the formula above it is 2e-4 and 0.1 of the facet.
+    """
+    contact, moved, model = _over_a_valley()
+    contact.update(moved(-0.05, -0.001), 1.0)
+    contact.hold(np.ones(len(contact.footing()), dtype=bool))
+    contact.update(moved(by, -0.001), 1.0)
+    comm = SimpleNamespace(allgather=lambda one: [one])
+    problem: Any = SimpleNamespace(contacts=[contact], comm=comm, model=model)
+    found = held_points_stray(problem, None)
+    assert (found is not None) == refuses
+    if found is not None:
+        assert "1 slave points" in found.reason
+        assert "the gap is wrong by 0.1 of it" in str(found.culprits[0])
+
+
+def _contact(codes: list[int]) -> Any:
+    held: list[np.ndarray] = []
+    trial = SimpleNamespace(status=np.ones(1, dtype=np.int8))
+    codes = list(codes)
+    return SimpleNamespace(
+        trial=trial, held=held, hold=held.append, footing=lambda: np.array([codes.pop(0)])
+    )
+
+
+@pytest.mark.parametrize(
+    ("codes", "residuals", "hops"),
+    [
+        ([3, 6, 3, 6], [1.0, 0.5, 0.5, 0.5], True),
+        ([3, 6, 9, 3, 6], [1.0, 0.5, 0.5, 0.5, 0.5], True),
+        ([3, 6, 9, 12], [1.0, 0.5, 0.5, 0.5], False),
+        ([3, 6, 3, 3], [1.0, 0.5, 0.5, 0.5], False),
+        ([3, 6, 3, 6], [1.0, 0.5, 1e-3, 1e-5], False),
+    ],
+    ids=["to and fro", "round a corner", "slides on", "once", "falls fast"],
+)
+def test_points_that_hop_are_held(codes, residuals, hops):
+    """Two returns to a facet within the last iterations, while the residual does not fall fast."""
+    contact = _contact(codes)
+    watch = FeetWatch([contact])
+    for residual in residuals:
+        watch.note(residual)
+        watch.hold()
+    assert any(flags.any() for flags in contact.held) == hops
+    watch.clear()
+    assert not watch.hopping()[0].any()
+
+
+def test_a_point_that_hops_is_named_with_its_facets():
+    """The message has both facets, by their numbers in the group of the master."""
+    contact, moved, _ = _over_a_valley()
+    watch = StatusWatch([contact])
+    facets = set()
+    for i in range(6):
+        contact.update(moved(0.05 * (-1) ** i, -0.02), 1.0)
+        facets.update(facet_of(contact.footing()).tolist())
+        watch.note()
+        watch.feet.note(1.0)
+    assert facets == {0, 1}
+    comm = SimpleNamespace(allgather=lambda one: [one])
+    problem: Any = SimpleNamespace(
+        contacts=[contact], comm=comm, inverted_cells=lambda: np.zeros((0, 3))
+    )
+    (culprit,) = find_culprits(problem, watch, np.zeros(3))
+    assert culprit.kind == "hopping"
+    assert "hops between facets 0 and 1 of the other side" in str(culprit)

@@ -1,0 +1,162 @@
+"""Augmented contacts in cases that contacts with penalties run through."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+PLATE = """
+[mesh.box.plate]
+origin = [0, 0, 0]
+size = [1, {depth}, 1]
+cells = [{n}, 1, {n}]
+
+[material.plate]
+model = "linear-elastic"
+E = 1000
+nu = {nu}
+
+[surface.ground]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+
+[[contact]]
+slave = "plate.bottom"
+master = "ground"
+method = "augmented"
+friction = {{ coefficients = {mu} }}
+
+[[step]]
+name = "load"
+increments = 2
+
+[step.pressure]
+"plate.top" = 1.0
+"plate.left" = {side}
+
+[step.displacement]
+"plate.right" = {{ x = 0 }}
+"plate.front" = {{ y = 0 }}
+"plate.back" = {{ y = 0 }}
+"""
+PAIR = """
+[mesh.box.block]
+origin = [0, 0, 0]
+size = [1, 1, 1]
+cells = [3, 3, 2]
+cell = "{cell}"
+
+[material.block]
+model = "{model}"
+E = {young}
+nu = 0.3
+
+[mesh.box.base]
+origin = [-1, -1, -1]
+size = [3, 3, 1]
+cells = [4, 4, 2]
+cell = "{cell}"
+
+[material.base]
+model = "{model}"
+E = 10
+nu = 0.3
+
+[[contact]]
+slave = "block.bottom"
+master = "base.top"
+method = "{method}"
+friction = {{ coefficients = {mu} }}
+
+[[step]]
+name = "press"
+increments = 1
+
+[step.displacement]
+"base.bottom" = {{ x = 0, y = 0, z = 0 }}
+"block.top" = {{ x = 0, y = 0, z = {press} }}
+"""
+DRAG = """
+[[step]]
+name = "drag"
+increments = 4
+
+[step.displacement]
+"block.top" = {{ x = {x} }}
+"""
+
+
+def _augmented(run) -> None:
+    """Penetration and elastic slip below 1e-6 of a facet at every point of the first contact."""
+    contact = run.problem.contacts[0]
+    size = np.sqrt(contact.areas.mean())
+    touching = contact.state["status"] != 0
+    assert touching.any()
+    assert np.abs(contact.state["gap"][touching]).max() < 1e-6 * size
+    assert np.abs(contact.elastic_slip()).max() < 5e-6 * size
+
+
+@pytest.mark.parametrize(
+    ("n", "mu", "side", "nu"),
+    [(12, 0.6, 2.0, 0.25), (16, 0.6, 2.0, 0.25), (16, 1.0, 4.0, 0.3), (18, 0.5, 4.0, 0.3)],
+)
+def test_plate_pressed_from_two_sides(to_the_end, n, mu, side, nu):
+    """Points of a plate find their status one after the other: full steps get there, no cut.
+
+    Source: the load grows in proportion, so the resultant of the second increment is twice that of
+    the first; the ground carries the
+    pressure on top in full. Tolerance: that of
+    the equilibrium and of the multipliers, 1e-5.
+    """
+    run = to_the_end(PLATE.format(n=n, depth=1 / n, mu=mu, side=side, nu=nu))
+    assert not run.cuts
+    first, second = (a.resultants[run.problem.contacts[0].name][0] for a in run.accepted)
+    np.testing.assert_allclose(second, 2.0 * first, rtol=1e-5, atol=1e-9)
+    assert second[2] == pytest.approx(1.0 / n, rel=1e-6)
+    _augmented(run)
+
+
+@pytest.mark.parametrize("strategy", ["direct", "condensed", "iterative"])
+def test_points_above_the_rims_of_facets(to_the_end, strategy):
+    """Slave points over the sides and corners of facets of the master, which dents: no cut.
+
+    Each of those points has up to four facets of unequal normal below it and hops between them.
+    Symmetry of mesh and load: no force along x and y, to the tilt of the facets, 1e-3.
+    """
+    model = "neo-hookean" if strategy == "direct" else "linear-elastic"
+    text = PAIR.format(
+        cell="hexahedron", model=model, young=10, method="augmented", mu=0.3, press=-0.05
+    )
+    run = to_the_end(text, f'strategy = "{strategy}"')
+    assert not run.cuts
+    force = run.force("press")
+    assert force[2] > 0.0
+    assert np.abs(force[:2]).max() < 1e-3 * force[2]
+    _augmented(run)
+
+
+@pytest.mark.parametrize(
+    ("cell", "young", "mu", "press", "x"),
+    [
+        ("hexahedron", 1e-3, 0.5, -0.05, 0.5),
+        ("hexahedron", 10, 0.3, -0.05, 1.0),
+        ("tetrahedron", 10, 0.5, -0.05, 0.3),
+    ],
+    ids=["soft", "far", "tetrahedra"],
+)
+def test_block_dragged_over_coarse_facets(to_the_end, cell, young, mu, press, x):
+    """Pressed and dragged over facets twice as large, soft, far and of tetrahedra.
+
+    Source: the same with penalties, 10 E / h and the same quadrature. The overlap of the penalties
+    takes a share h p / (10 E) of the approach, some hundredths: forces agree to 15 %.
+    """
+    given = {"cell": cell, "model": "neo-hookean", "young": young, "mu": mu, "press": press}
+    text = PAIR.format(method="augmented", **given) + DRAG.format(x=x)
+    run = to_the_end(text)
+    _augmented(run)
+    penalty = to_the_end(PAIR.format(method="penalty", **given) + DRAG.format(x=x))
+    ours, theirs = run.force("drag"), penalty.force("drag")
+    assert np.linalg.norm(ours - theirs) < 0.15 * np.linalg.norm(theirs)
+    spent = [sum(a.iterations for a in one.accepted) for one in (run, penalty)]
+    assert spent[0] <= 3 * spent[1]
