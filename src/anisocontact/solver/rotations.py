@@ -208,8 +208,8 @@ class _Cells:
         self._volume = float(comm.allreduce(volume))
         self.mean /= self._volume
         own = self._reference[np.unique(self._nodes)]
-        lowest = comm.allreduce(own.min(axis=0, initial=np.inf), MPI.MIN)
-        highest = comm.allreduce(own.max(axis=0, initial=-np.inf), MPI.MAX)
+        lowest = np.min(comm.allgather(own.min(axis=0, initial=np.inf)), axis=0)
+        highest = np.max(comm.allgather(own.max(axis=0, initial=-np.inf)), axis=0)
         self._size = float((highest - lowest).min())
 
     def turned(self, u: Floats) -> tuple[float, float]:
