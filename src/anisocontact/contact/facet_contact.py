@@ -237,6 +237,11 @@ class FacetContact(ContactRecord):
         super().commit()
         self._committed = (self._gathered.local(self._now), self._hint)
 
+    @property
+    def retraceable(self) -> bool:
+        """As of `ContactRecord`; overlaps follow every state."""
+        return super().retraceable and self._transfer is None
+
     def energies(self) -> dict[str, float]:
         """As of `ContactRecord`; with overlaps also "transfer", see `Transfer`."""
         own = super().energies()

@@ -183,6 +183,11 @@ class ContactRecord:
         self._multipliers = self._ways.get(USUAL)
         self._begin()
 
+    @property
+    def retraceable(self) -> bool:
+        """Whether `update` answers at any state from the accepted one, and nothing else changes."""
+        return self._multipliers is None
+
     def pass_through(self) -> None:
         """Remember the trial as a state that bodies which flow have gone through."""
         self._way.append(Slid.of(self.trial.state))

@@ -152,6 +152,11 @@ class TwoHalfPass(ContactRecord):
         first, second = self.passes
         return np.concatenate([first.elastic_slip(), -second.elastic_slip()])
 
+    @property
+    def retraceable(self) -> bool:
+        """As of `ContactRecord`, of both passes."""
+        return all(half.retraceable for half in self.passes)
+
     def energies(self) -> dict[str, float]:
         """As of `ContactRecord`, with "transfer" of both passes, see `Transfer`."""
         transfer = sum(half.energies()["transfer"] for half in self.passes)

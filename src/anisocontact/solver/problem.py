@@ -17,6 +17,7 @@ from anisocontact.solver.accepted import AcceptedState
 from anisocontact.solver.attached import ElasticSupport, Spring
 from anisocontact.solver.balance import Balance, balance
 from anisocontact.solver.configuration import Configuration
+from anisocontact.solver.contact_work import ContactWork
 from anisocontact.solver.flow import pass_through
 from anisocontact.solver.following import Following
 from anisocontact.solver.interior import PENDING, Interior
@@ -101,6 +102,7 @@ class Problem(Following):
         self._level = 0.0
         self._dt = 0.0
         self._accepted = AcceptedState(self.layout)
+        self._contact_work = ContactWork(parts)
         self._memory = Memory(parts, self._accepted, self._bodies)
 
     @property
@@ -265,10 +267,15 @@ class Problem(Following):
         flows = self.stabilisation.flow.flows
         if moved and (flows or self.stabilisation.untouched()):
             self._accepted.go_on(x, self._balance.outside)
+            self.pass_through(self._bodies.nodal)
         if moved and flows:
-            pass_through(self.contacts)
             return True
         return any([contact.improve() for contact in self.contacts]) or moved
+
+    def pass_through(self, nodal: Floats) -> None:
+        """Remember a state on the way to the next accepted one, (nodes, 3), length."""
+        self._contact_work.pass_through(nodal)
+        pass_through(self.contacts)
 
     def contact_lets_go(self, x: Vec) -> str:
         """Why contact does not hold the free bodies in equilibrium; empty if it does."""
@@ -317,9 +324,10 @@ class Problem(Following):
     def _stabilise(self) -> None:
         """Put the springs of stabilisation back to where they start from."""
         self._accepted.begin_way()
+        condensed = self.reduction is not None
+        nodal = self.layout.split(self._accepted.x)[0] if condensed else self._bodies.nodal
+        self._contact_work.begin(nodal)
         if self.stabilisation.watches:
-            condensed = self.reduction is not None
-            nodal = self.layout.split(self._accepted.x)[0] if condensed else self._bodies.nodal
             load = self.loads.force(nodal)
             self.attached.add_force(nodal, load.reshape(-1, 3))
             self.stabilisation.start(nodal, self.layout.assembled(load).reshape(-1, 3))
@@ -331,6 +339,8 @@ class Problem(Following):
             x: All unknowns of a state in equilibrium.
         """
         work = self.reduction.commit(x) if self.reduction is not None else self._commit_bulk(x)
+        nodal = self._bodies.nodal if self.reduction is None else self.layout.split(x)[0]
+        work += self._contact_work.beyond_the_means(nodal, self._dt, self._accepted.work + work)
         self._accepted.work += work + self.rigid.commit()
         x.copy(self._accepted.x)
         for contact in self.contacts:

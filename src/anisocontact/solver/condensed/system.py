@@ -16,7 +16,6 @@ from anisocontact.solver.balance import LOAD_SHARE, ROUND_OFF
 from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor
 from anisocontact.solver.condensed.parts import Condensation
 from anisocontact.solver.condensed.patterns import Patterns, State
-from anisocontact.solver.flow import pass_through
 from anisocontact.solver.following import Following
 from anisocontact.solver.newton import TOLERANCE
 from anisocontact.solver.problem import Problem
@@ -71,7 +70,7 @@ class ContactSystem(Following):
     ) -> None:
         self.bulk, self.contacts, self._in_reach = bulk, problem.contacts, in_reach
         self._attached, self._rigid = problem.attached, problem.rigid
-        self._stabilisation = problem.stabilisation
+        self._stabilisation, self._pass_through = problem.stabilisation, problem.pass_through
         self._gathering = gathering
         self._nodal, self._v = nodal, nodal.reshape(-1).copy()
         self.led = self._rigid.held()
@@ -213,9 +212,8 @@ class ContactSystem(Following):
         flows = stabilisation.flow.flows
         if changed and (flows or stabilisation.untouched()):
             self.way.append(self.state(x.array_r))
-        if changed and flows:
-            pass_through(self.contacts)
-        else:
+            self._pass_through(self._nodal)
+        if not (changed and flows):
             changed = any([contact.improve() for contact in self.contacts]) or changed
         if changed:
             self._evaluated = None

@@ -1,0 +1,183 @@
+"""Work of contact within an increment, where the mean of both ends does not tell it.
+
+The trapezoidal rule takes forces for linear along the way. A contact that closes, or a point that
+begins to slip, has a kink in it: the mean of both ends then counts a force on a way on which there
+was none. Here contact is asked on the straight way between the ends, from the accepted state on,
+and the rule is refined until it no longer changes; no state does.
+
+Where supports and prescribed motions alone drive the bodies the difference is work of these.
+Loads and springs work what they work, whatever contact does on the way. Where bodies flow the
+supports have come to rest after the first step of the flow: from there on the difference is what
+viscous forces have had to take up.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact._fenicsx import MPI
+from anisocontact.interface import STATUS
+from anisocontact.solver.imbalance import LARGE
+from anisocontact.solver.parts import Parts
+
+Floats = npt.NDArray[np.float64]
+
+#: Share of the touching points that have to begin or end contact or slip.
+CHANGED = 0.05
+#: What the middle of an increment has to add to the mean of its ends, over the work so far: what
+#: would be a warning; where bodies flow it is always added.
+COARSE = LARGE
+#: Share of the work so far by which a point may change the rule, and points at which it ends.
+FINE, MOST = 1e-3, 32
+_AT_ONCE = 1e-9
+
+
+@dataclass(frozen=True)
+class _Place:
+    """A state on the way: nodes (nodes, 3) and rigid bodies (bodies, 6), length and radian."""
+
+    nodal: Floats
+    rigid: Floats
+
+    def towards(self, other: _Place, share: float) -> _Place:
+        """The state at a share of the straight way to another one."""
+        return _Place(
+            (1.0 - share) * self.nodal + share * other.nodal,
+            (1.0 - share) * self.rigid + share * other.rigid,
+        )
+
+
+class ContactWork:
+    """What contact works along the way from the accepted state to the next.
+
+    Args:
+        parts: Parts of the problem; nothing is added where a contact cannot be asked again.
+    """
+
+    def __init__(self, parts: Parts) -> None:
+        self._parts, self._contacts, self._rigid = parts, parts.contacts, parts.rigid
+        self._comm: Any = parts.layout.comm
+        self._places: list[_Place] = []
+
+    def begin(self, nodal: Floats) -> None:
+        """Start from the accepted state, displacement of the local nodes (nodes, 3), length."""
+        accepted = [body.accepted.values for body in self._rigid.bodies]
+        self._places = [_Place(nodal.copy(), np.reshape(accepted, (-1, 6)))]
+
+    def pass_through(self, nodal: Floats) -> None:
+        """Go on to a state that bodies which flow have come to."""
+        self._places.append(self._here(nodal))
+
+    def beyond_the_means(self, nodal: Floats, dt: float, work: float) -> float:
+        """Work that the means of the ends have missed on the way to a state in equilibrium.
+
+        The part of a flow is taken from what jumps have set free.
+
+        Args:
+            nodal: Displacement of the local nodes there, (nodes, 3), length.
+            dt: Time increment.
+            work: Work from outside so far, force times length.
+
+        Returns:
+            The part of supports and prescribed motions, force times length.
+        """
+        if not self._led_alone(nodal) or not self._kinks():
+            return 0.0
+        places = [*self._places, self._here(nodal)]
+        pieces = np.array([self._piece(a, b, dt, work) for a, b in pairwise(places)])
+        missed = pieces[:, 0] - pieces[:, 1]
+        if len(pieces) > 1:
+            # rigid bodies were counted over the whole way at once, and move in its first step
+            ends = [self._power(places[0], places[-1], share, dt)[1] for share in (0.0, 1.0)]
+            missed[0, 1] = pieces[:, 0, 1].sum() - 0.5 * sum(ends)
+            missed[1:, 1] = 0.0
+        self._ask(places[-1], dt)
+        first, rest = float(missed[0].sum()), float(missed[1:].sum())
+        if not np.isfinite(first + rest):
+            return 0.0
+        self._parts.stabilisation.released -= rest
+        return first
+
+    def _led_alone(self, nodal: Floats) -> bool:
+        """Whether supports and prescribed motions alone drive the bodies, and contact can tell."""
+        parts = self._parts
+        held = not (parts.stabilisation.watches or parts.rigid.free or parts.attached)
+        held = held and all(contact.retraceable for contact in self._contacts)
+        loaded = held and bool(parts.loads.force(nodal).any())
+        return held and not self._comm.allreduce(loaded, MPI.LOR)
+
+    def _piece(self, start: _Place, end: _Place, dt: float, work: float) -> tuple[Floats, Floats]:
+        """Work on nodes and on rigid bodies along a piece, as fine as needed, and by the mean."""
+        powers = {share: self._power(start, end, share, dt) for share in (0.0, 0.5, 1.0)}
+        means = 0.5 * (powers[0.0] + powers[1.0])
+        if len(self._places) == 1:
+            missed = 0.5 * abs((powers[0.5] - means).sum())
+            if missed < COARSE * abs(work):
+                return means, means
+        rest = abs(work - means.sum())
+        while len(powers) < MOST:
+            _, found = _rule(powers, rest)
+            if not found:
+                break
+            powers |= {share: self._power(start, end, share, dt) for share in found}
+        return _rule(powers, rest)[0], means
+
+    def _power(self, start: _Place, end: _Place, share: float, dt: float) -> Floats:
+        """Force from outside at a share of a piece times its way, on nodes and on rigid bodies."""
+        self._ask(start.towards(end, share), max(share, _AT_ONCE) * dt)
+        forces = np.zeros_like(start.nodal)
+        local = np.zeros(2)
+        for contact in self._contacts:
+            contact.add_force(forces)
+        local[0] = -float((forces * (end.nodal - start.nodal)).sum())
+        for body, way in zip(self._rigid.bodies, end.rigid - start.rigid, strict=True):
+            for contact in self._rigid.contacts[body]:
+                local[1] += float(contact.current.wrench(body.position) @ way)
+        return np.asarray(self._comm.allreduce(local))
+
+    def _ask(self, place: _Place, dt: float) -> None:
+        """Let the contacts answer from the accepted state."""
+        for body, values in zip(self._rigid.bodies, place.rigid, strict=True):
+            body.place(values)
+        for contact in self._contacts:
+            contact.update(place.nodal, dt)
+
+    def _here(self, nodal: Floats) -> _Place:
+        values = [body.trial.values for body in self._rigid.bodies]
+        return _Place(nodal.copy(), np.reshape(values, (-1, 6)))
+
+    def _kinks(self) -> bool:
+        """Whether enough points begin or end contact or slip, or bodies flow."""
+        changed = touching = 0
+        for part in (part for contact in self._contacts for part in contact.parts):
+            before, now = part.state["status"], part.current.response.state["status"]
+            changed += int(np.count_nonzero(before != now))
+            touching += int(np.count_nonzero(now != STATUS.index("open")))
+        changed, touching = self._comm.allreduce(np.array([changed, touching]))
+        return len(self._places) > 1 or bool(changed > CHANGED * touching)
+
+
+def _rule(powers: dict[float, Floats], rest: float) -> tuple[Floats, list[float]]:
+    """Trapezoidal rule for powers at shares of a piece, and where it has to be finer.
+
+    Args:
+        powers: Powers on nodes and on rigid bodies by share, (2,) each.
+        rest: Work beside these.
+
+    Returns:
+        The work, and middles of the parts beside points that change it by more than they may.
+    """
+    shares = np.array(sorted(powers))
+    values = np.array([powers[share] for share in shares])
+    work = np.asarray(np.trapezoid(values, shares, axis=0))
+    total, parts = values.sum(axis=1), np.diff(shares)
+    line = (total[:-2] * parts[1:] + total[2:] * parts[:-1]) / (parts[1:] + parts[:-1])
+    changes = 0.5 * np.abs(total[1:-1] - line) * (shares[2:] - shares[:-2])
+    coarse = np.flatnonzero(changes > FINE * (rest + abs(work.sum())))
+    beside = np.unique(np.concatenate([coarse, coarse + 1]))
+    return work, (0.5 * (shares[beside] + shares[beside + 1])).tolist()

@@ -1,0 +1,213 @@
+"""Energies along a run: what is counted within an increment, and what is said where it fails."""
+
+from __future__ import annotations
+
+import json
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import main
+from anisocontact.solver import Solver, Step, attempts
+from anisocontact.solver.attempts import Attempts
+from anisocontact.solver.energy_watch import CAUSES
+
+STRATEGIES = ["direct", "condensed", "iterative"]
+
+
+def _press(z: float, increments: int = 1) -> Step:
+    return Step("press", increments, {"block.top": {"x": 0.0, "y": 0.0, "z": z}})
+
+
+@pytest.mark.parametrize("strategy", STRATEGIES)
+def test_a_jump_over_the_limit_of_friction(
+    fe: Any, monkeypatch: pytest.MonkeyPatch, strategy: str
+) -> None:
+    """A block that sticks and then slips, dragged to there by viscous flow alone.
+
+    Requirement: what work, stores, flow and friction leave open is below 1 % of the work, for one
+    increment, two and four. Source: balance of energy. The mean of both ends of each step of the
+    flow left 9 to 13 % in one increment, 2 to 3 % in two.
+    """
+
+    def flowing(self: Attempts, first: Any, last: Any) -> list[Any]:
+        return [attempts._Way(last, flowing=True)]
+
+    monkeypatch.setattr(Attempts, "_ways", flowing)
+    for increments in (1, 2, 4):
+        block = fe.block(fe.interface(), cells=(3, 3, 2))
+        drag = Step("drag", increments, {"block.top": {"x": 0.02, "y": 0.01}})
+        for accepted in Solver(block.problem, [_press(-0.01), drag], strategy=strategy).run():
+            energies = accepted.energies
+            assert energies["flow"] > 0.0
+            assert abs(energies["residual"]) < 0.01 * energies["external"]
+            assert accepted.imbalance.share < 0.01
+        assert energies["friction"] > 0.1 * energies["external"]
+
+
+@pytest.mark.parametrize("strategy", STRATEGIES)
+@pytest.mark.parametrize("gap", [0.05, 1.0])
+def test_contact_closes_within_an_increment(fe: Any, gap: float, strategy: str) -> None:
+    """A block above a plane is led through a gap and pressed, without friction, in one increment.
+
+    Requirement: what it stores is the work, to 1 %. Source: the closed form of a block of nu = 0 on
+    a penalty, `F w / 2` with w the way after the gap. Tolerance: 1 %, what ends the refinement; the
+    mean of both ends has `F (w + g) / 2`, 83 and 99 % too much.
+    """
+    way, young, height, penalty = 0.01, 1000.0, 0.5, 1e4
+    plane = fe.interface(point=(0.0, 0.0, -gap), coefficients=(0.0, 0.0), penalty=penalty)
+    block = fe.block(plane, cells=(2, 2, 1), nu=0.0)
+    (accepted,) = Solver(block.problem, [_press(-gap - way)], strategy=strategy).run()
+    force = way / (height / young + 1.0 / penalty)
+    work = 0.5 * force * way
+    assert accepted.energies["elastic"] + accepted.energies["normal"] == pytest.approx(work)
+    assert accepted.energies["external"] == pytest.approx(work, rel=0.01, abs=0.0)
+    assert not accepted.imbalance.large
+
+
+@pytest.mark.parametrize("rigid", [False, True], ids=["block moves", "plane moves"])
+def test_drag_from_rest_in_few_increments(fe: Any, rigid: bool) -> None:
+    """Pressed and dragged by 0.1 in 1, 2, 4 increments, by its top or by the rigid plane below.
+
+    Requirement: 2 % of the work and no warning. Source: balance of energy; stick ends after 1e-3 of
+    the way, and the mean of both ends takes half of the force of the first increment: it left 18 %
+    in two increments. Tolerance: friction is booked with the pressure at the end, here 1.3 %.
+    """
+    from anisocontact.rigid import RigidBody
+
+    for increments in (1, 2, 4):
+        body = RigidBody("plate", (0.0, 0.0, 0.0)) if rigid else None
+        block = fe.block(fe.interface(coefficients=(0.3, 0.3)), cells=(2, 2, 1), body=body)
+        if rigid:
+            drag = Step("drag", increments, motion={"plate": {"x": -0.1, "y": -0.05}})
+        else:
+            drag = Step("drag", increments, {"block.top": {"x": 0.1, "y": 0.05}})
+        warnings: list[str] = []
+        run = Solver(block.problem, [_press(-0.01), drag])
+        *_, last = run.run(on_warning=warnings.append)
+        assert abs(last.energies["residual"]) < 0.02 * last.energies["external"]
+        assert warnings == []
+
+
+def test_what_is_left_is_of_first_order(fe: Any) -> None:
+    """Pressed with dragged friction and lifted while it slips, in 4 to 32 increments.
+
+    Requirement: twice the increments leave 0.6 of the residual or less. Source: friction is booked
+    with the pressure at the end of an increment, of first order (backward Euler).
+    """
+    found = []
+    for n in (4, 8, 16, 32):
+        block = fe.block(fe.interface(coefficients=(0.3, 0.3)), cells=(2, 2, 1))
+        aside = {"x": 0.1, "y": 0.05}
+        steps = [
+            _press(-0.01),
+            Step("drag", 4, {"block.top": aside}),
+            Step("lift", n, {"block.top": {"x": 0.2, "y": 0.1, "z": -0.002}}),
+        ]
+        *_, last = Solver(block.problem, steps, strategy="direct").run()
+        found.append(abs(last.energies["residual"]))
+    assert all(after < 0.6 * before for before, after in pairwise(found))
+
+
+def test_nothing_is_said_of_round_off(fe: Any) -> None:
+    """A body that is carried through the air, and one that does nothing: zero over zero."""
+    for z in (0.0, 3.0):
+        block = fe.block(fe.interface(point=(0.0, 0.0, -1.0)), cells=(2, 2, 1))
+        led = {"x": 5.0 * z, "y": 0.0, "z": z}
+        step = Step("carry", 2, {"block.top": led, "block.left": led})
+        for strategy in ("direct", "condensed"):
+            for accepted in Solver(block.problem, [step], strategy=strategy).run():
+                assert accepted.imbalance.share == 0.0
+
+
+def test_a_body_that_is_unloaded_is_judged_by_all_its_work(fe: Any) -> None:
+    """Pressed and let go: the work from outside is next to nothing, which is no reason to warn."""
+    block = fe.block(fe.interface(coefficients=(10.0, 10.0)), cells=(2, 2, 1))
+    steps = [_press(-0.01, 2), Step("off", 2, {"block.top": {"z": -1e-7}})]
+    *_, last = Solver(block.problem, steps).run()
+    assert last.energies["external"] < 1e-3 * last.energies["elastic"] + 1e-6
+    assert not last.imbalance.large
+
+
+CASE = """
+[mesh.box.block]
+origin = [-1, -1, 0]
+size = [2, 2, 1]
+cells = [2, 2, 1]
+[material.block]
+model = "neo-hookean"
+E = 1000
+nu = 0.3
+[surface.plate]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+[[contact]]
+slave = "block.bottom"
+master = "plate"
+friction = { coefficients = [0.3, 0.3] }
+[[step]]
+name = "press"
+increments = 1
+displacement = { "block.top" = { x = 0, y = 0, z = -0.01 } }
+[[step]]
+name = "turn"
+increments = 4
+rotation = { "block.top" = { axis = [0, 0, 1], angle_deg = 360 } }
+[output]
+every = 100
+pictures = false
+"""
+
+
+def test_a_coarse_path_is_a_warning(tmp_path: Any, capsys: Any) -> None:
+    """A block that turns under friction by a quarter turn an increment.
+
+    Requirement: more than 5 % of the work is open, and that is said with its likely cause: once as
+    it happens and once at the end, on the terminal, in log, summary and report.
+    """
+    from anisocontact.results.report.page import page
+
+    path, out = tmp_path / "case.toml", tmp_path / "out"
+    path.write_text(CASE)
+    assert main(["run", str(path), "-o", str(out)]) == 0
+    said = capsys.readouterr()
+    summary = json.loads((out / "summary.json").read_text())
+    left = summary["energy_residual"]
+    energies = summary["energy"]
+    assert left["worst_share"] > 0.05
+    assert abs(energies["residual"]) > 0.04 * energies["external"]
+    assert left["cause"] in CAUSES
+    about = "the balance of energy"
+    for text, count in (
+        (said.out, 1),
+        (said.err, 1),
+        ((out / "run.log").read_text(), 1),
+        ("\n".join(summary["warnings"]), 1),
+        (page(summary, [], []), 1),
+    ):
+        assert sum(about in line for line in text.splitlines()) == count
+    assert left["cause"] in said.out
+    assert left["cause"] in said.err
+
+
+def test_the_end_of_a_master_is_named(fe: Any) -> None:
+    """Requirement: increments in which points run off are told apart from those that are coarse."""
+    from anisocontact.solver.energy_watch import EnergyWatch
+
+    block = fe.block(fe.interface(), cells=(2, 2, 1))
+    watch = EnergyWatch(block.problem)
+    watch.begin()
+    energies = dict.fromkeys(("elastic", "flow"), 0.0)
+    coarse = watch.after(energies | {"external": 1.0, "residual": 0.1}, ran_off=False)
+    assert (coarse.share, coarse.cause) == (0.1, CAUSES[3])
+    off = watch.after(energies | {"external": 2.0, "residual": 0.5}, ran_off=True)
+    assert (off.share, off.cause) == (0.25, CAUSES[0])
+    jump = watch.after(energies | {"external": 1.0, "flow": 0.1, "residual": -0.5}, ran_off=False)
+    assert jump.cause == CAUSES[1]
+    assert jump.share == pytest.approx(0.5 / 3.0)
+    assert np.isclose(watch.persistent()[1], 3.0)
