@@ -11,6 +11,7 @@ from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.gmsh import gmsh_arrays
 from anisocontact.mesh.inp import read_inp
+from anisocontact.mesh.meshio_files import SUFFIXES, read_by_meshio
 from anisocontact.mesh.whole import WholeMesh
 
 #: Reads the bodies of a file: path, which bodies (all if None), where the path was written, the
@@ -95,3 +96,4 @@ def file_arrays(
 
 register_reader(".msh")(gmsh_arrays)
 register_reader(".inp")(whole_reader(read_inp))
+register_reader(*SUFFIXES)(whole_reader(read_by_meshio))

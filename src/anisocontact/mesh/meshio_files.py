@@ -1,0 +1,139 @@
+"""Files of other codes by meshio: Nastran, Exodus, MED, VTK, XDMF, Medit and what it reads."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from contextlib import redirect_stderr, redirect_stdout
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.errors import InputError
+from anisocontact.mesh.whole import WholeMesh
+
+Nodes = npt.NDArray[np.int64]
+
+#: Endings of names; gmsh's and Abaqus's have readers of their own.
+SUFFIXES: tuple[str, ...] = (
+    *(".bdf", ".nas", ".fem", ".e", ".exo", ".ex2", ".med", ".vtk", ".vtu", ".xdmf", ".xmf"),
+    *(".mesh", ".meshb", ".cgns", ".h5m", ".hmf", ".avs", ".su2", ".ugrid", ".f3grid"),
+    *(".vol", ".mdpa"),
+)
+#: Cells of meshio -> cell here; nodes are in the order of VTK.
+SOLIDS = {
+    "tetra": "tetrahedron",
+    "tetra10": "tetrahedron",
+    "hexahedron": "hexahedron",
+    "hexahedron20": "hexahedron",
+    "hexahedron27": "hexahedron",
+}
+#: Facets of meshio -> corners.
+FACETS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
+#: Names under which formats keep the group of each cell as a number.
+TAGS: tuple[str, ...] = (
+    *("gmsh:physical", "medit:ref", "nastran:ref", "cell_tags", "ugrid:ref", "su2:tag"),
+    *("avsucd:material", "flac3d:group", "netgen:index", "MaterialIds", "tags"),
+)
+
+
+def read_by_meshio(path: Path) -> WholeMesh:
+    """Solid cells and groups of a file that meshio reads.
+
+    Args:
+        path: The file.
+
+    Returns:
+        The mesh. Bodies are the sets of volume cells, or the numbers that the format gives them as
+        `body1`, `body2` and so on, or all of them as `body`; facet groups are the sets or numbers
+        (`surface1` ...) of surface cells, and sets of nodes that hold all corners of facets.
+
+    Raises:
+        InputError: meshio is not installed or cannot read the file, or no solid cell is in it.
+    """
+    given = _read(path)
+    points = np.zeros((len(given.points), 3))
+    points[:, : given.points.shape[1]] = given.points
+    mesh = WholeMesh(points)
+    names = _names(given)
+    for block, labels in zip(given.cells, names, strict=True):
+        nodes = np.asarray(block.data, dtype=np.int64)
+        if block.type in SOLIDS:
+            bodies = labels if any(labels) else ["body"] * len(nodes)
+            mesh.add_cells(SOLIDS[block.type], nodes, bodies)
+        elif block.type in FACETS:
+            corners = nodes[:, : FACETS[block.type]]
+            for name in dict.fromkeys(label for label in labels if label):
+                own = corners[[label == name for label in labels]]
+                mesh.surfaces.setdefault(name, []).append(own)
+    if not mesh.cells:
+        found = ", ".join(f"{len(b.data)} {b.type}" for b in given.cells) or "none at all"
+        raise InputError(f"no solid cell ({', '.join(SOLIDS)}); there are: {found}")
+    for name, found in given.point_sets.items():
+        mesh.node_sets[_plain(name)] = np.unique(np.asarray(found, dtype=np.int64).ravel())
+    return mesh
+
+
+def _read(path: Path) -> Any:
+    """The mesh of meshio; what it prints and where it exits becomes one line."""
+    try:
+        import meshio
+    except ImportError:
+        raise InputError(
+            f"files that end with {path.suffix} need meshio: pip install 'anisocontact[meshes]'"
+        ) from None
+    said = io.StringIO()
+    try:
+        with redirect_stdout(said), redirect_stderr(said):
+            return meshio.read(path)
+    except (Exception, SystemExit) as problem:
+        words = f"{said.getvalue()} {problem if isinstance(problem, Exception) else ''}"
+        text = " ".join(words.split()) or type(problem).__name__
+        raise InputError(f"meshio cannot read it: {text}") from None
+
+
+def _names(mesh: Any) -> list[list[str]]:
+    """Group of each cell by its name, block by block; empty where it is in none."""
+    found = [[""] * len(block.data) for block in mesh.cells]
+    for labels, numbers in zip(found, _tags(mesh), strict=True):
+        labels[:] = numbers or labels
+    for name, parts in mesh.cell_sets.items():
+        if name.startswith("gmsh:"):
+            continue
+        for labels, part in zip(found, parts, strict=True):
+            for k in np.asarray(part if part is not None else [], dtype=np.int64):
+                labels[k] = _plain(name)
+    return found
+
+
+def _tags(mesh: Any) -> Iterator[list[str]]:
+    """Names of the numbers that a format gives its cells, block by block; empty without numbers."""
+    key = next((key for key in TAGS if key in mesh.cell_data), None)
+    known = {
+        (int(value[1]), int(value[0])): _plain(name)
+        for name, value in mesh.field_data.items()
+        if np.size(value) == 2
+    }
+    of_med = {
+        number: _plain(names[0])
+        for number, names in getattr(mesh, "cell_tags", {}).items()
+        if names
+    }
+    for k, block in enumerate(mesh.cells):
+        if key is None:
+            yield []
+            continue
+        dim = 3 if block.type in SOLIDS else 2
+        word = "body" if dim == 3 else "surface"
+        numbers = np.asarray(mesh.cell_data[key][k]).astype(np.int64).tolist()
+        yield [
+            of_med.get(n) or known.get((dim, n)) or (f"{word}{n}" if n or dim == 3 else "")
+            for n in numbers
+        ]
+
+
+def _plain(name: str) -> str:
+    """A name without the dot, which parts a body from its group, and without blanks around it."""
+    return str(name).strip().replace(".", "_")

@@ -1,0 +1,124 @@
+"""Files of other codes, written by meshio and read back."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("meshio")
+
+import meshio
+
+from anisocontact.errors import InputError
+from anisocontact.mesh import MeshFile, build_mesh
+from anisocontact.mesh.readers import file_arrays
+
+#: Two cubes beside each other that share no node.
+POINTS = np.array(
+    [
+        [x + shift, y, z]
+        for shift in (0.0, 2.0)
+        for z in (0.0, 1.0)
+        for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))
+    ]
+)
+HEXAHEDRA = np.arange(16).reshape(2, 8)
+LOWER = np.array([[0, 1, 2, 3]])
+FORMATS = ["vtu", "vtk", "xdmf", "med", "mesh", "bdf", "avs"]
+
+
+def cubes(number: int = 7) -> meshio.Mesh:
+    """The cubes with numbers of their own, and one facet with a number."""
+    data = {
+        "vtk": "MaterialIds",
+        "vtu": "MaterialIds",
+        "xdmf": "MaterialIds",
+        "med": "cell_tags",
+        "mesh": "medit:ref",
+        "bdf": "nastran:ref",
+        "avs": "avsucd:material",
+    }
+    cells = [("hexahedron", HEXAHEDRA), ("quad", LOWER)]
+    tags = [np.array([3, 4]), np.array([number])]
+    return meshio.Mesh(POINTS, cells, cell_data={name: tags for name in set(data.values())})
+
+
+def plain(suffix: str) -> meshio.Mesh:
+    """The cubes with the one name of their numbers that a format knows."""
+    mesh = cubes()
+    keep = {"med": "cell_tags", "mesh": "medit:ref", "bdf": "nastran:ref", "avs": "avsucd:material"}
+    key = keep.get(suffix, "MaterialIds")
+    sign = -1 if suffix == "med" else 1  # cells have negative numbers there
+    mesh.cell_data = {key: [sign * part for part in mesh.cell_data[key]]}
+    if suffix == "med":
+        mesh.cell_tags = {-3: ["left"], -4: ["right"], -7: ["lower"]}
+    return mesh
+
+
+@pytest.mark.parametrize("suffix", FORMATS)
+@pytest.mark.filterwarnings("ignore")
+def test_cells_and_numbers_survive(tmp_path, suffix):
+    path = tmp_path / f"cubes.{suffix}"
+    plain(suffix).write(path)
+    model = build_mesh([MeshFile(path)])
+    wanted = ["left", "right"] if suffix == "med" else ["body3", "body4"]
+    assert model.body_names() == wanted
+    group = "left.lower" if suffix == "med" else "body3.surface7"
+    assert model.count_facets(group) == 1
+    x = model.mesh.geometry.x
+    assert x.shape == (16, 3)
+    assert np.allclose(np.sort(x, axis=0), np.sort(POINTS, axis=0), atol=1e-12)
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_exodus_with_sets_of_nodes(tmp_path):
+    mesh = meshio.Mesh(
+        POINTS, [("hexahedron", HEXAHEDRA)], point_sets={"held": np.array([0, 1, 2, 3])}
+    )
+    mesh.write(tmp_path / "cubes.e")
+    model = build_mesh([MeshFile(tmp_path / "cubes.e")])
+    assert model.body_names() == ["body"]
+    assert model.facet_names() == ["body.held"]
+
+
+@pytest.mark.parametrize(("kind", "nodes", "order"), [("tetra10", 10, 2), ("hexahedron20", 20, 2)])
+def test_quadratic_cells_are_in_order(tmp_path, kind, nodes, order):
+    """A wrong order of middle nodes makes inverted cells, or other volumes."""
+    corners = POINTS[:8] if kind.startswith("hex") else np.array([[0, 0, 0], *np.eye(3)])
+    pairs = {
+        "tetra10": [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
+        "hexahedron20": [
+            *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
+            *((0, 4), (1, 5), (2, 6), (3, 7)),
+        ],
+    }[kind]
+    points = np.concatenate([corners, [0.5 * (corners[a] + corners[b]) for a, b in pairs]])
+    assert len(points) == nodes
+    path = tmp_path / "one.vtu"
+    meshio.Mesh(points, [(kind, np.arange(nodes)[None])]).write(path)
+    arrays = file_arrays(path)
+    assert arrays.degree == order
+    # straight edges: every node is where the affine map of the corners has it
+    from anisocontact._fenicsx import cell_nodes
+
+    place = 0.5 * cell_nodes(arrays.cell, 2)
+    assert np.allclose(arrays.points[arrays.cells[0]], place)
+
+
+def test_what_is_wrong_is_one_line(tmp_path, monkeypatch):
+    (tmp_path / "broken.vtu").write_text("no mesh")
+    meshio.Mesh(POINTS[:4], [("quad", LOWER)]).write(tmp_path / "flat.vtu")
+    for name, said in (
+        ("broken.vtu", "meshio cannot read it"),
+        ("flat.vtu", "no solid cell (tetra, tetra10, hexahedron, hexahedron20, hexahedron27)"),
+    ):
+        with pytest.raises(InputError) as caught:
+            file_arrays(tmp_path / name)
+        line = str(caught.value)
+        assert line.startswith("mesh.file: mesh file")
+        assert said in line
+        assert "\n" not in line
+    monkeypatch.setitem(__import__("sys").modules, "meshio", None)
+    with pytest.raises(InputError, match=r"need meshio: pip install 'anisocontact\[meshes\]'"):
+        file_arrays(tmp_path / "flat.vtu")
