@@ -97,6 +97,10 @@ class FrictionModel:
         directions_second: Field | None,
     ) -> dict[str, NDArray[Any]]: ...
 
+def linear_model(
+    name: str, values: Mapping[str, Sequence[float]]
+) -> tuple[float, list[list[float]], list[list[float]], list[list[float]]]: ...
+
 class SlidingRule:
     def __init__(self, name: str, values: Mapping[str, Sequence[float]]) -> None: ...
     def slide(

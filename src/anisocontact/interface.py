@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact import _core, registry
+from anisocontact import _core, registry, series
 from anisocontact._states import (
     FAILURE,
     STATE,
@@ -21,6 +21,7 @@ from anisocontact._states import (
 )
 from anisocontact.errors import InputError
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw, carried
+from anisocontact.series import History
 from anisocontact.surfaces import Surface, default_threads, points
 
 __all__ = [
@@ -107,6 +108,15 @@ class PairLaw:
             The laws; those given are unchanged.
         """
         return PairLaw(*_stiffened(self, normal, tangential))
+
+    def in_series(self, compliance: float, dt: float) -> tuple[PairLaw, History]:
+        """The laws with a compliant layer behind adhesion, see `anisocontact.series.in_series`."""
+        adhesion, start = series.in_series(self.adhesion, compliance, dt)
+        return PairLaw(self.normal, adhesion, self.friction), start
+
+    def slip_stiffness(self, dt: float) -> float:
+        """Largest stiffness of adhesion against slip in an increment of time, stress/length."""
+        return series.slip_stiffness(self.adhesion, dt)
 
     def penalties(self) -> tuple[float, float]:
         """Normal penalty and least stiffness of adhesion, stress/length."""
@@ -196,6 +206,23 @@ class Interface:
             evolution=self.evolution,
             threads=self.threads,
         )
+
+    def in_series(self, compliance: float, dt: float) -> tuple[Interface, History]:
+        """The interface with a compliant layer behind adhesion, see `PairLaw.in_series`."""
+        adhesion, start = series.in_series(self.adhesion, compliance, dt)
+        made = Interface(
+            self.surface,
+            self.normal,
+            adhesion,
+            self.friction,
+            evolution=self.evolution,
+            threads=self.threads,
+        )
+        return made, start
+
+    def slip_stiffness(self, dt: float) -> float:
+        """Largest stiffness of adhesion against slip in an increment of time, stress/length."""
+        return series.slip_stiffness(self.adhesion, dt)
 
     def penalties(self) -> tuple[float, float]:
         """Normal penalty and least stiffness of adhesion, stress/length.

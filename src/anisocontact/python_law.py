@@ -9,7 +9,7 @@ is the same for two meshed bodies.
 from __future__ import annotations
 
 import traceback
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Protocol
 
@@ -21,6 +21,7 @@ from anisocontact.anisotropy import DirectionField
 from anisocontact.errors import InputError
 from anisocontact.interface import FAILURE, STATE, Response, State, as_state, raw_state
 from anisocontact.laws import NormalLaw
+from anisocontact.series import History
 from anisocontact.surfaces import Floats, Surface, default_threads, points
 
 
@@ -157,6 +158,18 @@ class PythonInterface:
     def penalties(self) -> tuple[float, float]:
         """Normal penalty, stress/length; the tangential law has none: 1."""
         return self.normal.named[1]["penalty"][0], 1.0
+
+    def in_series(self, compliance: float, dt: float) -> tuple[PythonInterface, History]:
+        """The interface with a compliant layer behind its tangential law, see `LawInSeries`."""
+        law = LawInSeries(self.law, compliance)
+        made = PythonInterface(
+            self.surface, self.normal, law, directions=self.directions, threads=self.threads
+        )
+        return made, History.unchanged()
+
+    def slip_stiffness(self, dt: float) -> float:
+        """Stiffness of the tangential law against slip, see `law_stiffness`, stress/length."""
+        return law_stiffness(self.law, dt)
 
     def initial_state(self, x: npt.ArrayLike) -> State:
         """State before the first step: projected, free of force, own variables zero.
@@ -362,3 +375,59 @@ def _in_contact(frame: Floats, active: npt.NDArray[np.intp]) -> Floats:
     axes = np.zeros((len(frame), 2, 3))
     axes[active] = frame[active, :2]
     return axes
+
+
+#: Change of the force of a law in series over the force at which it is found, and the most
+#: corrections that are made to find it.
+_SAME, _MOST = 1e-12, 20
+
+
+def law_stiffness(law: TangentialLaw, dt: float) -> float:
+    """Stiffness of a law in Python against slip, from rest under a unit pressure, stress/length.
+
+    Args:
+        law: The law.
+        dt: Time increment.
+
+    Returns:
+        The largest along any direction; 0 where the law has no answer there.
+    """
+    none = np.zeros((1, 2))
+    state = LawState(none, none, np.zeros((1, law.internal)))
+    try:
+        found = answer(law, state, LawKinematics(none, np.ones(1), np.zeros(1), none, dt))
+    except InputError:
+        return 0.0
+    return float(np.linalg.norm(found.d_increment[0], ord=2))
+
+
+class LawInSeries:
+    """A law in Python with a compliant layer behind it: the force T with `T = law(dxi + c T)`.
+
+    Args:
+        law: The law.
+        compliance: c, length/stress.
+    """
+
+    def __init__(self, law: TangentialLaw, compliance: float) -> None:
+        self._law, self._compliance = law, compliance
+        self.internal = law.internal
+
+    def update(self, state: LawState, kinematics: LawKinematics) -> LawResult:
+        """Force, tangent and new state, found by Newton's method at every point."""
+        c, force = self._compliance, state.traction
+        for _ in range(_MOST):
+            moved = replace(kinematics, increment=kinematics.increment + c * force)
+            result = answer(self._law, state, moved)
+            left = np.eye(2) - c * np.asarray(result.d_increment)
+            step = np.linalg.solve(left, (result.traction - force)[..., None])[..., 0]
+            force = force + step
+            if np.abs(step).max(initial=0.0) <= _SAME * np.abs(force).max(initial=0.0):
+                break
+        return replace(
+            result,
+            d_increment=np.linalg.solve(left, result.d_increment),
+            d_pressure=np.linalg.solve(left, np.asarray(result.d_pressure)[..., None])[..., 0],
+            d_traction=np.linalg.solve(left, result.d_traction),
+            d_elastic=np.linalg.solve(left, result.d_elastic),
+        )

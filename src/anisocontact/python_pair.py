@@ -20,6 +20,7 @@ from anisocontact.errors import InputError
 from anisocontact.interface import PairLaw, State, as_state, raw_state
 from anisocontact.laws import Carried, NormalLaw
 from anisocontact.python_law import (
+    LawInSeries,
     LawKinematics,
     LawResult,
     LawState,
@@ -27,9 +28,11 @@ from anisocontact.python_law import (
     TangentialLaw,
     answer,
     common,
+    law_stiffness,
     state_type,
     with_internal,
 )
+from anisocontact.series import History
 from anisocontact.surfaces import Floats
 
 __all__ = ["PYTHON_LAWS", "MeshedLaw", "PythonPairLaw", "PythonPairs"]
@@ -111,6 +114,16 @@ class PythonPairLaw:
             directions=self.directions,
             directions_on=self.carried[0].on,
         )
+
+    def in_series(self, compliance: float, dt: float) -> tuple[PythonPairLaw, History]:
+        """The laws with a compliant layer behind the tangential one, see `LawInSeries`."""
+        law, own = LawInSeries(self.law, compliance), self.carried[0]
+        made = PythonPairLaw(self.normal, law, directions=self.directions, directions_on=own.on)
+        return made, History.unchanged()
+
+    def slip_stiffness(self, dt: float) -> float:
+        """Stiffness of the tangential law against slip, see `law_stiffness`, stress/length."""
+        return law_stiffness(self.law, dt)
 
     def penalties(self) -> tuple[float, float]:
         """Normal penalty, stress/length; the tangential law has none: 1."""

@@ -1,8 +1,10 @@
 // The tangential law by itself: trial force to force, without a surface.
 
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "anisocontact/kernel/parallel.hpp"
@@ -116,9 +118,18 @@ nb::dict slide(const RuleHandle& rule, const Matrices& stiffness, const Matrices
   return d;
 }
 
+/// w, A, B, C of an adhesion model along its axes, row by row.
+std::tuple<double, law::AxesMatrix, law::AxesMatrix, law::AxesMatrix> linear_model(
+    const std::string& name, const ValueMap& values) {
+  const law::AnyAdhesion any = law::AdhesionModels::make(name, Values(values));
+  const law::LinearModel& model = law::linear_model(any);
+  return {model.w, model.a, model.b, model.c};
+}
+
 }  // namespace
 
 void bind_law(nb::module_& m) {
+  m.def("linear_model", &linear_model, nb::arg("name"), nb::arg("values"));
   nb::class_<RuleHandle>(m, "SlidingRule")
       .def(
           "__init__",

@@ -12,6 +12,7 @@ from anisocontact._fenicsx import Mat, PETSc
 from anisocontact.augmentation import Augmentation
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
+from anisocontact.contact.layer import Layer
 from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.quadrature import Surfaced, chosen_degree, facet_quadrature
@@ -32,8 +33,10 @@ Floats = npt.NDArray[np.float64]
 
 _INTERIOR = PROJECTION_STATUS.index("interior")
 
-#: What answers for the surface and its laws.
-type Master = Interface | PythonInterface | MovingInterface
+#: A surface with its laws.
+type Laws = Interface | PythonInterface
+#: What answers for them.
+type Master = Laws | MovingInterface
 
 
 class Contact(ContactRecord):
@@ -96,7 +99,8 @@ class Contact(ContactRecord):
     ) -> None:
         facets = _checked(model, slave, interface)
         degree = chosen_degree(degree, model.order, augmentation is not None)
-        self.interface = interface
+        self.interface: Laws = interface
+        self._laws = self._stiff_laws = interface
         self.body = body
         self._master: Master = interface if body is None else MovingInterface(interface, body)
         self._stiff = self._master
@@ -285,7 +289,7 @@ class Contact(ContactRecord):
         lag = replace(now.response, traction=self.lag())
         return replace(now, response=lag).wrench(about)
 
-    def _follow(self, semismooth: Semismooth, way: Floats, x: Floats, dt: float) -> None:
+    def _follow(self, semismooth: Semismooth | Layer, way: Floats, x: Floats, dt: float) -> None:
         """Let the multipliers follow a step of Newton's method that displaces points by way to x.
 
         The tangent is so stiff that the rounding of positions would be felt in their difference.
@@ -303,7 +307,7 @@ class Contact(ContactRecord):
         )
 
     def _linearised(
-        self, semismooth: Semismooth, trial: Snapshot, way: Floats, dt: float
+        self, semismooth: Semismooth | Layer, trial: Snapshot, way: Floats, dt: float
     ) -> Snapshot:
         """The trial with the derivative of a Newton step that takes the multipliers along."""
         step = self._step(trial)
@@ -330,8 +334,7 @@ class Contact(ContactRecord):
     def _in_space(self, vectors: Floats) -> Floats:
         return vectors if self.body is None else self.body.to_space(vectors)
 
-    def _start_from(self, start: State) -> None:
-        super()._start_from(start)
+    def _forget_base(self) -> None:
         self._base = None
 
     def _stiffness(self, diagonal: Floats) -> float:
@@ -342,17 +345,25 @@ class Contact(ContactRecord):
 
     def _stiffen(self, normal: float, tangential: float) -> None:
         """Multiply the penalties of the law."""
-        self._master = self._on_body(normal, tangential)
+        self._master = self._on_body(self._laws, normal, tangential)
         if self._semismooth is not None:
-            self._stiff = self._on_body(*self._semismooth.stiff_factors)
+            self._stiff = self._on_body(self._stiff_laws, *self._semismooth.stiff_factors)
 
-    def _on_body(self, normal: float, tangential: float) -> Master:
-        stiff = self.interface.stiffened(normal, tangential)
+    def _on_body(self, laws: Laws, normal: float, tangential: float) -> Master:
+        stiff = laws if self._multipliers is None else laws.stiffened(normal, tangential)
         return stiff if self.body is None else MovingInterface(stiff, self.body)
 
     def _tangents(self, state: State) -> Floats:
         """Tangents of the master as given at the coordinates of a state, (n, 2, 3), length."""
         return self.interface.surface.jet(state["xi"]).d1
+
+    def _place(self, state: State) -> tuple[Floats, Floats]:
+        jet = self.interface.surface.jet(state["xi"])
+        return jet.position, jet.d1
+
+    def _axes(self, answer: Response) -> Floats:
+        own = answer.directions_adhesion
+        return own if self.body is None else own @ self.body.trial.rotation
 
     def _surface(self, tangents: Floats) -> SlaveSurface | None:
         """The slave with its tangents, (m, q, 2, 3), where it carries directions."""

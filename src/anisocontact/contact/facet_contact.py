@@ -14,6 +14,7 @@ from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.facet_answer import PairKernel, Question, ask
 from anisocontact.contact.gathering import gather, gather_named
 from anisocontact.contact.held_feet import footing, on_held_facets
+from anisocontact.contact.layer import Layer
 from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.point_blocks import add_rows, point_blocks
 from anisocontact.contact.point_tangent import PointTangent
@@ -107,7 +108,8 @@ class FacetContact(ContactRecord):
             text = f"{type(law).__name__} given, PairLaw or PythonPairLaw needed"
             raise InputError(text, "law")
         self.master = master
-        self.interface = law
+        self.interface: MeshedLaw = law
+        self._laws = self._stiff_laws = law
         self.current_area = current_area
         self._mirrored = mirrored
         self._law = self._stiff = law.pairs(mirrored)
@@ -121,7 +123,7 @@ class FacetContact(ContactRecord):
         )
         self._points, self._gathered = sides.points, sides.gathered
         self.reach = sides.reach
-        self._multipliers = None
+        self._multipliers = self._layer = None
         self._now = sides.reference
         self._hint = sides.project(self._now)
         self._answer: dict[str, Any] = {}
@@ -192,7 +194,7 @@ class FacetContact(ContactRecord):
             self._hand_over(self._transfer)
         return self._trial.response
 
-    def _linearised(self, semismooth: Semismooth, moved: Floats, dt: float) -> Snapshot:
+    def _linearised(self, semismooth: Semismooth | Layer, moved: Floats, dt: float) -> Snapshot:
         """A trial to which the multipliers have followed, with the derivative of a Newton step."""
         hit = self._project(self._now)
         self._follow(semismooth, moved, hit)
@@ -210,7 +212,7 @@ class FacetContact(ContactRecord):
         self._lag = self._linear.forces(slip)
         return trial
 
-    def _follow(self, semismooth: Semismooth, moved: Floats, hit: FacetProjections) -> None:
+    def _follow(self, semismooth: Semismooth | Layer, moved: Floats, hit: FacetProjections) -> None:
         """Let the multipliers follow a step of Newton's method."""
         if self._base is None or self._linear is None or self._linear.at(self._now):
             return
@@ -443,15 +445,15 @@ class FacetContact(ContactRecord):
 
     def _stiffen(self, normal: float, tangential: float) -> None:
         """Multiply the penalties of the law."""
-        self._law = self._with(normal, tangential)
+        self._law = self._with(self._laws, normal, tangential)
         if self._semismooth is not None:
-            self._stiff = self._with(*self._semismooth.stiff_factors)
+            self._stiff = self._with(self._stiff_laws, *self._semismooth.stiff_factors)
 
-    def _with(self, normal: float, tangential: float) -> PairKernel:
-        return self.interface.stiffened(normal, tangential).pairs(self._mirrored)
+    def _with(self, laws: MeshedLaw, normal: float, tangential: float) -> PairKernel:
+        stiff = laws if self._multipliers is None else laws.stiffened(normal, tangential)
+        return stiff.pairs(self._mirrored)
 
-    def _start_from(self, start: State) -> None:
-        super()._start_from(start)
+    def _forget_base(self) -> None:
         self._base = self._linear = None
 
     def _begin(self) -> None:
@@ -461,6 +463,9 @@ class FacetContact(ContactRecord):
     def _tangents(self, state: State) -> Floats:
         """Tangents of the master of now, (n, 2, 3), length; any where a point has no facet."""
         return self._sides.tangents(state)
+
+    def _place(self, state: State) -> tuple[Floats, Floats]:
+        return self._sides.place(state)
 
     def _project(self, now: Floats) -> FacetProjections:
         before = self._hint

@@ -129,6 +129,7 @@ class Step:
         areas: Area of each point, (n,), length^2.
         now: Frames of the trial.
         before: Frames at the committed coordinates, in the configuration of the trial.
+        axes: Axes of adhesion as the frames have them, (n, 2, 3); zero at open points.
     """
 
     start: State
@@ -136,6 +137,7 @@ class Step:
     areas: Floats
     now: Frames
     before: Frames
+    axes: Floats
 
     @property
     def remembers(self) -> npt.NDArray[np.bool_]:

@@ -10,9 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.augmentation import Augmentation
+from anisocontact.contact.layer import Layer
 from anisocontact.contact.multipliers import AugmentedLaw, Frames, Multipliers, Step
 from anisocontact.contact.schemes import USUAL, make_multipliers
-from anisocontact.contact.semismooth import Semismooth
+from anisocontact.contact.semismooth import RATIO, Semismooth
 from anisocontact.interface import STATUS, Response, State
 
 Floats = npt.NDArray[np.float64]
@@ -89,7 +90,14 @@ class ContactRecord:
         facet_of_point: As given.
         space: Vector space of the displacement.
         ran_off: Slave points that left the end of the master in the accepted increment, (k, 3).
+        body_stiffness: Traction per displacement of a single node of the bodies behind it, mean
+            over the surface, stress/length; 0 until they are known.
     """
+
+    #: Laws as the user gave them, those of trials, and those that derivatives are taken of.
+    interface: Any
+    _laws: Any
+    _stiff_laws: Any
 
     def __init__(
         self,
@@ -114,6 +122,8 @@ class ContactRecord:
         self._multipliers: Multipliers | None = None
         self._way: list[Slid] = []
         self._ways: Mapping[str, Multipliers] = {}
+        self._layer: Layer | None = None
+        self.body_stiffness = 0.0
 
     @property
     def points(self) -> Floats:
@@ -273,17 +283,60 @@ class ContactRecord:
         return semismooth is None or semismooth.held(self._step(self.current))
 
     def suit(self, diagonal: Floats) -> None:
-        """Suit multipliers that follow to the bodies.
+        """Learn how stiff the bodies are; multipliers that follow are suited to them.
 
         Args:
             diagonal: Diagonal of the stiffness of the bodies, of the nodes this rank owns,
                 (nodes, 3), force/length.
         """
+        self.body_stiffness = self._stiffness(diagonal)
         if self._ways:
-            stiffness = self._stiffness(diagonal)
             for way in self._ways.values():
-                way.suit(stiffness)
+                way.suit(self.body_stiffness)
             self._begin()
+
+    def slip_stiffness(self, dt: float) -> float:
+        """Largest stiffness of a physical adhesion against slip, stress/length; 0 for others.
+
+        Args:
+            dt: Time increment.
+        """
+        if self._multipliers is not None and self._multipliers.tangential:
+            return 0.0
+        return float(self.interface.slip_stiffness(dt))
+
+    def lay(self, compliance: float, dt: float) -> None:
+        """Put a compliant layer behind adhesion, see `Layer`, until `take_away`; or a stiffer one.
+
+        Args:
+            compliance: Of the layer, length/stress.
+            dt: Time increment.
+        """
+        soft, start = self.interface.in_series(compliance, dt)
+        stiff, begun = self.interface.in_series(compliance / RATIO, dt)
+        first = self._start
+        if self._layer is not None:
+            first = self._layer.without(first)
+            self._layer.stiffer(compliance, (start, begun))
+        else:
+            normal = None if self._multipliers is None else self._multipliers.follower
+            histories = start, begun
+            self._layer = Layer(compliance, histories, normal, self._place, self._comm)
+        self._take(soft, stiff)
+        self._start = self._layer.begin(first, self._axes(self.last))
+
+    def take_away(self) -> None:
+        """Take the layer away."""
+        if self._layer is not None:
+            self._start = self._layer.without(self._start)
+            self._layer = None
+            self._take(self.interface, self.interface)
+
+    def _take(self, laws: AugmentedLaw, stiff: AugmentedLaw) -> None:
+        """Answer by other laws, and take the derivative of others."""
+        self._laws, self._stiff_laws = laws, stiff
+        self._stiffen(*((1.0, 1.0) if self._multipliers is None else self._multipliers.factors))
+        self._forget_base()
 
     def _stiffness(self, diagonal: Floats) -> float:
         """Traction per displacement of a single node, mean over the surface, stress/length."""
@@ -301,8 +354,10 @@ class ContactRecord:
         """
 
     @property
-    def _semismooth(self) -> Semismooth | None:
-        return None if self._multipliers is None else self._multipliers.follower
+    def _semismooth(self) -> Semismooth | Layer | None:
+        """What follows every step of Newton's method."""
+        own = None if self._multipliers is None else self._multipliers.follower
+        return self._layer or own
 
     def _step(self, trial: Snapshot) -> Step:
         """A trial with the frames of the master."""
@@ -312,6 +367,7 @@ class ContactRecord:
             trial.areas,
             Frames.of(self._tangents(trial.response.state)),
             Frames.of(self._tangents(self._start)),
+            self._axes(trial.response),
         )
 
     def _augment(self, augmentation: Augmentation | None, size: float, law: AugmentedLaw) -> None:
@@ -327,12 +383,16 @@ class ContactRecord:
         self._way = []
         if self._multipliers is not None:
             self._start_from(self._multipliers.begin(self.state, self.located(self.state)))
+        if self._layer is not None:
+            self._start = self._layer.begin(self._start, self._axes(self.last))
+        self._forget_base()
 
     def _start_from(self, start: State) -> None:
         """Let trials start from other multipliers, perhaps with other penalties."""
         assert self._multipliers is not None
         self._start = start
         self._stiffen(*self._multipliers.factors)
+        self._forget_base()
 
     def located(self, state: State) -> npt.NDArray[np.bool_]:
         """Whether each point of a state has a surface below it, (n,)."""
@@ -345,6 +405,17 @@ class ContactRecord:
     def _tangents(self, state: State) -> Floats:
         """Tangents of the master of now at the coordinates of a state, (n, 2, 3), length."""
         raise NotImplementedError
+
+    def _place(self, state: State) -> tuple[Floats, Floats]:
+        """Where the master is at the coordinates of a state, (n, 3), and `_tangents`, length."""
+        raise NotImplementedError
+
+    def _axes(self, answer: Response) -> Floats:
+        """Axes of adhesion as `_tangents` has the master, (n, 2, 3)."""
+        return answer.directions_adhesion
+
+    def _forget_base(self) -> None:
+        """Forget about which trial a Newton step was linear."""
 
     @property
     def parts(self) -> tuple[ContactRecord, ...]:

@@ -114,10 +114,15 @@ class Sides:
 
     def tangents(self, state: State) -> Floats:
         """Tangents of the master of now, (n, 2, 3), length; any where a point has no facet."""
-        tangents = np.tile(np.eye(3)[:2], (len(state), 1, 1))
+        return self.place(state)[1]
+
+    def place(self, state: State) -> tuple[Floats, Floats]:
+        """Places of the master of now, (n, 3), and `tangents` there, length."""
+        places, tangents = np.zeros((len(state), 3)), np.tile(np.eye(3)[:2], (len(state), 1, 1))
         there = np.flatnonzero(state["facet"] >= 0)
-        tangents[there] = self.surface.jet(state["facet"][there], state["xi"][there]).d1
-        return tangents
+        jet = self.surface.jet(state["facet"][there], state["xi"][there])
+        places[there], tangents[there] = jet.position, jet.d1
+        return places, tangents
 
     def stiffness(self, diagonal: Floats) -> float:
         """Traction per displacement of a node of both, one behind the other, stress/length.

@@ -75,7 +75,7 @@ class TwoHalfPass(ContactRecord):
         **options: Unpack[PassOptions],
     ) -> None:
         self.master = master
-        self.interface = law
+        self.interface: MeshedLaw = law
         self.passes = tuple(
             FacetContact(
                 model,
@@ -107,6 +107,41 @@ class TwoHalfPass(ContactRecord):
             half.update(u, dt)
         self._trial = self._joined()
         return self._trial.response
+
+    def suit(self, diagonal: Floats) -> None:
+        """As of `ContactRecord`."""
+        for half in self.passes:
+            half.suit(diagonal)
+        self.body_stiffness = self.passes[0].body_stiffness
+
+    def lay(self, compliance: float, dt: float) -> None:
+        """As of `ContactRecord`, behind both passes."""
+        for half in self.passes:
+            half.lay(compliance, dt)
+
+    def take_away(self) -> None:
+        """As of `ContactRecord`."""
+        for half in self.passes:
+            half.take_away()
+
+    @property
+    def follows(self) -> bool:
+        """As of `ContactRecord`."""
+        return any(half.follows for half in self.passes)
+
+    def held(self) -> bool:
+        """As of `ContactRecord`."""
+        return all([half.held() for half in self.passes])
+
+    def take_share(self, share: float) -> None:
+        """As of `ContactRecord`."""
+        for half in self.passes:
+            half.take_share(share)
+
+    def add_lag(self, out: Floats) -> None:
+        """As of `ContactRecord`."""
+        for half in self.passes:
+            half.add_lag(out)
 
     def commit(self) -> None:
         """Make the trial the history."""

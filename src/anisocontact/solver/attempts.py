@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from anisocontact._fenicsx import Vec
 from anisocontact.contact.schemes import IN_CYCLES, SOFTER, USUAL
 from anisocontact.solver.acceptance import refused
+from anisocontact.solver.continuation import Continuation
 from anisocontact.solver.culprits import find_culprits
 from anisocontact.solver.newton import NewtonResult
 from anisocontact.solver.problem import Problem
@@ -28,11 +29,13 @@ class Outcome:
         result: Of the attempt that converged, or of the last; iterations are those of all.
         culprits: Places that caused the failure of one of them.
         final: Whether no smaller part can help, see `Refusal`.
+        hint: What may be behind the failure, and what to do about it.
     """
 
     result: NewtonResult
     culprits: tuple[Culprit, ...] = ()
     final: bool = False
+    hint: str = ""
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,7 @@ class _Way:
         flowing: Whether the bodies flow.
         multipliers: Way to the multipliers of augmented contacts.
         spare: Whether its failure says nothing of what holds the bodies.
+        layered: Whether stiff adhesion is come to over a compliant layer.
     """
 
     start: Vec
@@ -54,14 +58,16 @@ class _Way:
     flowing: bool = False
     multipliers: str = USUAL
     spare: bool = False
+    layered: bool = False
 
 
 class Attempts:
     """Solves for given loads and commits what converges.
 
-    The first attempt starts from the extrapolated state with a line search, the second from the
-    accepted state with full steps: a line search stops in front of a jump of the law. Where the
-    status of points alternated, a third one takes a share of each correction: half as much as
+    The first attempt starts from the extrapolated state with a line search, the last one from the
+    accepted state with full steps: a line search stops in front of a jump of the law. Where
+    adhesion is stiff one with compliant layers comes between them, see `Continuation`. Where the
+    status of points alternated, a further one takes a share of each correction: half as much as
     before where it still alternates, twice as much where it does not. Where that does not help
     either and the part is small, the last one lets the bodies flow, see `Flow`. Where contact may
     hold free bodies without springs, an attempt without them comes before all these. Multipliers
@@ -79,6 +85,7 @@ class Attempts:
         self._watch = watch
         self._share = 1.0
         self._final = False
+        self._continuation = Continuation(problem, newton)
 
     def solve(self, first: Vec, last: Vec, small: bool = False) -> Outcome:
         """Solve and commit, or roll back.
@@ -103,14 +110,18 @@ class Attempts:
             if way is ways[-1] and found[:1] and found[0].kind == "flipping":
                 ways += self._against_flipping(way, small)
         result = replace(result, iterations=spent, reason=_reason(result.reason, found))
-        return Outcome(result, tuple(found), self._final)
+        return Outcome(result, tuple(found), self._final, self._continuation.hint())
 
     def _ways(self, first: Vec, last: Vec) -> list[_Way]:
         searching, full = _Way(first, full_steps=False), _Way(last)
         trusts = self._problem.stabilisation.trusts
         if self._problem.follows:
-            return _following(searching, full, IN_CYCLES in self._problem.ways, trusts)
-        return [searching, searching, full] if trusts else [searching, full]
+            ways = _following(searching, full, IN_CYCLES in self._problem.ways, trusts)
+        else:
+            ways = [searching, searching, full] if trusts else [searching, full]
+        if self._continuation.stiff():
+            ways.insert(2 if trusts else 1, _Way(last, layered=True))
+        return ways
 
     def _against_flipping(self, failed: _Way, small: bool) -> list[_Way]:
         """What is left to be tried where the status of points alternates."""
@@ -129,7 +140,11 @@ class Attempts:
             if way.flowing:
                 problem.flow()
             problem.take_way(way.multipliers)
-            result = self._newton.solve(x, way.full_steps, self._damping if way.damped else None)
+            if way.layered:
+                result = self._continuation.solve(x)
+            else:
+                damping = self._damping if way.damped else None
+                result = self._newton.solve(x, way.full_steps, damping)
             refusal = None if result.reason else refused(problem, x)
             if not result.reason and refusal is None:
                 problem.commit(x)
@@ -144,6 +159,7 @@ class Attempts:
             raise
         finally:
             problem.stabilisation.flow.stop()
+            self._continuation.end()
             if not problem.together.apart:
                 problem.roll_back()
 

@@ -235,7 +235,9 @@ class Solver:
         pace, result = self.place.pace, outcome.result
         tried, cuts = pace.part, pace.cuts
         if outcome.final or not pace.cut():
-            self._stop(step, outcome, f"{cuts} cuts, the last part was {tried:.2g}" if cuts else "")
+            text = f"{cuts} cuts, the last part was {tried:.2g}" if cuts else ""
+            text = "; ".join(part for part in (text, outcome.hint) if part)
+            self._stop(step, outcome, text)
         if self._on_cut is not None:
             self._on_cut(
                 Cut(

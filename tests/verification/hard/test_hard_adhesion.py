@@ -1,0 +1,139 @@
+"""Adhesion that is far stiffer than the bodies: every point sticks within a tiny slip only."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+PAIR = """
+[mesh.box.block]
+origin = [0, 0, 0]
+size = [1, 1, 1]
+cells = [4, 4, 2]
+
+[mesh.box.plate]
+origin = [-1, -1, -1]
+size = [3, 3, 1]
+cells = [6, 6, 1]
+
+[material.block]
+model = "neo-hookean"
+E = 10
+nu = 0.3
+
+[material.plate]
+model = "neo-hookean"
+E = 20
+nu = 0.3
+
+[[contact]]
+slave = "block.bottom"
+master = "plate.top"
+"""
+RIGID = """
+[mesh.box.block]
+origin = [0, 0, 0]
+size = [1, 1, 0.6]
+cells = [4, 4, 2]
+
+[material.block]
+model = "linear-elastic"
+E = 10
+nu = 0.3
+
+[surface.plate]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+
+[[contact]]
+slave = "block.bottom"
+master = "plate"
+"""
+DIRECTIONS = 'directions = { kind = "constant", vector = [1, 0, 0], angle_deg = 30 }'
+FRICTION = f"friction = {{ coefficients = [0.2, 0.4], {DIRECTIONS} }}\n"
+PLATE_HELD = '"plate.bottom" = { x = 0, y = 0, z = 0 }, '
+
+
+def case(bodies: str, adhesion: str, more: str = "") -> str:
+    held = PLATE_HELD if "plate.top" in bodies else ""
+    return f"""{bodies}
+adhesion = {{ {adhesion} }}
+{FRICTION}{more}
+[[step]]
+name = "press"
+increments = 1
+displacement = {{ {held}"block.top" = {{ x = 0, y = 0, z = -0.025 }} }}
+
+[[step]]
+name = "drag"
+increments = 2
+displacement = {{ "block.top" = {{ x = 0.1 }} }}
+"""
+
+
+def check_law(contact, stiffness: tuple[float, float], tolerance: float) -> None:
+    """T = -S xi_el at every sticking point, the force over its largest value."""
+    stick = contact.last.status == 1
+    axes, traction = contact.last.directions_adhesion[stick], contact.last.traction_t[stick]
+    force = np.einsum("nad,nd->na", axes, traction)
+    slip = np.einsum("nad,nd->na", axes, contact.elastic_slip()[stick])
+    assert stick.any()
+    assert np.abs(force + slip * stiffness).max() <= tolerance * np.abs(force).max()
+
+
+@pytest.mark.parametrize("stiffness", [1e5, 1e7, 1e9])
+@pytest.mark.parametrize("bodies", [PAIR, RIGID], ids=["pair", "rigid"])
+def test_stiff_adhesion_ends_without_a_cut(to_the_end, bodies, stiffness):
+    """Stiffness of 1e4 to 1e8 times that of the bodies, which stopped in the first increment.
+
+    Requirement: no cut, and the forces of 750 times E/h, which plain Newton takes: they differ
+    by the elastic slip over the motion, 1e-5 over 0.1.
+    """
+    run = to_the_end(case(bodies, f"stiffness = {stiffness}"))
+    soft = to_the_end(case(bodies, "stiffness = 3e4"))
+    assert not run.cuts
+    wanted = soft.force("drag")
+    assert np.linalg.norm(run.force("drag") - wanted) < 2e-4 * np.linalg.norm(wanted)
+
+
+@pytest.mark.parametrize("solver", ['"direct"', '"condensed"', '"iterative"'])
+@pytest.mark.parametrize("pair", [(1e8, 1e8), (1e9, 1e2)])
+def test_accepted_state_has_the_stiffness_of_the_user(to_the_end, solver, pair):
+    """The layer that helps leaves nothing behind: T = -S xi_el at every point that sticks.
+
+    Source: [Konyukhov Schweizerhof 2006, eq. (28)], whose force is linear in the elastic slip
+    until it slides. The tolerance is that of rounding in a sum of slips of 1e-10 at places of 1.
+    """
+    text = case(RIGID, f"stiffness = [{pair[0]}, {pair[1]}], {DIRECTIONS}")
+    text = text.split('[[step]]\nname = "drag"')[0]
+    pressed = to_the_end(text, f"strategy = {solver}")
+    assert not pressed.cuts
+    check_law(pressed.problem.contacts[0], pair, 1e-6)
+
+
+TIMED = [
+    'model = "maxwell", stiffness = 1e7, relaxation_time = 0.5',
+    'model = "kelvin-voigt", stiffness = 1e3, viscosity = 1e6',
+    'model = "standard-linear-solid", stiffness = 1e6, stiffness_maxwell = 1e7, '
+    "relaxation_time = 0.5",
+]
+
+
+@pytest.mark.parametrize("adhesion", TIMED)
+def test_stiff_adhesion_with_a_time(to_the_end, adhesion):
+    """Models whose stiffness depends on the time increment; steady slip does not know of it."""
+    run = to_the_end(case(PAIR, adhesion))
+    soft = to_the_end(case(PAIR, "stiffness = 3e4"))
+    wanted = soft.force("drag")
+    assert not run.cuts
+    assert np.linalg.norm(run.force("drag") - wanted) < 2e-3 * np.linalg.norm(wanted)
+
+
+@pytest.mark.parametrize("more", ['method = "augmented"', 'pass = "two-half"'])
+def test_stiff_adhesion_with_multipliers_and_two_passes(to_the_end, more):
+    """The layer goes with multipliers of the pressure, and behind both half passes."""
+    run = to_the_end(case(PAIR, "stiffness = 1e7", more))
+    soft = to_the_end(case(PAIR, "stiffness = 3e4", more))
+    wanted = soft.force("drag")
+    assert np.linalg.norm(run.force("drag") - wanted) < 2e-3 * np.linalg.norm(wanted)
