@@ -235,9 +235,7 @@ class Solver:
         pace, result = self.place.pace, outcome.result
         tried, cuts = pace.part, pace.cuts
         if outcome.final or not pace.cut():
-            text = f"{cuts} cuts, the last part was {tried:.2g}" if cuts else ""
-            text = "; ".join(part for part in (text, outcome.hint) if part)
-            self._stop(step, outcome, text)
+            self._stop(step, outcome, f"{cuts} cuts, the last part was {tried:.2g}" if cuts else "")
         if self._on_cut is not None:
             self._on_cut(
                 Cut(
@@ -261,6 +259,7 @@ class Solver:
             culprits = ()
         points = np.array([c.position for c in culprits if c.kind == "law"])
         text = f"{tried} of the increment" if tried else ""
+        text = "; ".join(part for part in (text, outcome.hint) if part)
         reason = reason or outcome.result.reason
         raise StoppedError(step.name, increment, reason, culprits[:NAMED], points, text)
 

@@ -137,3 +137,17 @@ def test_stiff_adhesion_with_multipliers_and_two_passes(to_the_end, more):
     soft = to_the_end(case(PAIR, "stiffness = 3e4", more))
     wanted = soft.force("drag")
     assert np.linalg.norm(run.force("drag") - wanted) < 2e-3 * np.linalg.norm(wanted)
+
+
+def test_failure_names_stiff_adhesion(to_the_end):
+    """Where a run stops all the same, the message has the adhesion and what to do.
+
+    The explicit rule, whose force jumps, with no second increment allowed.
+    """
+    from anisocontact.solver.steps import StoppedError
+
+    text = case(RIGID, "stiffness = 1e9").replace(
+        "coefficients", 'sliding_rule = "explicit", coefficients'
+    )
+    with pytest.raises(StoppedError, match=r"adhesion of block.bottom on plate is .* as stiff as"):
+        to_the_end(text, "cuts = 0")
