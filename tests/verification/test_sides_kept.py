@@ -18,7 +18,7 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.limits import Limits
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.rigid import RigidBody
-from anisocontact.solver import Problem, Solver, Step, StoppedError
+from anisocontact.solver import ContactProblem, Problem, Solver, Step, StoppedError
 from anisocontact.solver.newton import Newton, NewtonResult
 from anisocontact.surfaces import make_surface
 
@@ -264,3 +264,26 @@ def test_loads_that_friction_holds_are_not_to_blame() -> None:
     with pytest.raises(StoppedError, match="no convergence in 0 Newton iterations"):
         options = {"snes_max_it": 0}
         list(Solver(problem, steps, options=options, limits=Limits(smallest=0.5)).run())
+
+
+def test_a_script_does_not_accept_it_either(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same state in a problem written in UFL: refused, displacement and history as before."""
+    from anisocontact._fenicsx import fem, ufl
+
+    problem = _problem("plane")
+    over = _state(problem, lambda x: x * [1.0, -1.0, -1.0] + [0.0, 1.0, -1e-3]).array.copy()
+    contact, space = problem.contacts[0], problem.model.space
+    u, v = fem.Function(space), ufl.TestFunction(space)
+    form = ufl.inner(make_material("linear-elastic", E=1e3, nu=0.3).stress(u), ufl.grad(v)) * ufl.dx
+    script = ContactProblem(form, u, contacts=[contact])
+
+    def thrown(self: Newton, x: Vec, *_: Any) -> NewtonResult:
+        x.array[:] = over
+        return NewtonResult(1, [0.0], "")
+
+    monkeypatch.setattr(Newton, "solve", thrown)
+    with pytest.raises(RuntimeError, match="contact 'block.bottom': body 'block' has turned over"):
+        script.solve()
+    script.close()
+    assert not u.x.array.any()
+    assert not contact.state["pressure"].any()
