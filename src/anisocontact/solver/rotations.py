@@ -207,7 +207,8 @@ class _Cells:
         self.mean, volume = self._means(_gradients(element, points), weights)
         self._volume = float(comm.allreduce(volume))
         self.mean /= self._volume
-        own = self._reference[np.unique(self._nodes)]
+        self._own = np.unique(self._nodes)
+        own = self._reference[self._own]
         lowest = np.min(comm.allgather(own.min(axis=0, initial=np.inf)), axis=0)
         highest = np.max(comm.allgather(own.max(axis=0, initial=-np.inf)), axis=0)
         self._size = float((highest - lowest).min())
@@ -233,8 +234,7 @@ class _Cells:
 
     def uneven(self, kept: Kept, gradient: Floats) -> float:
         """Known displacements beyond their mean gradient, or along loads, over the least extent."""
-        nodes = np.unique(self._nodes)
-        nodes = nodes[kept.nodes[nodes]]
+        nodes = self._own[kept.nodes[self._own]]
         beyond = kept.u[nodes] - self._reference[nodes] @ gradient.T
         ranges = np.ptp(beyond, axis=0) if len(nodes) else np.zeros(3)
         return max(float(np.linalg.norm(ranges)), abs(kept.along_loads)) / self._size
