@@ -55,6 +55,7 @@ scoreboard: setup ## hard cases with every method and strategy; CASES="pair plat
 
 docs: setup ## build the documentation in docs/_build/html
 	@$(IN_VENV) sphinx-build -W --keep-going -q -b html docs docs/_build/html
+	@$(IN_VENV) python tools/dead_links.py docs/_build/html
 	@echo "documentation: docs/_build/html/index.html"
 
 clean: ## remove results, built documentation and caches

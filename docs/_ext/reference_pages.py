@@ -154,8 +154,32 @@ def write_pages(app: Sphinx) -> None:
             path.write_text(text)
 
 
+def mend_source_links(app: Sphinx) -> list[Any]:
+    """Let the pages of source code lead back to where a name is documented.
+
+    `sphinx.ext.viewcode` keeps one module to lead back to for each source file, and for each name
+    the last page that has it; what two pages have (its own, and that of a module that exports it,
+    too) would get the page of one and the name of the other. It lists sources that it could not
+    read as well.
+    """
+    modules = getattr(app.env, "_viewcode_modules", {})
+    documented = app.env.domains.python_domain.objects
+    for name, entry in list(modules.items()):
+        if not entry:
+            del modules[name]
+            continue
+        code, tags, used, first = entry
+        # its own page has all that a module exports, another one may have less
+        module = name if all(f"{name}.{one}" in documented for one in used) else first
+        pages = {one: documented.get(f"{module}.{one}") for one in used}
+        used |= {one: page.docname for one, page in pages.items() if page is not None}
+        modules[name] = code, tags, used, module
+    return []
+
+
 def setup(app: Sphinx) -> dict[str, Any]:
     """Write the pages before Sphinx looks for sources."""
     app.connect("builder-inited", write_pages)
+    app.connect("html-collect-pages", mend_source_links, priority=400)  # before viewcode's
     app.connect("autodoc-process-docstring", escape_bars)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -39,11 +39,13 @@ try:
 except ImportError as missing:
     raise ImportError(
         "the finite-element level is not installed, or not whole: pip install 'anisocontact[fem]', "
-        f"or fenics-dolfinx 0.11 from conda-forge ({missing})"
+        f"or fenics-dolfinx 0.11 from conda-forge ({missing})",
+        name="dolfinx",
     ) from missing
 
+from anisocontact.compiler import lack_of_compiler
 from anisocontact.errors import MachineError
-from anisocontact.machine import MEMORY, lack_of_compiler
+from anisocontact.machine import MEMORY
 
 __all__ = [
     "MPI",

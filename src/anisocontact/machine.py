@@ -3,20 +3,18 @@
 from __future__ import annotations
 
 import errno
-import os
-import shlex
-import shutil
-import subprocess
-import sysconfig
-import tempfile
-from pathlib import Path
 
 from anisocontact.errors import MachineError
 
-__all__ = ["MEMORY", "lack", "lack_of_compiler"]
+__all__ = ["MEMORY", "lack"]
 
 #: What makes a run need less memory.
 MEMORY = 'take a coarser mesh, strategy = "iterative", or processes on several machines'
+#: Modules of the extra `fem`.
+_EXTRA = (
+    *("mpi4py", "petsc4py", "basix", "ffcx", "ufl", "dolfinx"),
+    *("gmsh", "pyvista", "vtk", "vtkmodules"),
+)
 #: PETSC_ERR_MEM
 _PETSC_MEMORY = 55
 _CURES = {
@@ -51,54 +49,10 @@ def lack(error: BaseException) -> MachineError | None:
         return MachineError(f"out of memory{said}", MEMORY)
     if isinstance(error, ImportError) and "failed to map segment" in str(error):
         return MachineError("out of memory (for a library)", MEMORY)
+    if isinstance(error, ImportError) and (error.name or "").split(".")[0] in _EXTRA:
+        text = f"the finite-element level is not installed, or not whole ({error})"
+        return MachineError(text, "pip install 'anisocontact[fem]', or its packages of conda-forge")
     if isinstance(error, OSError) and error.errno in _CURES:
         name = f"'{error.filename}': " if error.filename else ""
         return MachineError(f"{name}{error.strerror}", _CURES[error.errno])
     return None
-
-
-#: What a compiled form begins with.
-_PROBE = "#include <Python.h>\n"
-
-
-def lack_of_compiler(cache: Path) -> MachineError | None:
-    """What is missing where forms could not be compiled.
-
-    Args:
-        cache: Folder in which compiled forms are kept.
-
-    Returns:
-        One line; None if forms can be compiled here.
-    """
-    try:
-        cache.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=cache):
-            pass
-    except OSError as error:
-        text = f"compiled forms cannot be kept in '{cache}' ({error.strerror})"
-        return MachineError(text, "set XDG_CACHE_HOME to a folder that can be written")
-    compiler = shlex.split(os.environ.get("CC") or sysconfig.get_config_var("CC") or "cc")
-    if shutil.which(compiler[0]) is None:
-        text = f"no C compiler, '{compiler[0]}' is not found, and forms have to be compiled"
-        return MachineError(text, "install gcc or clang, or name yours in the variable CC")
-    said = _compiled(compiler)
-    if said is None:
-        return None
-    text = f"the C compiler '{shlex.join(compiler)}' does not compile forms ({said})"
-    cure = "install Python's development package, or name another compiler in the variable CC"
-    return MachineError(text, cure)
-
-
-def _compiled(compiler: list[str]) -> str | None:
-    """Compile what includes Python's header; None if that works, else what the compiler says."""
-    with tempfile.TemporaryDirectory() as folder:
-        source = Path(folder, "probe.c")
-        source.write_text(_PROBE)
-        command = [*compiler, f"-I{sysconfig.get_paths()['include']}", "-c", "probe.c"]
-        done = subprocess.run(
-            command, cwd=folder, capture_output=True, text=True, errors="replace", check=False
-        )
-    if done.returncode == 0:
-        return None
-    lines = [line for line in done.stderr.splitlines() if "error" in line.lower()]
-    return next(iter(lines), f"exit code {done.returncode}")

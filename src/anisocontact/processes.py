@@ -108,12 +108,14 @@ def started_together() -> Together | None:
     Nothing of MPI is loaded for a process that is alone.
 
     Returns:
-        The processes; None without a launcher.
+        The processes; None without a launcher, or without MPI.
     """
     if not any(name in os.environ for name in _TOLD):
         return None
-    from anisocontact._fenicsx import MPI
-
+    try:
+        from anisocontact._fenicsx import MPI
+    except ImportError:  # the command says what it lacks
+        return None
     return Together(MPI.COMM_WORLD)
 
 

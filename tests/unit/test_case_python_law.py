@@ -183,3 +183,40 @@ def test_restart_with_another_law(tmp_path, capsys):
     assert capsys.readouterr().err == (
         "error: contact[0].python.file: 'smooth.py' given, no such file\n"
     )
+
+
+def test_check_without_running_the_law(tmp_path, capsys):
+    """`check --no-python`: the file is not run, all else is checked, also that it is there."""
+    ran, law = tmp_path / "was_run", tmp_path / "smooth.py"
+    runs = f"import pathlib\npathlib.Path({str(ran)!r}).touch()\nimport numpy"
+    path = smooth(tmp_path, ("import numpy", runs))
+    assert main(["check", str(path), "--no-python"]) == 0
+    assert not ran.exists()
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[-1] == "not run   smooth.py: its law is not checked"
+    assert main(["check", str(path)]) == 0
+    assert ran.exists()
+    assert capsys.readouterr().out.splitlines() == lines[:-1]
+    law.unlink()
+    assert main(["check", str(path), "--no-python"]) == 2
+    assert "contact[0].python.file: 'smooth.py' given, no such file" in capsys.readouterr().err
+    text = path.read_text(encoding="utf-8")
+    law.touch()
+    path.write_text(text.replace('"block.top"', '"block.tip"'), encoding="utf-8")
+    assert main(["check", str(path), "--no-python"]) == 2
+    assert "block.tip" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("meshed", [False, True], ids=["plate", "block"])
+def test_check_without_running_the_law_on_any_master(tmp_path, meshed):
+    laws = PYTHON.replace(f"{ALONG}\n", "isotropic = true\n")
+    assert main(["check", str(case(tmp_path, laws, meshed=meshed)), "--no-python"]) == 0
+
+
+def test_people_are_told_that_check_runs_python(capsys):
+    """In the help of the command and in the schema of the case file."""
+    assert main(["check", "--help"]) == 0
+    assert "Python files" in capsys.readouterr().out
+    assert main(["schema"]) == 0
+    files = json.loads(capsys.readouterr().out)["$defs"]["Python"]["properties"]["file"]
+    assert "`check --no-python` does not" in files["description"]

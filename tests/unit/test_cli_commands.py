@@ -372,6 +372,38 @@ def test_report_of_what_is_left(quick_pictures, no_report, capsys, case, missing
     assert "Small block on a turned plate" in (out / "report.html").read_text()
 
 
+@pytest.mark.parametrize(
+    ("command", "missing", "code"),
+    [
+        ("check", "mpi4py,dolfinx,petsc4py,basix,ufl,pyvista,vtkmodules,gmsh", 2),
+        ("run", "mpi4py,dolfinx,petsc4py,basix,ufl,pyvista,vtkmodules,gmsh", 2),
+        ("check", "petsc4py", 2),
+        ("run", "vtkmodules", 3),
+    ],
+)
+@pytest.mark.parametrize("launcher", ["", "PMI_RANK"])
+def test_a_part_of_the_extra_is_missing(case, command, missing, code, launcher):
+    """All of `fem` or a part of it: one line says what to install, no error of the program."""
+    code_text = (
+        f"import sys; sys.modules.update(dict.fromkeys({missing.split(',')!r})); "
+        f"from anisocontact.cli import main; sys.exit(main(['{command}', {str(case)!r}]))"
+    )
+    if launcher and "mpi4py" not in missing:
+        pytest.skip("MPI is there, and would look for its launcher")
+    done = subprocess.run(
+        [sys.executable, "-c", code_text],
+        env=os.environ | ({launcher: "0"} if launcher else {}),
+        cwd=case.parent,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == code
+    (line,) = done.stderr.splitlines()
+    assert line.startswith("error: the finite-element level is not installed")
+    assert "pip install 'anisocontact[fem]'" in line
+
+
 def test_no_finite_elements_installed(tmp_path, case_text):
     """Without DOLFINx schema and info still work, and a run says what to install."""
     case = tmp_path / "case.toml"

@@ -20,8 +20,9 @@ import pytest
 pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import main
+from anisocontact.compiler import lack_of_compiler
 from anisocontact.errors import MachineError
-from anisocontact.machine import lack, lack_of_compiler
+from anisocontact.machine import lack
 from anisocontact.results.read import Results
 from anisocontact.signals import on_signals
 from anisocontact.solver.problem import Problem

@@ -108,8 +108,31 @@ def test_command_page_shows_every_subcommand(extension: Callable[[str], ModuleTy
     assert "| `-o, --output DIR` | into (out) |" in page
 
 
+def dead_links(site: Path) -> list[str]:
+    """What the script that `make docs` calls finds."""
+    script = str(ROOT / "tools" / "dead_links.py")
+    command = [sys.executable, script, str(site)]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == bool(done.stderr), done.stderr
+    return done.stderr.splitlines()
+
+
+def test_dead_links_are_found(tmp_path: Path) -> None:
+    (tmp_path / "sub").mkdir()
+    links = ["sub/", "sub/index.html#here", "#top", "https://example.org/x", "sub/a%20b.txt"]
+    dead = ["none.html", "sub/index.html#there", "#bottom", "img/x.png"]
+    anchors = "".join(f'<a href="{link}">x</a>' for link in [*links, *dead])
+    (tmp_path / "index.html").write_text(f'<p id="top">{anchors}</p>')
+    (tmp_path / "sub" / "index.html").write_text('<a name="here"></a>')
+    (tmp_path / "sub" / "a b.txt").touch()
+    assert dead_links(tmp_path) == [
+        f"error: dead link: index.html: {link}" for link in sorted(dead)
+    ]
+
+
 @pytest.mark.slow
 def test_site_builds_without_warnings(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-q", str(DOCS), str(tmp_path)]
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stderr
+    assert dead_links(tmp_path) == []

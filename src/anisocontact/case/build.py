@@ -39,11 +39,13 @@ class Built:
     solver: Solver
 
 
-def build(file: CaseFile) -> Built:
+def build(file: CaseFile, python: bool = True) -> Built:
     """Mesh the bodies and put contacts, loads and solver together.
 
     Args:
         file: A checked case.
+        python: Whether the Python files that the case names are run. Without their laws everything
+            else can be checked, and nothing can be solved.
 
     Returns:
         The problem, its steps and a solver.
@@ -58,7 +60,10 @@ def build(file: CaseFile) -> Built:
         anisocontact.errors.InputError: case file 'no-such-case.toml' does not exist
     """
     case = file.case
-    own = [law_of(section, file.resolve, f"contact[{i}]") for i, section in enumerate(case.contact)]
+    own = [
+        law_of(section, file.resolve, f"contact[{i}]", python)
+        for i, section in enumerate(case.contact)
+    ]
     model = _model(file)
     _check_bodies(case, model)
     materials = {

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING, Annotated, Any
 
+import numpy as np
 from pydantic import Field
 
 from anisocontact.case import objects
@@ -40,7 +41,10 @@ _EVOLUTION = "transport"
 class PythonSection(Section):
     """A tangential law of your own, a class in a Python file, in place of adhesion and friction."""
 
-    file: str = Field(description="Python file, from the folder of the case file on")
+    file: str = Field(
+        description="Python file, from the folder of the case file on; `run` and `check` run it "
+        "with all rights of whoever calls them, `check --no-python` does not"
+    )
     law: str = Field(description="name of the class in it")
     arguments: dict[str, Any] = Field(
         default_factory=dict, description="what the class is made with, by name"
@@ -54,12 +58,15 @@ class PythonSection(Section):
 
 
 class _Later:
-    """Stands for a law that has not been read yet."""
+    """Stands for a law that has not been read: it gives no traction."""
 
     internal = 0
 
     def update(self, state: LawState, kinematics: LawKinematics) -> LawResult:
-        raise NotImplementedError
+        n = len(kinematics.pressure)
+        none, block = np.zeros((n, 2)), np.zeros((n, 2, 2))
+        at = none[:, 0]
+        return LawResult(none, none, block, none, block, block, state.internal, at, at)
 
 
 def interface(
@@ -120,17 +127,20 @@ def _check(section: ContactSection) -> None:
 
 
 def law_of(
-    section: ContactSection, resolve: Callable[[str], Path], place: str
+    section: ContactSection, resolve: Callable[[str], Path], place: str, execute: bool = True
 ) -> TangentialLaw | None:
     """The law of a table, read from its file and made.
+
+    The file is run, with all rights of whoever runs the program.
 
     Args:
         section: The table.
         resolve: From a path in the case file to where that is.
         place: Path of the table, for messages.
+        execute: Whether the file is run; if not, it only has to be there.
 
     Returns:
-        The law; None if the table names laws of the core.
+        The law; None if the table names laws of the core, or its file is not run.
 
     Raises:
         InputError: No such file or class, a file that cannot be run, arguments that the class
@@ -140,7 +150,10 @@ def law_of(
     if given is None:
         return None
     with objects.within(f"{place}.python"):
-        module = _module(_found(resolve, given.file), given.file)
+        path = _found(resolve, given.file)
+        if not execute:
+            return None
+        module = _module(path, given.file)
         kind = getattr(module, given.law, None)
         if not isinstance(kind, type):
             classes = {n: k for n, k in vars(module).items() if isinstance(k, type)}

@@ -3,18 +3,29 @@
 from __future__ import annotations
 
 import argparse
+from typing import TYPE_CHECKING
 
 from anisocontact.case import load
-from anisocontact.case.build import Built, build
 from anisocontact.cli.output import say
+
+if TYPE_CHECKING:
+    from anisocontact.case.build import Built
 
 __all__ = ["command", "contents"]
 
 
 def command(arguments: argparse.Namespace) -> int:
     """Build the case and say what is in it."""
-    for line in contents(build(load(arguments.case))):
+    file = load(arguments.case)
+
+    from anisocontact.case.build import build
+
+    for line in contents(build(file, python=not arguments.no_python)):
         say(line)
+    if arguments.no_python:
+        for section in file.case.contact:
+            if section.python is not None:
+                say(f"not run   {section.python.file}: its law is not checked")
     return 0
 
 

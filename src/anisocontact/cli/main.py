@@ -46,8 +46,17 @@ def build_parser() -> argparse.ArgumentParser:
         help="go on with a run that was stopped or killed, from its last accepted increment",
     )
 
-    check = _command(commands, "check", "read a case and its mesh and say what it contains")
+    check = _command(
+        commands,
+        "check",
+        "read a case and its mesh, run the Python files it names, and say what it contains",
+    )
     _case_argument(check)
+    check.add_argument(
+        "--no-python",
+        action="store_true",
+        help="check all but the laws in Python, whose files are not run: for cases of others",
+    )
 
     report = _command(commands, "report", "draw the pictures and the report of a results folder")
     report.add_argument("folder", metavar="DIR", help="results folder of `run`")
