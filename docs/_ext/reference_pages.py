@@ -163,7 +163,8 @@ def mend_source_links(app: Sphinx) -> list[Any]:
     read as well.
     """
     modules = getattr(app.env, "_viewcode_modules", {})
-    documented = app.env.domains.python_domain.objects
+    known = app.env.domains.python_domain.objects.items()
+    documented = {name: entry.docname for name, entry in known if not entry.aliased}
     for name, entry in list(modules.items()):
         if not entry:
             del modules[name]
@@ -171,8 +172,7 @@ def mend_source_links(app: Sphinx) -> list[Any]:
         code, tags, used, first = entry
         # its own page has all that a module exports, another one may have less
         module = name if all(f"{name}.{one}" in documented for one in used) else first
-        pages = {one: documented.get(f"{module}.{one}") for one in used}
-        used |= {one: page.docname for one, page in pages.items() if page is not None}
+        used |= {one: documented.get(f"{module}.{one}", page) for one, page in used.items()}
         modules[name] = code, tags, used, module
     return []
 
