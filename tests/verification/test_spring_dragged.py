@@ -193,6 +193,19 @@ def test_however_it_is_held(name: str) -> None:
     assert accepted[-1].reactions["pull"][0] == pytest.approx(limit, abs=2e-6)
 
 
+def test_no_stabilisation_where_it_slides_on() -> None:
+    """A soft spring: the block lets go in one increment and slides on in the next ones.
+
+    Requirement: at most the increment in which it lets go is stabilised; contact, spring and
+    friction across the way have stiffness in all motions after it.
+    """
+    problem = _on_plane([Spring("pull", "block.right", (1.0, 0.0, 0.0))], (0.3, 0.3))
+    accepted = _ended(problem, _press_and_drag({"x": 1.5}, 8))
+    taken = [one.energies["stabilisation"] for one in accepted]
+    assert taken[-1] == taken[-5]
+    assert sum(one.iterations for one in accepted[-5:]) <= 15
+
+
 def test_a_spring_at_a_corner() -> None:
     """A spring at one side of the top turns the block about its normal while it slides.
 

@@ -62,7 +62,8 @@ class Stabilisation:
     Attributes:
         energy: What the springs have taken up and dissipated since the start, force times length.
         released: What `flow` has dissipated since the start, force times length.
-        careful: Whether bodies get springs also where they stick, until the step ends.
+        careful: Whether bodies get springs also where they stick: until the step ends, or bodies on
+            springs of their own are caught.
         flow: What carries the bodies on where their equilibrium is lost.
         notes: What is stabilised since the last `begin`, a line for each body.
     """
@@ -97,6 +98,7 @@ class Stabilisation:
         self._free: list[FreeBody] = []
         self._loose: list[FreeBody] = []
         self._where: Flags | None = None
+        self._caught = False
         self._held: list[Held] = []
         self._begun: Floats = np.zeros((0, 3))
         self._anchor: Floats = self._begun
@@ -277,7 +279,12 @@ class Stabilisation:
         """
         if self.trusts and self.doubtful(u):
             return "contact alone does not hold all bodies"
-        return self.lost(u)
+        lost = self.lost(u)
+        # a body on springs has been caught where contact and springs have stiffness again
+        self._caught = (
+            self.careful and not lost and all([f.sprung and f.holds() for f in self._free])
+        )
+        return lost
 
     def doubtful(self, u: Floats) -> bool:
         """Whether a body without springs no longer sticks, or has moved by more than a facet.
@@ -351,6 +358,7 @@ class Stabilisation:
         self.energy += self._spent
         self.released += self.flow.spent
         self._spent = 0.0
+        self.careful = self.careful and not self._caught
         if self.flow.flows:
             steps = self.flow.steps
             self.notes.append(f"equilibrium was lost: {steps} steps of viscous flow to the next")
