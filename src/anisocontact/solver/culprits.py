@@ -86,9 +86,11 @@ def strayed(problem: Problem, far: float) -> list[Culprit]:
         far: Error of the gap, over the size of a slave facet, beyond which they count.
     """
     watch = StatusWatch(problem.contacts)
-    found = []
-    for i, contact in enumerate(problem.contacts):
-        wrong = contact.strayed()
+    found: list[Culprit] = []
+    every = [contact.strayed() for contact in problem.contacts]
+    if not any(_everywhere(problem, [bool(wrong.any()) for wrong in every])):
+        return found
+    for i, (contact, wrong) in enumerate(zip(problem.contacts, every, strict=True)):
         size = facet_size(problem.model, contact.slave)
         for point in np.flatnonzero(wrong > far * size):
             why = f"held on a facet at its rim: the gap is wrong by {wrong[point] / size:.1g} of it"
