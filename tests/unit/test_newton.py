@@ -87,3 +87,31 @@ def test_steps_without_search_are_never_given_up_for_creeping():
     """The user may choose them by an option of PETSc."""
     result, _ = _solved(full_steps=False, snes_linesearch_type="basic")
     assert not result.reason
+
+
+class Jump(Valley):
+    """A spring with dry friction, `a + 2 sign(a) - 1/2`, which full steps go to and fro about."""
+
+    def __init__(self) -> None:
+        super().__init__(1.0)
+
+    def evaluate(self, x: Vec) -> np.ndarray:
+        a, b = x.array_r
+        return np.array([a + 2.0 * np.sign(a) - 0.5, b])
+
+    def tangent(self, x: Vec, out: Mat) -> bool:
+        out.setValues([0, 1], [0, 1], [1.0, 0.0, 0.0, 1.0])
+        out.assemble()
+        return False
+
+
+def test_cycle_of_two_is_given_up():
+    """States that alternate are seen after two periods, not after 25 corrections."""
+    system = Jump()
+    dense = {"pc_type": "lu", "pc_factor_mat_solver_type": "petsc"}
+    newton = Newton(system, "jump_", dense, lambda *_: None)
+    x = system.new_vector()
+    x.array[:] = (1.0, 0.0)
+    result = newton.solve(x, full_steps=True)
+    assert result.reason.startswith("no convergence")
+    assert result.iterations < 8

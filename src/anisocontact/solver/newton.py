@@ -36,6 +36,8 @@ STUCK, STUCK_OVER = 0.5, 8
 #: With multipliers that follow a residual rises and falls while points find their status; it goes
 #: round in circles where the least of so many is more than this share of the least before.
 IDLE, IDLE_OVER = 0.5, 5
+#: Residuals that repeat every second time, to this share of them, are those of a cycle.
+CYCLE, SAME = 5, 1e-9
 
 
 class SingularError(RuntimeError):
@@ -277,6 +279,8 @@ class Newton:
             return reasons.DIVERGED_DTOL
         if self._idles():
             return reasons.DIVERGED_LOCAL_MIN
+        if self._cycles():
+            return reasons.DIVERGED_MAX_IT
         return reasons.DIVERGED_LINE_SEARCH if self._stuck() else reasons.ITERATING
 
     def _idles(self) -> bool:
@@ -285,6 +289,14 @@ class Newton:
         if not self._problem.follows or len(known) < IDLE_OVER + 3:
             return False
         return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
+
+    def _cycles(self) -> bool:
+        """Whether full steps go to and fro between two states: nothing will end that."""
+        searching = self.snes.getLineSearch().getType() != PETSc.SNESLineSearch.Type.BASIC
+        if searching or self._damping is not None or len(self._residuals) < CYCLE:
+            return False
+        last = np.array(self._residuals[-CYCLE:])
+        return bool(np.all(np.abs(last[2:] - last[:-2]) <= SAME * last[2:]))
 
     def _stuck(self) -> bool:
         """Whether a line search gains next to nothing."""
