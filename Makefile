@@ -1,7 +1,7 @@
 # `make run` and `make test` need nothing but make, a C++20 compiler and a Python >= 3.12.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help setup run test verify wheel sanitize lint format bench scoreboard docs clean distclean
+.PHONY: help setup run test verify mutants wheel sanitize lint format bench scoreboard docs clean distclean
 
 IN_VENV := tools/venv-run
 EXAMPLE := milled_block
@@ -41,6 +41,9 @@ sanitize: setup ## the programs of tests/cpp under address and undefined-behavio
 	  -DPython_EXECUTABLE="$(CURDIR)/.venv/bin/python" --log-level=WARNING
 	@$(IN_VENV) cmake --build build/sanitize
 	@UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(IN_VENV) ctest --test-dir build/sanitize --output-on-failure -E no_allocation
+
+mutants: setup ## change the core in one place at a time; some test has to notice each
+	@$(IN_VENV) python tools/mutants.py
 
 format: setup ## format Python and C++
 	@$(IN_VENV) ruff check --fix --select I --quiet .

