@@ -241,8 +241,8 @@ class FacetContact(ContactRecord):
 
     @property
     def retraceable(self) -> bool:
-        """As of `ContactRecord`; overlaps follow every state."""
-        return super().retraceable and self._transfer is None
+        """Never: projections start from the last ones, and could come back to another facet."""
+        return False
 
     def energies(self) -> dict[str, float]:
         """As of `ContactRecord`; with overlaps also "transfer", see `Transfer`."""
