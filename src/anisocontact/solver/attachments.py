@@ -12,7 +12,7 @@ from anisocontact.contact.transfer import Couplings
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.attached import Anchored, Attached, ElasticSupport, Spring
-from anisocontact.solver.steps import Step
+from anisocontact.solver.steps import AXES, Step
 
 Floats = npt.NDArray[np.float64]
 
@@ -42,7 +42,7 @@ class Attachments:
             else:
                 self._all.append(spec.on(model))
         springs = [spec for spec in specs if isinstance(spec, Spring)]
-        self._anchored = [spring.name for spring in springs if spring.to is None]
+        self._anchored = {one.name: one.stiffness for one in springs if one.to is None}
         self.coupling = bool(springs)
         #: Their names.
         self.names = [one.name for one in self._all]
@@ -51,16 +51,21 @@ class Attachments:
                 raise InputError(f"two elastic supports or springs have the name {name!r}")
 
     def check(self, step: Step) -> None:
-        """Refuse the anchor of a spring that is not there.
+        """Refuse the anchor of a spring that is not there, or that it does not feel.
 
         Raises:
-            InputError: Names the springs there are.
+            InputError: Names the springs there are, or the axis without stiffness.
         """
-        for name in step.anchor:
+        for name, values in step.anchor.items():
+            place = f"step {step.name!r}.anchor"
             if name not in self._anchored:
                 known = ", ".join(self._anchored) or "none"
-                text = f"no spring {name!r} to ground; there are: {known}"
-                raise InputError(text, f"step {step.name!r}.anchor")
+                raise InputError(f"no spring {name!r} to ground; there are: {known}", place)
+            stiffness = dict(zip(AXES, self._anchored[name], strict=True))
+            for axis, value in values.items():
+                if value and not stiffness[axis]:
+                    text = f"{value:g} given, the spring has no stiffness along {axis}"
+                    raise InputError(text, f"{place}.{name}.{axis}")
 
     def begin(self, step: Step) -> None:
         """Take over a step."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -11,9 +11,11 @@ from anisocontact._fenicsx import Mat, body_shares
 from anisocontact.bulk import Material
 from anisocontact.contact import facet_quadrature
 from anisocontact.mesh import Model
+from anisocontact.solver.layout import Layout
 from anisocontact.solver.pressure import Pressures
 from anisocontact.solver.steps import AXES, Step
 from anisocontact.solver.supports import Supports
+from anisocontact.solver.swallowed import Given, check_swallowed
 from anisocontact.solver.symmetry import SymmetryPlanes
 
 Floats = npt.NDArray[np.float64]
@@ -65,6 +67,17 @@ class DeadLoads:
             nodal += self._shares[key][:, None] * ((1.0 - fraction) * start + fraction * end)
         return force
 
+    def given(self, step: Step) -> Iterator[Given]:
+        """What a step that has begun gives other than zero, by components."""
+        for kind in _SHARES:
+            loads: Mapping[str, Mapping[str, float]] = getattr(step, kind)
+            for name, values in loads.items():
+                share = self._shares[kind, name]
+                for axis, value in values.items():
+                    if value:
+                        unit = np.eye(3)[AXES.index(axis)]
+                        yield Given(kind, name, axis, share[:, None] * unit)
+
 
 def area_shares(model: Model, group: str, field: str) -> Floats:
     """Area of a facet group that belongs to each local node, (nodes,), length^2."""
@@ -111,6 +124,11 @@ class Loads:
         self._dead.begin(step, released)
         self._pressures.begin(step)
 
+    def given(self, step: Step) -> Iterator[Given]:
+        """What a step that has begun gives other than zero."""
+        yield from self._dead.given(step)
+        yield from self._pressures.given(step)
+
     def set_level(self, fraction: float) -> None:
         """Go to a fraction of the step."""
         self._constant = self._dead.at(fraction)
@@ -136,8 +154,10 @@ def check_steps(
     """Go through the loads of all steps without solving.
 
     Raises:
-        InputError: See `Supports.begin`, `DeadLoads.begin` and `SymmetryPlanes.begin`.
+        InputError: See `Supports.begin`, `DeadLoads.begin`, `SymmetryPlanes.begin` and
+            `check_swallowed`.
     """
+    layout = Layout(model.space, 0)
     supports, loads = Supports(model), Loads(model, materials)
     index_map = model.space.dofmap.index_map
     nothing = np.zeros(3 * (index_map.size_local + index_map.num_ghosts))
@@ -149,3 +169,5 @@ def check_steps(
         turned = turned or bool(step.rotation)
         if planes is not None and not turned:
             planes.check(supports.unknowns, supports.end, step.name)
+        held = [*supports.held(), *(planes.held() if planes is not None else [])]
+        check_swallowed(layout, step, loads.given(step), held)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import numpy.typing as npt
@@ -13,6 +13,7 @@ from anisocontact.contact import FacetQuadrature, facet_quadrature
 from anisocontact.contact.quadrature import Surfaced
 from anisocontact.mesh import Model
 from anisocontact.solver.steps import Step
+from anisocontact.solver.swallowed import Given
 
 Floats = npt.NDArray[np.float64]
 
@@ -50,6 +51,15 @@ class Pressures:
             if group not in self._surfaces:
                 self._surfaces[group] = _Surface(self._model, group, self._materials[body].linear)
             self._end[group] = float(value)
+
+    def given(self, step: Step) -> Iterator[Given]:
+        """Pressures of a step that has begun, other than zero, as they act in the reference."""
+        rest = np.zeros((len(self._model.space.tabulate_dof_coordinates()), 3))
+        for group, value in step.pressure.items():
+            if value:
+                force = np.zeros_like(rest)
+                self._surfaces[group].add_force(1.0, rest, force)
+                yield Given("pressure", group, "", force)
 
     def set_level(self, fraction: float) -> None:
         """Go to a fraction of the step."""

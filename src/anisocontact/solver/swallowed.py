@@ -1,0 +1,82 @@
+"""Loads on what the same step holds: the support takes them, and the bodies do not feel them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.errors import InputError
+from anisocontact.solver.layout import Layout
+from anisocontact.solver.steps import Step
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+#: Share of the squares of a load that may act on what is not held and still counts as rounding.
+NOTHING = 1e-20
+#: Square of the part of a direction that those held before leave, below which it is one of them.
+SAME = 1e-12
+
+
+@dataclass(frozen=True)
+class Given:
+    """A load that a step gives.
+
+    Attributes:
+        kind: "traction", "force", "pressure" or "body_force".
+        name: Facet group or body.
+        axis: Axis it is along; empty for a pressure.
+        force: Forces on the local nodes, (nodes, 3).
+    """
+
+    kind: str
+    name: str
+    axis: str
+    force: Floats
+
+
+def check_swallowed(
+    layout: Layout, step: Step, given: Iterable[Given], held: list[tuple[Ints, Floats]]
+) -> None:
+    """Refuse loads that act on nothing but prescribed displacements.
+
+    Args:
+        layout: Where the unknowns are.
+        step: The step.
+        given: What it gives, other than zero.
+        held: Nodes this rank owns and the direction along which each is held, (3,).
+
+    Raises:
+        InputError: Names group, component and step.
+    """
+    count = layout.owned // 3
+    onto = _held_space(count, held)
+    comm = layout.comm
+    for one in given:
+        force = layout.assembled(one.force.ravel())[: 3 * count].reshape(-1, 3)
+        rest = force - np.einsum("nij,nj->ni", onto, force)
+        total, left = comm.allreduce(np.array([(force**2).sum(), (rest**2).sum()]))
+        if total > 0.0 and left <= NOTHING * total:
+            along = f".{one.axis}" if one.axis else ""
+            moves = f"displacement of {one.axis}" if one.axis else "displacement"
+            raise InputError(
+                f"acts on nothing: every node of {one.name!r} has a prescribed {moves} in this "
+                'step, which takes it up; free the component ("free", None in Python), or leave '
+                "the load out",
+                f"step {step.name!r}.{one.kind}.{one.name}{along}",
+            )
+
+
+def _held_space(count: int, held: Iterable[tuple[Ints, Floats]]) -> Floats:
+    """Projectors on what is held of each node, (nodes, 3, 3): directions made orthonormal."""
+    onto = np.zeros((count, 3, 3))
+    for nodes, direction in held:
+        d = direction - onto[nodes] @ direction
+        size = np.einsum("ni,ni->n", d, d)
+        new = size > SAME
+        unit = d[new] / np.sqrt(size[new])[:, None]
+        onto[nodes[new]] += unit[:, :, None] * unit[:, None, :]
+    return onto
