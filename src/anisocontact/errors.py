@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 
-__all__ = ["InputError", "MachineError", "one_line", "printable"]
+__all__ = ["InputError", "MachineError", "ModelWarning", "one_line", "printable"]
 
 
 def printable(text: str) -> str:
@@ -82,3 +82,15 @@ class MachineError(RuntimeError):
 
     def __init__(self, lack: str, cure: str) -> None:
         super().__init__(one_line(f"{lack}: {cure}"))
+
+
+class ModelWarning(UserWarning):
+    """What the user of a script should look at: the model is solved, but may not be what was meant.
+
+    Runs of case files say the same in their log, in `summary.json` and in the report.
+
+    Example:
+        >>> import warnings
+        >>> warnings.simplefilter("error", ModelWarning)  # a script that is to stop there
+        >>> warnings.simplefilter("default", ModelWarning)
+    """

@@ -10,7 +10,7 @@ import pytest
 
 from anisocontact.anisotropy import DirectionField, make_directions
 from anisocontact.augmentation import Augmentation
-from anisocontact.contact import Contact, FacetContact, TwoHalfPass, check_start, initial_overlap
+from anisocontact.contact import Contact, FacetContact, TwoHalfPass, initial_overlap
 from anisocontact.errors import InputError
 from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -85,26 +85,25 @@ def test_adjusted_points_just_touch(kind: str, gap: float) -> None:
 
 def test_surface_that_points_the_wrong_way_is_named() -> None:
     """The normal of the plane points down, as that of the bottom of the block above it."""
-    contact = Contact(_blocks(0.0), "block.bottom", Interface(_plane(-1.0), *_laws()))
     said = r"'block.bottom' faces the same way .* are \(0, 0, -1\) and \(0, 0, -1\); turn"
     with pytest.raises(InputError, match=said):
-        check_start(contact, SIZE)
+        Contact(_blocks(0.0), "block.bottom", Interface(_plane(-1.0), *_laws()))
 
 
 def test_group_on_the_wrong_side_is_named() -> None:
     """The top of the block is named where its bottom meets the base."""
     model = _blocks(0.0)
-    contact = FacetContact(model, "block.top", "base.top", law=PairLaw(*_laws()), reach=2.0)
-    with pytest.raises(InputError, match=r"'block.top' faces the same way"):
-        check_start(contact, SIZE)
+    for made in (FacetContact, TwoHalfPass):
+        with pytest.raises(InputError, match=r"'(block|base).top' faces the same way"):
+            made(model, "block.top", "base.top", law=PairLaw(*_laws()), reach=2.0)
 
 
 def test_bodies_that_face_each_other_pass() -> None:
     """Nothing is said of a block above a plane or a base, near or far."""
     for gap in (0.0, 0.3, -0.01):
         model = _blocks(gap)
-        check_start(Contact(model, "block.bottom", Interface(_plane(1.0), *_laws())), SIZE)
-        check_start(FacetContact(model, "block.bottom", "base.top", law=PairLaw(*_laws())), SIZE)
+        Contact(model, "block.bottom", Interface(_plane(1.0), *_laws()))
+        FacetContact(model, "block.bottom", "base.top", law=PairLaw(*_laws()))
 
 
 @pytest.mark.parametrize("meshed", [False, True])
@@ -117,13 +116,11 @@ def test_singular_directions_in_the_contact_are_found(meshed: bool, which: str) 
     x, y, z = probe.points[5]
     polar = make_directions("polar", axis=((x, y, z), (0, 0, 1)))
     laws = _laws(polar) if which == "directions" else _laws(plain, polar)
-    contact: Contact | FacetContact
-    if meshed:
-        contact = FacetContact(model, "block.bottom", "base.top", law=PairLaw(*laws))
-    else:
-        contact = Contact(model, "block.bottom", Interface(_plane(1.0), *laws))
     with pytest.raises(InputError, match="no direction at 1 slave points") as error:
-        check_start(contact, SIZE)
+        if meshed:
+            FacetContact(model, "block.bottom", "base.top", law=PairLaw(*laws))
+        else:
+            Contact(model, "block.bottom", Interface(_plane(1.0), *laws))
     assert error.value.field == f"friction.{which}"
     assert f"({x:.4g}, {y:.4g}" in str(error.value)
 

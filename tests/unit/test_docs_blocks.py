@@ -21,7 +21,7 @@ from anisocontact.case.model import StepSection
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = [page for page in sorted(DOCS.rglob("*.md")) if page.parent.name != "tutorials"]
-BODIES = ("block", "base", "tube", "plate", "roll", "wheel", "rail")
+BODIES = ("block", "base", "tube", "plate", "roll", "wheel", "rail", "punch")
 
 
 def blocks(page: Path, language: str) -> list[str]:

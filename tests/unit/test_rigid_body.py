@@ -113,7 +113,8 @@ def test_refused_steps(fe, step, text):
 
     die, fixed = RigidBody("die", (0, 0, 0), free=True), RigidBody("fixed", (0, 0, 0))
     block = fe.block(fe.interface(), body=die)
-    other = Contact(block.model, "block.top", fe.interface(), body=fixed)
+    above = fe.interface(point=(0, 0, 0.6), normal=(0, 0, -1))
+    other = Contact(block.model, "block.top", above, body=fixed)
     problem = Problem(block.model, {"block": block.material}, [block.contact, other])
     with pytest.raises(InputError, match=text):
         Solver(problem, [Step("s", 1, **step)])
@@ -140,7 +141,8 @@ def test_two_bodies_of_one_name(fe):
     from anisocontact.contact import Contact
 
     block = fe.block(fe.interface(), body=RigidBody("die", (0, 0, 0)))
-    other = Contact(block.model, "block.top", fe.interface(), body=RigidBody("die", (0, 0, 1)))
+    above = fe.interface(point=(0, 0, 0.6), normal=(0, 0, -1))
+    other = Contact(block.model, "block.top", above, body=RigidBody("die", (0, 0, 1)))
     with pytest.raises(InputError, match="two rigid bodies have the name 'die'"):
         Problem(block.model, {"block": block.material}, [block.contact, other])
 

@@ -157,6 +157,7 @@ FLAT = [
 ]
 
 
+@pytest.mark.filterwarnings("ignore:.*the facets of the slave are")  # on purpose, 8 times as large
 @pytest.mark.parametrize(("cell", "order", "bases"), FLAT)
 def test_flat_master_of_any_facets(
     cell: str, order: int, bases: list[tuple[int, int, int]]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 
 from anisocontact._fenicsx import MPI, PETSc
@@ -11,7 +12,7 @@ from anisocontact.case.law_file import law_of
 from anisocontact.case.model import Case
 from anisocontact.case.quantity import FREE
 from anisocontact.case.read import CaseFile
-from anisocontact.errors import InputError
+from anisocontact.errors import InputError, ModelWarning
 from anisocontact.limits import Limits
 from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays
@@ -93,7 +94,11 @@ def _solver(case: Case, problem: Problem, steps: list[Step]) -> Solver:
     with objects.within("solver"):
         limits = Limits(given.smallest_increment, given.largest_increment, given.cuts)
     try:
-        return Solver(problem, steps, options=given.options, limits=limits, strategy=given.strategy)
+        with warnings.catch_warnings():  # runs and `check` say the same as lines
+            warnings.simplefilter("ignore", ModelWarning)
+            return Solver(
+                problem, steps, options=given.options, limits=limits, strategy=given.strategy
+            )
     except InputError as error:
         if error.field.startswith("step "):  # a step is no part of the table of the solver
             raise

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from anisocontact.augmentation import Augmentation
 from anisocontact.bulk import Material
 from anisocontact.case import law_file, objects
@@ -18,10 +16,7 @@ from anisocontact.contact import (
     SelfContact,
     TwoHalfPass,
     auto_penalty,
-    check_start,
-    facet_size,
 )
-from anisocontact.errors import InputError
 from anisocontact.interface import Interface
 from anisocontact.mesh import Model
 from anisocontact.python_law import PythonInterface, TangentialLaw
@@ -65,29 +60,24 @@ def contact(
     auto = min(
         auto_penalty(model, group, body) for (_, group), body in zip(sides, bodies, strict=True)
     )
-    finite = not all(body.linear for body in bodies)
     if section.meshed:
         if section.python is None:
             laws: MeshedLaw = objects.pair_law(section, place, auto)
         else:
             laws = law_file.pair_law(section, place, auto, law)
-        made = _meshed(section, model, laws, finite, place)
+        made = _meshed(section, model, laws, place)
     else:
         master = objects.surface(case.surface[section.master], f"surface.{section.master}")
         if section.python is None:
             interface: AnyInterface = objects.interface(section, master, place, auto)
         else:
             interface = law_file.interface(section, master, place, auto, law)
-        made = _rigid(section, model, interface, rigid.get(section.master), finite, place)
+        made = _rigid(section, model, interface, rigid.get(section.master), place)
     made.physical_adhesion = not _auto_adhesion(section)
-    with objects.within(place):
-        check_start(made, facet_size(model, section.slave))
     return made
 
 
-def _meshed(
-    section: ContactSection, model: Model, law: MeshedLaw, finite: bool, place: str
-) -> AnyContact:
+def _meshed(section: ContactSection, model: Model, law: MeshedLaw, place: str) -> AnyContact:
     name = f"{section.slave} on {section.master}"
     with objects.within(place):
         if section.self_contact:
@@ -97,7 +87,6 @@ def _meshed(
                 law=law,
                 degree=section.degree,
                 apart=section.apart,
-                current_area=finite,
                 name=f"{section.slave} on itself",
             )
         if section.half_passes:
@@ -107,7 +96,6 @@ def _meshed(
                 section.master,
                 law=law,
                 degree=section.degree,
-                current_area=finite,
                 adjust=_adjust(section),
                 name=name,
             )
@@ -117,7 +105,6 @@ def _meshed(
             section.master,
             law=law,
             degree=section.degree,
-            current_area=finite,
             augmentation=_augmentation(section),
             adjust=_adjust(section),
             name=name,
@@ -129,26 +116,19 @@ def _rigid(
     model: Model,
     interface: AnyInterface,
     body: RigidBody | None,
-    finite: bool,
     place: str,
 ) -> AnyContact:
     with objects.within(place):
-        made = Contact(
+        return Contact(
             model,
             section.slave,
             interface,
             degree=section.degree,
-            current_area=finite,
             augmentation=_augmentation(section),
             adjust=_adjust(section),
             name=f"{section.slave} on {section.master}",
             body=body,
         )
-    finite_gaps = bool(np.isfinite(made.last.gap).all())
-    if not all(model.mesh.comm.allgather(finite_gaps)):
-        text = "slave points have no finite distance to it: is it far too large or too small?"
-        raise InputError(text, field=f"surface.{section.master}")
-    return made
 
 
 def _augmentation(section: ContactSection) -> Augmentation | None:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from anisocontact.case import load
 from anisocontact.cli.output import say
+from anisocontact.contact import coarse_slaves
 
 if TYPE_CHECKING:
     from anisocontact.case.build import Built
@@ -60,4 +61,4 @@ def contents(built: Built) -> list[str]:
         driven = ", ".join(step.driven()) or "nothing new"
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
     lines += [f"warning   {text}" for text in built.solver.cautions]
-    return lines
+    return [*lines, *(f"warning   {line}" for line in coarse_slaves(problem.contacts))]

@@ -4,6 +4,7 @@ from anisocontact.augmentation import Augmentation
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.directions import facet_directions
 from anisocontact.contact.facet_contact import FacetContact
+from anisocontact.contact.hints import coarse_slaves, warn_of
 from anisocontact.contact.initial import Overlap, check_start, initial_overlap
 from anisocontact.contact.multipliers import NotHeldError
 from anisocontact.contact.penalty import PENALTY_FACTOR, auto_penalty, facet_size
@@ -30,8 +31,10 @@ __all__ = [
     "TwoHalfPass",
     "auto_penalty",
     "check_start",
+    "coarse_slaves",
     "facet_directions",
     "facet_quadrature",
     "facet_size",
     "initial_overlap",
+    "warn_of",
 ]

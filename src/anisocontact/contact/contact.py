@@ -12,6 +12,7 @@ from anisocontact._fenicsx import Mat, PETSc
 from anisocontact.augmentation import Augmentation
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
+from anisocontact.contact.initial import check_start
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.multipliers import Frames
 from anisocontact.contact.penalty import facet_size
@@ -52,7 +53,8 @@ class Contact(ContactRecord):
         interface: Surface and laws, also laws written in Python.
         degree: Degree of the quadrature on the facets, >= 1; if not given twice the order of the
             displacement, with an augmentation the order.
-        current_area: Whether tractions act on the area of now (finite strain) or of the reference.
+        current_area: Whether tractions act on the area of now or of the reference; where it is not
+            given on that of now, but for a problem whose bodies at this contact are linear.
         augmentation: How exactly the contact is to hold; by its penalties alone if not given.
         adjust: Gaps up to this one are closed and overlaps taken out before the first step, see
             `adjusted`, length; nothing if not given.
@@ -62,11 +64,12 @@ class Contact(ContactRecord):
 
     Attributes:
         state: Committed history, one record for each point.
+        facet_size: Length of a slave facet: square root of the mean area.
         last: Response of the accepted increment.
 
     Raises:
-        InputError: No such facet group, one without facets, a degree below 1, or laws without a
-            surface.
+        InputError: No such facet group, one without facets or with facets inside the body, a degree
+            below 1, laws without a surface, or a contact that cannot be meant, see `check_start`.
 
     Example:
         >>> from anisocontact.mesh import BoxSpec, build_box
@@ -91,7 +94,7 @@ class Contact(ContactRecord):
         interface: Interface | PythonInterface,
         *,
         degree: int | None = None,
-        current_area: bool = False,
+        current_area: bool | None = None,
         augmentation: Augmentation | None = None,
         adjust: float | None = None,
         name: str = "",
@@ -104,12 +107,13 @@ class Contact(ContactRecord):
         self.body = body
         self._master: Master = interface if body is None else MovingInterface(interface, body)
         self._stiff = self._master
-        self.current_area = current_area
+        self._area_told = current_area is not None
+        self.current_area = current_area is None or current_area
         self.quadrature = facet_quadrature(model.space, facets, degree)
         self._moved: Surfaced | None = None
         self._base: Base | None = None
         points = self.quadrature.reference
-        self._facets, self._size = facets, facet_size(model, slave)
+        self._facets, self.facet_size = facets, facet_size(model, slave)
         self._carries = isinstance(interface, Interface) and interface.takes_slave()
         self._slave = self._surface(self.quadrature.tangents)
         state = adjusted(interface.initial_state(points), adjust)
@@ -126,7 +130,13 @@ class Contact(ContactRecord):
         if augmentation is not None and body is not None and body.free:
             # the body is as compliant as its springs, which penalties of `newton` do not know of
             augmentation = augmentation.in_cycles_unless_told()
-        self._augment(augmentation, self._size, interface)
+        check_start(self, self.facet_size)
+        self._augment(augmentation, self.facet_size, interface)
+
+    def suit_strain(self, finite: bool) -> None:
+        """As of `ContactRecord`."""
+        if not self._area_told:
+            self.current_area = finite
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
@@ -171,6 +181,10 @@ class Contact(ContactRecord):
     def slave_nodes(self) -> Ints:
         """Local nodes of the slave facets."""
         return np.unique(self.quadrature.nodes).astype(np.int32)
+
+    def couplable(self) -> Ints:
+        """Local nodes that the contact acts on."""
+        return self.slave_nodes
 
     def add_tangent(self, matrix: Mat) -> None:
         """Add `-d force / d u` of the trial to the matrix of the system."""
@@ -233,7 +247,7 @@ class Contact(ContactRecord):
             had=everywhere,
             normal=normal,
             areas=trial.areas,
-            size=self._size,
+            size=self.facet_size,
             reach=np.inf,
             look=self._look,
             comm=self._comm,
@@ -387,9 +401,7 @@ class Contact(ContactRecord):
 
 def _checked(model: Model, slave: str, interface: object) -> Ints:
     """Facets of the slave on this rank; refuses arguments that are no slave or no interface."""
-    facets = model.facets(slave, "slave")
-    if model.count_facets(slave) == 0:
-        raise InputError(f"facet group {slave!r} has no facets", "slave")
+    facets = model.boundary(slave, "slave")
     if not hasattr(interface, "surface"):
         text = f"{type(interface).__name__} given, Interface or PythonInterface needed"
         raise InputError(text, "interface")

@@ -14,8 +14,10 @@ from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.facet_answer import PairKernel, Question, ask
 from anisocontact.contact.gathering import gather, gather_named
 from anisocontact.contact.held_feet import footing, on_held_facets
+from anisocontact.contact.initial import check_start
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.multipliers import Frames
+from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.point_blocks import add_rows, point_blocks
 from anisocontact.contact.point_tangent import PointTangent
 from anisocontact.contact.quadrature import chosen_degree
@@ -55,7 +57,8 @@ class FacetContact(ContactRecord):
             displacement, with an augmentation the order.
         reach: Distance within which the master is searched, length; twice the size of the slave's
             facets if not given.
-        current_area: Whether tractions act on the area of now (finite strain) or of the reference.
+        current_area: Whether tractions act on the area of now or of the reference; where it is not
+            given on that of now, but for a problem whose bodies at this contact are linear.
         augmentation: How exactly the contact is to hold; by its penalties alone if not given.
         adjust: Gaps up to this one are closed and overlaps taken out before the first step, see
             `adjusted`, length; nothing if not given.
@@ -69,8 +72,9 @@ class FacetContact(ContactRecord):
         name: Name in output; the slave if not given.
 
     Raises:
-        InputError: No such facet group, one without facets, or the same for both; a degree below
-            1, or laws with a surface of their own.
+        InputError: No such facet group, one without facets or with facets inside the body, or the
+            same for both; a degree below 1, laws with a surface of their own, or a contact that
+            cannot be meant, see `check_start`.
 
     Example:
         >>> from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -94,7 +98,7 @@ class FacetContact(ContactRecord):
         law: MeshedLaw,
         degree: int | None = None,
         reach: float | None = None,
-        current_area: bool = True,
+        current_area: bool | None = None,
         augmentation: Augmentation | None = None,
         adjust: float | None = None,
         weight: float = 1.0,
@@ -110,7 +114,7 @@ class FacetContact(ContactRecord):
         self.master = master
         self.interface: MeshedLaw = law
         self._laws = self._stiff_laws = law
-        self.current_area = current_area
+        self._area_told = current_area is not None
         self._mirrored = mirrored
         self._law = self._stiff = law.pairs(mirrored)
         self._base: Base | None = None
@@ -119,7 +123,7 @@ class FacetContact(ContactRecord):
         self._transferred = 0.0
         degree = chosen_degree(degree, model.order, augmentation is not None)
         self._sides = sides = make_sides(
-            model, (slave, master), degree, reach, apart, current_area, weight
+            model, (slave, master), degree, reach, apart, current_area is not False, weight
         )
         self._points, self._gathered = sides.points, sides.gathered
         self.reach = sides.reach
@@ -136,6 +140,8 @@ class FacetContact(ContactRecord):
         super().__init__(model.space, slave, name or slave, state, start, self._points.facet)
         if self._transfer is not None:
             self._transfer.place(sides.reference)
+        self._master_size = facet_size(model, master)
+        check_start(self, self._points.size)
         self._augment(augmentation, self._points.size, law)
 
     @property
@@ -167,10 +173,25 @@ class FacetContact(ContactRecord):
         """Length of a slave facet: square root of the mean area."""
         return self._points.size
 
+    @property
+    def master_size(self) -> float:
+        """Length of a master facet: square root of the mean area."""
+        return self._master_size
+
     def feet(self) -> Ints:
         """Local nodes of the master facets that points of the trial have below them."""
         assert self._hint is not None
         return np.unique(self._sides.master.nodes[self._hint.facet[located(self._hint)]])
+
+    @property
+    def current_area(self) -> bool:
+        """Whether tractions act on the area of now."""
+        return self._points.current_area
+
+    def suit_strain(self, finite: bool) -> None:
+        """As of `ContactRecord`."""
+        if not self._area_told:
+            self._points.take_area(finite)
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.

@@ -228,7 +228,6 @@ class SlavePoints:
         comm: Any,
     ) -> None:
         count, q = len(facets.nodes), len(rule.weights)
-        self.current_area = current_area
         self.facet = np.repeat(np.arange(count), q)
         self.nodes = np.repeat(facets.nodes, q, axis=0)
         self.shape = np.tile(rule.shape, (count, 1))
@@ -241,12 +240,18 @@ class SlavePoints:
         tangents = np.einsum("pkd,pki->pdi", self.gradient, reference[self.nodes])
         stretch = np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
         weights = np.tile(rule.weights, count)
-        self.weight = share * (weights if current_area else weights * stretch)
+        self._share, self._stretch = share * weights, stretch
+        self.take_area(current_area)
         sign = np.where(np.repeat(facets.flip, q), -1.0, 1.0)
         cross = np.cross(tangents[:, 0], tangents[:, 1])
         self.outward, self._sign = (sign / stretch)[:, None] * cross, sign
         area, facets_in_all = comm.allreduce(np.array([(weights * stretch).sum(), count]))
         self.size = float(np.sqrt(area / max(facets_in_all, 1.0)))
+
+    def take_area(self, current: bool) -> None:
+        """Take the area of now, or that of the reference."""
+        self.current_area = current
+        self.weight = self._share if current else self._share * self._stretch
 
     def areas(self, now: Floats) -> Floats:
         """Areas of the points, (n,), from the positions of the nodes, (nodes, 3), length^2."""

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.contact import Contact
-from anisocontact.contact.facet_contact import FacetContact
-from anisocontact.contact.two_half_pass import TwoHalfPass
+from anisocontact.contact.record import ContactRecord
 from anisocontact.errors import InputError
 from anisocontact.interface import FAILURE, Interface
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw
 from anisocontact.python_law import PythonInterface
 from anisocontact.python_pair import MeshedLaw
+
+if TYPE_CHECKING:  # they ask for the checks here
+    from anisocontact.contact.contact import Contact
+    from anisocontact.contact.facet_contact import FacetContact
 
 Floats = npt.NDArray[np.float64]
 
@@ -43,7 +45,7 @@ class Overlap:
     count: int
 
 
-def initial_overlap(contact: Contact | FacetContact | TwoHalfPass, size: float) -> Overlap | None:
+def initial_overlap(contact: ContactRecord, size: float) -> Overlap | None:
     """Overlap of the accepted state.
 
     Args:
@@ -66,21 +68,19 @@ def initial_overlap(contact: Contact | FacetContact | TwoHalfPass, size: float) 
     return Overlap(worst[0], np.array(worst[1]), count) if count else None
 
 
-def check_start(contact: Contact | FacetContact | TwoHalfPass, size: float) -> None:
-    """Refuse what cannot be meant.
+def check_start(contact: Contact | FacetContact, size: float) -> None:
+    """Refuse what cannot be meant; contacts ask for it when they are made.
 
     Args:
         contact: The contact, before the first step.
         size: Facet size, length.
 
     Raises:
-        InputError: Slave and master face the same way, or a direction field has no direction at a
-            point that can be in contact at once.
+        InputError: Points without a finite distance to the master, slave and master that face the
+            same way, or a direction field without a direction at a point that can be in contact at
+            once.
     """
-    if isinstance(contact, TwoHalfPass):
-        for half in contact.passes:
-            check_start(half, size)
-        return
+    _check_distances(contact)
     _check_sides(contact, size)
     for one in _fields(contact.interface):
         gaps = np.abs(contact.state["gap"])
@@ -95,6 +95,13 @@ def check_start(contact: Contact | FacetContact | TwoHalfPass, size: float) -> N
             "the field is singular there, out of its table or parallel to its normal",
             one.place,
         )
+
+
+def _check_distances(contact: Contact | FacetContact) -> None:
+    gaps = contact.state["gap"][contact.located(contact.state)]
+    if not all(contact.space.mesh.comm.allgather(bool(np.isfinite(gaps).all()))):
+        text = "slave points have no finite distance to it: is it far too large or too small?"
+        raise InputError(text, "master")
 
 
 def _check_sides(contact: Contact | FacetContact, size: float) -> None:

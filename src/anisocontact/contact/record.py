@@ -282,6 +282,14 @@ class ContactRecord:
         semismooth = self._semismooth
         return semismooth is None or semismooth.held(self._step(self.current))
 
+    def suit_strain(self, finite: bool) -> None:
+        """Take the area of now where bodies are at finite strain, unless told when it was made.
+
+        Args:
+            finite: Whether one of the bodies at this contact is.
+        """
+        raise NotImplementedError
+
     def suit(self, diagonal: Floats) -> None:
         """Learn how stiff the bodies are; multipliers that follow are suited to them.
 

@@ -30,7 +30,7 @@ class SelfContact(FacetContact):
             length; three facet sizes if not given. Sides of a narrow gap need less.
         reach: Distance within which a point searches, length; twice the facet size, at most
             `apart`, if not given.
-        current_area: Whether tractions act on the area of now (finite strain) or of the reference.
+        current_area: As of `FacetContact`.
         name: Name in output; the group if not given.
 
     Raises:
@@ -46,7 +46,7 @@ class SelfContact(FacetContact):
         degree: int | None = None,
         apart: float | None = None,
         reach: float | None = None,
-        current_area: bool = True,
+        current_area: bool | None = None,
         name: str = "",
     ) -> None:
         model.facets(group, "slave")

@@ -288,13 +288,11 @@ def check_sides(model: Model, slave: str, master: str, apart: float | None) -> N
     """Refuse groups that cannot be slave and master.
 
     Raises:
-        InputError: No such facet group, one without facets, or groups that overlap; `apart` is not
-            positive.
+        InputError: No such facet group, one without facets or with facets inside the body, or
+            groups that overlap; `apart` is not positive.
     """
     for name, field in ((slave, "slave"), (master, "master")):
-        model.facets(name, field)
-        if model.count_facets(name) == 0:
-            raise InputError(f"facet group {name!r} has no facets", field)
+        model.boundary(name, field)
     both = np.intersect1d(model.facets(slave), model.facets(master))
     shared = model.mesh.comm.allreduce(len(facet_sides(model.mesh, both)[0]))
     if apart is not None and not apart > 0.0:

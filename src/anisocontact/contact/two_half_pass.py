@@ -21,7 +21,7 @@ class PassOptions(TypedDict, total=False):
 
     degree: int | None
     reach: float | None
-    current_area: bool
+    current_area: bool | None
     adjust: float | None
 
 
@@ -142,6 +142,11 @@ class TwoHalfPass(ContactRecord):
         """As of `ContactRecord`."""
         for half in self.passes:
             half.add_lag(out)
+
+    def suit_strain(self, finite: bool) -> None:
+        """As of `ContactRecord`."""
+        for half in self.passes:
+            half.suit_strain(finite)
 
     def commit(self) -> None:
         """Make the trial the history."""

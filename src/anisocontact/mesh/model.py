@@ -13,6 +13,7 @@ import numpy.typing as npt
 from anisocontact._fenicsx import MPI, create_mesh, locate_entities, vector_space
 from anisocontact.errors import InputError
 from anisocontact.mesh.arrays import MeshArrays
+from anisocontact.mesh.own_space import check_space, named_facets
 
 Ints = npt.NDArray[np.int32]
 
@@ -83,19 +84,13 @@ class Model:
             The names on that space; every cell belongs to the body of the first group.
 
         Raises:
-            InputError: Not a vector Lagrange space of order 1 or 2 on cells of three dimensions, or
-                a facet that its mesh does not have.
+            InputError: Not a vector Lagrange space of order 1 or 2 on tetrahedra or hexahedra, or
+                facets that are none of its mesh.
         """
-        element = space.element.basix_element
-        if space.dofmap.index_map_bs != 3 or element.degree not in (1, 2):
-            raise InputError(
-                f"a space of degree {element.degree} with {space.dofmap.index_map_bs} components "
-                'given, ("Lagrange", 1 or 2, (3,)) needed',
-                "space",
-            )
-        body = next(iter(facets), "body").partition(".")[0]
+        order = check_space(space)
+        named = named_facets(facets)
+        body = next(iter(named), "body").partition(".")[0]
         cells = np.arange(space.mesh.topology.index_map(3).size_local, dtype=np.int32)
-        named = {name: np.asarray(found, dtype=np.int32) for name, found in facets.items()}
         space.mesh.topology.create_entities(2)
         index_map = space.mesh.topology.index_map(2)
         count = index_map.size_local + index_map.num_ghosts
@@ -103,7 +98,7 @@ class Model:
             outside = found[(found < 0) | (found >= count)]
             if len(outside):
                 raise InputError(f"facet {outside[0]} given, the mesh has 0 to {count - 1}", name)
-        model = cls(space.mesh, {body: cells}, named, element.degree)
+        model = cls(space.mesh, {body: cells}, named, order)
         model.space = space
         return model
 
@@ -158,6 +153,32 @@ class Model:
         """
         return _looked_up(self._facets, name, "facet group", field)
 
+    def boundary(self, name: str, field: str = "") -> Ints:
+        """Local facets of a group that has to lie on the boundary; the call is collective.
+
+        Args:
+            name: "body.group".
+            field: Where the name was written, for the message.
+
+        Returns:
+            Their numbers on this rank, with ghosts, (facets,).
+
+        Raises:
+            InputError: No such group, one without facets, or facets with a cell on either side.
+        """
+        facets = self.facets(name, field)
+        count = self.count_facets(name)
+        if count == 0:
+            raise InputError(f"facet group {name!r} has no facets", field)
+        inside = int(self.mesh.comm.allreduce(_with_two_cells(self.mesh, facets)))
+        if inside:
+            raise InputError(
+                f"{inside} of {count} facets of {name!r} have a cell on either side: they lie "
+                "inside a body, or where bodies share nodes; name facets of the boundary",
+                field,
+            )
+        return facets
+
     def body_of(self, facet_group: str, field: str = "") -> str:
         """Name of the body a facet group bounds.
 
@@ -203,6 +224,14 @@ def _located(mesh: Any, dim: int, groups: Mapping[str, npt.NDArray[np.int64]]) -
         name: locate_entities(mesh, dim, nodes, np.zeros(len(nodes), dtype=np.int32))[0]
         for name, nodes in groups.items()
     }
+
+
+def _with_two_cells(mesh: Any, facets: Ints) -> int:
+    """How many of the facets that this rank owns have a cell on either side."""
+    topology = mesh.topology
+    topology.create_connectivity(2, 3)
+    owned = facets[facets < topology.index_map(2).size_local]
+    return int((np.diff(topology.connectivity(2, 3).offsets)[owned] > 1).sum())
 
 
 def _looked_up(known: dict[str, Ints], name: str, kind: str, field: str) -> Ints:

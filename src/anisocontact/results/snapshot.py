@@ -11,6 +11,7 @@ import numpy.typing as npt
 from anisocontact.contact import AnyContact
 from anisocontact.interface import STATUS
 from anisocontact.python_pair import PYTHON_LAWS
+from anisocontact.results.approach import approach
 from anisocontact.rigid import RigidBody, rotation_vector
 from anisocontact.solver import Accepted, Problem, Step
 from anisocontact.solver.loads import mean_shares
@@ -51,14 +52,21 @@ class Observer:
         """
         zero = np.zeros(3)
         reactions = accepted.reactions if accepted else {}
+        displacements = {
+            g: self._problem.mean_displacement(g, shares).tolist()
+            for g, shares in self._watched.items()
+        }
+        rigid = {body.name: self._rigid(body) for body in self._problem.rigid.bodies}
+        contacts = self._problem.contacts
+        approaches = [approach(contact, displacements, rigid) for contact in contacts]
         return {
-            "contacts": [self._contact(contact) for contact in self._problem.contacts],
+            "contacts": [
+                self._contact(contact) | {"approach": come}
+                for contact, come in zip(contacts, approaches, strict=True)
+            ],
             "reactions": {g: reactions.get(g, zero).tolist() for g in self._supports},
-            "displacements": {
-                g: self._problem.mean_displacement(g, shares).tolist()
-                for g, shares in self._watched.items()
-            },
-            "rigid": {body.name: self._rigid(body) for body in self._problem.rigid.bodies},
+            "displacements": displacements,
+            "rigid": rigid,
             "energy": accepted.energies if accepted else self._problem.energies(),
         }
 
@@ -95,8 +103,16 @@ class Observer:
             "area": area,
             "elastic_slip": mean[:3].tolist(),
             "slip": float(mean[3]),
+            "least_gap": self._least_gap(contact),
             "points": contact.counts(),
         }
+
+    def _least_gap(self, contact: AnyContact) -> float:
+        """Smallest gap, negative where points overlap; 0 where no point has a surface below it."""
+        located = [part.located(part.state) for part in contact.parts]
+        gaps = [p.state["gap"][on] for p, on in zip(contact.parts, located, strict=True)]
+        least = min(self._comm.allgather(float(np.concatenate(gaps).min(initial=np.inf))))
+        return float(least) if np.isfinite(least) else 0.0
 
 
 def named_groups(loads: Iterable[Iterable[str]]) -> list[str]:

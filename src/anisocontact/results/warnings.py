@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from anisocontact.contact import AnyContact, initial_overlap
+from anisocontact.contact import AnyContact, coarse_slaves, initial_overlap
+from anisocontact.contact.hints import MISSED
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
 from anisocontact.solver.imbalance import LARGE
@@ -15,18 +16,20 @@ __all__ = ["at_end", "at_start", "of_models", "worst", "worst_of_models"]
 
 #: Share of the facet size beyond which a penetration or an elastic slip is worth a warning.
 DEEP = 0.05
+#: Share of the approach of the bodies beyond which a penetration is worth a warning.
+SOFT = 0.04
 #: Share of the external work beyond which energy of stabilisation, or of flow, is worth a warning.
 STABILISED = 0.05
 
 
 def at_start(contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]]) -> list[str]:
-    """Contacts whose bodies overlap before the first step.
+    """Contacts with a slave much coarser than its master, or whose bodies overlap at the start.
 
     Args:
         contacts: The contacts.
         shown: Their entries in the summary.
     """
-    found = []
+    found = coarse_slaves(contacts)
     for contact, entry in zip(contacts, shown, strict=True):
         overlap = initial_overlap(contact, entry["facet_size"])
         if overlap is not None:
@@ -49,9 +52,16 @@ def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> d
         time: Time of now.
 
     Returns:
-        "worst_penetration", "worst_elastic_slip", length, and each with "_time".
+        "worst_penetration", "worst_elastic_slip", length, and each with "_time"; the penetration
+        also with "_approach", how far the bodies had come towards each other since they touched.
     """
-    found: dict[str, float] = {}
+    first = before.get("initial_gap", entry["least_gap"])
+    found: dict[str, float] = {"initial_gap": first}
+    come = "worst_penetration_approach"
+    if come not in before or entry["max_penetration"] > before["worst_penetration"]:
+        found[come] = entry["approach"] - first
+    else:
+        found[come] = before[come]
     for name in ("penetration", "elastic_slip"):
         key, when, now = f"worst_{name}", f"worst_{name}_time", entry[f"max_{name}"]
         grown = key not in before or now > before[key]
@@ -125,8 +135,12 @@ def at_end(
                     f"{entry[f'{key}_time']:.4g}; {cure} makes it smaller, "
                     'method = "augmented" takes it away'
                 )
+        penalty = contact.interface.normal.named[0] == "penalty"
+        if penalty and entry["worst_penetration"] <= DEEP * entry["facet_size"]:
+            found += _soft_bodies(entry)
         if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
-            found.append(f"{_pair(entry)}: no point touches at the end")
+            swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
+            found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap]))
     for name, text in _TAKEN.items():
         share = abs(energy[name]) / max(abs(energy["external"]), _TINY)
         if share > STABILISED:
@@ -144,5 +158,18 @@ _TAKEN = {
 }
 
 
-def _pair(entry: dict[str, Any]) -> str:
+def _soft_bodies(entry: Mapping[str, Any]) -> list[str]:
+    """A penetration that is a share of what pressed the bodies: forces are off by as much."""
+    deep, come = entry["worst_penetration"], entry["worst_penetration_approach"]
+    if not deep > SOFT * come > 0.0:
+        return []
+    return [
+        f"{_pair(entry)}: the penetration was up to {deep / come:.0%} of the {come:.3g} that the "
+        f"bodies came towards each other, at time {entry['worst_penetration_time']:.4g}, and the "
+        "force is off by about as much; a larger normal penalty makes it smaller, "
+        'method = "augmented" takes it away'
+    ]
+
+
+def _pair(entry: Mapping[str, Any]) -> str:
     return f"contact of {entry['slave']} with {entry['master']}"

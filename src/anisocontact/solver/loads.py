@@ -81,7 +81,7 @@ class DeadLoads:
 
 def area_shares(model: Model, group: str, field: str) -> Floats:
     """Area of a facet group that belongs to each local node, (nodes,), length^2."""
-    quadrature = facet_quadrature(model.space, model.facets(group, field), 2 * model.order)
+    quadrature = facet_quadrature(model.space, model.boundary(group, field), 2 * model.order)
     index_map = model.space.dofmap.index_map
     nodal = np.zeros((index_map.size_local + index_map.num_ghosts, 3))
     quadrature.to_nodes(np.ones((quadrature.count, 3)), nodal)

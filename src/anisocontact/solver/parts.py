@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
-from anisocontact.contact import AnyContact
+from anisocontact.contact import AnyContact, Contact
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.attached import ElasticSupport, Spring
@@ -76,6 +76,7 @@ def make_parts(
     constraints = Constraints(model, symmetry, layout.new_vector())
     scale = bulk.diagonal.sum() / bulk.diagonal.getSize()
     for contact in contacts:
+        contact.suit_strain(_finite(model, materials, contact))
         contact.suit(np.array(bulk.diagonal.array_r).reshape(-1, 3))
     holders = {model.body_of(group) for one in attached for group in one.groups}
     return Parts(
@@ -91,6 +92,12 @@ def make_parts(
         sides=SidesKept(contacts, model),
         support_scale=scale,
     )
+
+
+def _finite(model: Model, materials: Mapping[str, Material], contact: AnyContact) -> bool:
+    """Whether one of the bodies of a contact is at finite strain."""
+    groups = [contact.slave] if isinstance(contact, Contact) else [contact.slave, contact.master]
+    return not all(materials[model.body_of(group)].linear for group in groups)
 
 
 def _check(

@@ -49,6 +49,7 @@ class Pressures:
             field = f"step {step.name!r}.pressure"
             body = self._model.body_of(group, field)
             if group not in self._surfaces:
+                self._model.boundary(group, field)
                 self._surfaces[group] = _Surface(self._model, group, self._materials[body].linear)
             self._end[group] = float(value)
 

@@ -9,6 +9,7 @@ from typing import NoReturn
 import numpy as np
 
 from anisocontact._fenicsx import Vec
+from anisocontact.contact import warn_of
 from anisocontact.limits import Limits
 from anisocontact.solver.alarms import Alarms
 from anisocontact.solver.attempts import Attempts, Outcome
@@ -94,6 +95,7 @@ class Solver:
         limits: Limits | None = None,
         strategy: str = AUTO,
     ) -> None:
+        warn_of(problem.contacts)
         self.problem = problem
         self.steps = list(steps)
         self.limits = limits or Limits()

@@ -21,15 +21,19 @@ from anisocontact._fenicsx import (
     prescribed_rows,
     ufl,
 )
-from anisocontact.contact import AnyContact, Contact
+from anisocontact.contact import AnyContact, Contact, warn_of
 from anisocontact.errors import InputError
 from anisocontact.solver.balance import ROUND_OFF
 from anisocontact.solver.coupled import CoupledTangent
 from anisocontact.solver.following import Following
+from anisocontact.solver.loose import Part, loose_motions, parts
 from anisocontact.solver.newton import Newton, OptionValue
 from anisocontact.solver.sides_kept import SidesKept
 
 Floats = npt.NDArray[np.float64]
+
+#: Gap over the facet size up to which a point counts as touching: rounding of a mesh.
+NEAR = 1e-6
 
 
 class ContactProblem(Following):
@@ -44,7 +48,8 @@ class ContactProblem(Following):
         u: The displacement, a DOLFINx function of a vector Lagrange space.
         bcs: Dirichlet conditions; their values may change between solutions.
         contacts: Contacts on a `Model.of` the space of `u`. A rigid body that carries a surface is
-            where `RigidBody.move` has brought it.
+            where `RigidBody.move` has brought it. Where J depends on `u` tractions act on the area
+            of now unless a contact was told otherwise.
         J: Derivative of F; made by UFL if left out.
         petsc_options_prefix: Prefix of the options in the PETSc database.
         petsc_options: PETSc options without prefix.
@@ -84,6 +89,7 @@ class ContactProblem(Following):
                 raise InputError(
                     f"rigid body {body.name!r} is free; a script can only move it", "contacts"
                 )
+        warn_of(contacts)
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
         self._sides = SidesKept(contacts)
         self.force_scale = self.round_off = 0.0
@@ -94,11 +100,14 @@ class ContactProblem(Following):
         self._matrix = create_stiffness(self._tangent)
         self._diagonal = self._matrix.getDiagonal()
         self._support_scale = self._diagonal.sum() / self._diagonal.getSize()
+        finite = u in ufl.algorithms.expand_derivatives(tangent).coefficients()
         for contact in contacts:
+            contact.suit_strain(finite)
             contact.suit(np.array(self._diagonal.array_r).reshape(-1, 3))
         meshed = not all(isinstance(c, Contact) for c in contacts)
         self._coupled = CoupledTangent(self._matrix, space) if meshed else None
         self._dt = 1.0
+        self._parts = parts(space)
         self._force = create_force(self._residual)
         self._ghosted = u.x.petsc_vec.duplicate()
         self.newton = Newton(self, petsc_options_prefix, petsc_options or {}, lambda *_: None)
@@ -115,14 +124,16 @@ class ContactProblem(Following):
         Raises:
             RuntimeError: No convergence, or a body is behind its master; `u` and the history are as
                 before.
-            InputError: The time increment is not positive.
+            InputError: The time increment is not positive, or nothing holds a part of the mesh: no
+                stiffness of the form, no condition and no contact that touches.
         """
-        if not dt > 0.0:
+        if not 0.0 < dt < np.inf:
             raise InputError(f"{dt!r} given, must be > 0", "dt")
         self._dt = dt
         before = self.u.x.array.copy()
         x = self.new_vector()
         x.array[:] = before[: self._owned]
+        self._check_held(x)
         result = self.newton.solve(x)
         reason = result.reason
         if not reason:
@@ -241,6 +252,46 @@ class ContactProblem(Following):
     def soften(self) -> bool:
         """After a solution that failed: softer penalties of augmented contacts; whether any."""
         return any([contact.soften() for contact in self.contacts])
+
+    def _check_held(self, x: Vec) -> None:
+        """Refuse a part of the mesh that can move as a rigid body."""
+        if not self._untouched():
+            return
+        self.evaluate(x)  # rigid bodies may have been moved since
+        free = self._untouched()
+        for contact in self.contacts:
+            contact.roll_back()
+        if not free:
+            return
+        self._matrix.zeroEntries()
+        assemble_into(self._matrix, self._tangent)
+        self._matrix.assemble()
+        rows = np.asarray(prescribed_rows(self.bcs), dtype=np.int64)
+        for part in free:
+            motions = loose_motions(part, self._matrix, self._support_scale, rows, self.comm)
+            if motions:
+                at = ", ".join(f"{v:.4g}" for v in part.middle)
+                raise InputError(
+                    f"nothing holds the body around ({at}): {motions}; no condition does, and no "
+                    "contact touches it: let it touch at the start, or lead it there with "
+                    "conditions",
+                    "contacts" if self.contacts else "bcs",
+                )
+
+    def _any(self, here: npt.NDArray[np.bool_]) -> bool:
+        return bool(self.comm.allreduce(int(here.any())))
+
+    def _untouched(self) -> list[Part]:
+        """Parts of the mesh that no contact which touches somewhere acts on, now."""
+        nodes = [np.zeros(0, dtype=np.int32)]
+        passes: list[Any] = [one for contact in self.contacts for one in contact.parts]
+        for one in passes:
+            now = one.current.response
+            near = one.located(now.state) & (now.gap <= NEAR * one.facet_size)
+            if self._any(near):
+                nodes.append(one.couplable())
+        touched = np.concatenate(nodes)
+        return [part for part in self._parts if not self._any(np.isin(part.nodes, touched))]
 
     def _assembled(self, parts: Sequence[Callable[[Floats], None]]) -> Floats:
         """Sum of what the parts add to the nodes, at the unknowns this rank owns."""

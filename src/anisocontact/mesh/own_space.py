@@ -1,0 +1,95 @@
+"""A user's own space and facets: what fits, and one line where it does not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.errors import InputError
+
+Ints = npt.NDArray[np.int32]
+
+_CELLS = ("tetrahedron", "hexahedron")
+_NEEDED = '("Lagrange", 1 or 2, (3,)) needed'
+
+
+def check_space(space: Any) -> int:
+    """Refuse a space that is no displacement of bodies in space.
+
+    Args:
+        space: A DOLFINx function space.
+
+    Returns:
+        Its order.
+
+    Raises:
+        InputError: No function space, cells other than tetrahedra or hexahedra, or no vector
+            Lagrange space of order 1 or 2.
+    """
+    if not (hasattr(space, "element") and hasattr(space, "dofmap")):
+        raise InputError(f"{type(space).__name__} given, a function space, {_NEEDED}", "space")
+    types = [cell.name for cell in space.mesh.topology.entity_types[-1]]
+    if len(types) != 1 or types[0] not in _CELLS:
+        text = f"a mesh of {' and '.join(types)} cells given, {' or '.join(_CELLS)} cells needed"
+        raise InputError(text, "space")
+    try:
+        element = space.element.basix_element
+    except RuntimeError:  # DOLFINx: a mixed element has none
+        raise InputError(
+            f"a mixed element given, {_NEEDED}: a sub-space of it cannot carry contact, give each "
+            "field a space of its own",
+            "space",
+        ) from None
+    if space.dofmap.index_map_bs != 3 or element.degree not in (1, 2):
+        components = space.dofmap.index_map_bs
+        text = f"a space of degree {element.degree} with {components} components given, {_NEEDED}"
+        raise InputError(text, "space")
+    if element.family.name != "P" or element.discontinuous:
+        kind = "discontinuous" if element.discontinuous else f"family {element.family.name}"
+        raise InputError(f"an element that is {kind} given, continuous {_NEEDED}", "space")
+    return int(element.degree)
+
+
+def named_facets(facets: object) -> dict[str, Ints]:
+    """Facet groups by name, each facet once.
+
+    Args:
+        facets: "body.group" -> local facets.
+
+    Returns:
+        The same as sorted arrays.
+
+    Raises:
+        InputError: No groups by name, a name without a body, or what is no list of facets.
+    """
+    if not isinstance(facets, Mapping):
+        raise InputError(
+            f'{type(facets).__name__} given, {{"body.group": facets}} needed, with facets as of '
+            "MeshTags.find",
+            "facets",
+        )
+    return {_name(name): _numbers(name, given) for name, given in facets.items()}
+
+
+def _name(name: object) -> str:
+    body, dot, group = str(name).partition(".")
+    if not (isinstance(name, str) and body and dot and group):
+        raise InputError(f'{name!r} given, "body.group" needed', "facets")
+    return name
+
+
+def _numbers(name: str, given: Any) -> Ints:
+    if hasattr(given, "find") and hasattr(given, "dim"):
+        what = "facets" if given.dim == 2 else f"entities of dimension {given.dim}"
+        text = f"MeshTags of {what} given, an array of facets needed: facet_tags.find(value)"
+        raise InputError(text, name)
+    found = np.asarray(given)
+    if found.size == 0:
+        return np.zeros(0, dtype=np.int32)
+    if found.ndim != 1 or found.dtype.kind not in "iu":
+        shape = f"{found.ndim} axes of {found.dtype}"
+        raise InputError(f"{shape} given, a list of facet numbers needed", name)
+    return np.unique(found).astype(np.int32)

@@ -1,0 +1,111 @@
+"""Rigid motions that neither a form of the user's nor its conditions keep from happening."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+from scipy.sparse.csgraph import connected_components
+
+from anisocontact._fenicsx import MPI, Mat
+from anisocontact.solver.free_modes import named
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+#: Force of a rigid motion over that of moving single nodes, root mean square, that is rounding.
+NOTHING = 1e-10
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a mesh that is connected.
+
+    Attributes:
+        nodes: Local nodes, with ghosts, (n,).
+        middle: Mean of its nodes, (3,), length.
+        modes: Rigid motions of the nodes this rank owns, others at rest, (6, unknowns).
+    """
+
+    nodes: Ints
+    middle: Floats
+    modes: Floats
+
+
+def parts(space: Any) -> list[Part]:
+    """The connected parts of the mesh of a displacement; collective.
+
+    Args:
+        space: Vector space of the displacement.
+    """
+    comm, index_map = space.mesh.comm, space.dofmap.index_map
+    owned = index_map.size_local
+    x = np.asarray(space.tabulate_dof_coordinates())
+    label = _labels(space)
+    found = []
+    for one in range(comm.allreduce(int(label.max(initial=-1)), MPI.MAX) + 1):
+        nodes = np.flatnonzero(label == one)
+        here = nodes[nodes < owned]
+        total = comm.allreduce(np.append(x[here].sum(axis=0), len(here)))
+        middle = total[:3] / total[3]
+        arms = x[here] - middle
+        size = np.sqrt(comm.allreduce(float((arms**2).sum())) / total[3])
+        modes = np.zeros((6, owned, 3))
+        for i, e in enumerate(np.eye(3)):
+            modes[i, here] = e
+            modes[3 + i, here] = np.cross(e, arms / size)
+        found.append(Part(nodes, middle, modes.reshape(6, -1)))
+    return found
+
+
+def loose_motions(part: Part, stiffness: Mat, level: float, fixed: Ints, comm: Any) -> str:
+    """Motions of a part that meet no stiffness and no condition, in words; empty if there is none.
+
+    Args:
+        part: The part.
+        stiffness: Tangent of the form alone, without conditions.
+        level: Force for a unit of length of a single node, force/length.
+        fixed: Unknowns with conditions, local numbers.
+        comm: Communicator of the mesh.
+    """
+    x, force = stiffness.createVecs()
+    held = np.unique(fixed[fixed < part.modes.shape[1]])
+    rows = []
+    for mode in part.modes:
+        x.array[:] = mode
+        stiffness.mult(x, force)
+        row = force.array_r / level
+        row[held] = mode[held]
+        rows.append(row)
+    x.destroy()
+    force.destroy()
+    sums = comm.allreduce(np.array(rows) @ np.array(rows).T)
+    count = comm.allreduce(part.modes.shape[1])
+    values, vectors = np.linalg.eigh(sums)
+    loose = vectors.T[values <= NOTHING**2 * count]
+    return named(loose) if len(loose) else ""
+
+
+def _labels(space: Any) -> Ints:
+    """Number of the connected part of each local node."""
+    comm, index_map = space.mesh.comm, space.dofmap.index_map
+    cells = np.asarray(space.dofmap.list)
+    count = index_map.size_local + index_map.num_ghosts
+    pairs = (np.repeat(cells[:, 0], cells.shape[1] - 1), cells[:, 1:].ravel())
+    graph = scipy.sparse.coo_array((np.ones(len(pairs[0])), pairs), shape=(count, count))
+    number, here = connected_components(graph, directed=False)
+    first = np.append(0, np.cumsum(comm.allgather(int(number))))
+    own = here + first[comm.rank]
+    # a ghost and the node it is a copy of are one
+    of_ghosts = (np.asarray(index_map.ghosts, dtype=np.int64), own[index_map.size_local :])
+    low, high = index_map.local_range
+    links = [np.zeros((0, 2), dtype=np.int64)]
+    for nodes, labels in comm.allgather(of_ghosts):
+        mine = (nodes >= low) & (nodes < high)
+        links.append(np.column_stack([own[nodes[mine] - low], labels[mine]]))
+    joined = np.concatenate(comm.allgather(np.concatenate(links)))
+    whole = scipy.sparse.coo_array((np.ones(len(joined)), joined.T), shape=(first[-1], first[-1]))
+    return np.asarray(connected_components(whole, directed=False)[1][own], dtype=np.int64)

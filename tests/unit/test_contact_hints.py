@@ -1,0 +1,150 @@
+"""Slaves much coarser than their masters, and penetrations that count against the approach."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+from anisocontact.bulk import make_material
+from anisocontact.cli import main
+from anisocontact.contact import FacetContact, TwoHalfPass, coarse_slaves
+from anisocontact.errors import ModelWarning
+from anisocontact.interface import PairLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.solver import Problem, Solver, Step
+
+LAW = PairLaw(NormalLaw(penalty=1e3), Adhesion(stiffness=1e3), Friction(coefficients=0.3))
+
+
+def _model(unit: float = 1.0, **more) -> Model:
+    """A base of one facet of 2 below a pin with facets of 0.1, between the points of the base."""
+    base = BoxSpec((-unit, -unit, -unit), (2 * unit, 2 * unit, unit), (1, 1, 1), **more)
+    low = -0.1 * unit
+    pin = BoxSpec((low, low, -0.001 * unit), (-2 * low, -2 * low, 0.3 * unit), (2, 2, 1), **more)
+    return build_box({"base": base, "pin": pin})
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-6])
+@pytest.mark.parametrize("more", [{}, {"order": 2}, {"cell": "tetrahedron"}])
+def test_a_coarse_slave_is_named_with_the_ratio_and_the_cure(unit, more):
+    """The pin overlaps the base, and no point of the base meets it: sizes 2 and 0.1."""
+    model = _model(unit, **more)
+    contact = FacetContact(model, "base.top", "pin.bottom", law=LAW)
+    (line,) = coarse_slaves([contact])
+    assert "contact of base.top with pin.bottom" in line
+    assert "20 times as large" in line and "swap slave and master" in line
+    assert not coarse_slaves([FacetContact(model, "pin.bottom", "base.top", law=LAW)])
+    assert not coarse_slaves([TwoHalfPass(model, "base.top", "pin.bottom", law=LAW)])
+
+
+def test_a_script_gets_a_warning_of_the_package():
+    model = _model()
+    contact = FacetContact(model, "base.top", "pin.bottom", law=LAW)
+    steel = make_material("linear-elastic", E=100.0, nu=0.3)
+    problem = Problem(model, {"base": steel, "pin": steel}, [contact])
+    held = {group: dict.fromkeys("xyz", 0.0) for group in ("base.bottom", "pin.top")}
+    with pytest.warns(ModelWarning, match="swap slave and master"):
+        Solver(problem, [Step("rest", 1, held)])
+
+
+PAIR = """
+[mesh.box.base]
+origin = [-1, -1, -1]
+size = [2, 2, 1]
+cells = [1, 1, 1]
+
+[mesh.box.pin]
+origin = [-0.1, -0.1, 0]
+size = [0.2, 0.2, 0.3]
+cells = [2, 2, 1]
+
+[material]
+base = { model = "linear-elastic", E = 100, nu = 0.3 }
+pin = { model = "linear-elastic", E = 100, nu = 0.3 }
+
+[[contact]]
+slave = "base.top"
+master = "pin.bottom"
+friction = { coefficients = 0.3 }
+
+[[step]]
+name = "press"
+increments = 1
+[step.displacement]
+"base.bottom" = { x = 0, y = 0, z = 0 }
+"pin.top" = { x = 0, y = 0, z = -0.01 }
+
+[output]
+pictures = false
+"""
+
+
+def _summary(tmp_path: Path, text: str) -> dict:
+    case, out = tmp_path / "case.toml", tmp_path / "out"
+    case.write_text(text)
+    assert main(["run", str(case), "-o", str(out), "--overwrite"]) == 0
+    return json.loads((out / "summary.json").read_text())
+
+
+def test_check_and_run_say_it_and_say_it_again_where_nothing_touches(tmp_path, capsys):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        told = _summary(tmp_path, PAIR)["warnings"]
+        assert main(["check", str(tmp_path / "case.toml")]) == 0
+    at_start, at_end = told
+    assert "swap slave and master" in at_start
+    assert "no point touches at the end; the facets of the slave are 20 times" in at_end
+    assert at_start in capsys.readouterr().out
+
+
+BLOCK = """
+[mesh.box.block]
+origin = [0, 0, {gap}]
+size = [1, 1, 1]
+cells = [4, 4, 4]
+
+[material.block]
+model = "linear-elastic"
+E = 1000
+nu = 0
+
+[surface.table]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+
+[[contact]]
+slave = "block.bottom"
+master = "table"
+normal = {{ penalty = {penalty} }}
+friction = {{ coefficients = 0 }}
+
+[[step]]
+name = "press"
+increments = 2
+displacement = {{ "block.top" = {{ x = 0, y = 0, z = {way} }} }}
+
+[output]
+pictures = false
+"""
+
+
+@pytest.mark.parametrize("gap", [0.0, 0.5])
+def test_a_penetration_is_held_against_the_approach(tmp_path, gap):
+    """Springs in series, E/L and eps: the penetration is 1/(1 + eps L/E) of the approach.
+
+    At eps = 10 E / L that is 1/11 = 9 %, but 0.2 % of a facet; the way through a gap is no part of
+    the approach. A hundred times stiffer nothing is said.
+    """
+    text = BLOCK.format(gap=gap, penalty=1e4, way=-gap - 0.006)
+    (said,) = _summary(tmp_path, text)["warnings"]
+    assert "the penetration was up to 9% of the 0.006 that the bodies came towards each" in said
+    assert "penalty" in said and "augmented" in said
+    text = BLOCK.format(gap=gap, penalty=1e6, way=-gap - 0.006)
+    assert _summary(tmp_path, text)["warnings"] == []

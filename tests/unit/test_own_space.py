@@ -1,0 +1,178 @@
+"""`Model.of` a user's own space: what does not fit is one line, and facets count once."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+
+import basix.ufl
+
+from anisocontact._fenicsx import MPI, fem
+from anisocontact.contact import Contact
+from anisocontact.errors import InputError
+from anisocontact.interface import Interface
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import Model
+from anisocontact.solver import ContactProblem
+from anisocontact.surfaces import make_surface
+
+dolfinx_mesh = pytest.importorskip("dolfinx.mesh")
+
+
+def _box(kind: str = "hexahedron"):
+    cell = getattr(dolfinx_mesh.CellType, kind)
+    return dolfinx_mesh.create_box(MPI.COMM_WORLD, [[0, 0, 0], [1, 1, 1]], [2, 2, 2], cell)
+
+
+def _space(mesh, element=("Lagrange", 1, (3,))):
+    return fem.functionspace(mesh, element)
+
+
+@pytest.fixture(scope="module")
+def given():
+    mesh = _box()
+    bottom = dolfinx_mesh.locate_entities_boundary(mesh, 2, lambda x: np.isclose(x[2], 0.0))
+    values = np.full(len(bottom), 3, dtype=np.int32)
+    tags = dolfinx_mesh.meshtags(mesh, 2, bottom, values)
+    cells = dolfinx_mesh.meshtags(mesh, 3, np.arange(4, dtype=np.int32), values)
+    return SimpleNamespace(mesh=mesh, bottom=bottom, tags=tags, cells=cells, space=_space(mesh))
+
+
+def _interface(height: float = 0.0, normal: float = 1.0) -> Interface:
+    plane = make_surface("plane", point=(0, 0, height), normal=(0, 0, normal))
+    laws = NormalLaw(penalty=1e3), Adhesion(stiffness=1e3), Friction(coefficients=0.3)
+    return Interface(plane, *laws)
+
+
+SPACES = {
+    "mixed": (
+        lambda m: _space(
+            m,
+            basix.ufl.mixed_element(
+                [
+                    basix.ufl.element("Lagrange", "hexahedron", 2, shape=(3,)),
+                    basix.ufl.element("Lagrange", "hexahedron", 1),
+                ]
+            ),
+        ),
+        "space: a mixed element given",
+    ),
+    "prisms": (lambda m: _space(_box("prism")), "space: a mesh of prism cells given"),
+    "scalars": (lambda m: _space(m, ("Lagrange", 1)), "with 1 components given"),
+    "order 3": (lambda m: _space(m, ("Lagrange", 3, (3,))), "a space of degree 3"),
+    "broken": (lambda m: _space(m, ("DG", 1, (3,))), "an element that is discontinuous given"),
+    "a mesh": (lambda m: m, "space: Mesh given, a function space"),
+}
+
+
+@pytest.mark.parametrize(("make", "says"), SPACES.values(), ids=list(SPACES))
+def test_a_space_that_does_not_fit_is_one_line(given, make, says):
+    with pytest.raises(InputError, match=says):
+        Model.of(make(given.mesh), {"pad.sole": given.bottom})
+
+
+FACETS = {
+    "tags": (lambda g: {"pad.sole": g.tags}, r"pad\.sole: MeshTags of facets .*find\(value\)"),
+    "cells": (lambda g: {"pad.sole": g.cells}, "MeshTags of entities of dimension 3 given"),
+    "no names": (lambda g: g.tags, r'facets: MeshTags given, {"body.group": facets} needed'),
+    "no body": (lambda g: {"sole": g.bottom}, """'sole' given, "body.group" needed"""),
+    "numbers of points": (lambda g: {"pad.sole": g.bottom / 2}, "axes of float64 given"),
+    "a mask": (lambda g: {"pad.sole": g.bottom > 0}, "axes of bool given"),
+    "a word": (lambda g: {"pad.sole": "bottom"}, "a list of facet numbers needed"),
+}
+
+
+@pytest.mark.parametrize(("make", "says"), FACETS.values(), ids=list(FACETS))
+def test_facets_that_are_none_are_one_line(given, make, says):
+    with pytest.raises(InputError, match=says):
+        Model.of(given.space, make(given))
+
+
+def test_facets_inside_the_body_are_no_slave(given):
+    """All facets of the mesh: 12 of 36 have a cell on either side."""
+    model = Model.of(given.space, {"pad.all": np.arange(36)})
+    with pytest.raises(InputError, match=r"slave: 12 of 36 facets of 'pad\.all' have a cell on"):
+        Contact(model, "pad.all", _interface())
+
+
+def test_a_facet_named_twice_counts_once(given):
+    model = Model.of(given.space, {"pad.sole": np.repeat(given.bottom, 2)})
+    contact = Contact(model, "pad.sole", _interface())
+    assert contact.areas.sum() == pytest.approx(1.0, rel=1e-14)
+
+
+def test_a_surface_that_points_the_wrong_way_is_refused_in_a_script(given):
+    model = Model.of(given.space, {"pad.sole": given.bottom})
+    with pytest.raises(InputError, match=r"'pad\.sole' faces the same way as its master"):
+        Contact(model, "pad.sole", _interface(normal=-1.0))
+
+
+@pytest.mark.parametrize("finite", [False, True])
+@pytest.mark.parametrize("told", [None, False, True])
+def test_the_area_is_that_of_the_strain_of_the_form(given, finite, told):
+    """Of now where the tangent depends on the displacement; what is told stays."""
+    import ufl
+
+    u = fem.Function(given.space)
+    v = ufl.TestFunction(given.space)
+    strain = ufl.grad(u) + ufl.grad(u).T
+    if finite:
+        strain = strain + ufl.grad(u).T * ufl.grad(u)
+    model = Model.of(given.space, {"pad.sole": given.bottom})
+    contact = Contact(model, "pad.sole", _interface(), current_area=told)
+    form = ufl.inner(strain, ufl.grad(v)) * ufl.dx
+    ContactProblem(form, u, contacts=[contact]).close()
+    assert contact.current_area == (finite if told is None else told)
+
+
+@pytest.mark.parametrize("meshed", [False, True])
+def test_a_body_that_nothing_holds_is_one_line(meshed):
+    """A pad above its master, pushed by a load alone: its motions, not a residual of inf.
+
+    Its master, another part of the same mesh, is held.
+    """
+    import ufl
+
+    from anisocontact.contact import FacetContact
+    from anisocontact.interface import PairLaw
+    from anisocontact.mesh import BoxSpec, build_box
+
+    boxes = {"pad": BoxSpec((0, 0, 0.2), (1, 1, 1), (1, 1, 1))}
+    if meshed:
+        boxes["base"] = BoxSpec((0, 0, -1), (1, 1, 1), (1, 1, 1))
+    model = build_box(boxes)
+    laws = NormalLaw(penalty=1e3), Adhesion(stiffness=1e3), Friction(coefficients=0.3)
+    contact = (
+        FacetContact(model, "pad.bottom", "base.top", law=PairLaw(*laws))
+        if meshed
+        else Contact(model, "pad.bottom", _interface())
+    )
+    u = fem.Function(model.space)
+    v = ufl.TestFunction(model.space)
+    form = ufl.inner(ufl.sym(ufl.grad(u)), ufl.sym(ufl.grad(v))) * ufl.dx - v[2] * ufl.ds
+    z = model.space.tabulate_dof_coordinates()[:, 2]
+    base = np.flatnonzero(z < 0.1).astype(np.int32)
+    bcs = [fem.dirichletbc(np.zeros(3), base, model.space)]
+    problem = ContactProblem(form, u, bcs=bcs, contacts=[contact])
+    said = r"nothing holds the body around \(0\.5, 0\.5, 0\.7\): translation along x, y and z, rot"
+    with pytest.raises(InputError, match=said):
+        problem.solve()
+    problem.close()
+
+
+def test_a_weak_spring_of_the_form_holds_a_body(given):
+    """A bed of 1e-8 of the stiffness is one: nothing is said, and the sums of forces are right."""
+    import ufl
+
+    u = fem.Function(given.space)
+    v = ufl.TestFunction(given.space)
+    bed = 1e-8 * ufl.inner(u, v) * ufl.dx
+    strain = ufl.inner(ufl.sym(ufl.grad(u)), ufl.sym(ufl.grad(v))) * ufl.dx
+    problem = ContactProblem(strain + bed - 1e-9 * v[2] * ufl.dx, u)
+    problem.solve()
+    assert u.x.array.reshape(-1, 3)[:, 2] == pytest.approx(0.1, rel=1e-5)
+    problem.close()
