@@ -103,7 +103,8 @@ def test_run_in_a_pipe_prints_a_line_for_each_increment(no_report, capsys, case)
     out = case.parent / "out"
     assert main(["run", str(case), "-o", str(out)]) == 0
     captured = capsys.readouterr()
-    assert captured.err == ""
+    (said,) = captured.err.splitlines()  # a soft penalty on a coarse mesh
+    assert said.startswith("warning: contact of block.bottom with plate: the penetration was up to")
     lines = captured.out.splitlines()
     assert [line.split("  ")[0] for line in lines if "residual" in line] == [
         *(f"press {i}" for i in (1, 2)),
@@ -146,7 +147,7 @@ def test_a_run_that_cannot_go_on_keeps_what_converged(no_report, capsys, case, c
     out = case.parent / "out"
     assert main(["run", str(case), "-o", str(out)]) == 3
     error = capsys.readouterr().err
-    assert error.startswith("error: stopped: step 'drag', increment ")
+    assert "error: stopped: step 'drag', increment " in error
     assert "Traceback" not in error
     summary = json.loads((out / "summary.json").read_text())
     assert summary["status"] == "stopped"
