@@ -143,8 +143,8 @@ def test_a_penetration_is_held_against_the_approach(tmp_path, gap):
     the approach. A hundred times stiffer nothing is said.
     """
     text = BLOCK.format(gap=gap, penalty=1e4, way=-gap - 0.006)
-    (said,) = _summary(tmp_path, text)["warnings"]
+    (said,) = (line for line in _summary(tmp_path, text)["warnings"] if "penetration" in line)
     assert "the penetration was up to 9% of the 0.006 that the bodies came towards each" in said
     assert "penalty" in said and "augmented" in said
     text = BLOCK.format(gap=gap, penalty=1e6, way=-gap - 0.006)
-    assert _summary(tmp_path, text)["warnings"] == []
+    assert not any("penetration" in line for line in _summary(tmp_path, text)["warnings"])

@@ -12,12 +12,14 @@ from anisocontact.solver import Accepted
 from anisocontact.solver.imbalance import LARGE
 from anisocontact.solver.rotations import CURE, WARNED
 
-__all__ = ["at_end", "at_start", "of_models", "worst", "worst_of_models"]
+__all__ = ["at_end", "at_start", "of_models", "soft", "worst", "worst_of_models"]
 
 #: Share of the facet size beyond which a penetration or an elastic slip is worth a warning.
 DEEP = 0.05
 #: Share of the approach of the bodies beyond which a penetration is worth a warning.
 SOFT = 0.04
+#: Share of the facet size that is rounding, or the tolerance of an augmented contact.
+ROUNDING = 1e-5
 #: Share of the external work beyond which energy of stabilisation, or of flow, is worth a warning.
 STABILISED = 0.05
 
@@ -135,9 +137,6 @@ def at_end(
                     f"{entry[f'{key}_time']:.4g}; {cure} makes it smaller, "
                     'method = "augmented" takes it away'
                 )
-        penalty = contact.interface.normal.named[0] == "penalty"
-        if penalty and entry["worst_penetration"] <= DEEP * entry["facet_size"]:
-            found += _soft_bodies(entry)
         if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
             swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
             found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap]))
@@ -145,6 +144,28 @@ def at_end(
         share = abs(energy[name]) / max(abs(energy["external"]), _TINY)
         if share > STABILISED:
             found.append(text.format(share))
+    return found
+
+
+def soft(contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]]) -> list[str]:
+    """Penetrations that are a share of what pressed the bodies: forces are off by as much.
+
+    Args:
+        contacts: The contacts of a run that is done.
+        shown: Their entries in the summary.
+    """
+    found = []
+    for contact, entry in zip(contacts, shown, strict=True):
+        deep, come = entry["worst_penetration"], entry["worst_penetration_approach"]
+        said = not ROUNDING < deep / entry["facet_size"] <= DEEP  # nothing, or by its facets
+        if said or contact.interface.normal.named[0] != "penalty" or not deep > SOFT * come > 0.0:
+            continue
+        found.append(
+            f"{_pair(entry)}: the penetration was up to {deep / come:.0%} of the {come:.3g} that "
+            f"the bodies came towards each other, at time {entry['worst_penetration_time']:.4g}, "
+            "and the force is off by about as much; a larger normal penalty makes it smaller, "
+            'method = "augmented" takes it away'
+        )
     return found
 
 
@@ -156,19 +177,6 @@ _TAKEN = {
     "flow": "jumps set free {:.0%} of the work from outside: inertia, which is left out, would "
     "decide where the bodies come to rest",
 }
-
-
-def _soft_bodies(entry: Mapping[str, Any]) -> list[str]:
-    """A penetration that is a share of what pressed the bodies: forces are off by as much."""
-    deep, come = entry["worst_penetration"], entry["worst_penetration_approach"]
-    if not deep > SOFT * come > 0.0:
-        return []
-    return [
-        f"{_pair(entry)}: the penetration was up to {deep / come:.0%} of the {come:.3g} that the "
-        f"bodies came towards each other, at time {entry['worst_penetration_time']:.4g}, and the "
-        "force is off by about as much; a larger normal penalty makes it smaller, "
-        'method = "augmented" takes it away'
-    ]
 
 
 def _pair(entry: Mapping[str, Any]) -> str:

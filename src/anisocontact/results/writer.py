@@ -22,7 +22,7 @@ from anisocontact.results.no_energy import told
 from anisocontact.results.paraview import Bodies, slave_points
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
-from anisocontact.results.warnings import at_end, at_start, of_models, worst, worst_of_models
+from anisocontact.results.warnings import at_end, at_start, of_models, soft, worst, worst_of_models
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
 from anisocontact.solver.persistent import Persistent
 
@@ -231,6 +231,8 @@ class Writer:
         self.summary["status"] = status
         self.summary["message"] = message
         found = at_end(self._problem.contacts, self.summary["contacts"], self.summary["energy"])
+        if status == "done":  # a run that stopped has its reason
+            found += soft(self._problem.contacts, self.summary["contacts"])
         self.summary["warnings"] = [*self._at_start, *found, *of_models(self.summary)]
         self._write_summary()
         if self._pictures:
