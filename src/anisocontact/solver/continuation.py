@@ -23,8 +23,9 @@ STIFF = 100.0
 #: Stiffness of the first layer over that of the bodies, where the first try fails a second one, and
 #: how much stiffer the next one is.
 LAYERS, STIFFER = (3.0, 10.0), 50.0
-#: What the residual has to have fallen to where the iterations did not suffice, so that they go on.
-FALLS = 1e-2
+#: What the residual has to have fallen to where the iterations did not suffice, so that they go on;
+#: how often they may.
+FALLS, ROUNDS = 0.1, 4
 
 
 class Continuation:
@@ -92,11 +93,11 @@ class Continuation:
         while True:
             for contact in stiff:
                 contact.lay(1.0 / (stiffness * contact.body_stiffness), self._problem.dt)
-            result = self._newton.solve(x, full_steps=True, damping=damping)
-            spent += result.iterations
-            if result.reason and result.residuals[-1] < FALLS * result.residuals[0]:
+            for _ in range(ROUNDS):
                 result = self._newton.solve(x, full_steps=True, damping=damping)
                 spent += result.iterations
+                if not result.reason or result.residuals[-1] > FALLS:
+                    break
             stiffness *= STIFFER
             if result.reason or stiffness >= most:
                 return replace(result, iterations=spent)

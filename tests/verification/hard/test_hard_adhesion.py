@@ -98,7 +98,7 @@ def test_stiff_adhesion_ends_without_a_cut(to_the_end, bodies, stiffness):
 
 
 @pytest.mark.parametrize("solver", ['"direct"', '"condensed"', '"iterative"'])
-@pytest.mark.parametrize("pair", [(1e8, 1e8), (1e9, 1e2)])
+@pytest.mark.parametrize("pair", [(1e8, 1e8), (1e9, 1e2), (1e2, 1e9)])
 def test_accepted_state_has_the_stiffness_of_the_user(to_the_end, solver, pair):
     """The layer that helps leaves nothing behind: T = -S xi_el at every point that sticks.
 
