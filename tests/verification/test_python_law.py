@@ -104,6 +104,26 @@ def test_same_as_the_core(name: str) -> None:
     assert a["internal"].max() > 0.0
 
 
+@pytest.mark.parametrize("name", ["cylinder", "torus"])
+def test_history_turns_as_in_the_core(name: str) -> None:
+    """A force of before, turned by up to half a radian with the normal: the one of the core.
+
+    Points that stuck are led far along the surface in one step. What a wrong turn changes goes
+    with the fourth power of the angle, so that small steps do not see it. Tolerance: rounding.
+    """
+    surface = SURFACES[name]
+    python, core = _pair(surface)
+    rng = np.random.default_rng(8)
+    xi = rng.uniform(-1.0, 1.0, (60, 2))
+    a, b = (itf.initial_state(surface.position(xi)) for itf in (python, core))
+    for step in (0.01, 0.25):
+        xi = xi + rng.uniform(-step, step, xi.shape)
+        x = surface.position(xi) - 0.3 * surface.geometry(xi).normal
+        ra, rb = python.update(a, x), core.update(b, x)
+        a, b = ra.state, rb.state
+        assert np.abs(ra.traction - rb.traction).max() <= 1e-10 * np.abs(rb.traction).max()
+
+
 def test_state_is_not_changed() -> None:
     """`update` is pure: the committed state is the same after it."""
     python, _ = _pair(SURFACES["plane"])
