@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from anisocontact.errors import InputError
 
@@ -41,15 +41,3 @@ class Augmentation:
         if self.multipliers not in SCHEMES:
             allowed = ", ".join(f'"{name}"' for name in SCHEMES)
             raise InputError(f"{self.multipliers!r} given, allowed: {allowed}", "multipliers")
-
-    def in_cycles_unless_told(self) -> Augmentation:
-        """The same with `uzawa` where the choice was left open.
-
-        Returns:
-            What to use where multipliers cannot follow every correction.
-
-        Example:
-            >>> Augmentation().in_cycles_unless_told().multipliers
-            'uzawa'
-        """
-        return replace(self, multipliers=UZAWA) if self.multipliers == AUTO else self

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import unicodedata
-
 __all__ = ["InputError", "MachineError", "ModelWarning", "one_line", "printable"]
 
 
@@ -25,12 +23,7 @@ def printable(text: str) -> str:
     """
     if text.isprintable():
         return text
-    return "".join(c if c.isprintable() or _is_space(c) else repr(c)[1:-1] for c in text)
-
-
-def _is_space(character: str) -> bool:
-    # no other spaces than " " count as printable
-    return unicodedata.category(character) == "Zs"
+    return "".join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 def one_line(message: object) -> str:

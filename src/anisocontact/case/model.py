@@ -209,7 +209,7 @@ class ContactSection(Section):
         _word(
             f'how "{AUGMENTED}" finds its multipliers: "{NEWTON}" together with the displacements, '
             f'"{UZAWA}" in cycles around Newton\'s method; "{AUTO_MULTIPLIERS}" takes "{NEWTON}", '
-            f'"{UZAWA}" for the sliding rule "explicit" and on a free rigid body',
+            f'"{UZAWA}" for the sliding rule "explicit"',
             *SCHEMES,
         ),
     ] = AUTO_MULTIPLIERS

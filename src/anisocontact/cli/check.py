@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from anisocontact.case import load
 from anisocontact.cli.output import say
-from anisocontact.contact import coarse_slaves
 
 if TYPE_CHECKING:
     from anisocontact.case.build import Built
@@ -32,6 +31,8 @@ def command(arguments: argparse.Namespace) -> int:
 
 def contents(built: Built) -> list[str]:
     """What a case contains, in a few lines."""
+    from anisocontact.contact import coarse_slaves
+
     case, problem = built.file.case, built.problem
     model = problem.model
     cells = model.mesh.topology.index_map(3).size_global

@@ -127,9 +127,6 @@ class Contact(ContactRecord):
             Snapshot(points, self.quadrature.areas, start),
             np.repeat(np.arange(facets_here), per_facet),
         )
-        if augmentation is not None and body is not None and body.free:
-            # the body is as compliant as its springs, which penalties of `newton` do not know of
-            augmentation = augmentation.in_cycles_unless_told()
         check_start(self, self.facet_size)
         self._augment(augmentation, self.facet_size, interface)
 

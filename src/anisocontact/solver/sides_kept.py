@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact import AnyContact, Contact, FacetContact
+from anisocontact.contact.whereabouts import CRUSHED
 from anisocontact.mesh import Model
 from anisocontact.solver.free_modes import Body, bodies
 from anisocontact.solver.steps import Culprit
@@ -25,6 +26,9 @@ type Place = tuple[float, float, float]
 MOST_NODES = 200
 #: Share of them behind the master beyond which a body is behind it.
 MOST_BEHIND = 0.5
+#: Share of them with which a body that is pressed from behind hangs behind its master; with less of
+#: it an edge has dug in and is folded over.
+HANGING = 0.3
 #: Depth over the size of the body that is not penetration of a penalty.
 DEEP = 0.05
 
@@ -88,12 +92,13 @@ class SidesKept:
         pressed = where.from_behind()
         gone, below = where.through()
         far = f", the farthest of it {depth:.3g} behind" if depth > 0.0 else ""
-        counts = np.array([np.count_nonzero(pressed), len(gone)])
-        turned, through = (int(n) for n in comm.allreduce(counts))
-        if turned:
+        counts = np.array([np.count_nonzero(pressed), len(gone), len(pressed)])
+        turned, through, points = (int(n) for n in comm.allreduce(counts))
+        known = watched.body is not None and whole
+        if turned and (behind > HANGING or not known):
             text = f"body {name!r} has turned over: {turned} slave points are pressed from behind"
             yield self._culprit(watched, text + far, np.flatnonzero(pressed))
-        if through:
+        if through > CRUSHED * points:
             deepest = max(comm.allgather(float(below.max(initial=0.0))))
             text = f"body {name!r} has gone through its master: {through} slave points"
             yield self._culprit(watched, f"{text} are up to {deepest:.3g} behind it", gone)

@@ -156,7 +156,7 @@ def test_a_run_that_is_done_goes_on_with_further_steps(capsys, case, whole, same
         ("E = 1000", "E = 1001", "material.block.E: 1001 given, the run that is to go on had 1000"),
         ("cells = [3, 3, 2]", "cells = [3, 4, 2]", "mesh.box.block.cells[1]: 4 given, the run"),
         ("increments = 2", "increments = 3", "step[0].increments: 3 given, the run"),
-        ("normal = { penalty = 1e4 }\n", "", "contact[0].normal: nothing given, the run that is"),
+        ("normal = { penalty = 1e5 }\n", "", "contact[0].normal: nothing given, the run that is"),
         ('name = "press"', 'name = "push"', "step[0].name: 'push' given, the run"),
     ],
 )

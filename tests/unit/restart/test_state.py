@@ -39,7 +39,7 @@ def test_another_order_of_nodes_finds_its_own(case, whole):
 
 
 VARIANTS = {
-    "augmented": {"normal = { penalty = 1e4 }": 'method = "augmented"'},
+    "augmented": {"normal = { penalty = 1e5 }": 'method = "augmented"'},
     "finite strain": {'model = "linear-elastic"': 'model = "neo-hookean"'},
     "unsupported": {
         "origin = [0, 0, 0]": "origin = [0, 0, 0.05]",

@@ -177,6 +177,7 @@ class ContactSystem(Following):
             for contact in self.contacts:
                 contact.add_lag(lag)
             residual[: len(own)] -= self.handed(lag.reshape(-1))[self.bulk.contact]
+            residual[len(own) :] -= self._rigid.lag()[~self.led]
         self._residual = residual
         return residual.copy()
 
