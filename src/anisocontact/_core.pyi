@@ -228,6 +228,7 @@ class FacetPairs:
         friction_directions: Field | None,
         friction_directions_second: Field | None,
         rule: tuple[str, Mapping[str, Sequence[float]]],
+        evolution: str,
         mirrored: bool = False,
         on_slave: Sequence[bool] = [False, False, False],
     ) -> None: ...

@@ -41,7 +41,7 @@ State = npt.NDArray[np.void]
 
 @dataclass(frozen=True)
 class SlaveSurface:
-    """The slave at n points, for directions that it carries.
+    """The slave at n points, for directions that it carries and its turn against the master.
 
     Args:
         reference: Positions in the reference configuration, (n, 3) [length].
@@ -77,7 +77,7 @@ class Response:
         directions_friction: Axes of the friction tensor, (n, 2, 3); zero at open points.
         failure: Why a point could not be updated, a code of `FAILURE`, (n,).
         tangent_slave: Change of t with the two tangents of the slave, (n, 2, 3, 3) [stress/length];
-            empty where the slave carries no directions.
+            empty where no surface of the slave was given.
     """
 
     traction: Floats

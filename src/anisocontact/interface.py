@@ -37,6 +37,10 @@ __all__ = [
     "raw_state",
 ]
 
+#: Forms of evolution whose history is turned as vectors: those that meshed masters, directions on
+#: the slave and multipliers can have.
+VECTOR_FORMS = ("transport", "backward-euler")
+
 #: No surface of the slave.
 _POINTS_ALONE = SlaveSurface(np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 2, 3)))
 
@@ -48,14 +52,15 @@ class PairLaw:
         normal: Law of the pressure.
         adhesion: Tangential law inside the yield ellipse.
         friction: Yield ellipse and sliding rule.
+        evolution: How the history enters the step, one of `VECTOR_FORMS`.
 
     Attributes:
         dtype: Type of the state of a point.
         carried: Direction fields and the bodies that carry them.
 
     Raises:
-        InputError: A direction field that goes by coordinates of a surface, or a law in the place
-            of another one.
+        InputError: A direction field that goes by coordinates of a surface, a law in the place of
+            another one, or a form of evolution that meshed masters do not have.
 
     Example:
         >>> adhesion, friction = Adhesion(stiffness=(1e5, 1e5)), Friction(coefficients=(0.3, 0.3))
@@ -64,8 +69,22 @@ class PairLaw:
         (1000000.0, 100000.0)
     """
 
-    def __init__(self, normal: NormalLaw, adhesion: Adhesion, friction: Friction) -> None:
+    def __init__(
+        self,
+        normal: NormalLaw,
+        adhesion: Adhesion,
+        friction: Friction,
+        *,
+        evolution: str = "transport",
+    ) -> None:
         _check_laws(normal, adhesion, friction)
+        _check_evolution(evolution, adhesion)
+        if evolution not in VECTOR_FORMS:
+            allowed = " and ".join(f'"{name}"' for name in VECTOR_FORMS)
+            raise InputError(
+                f'"{evolution}" given, a meshed master has {allowed} only', "evolution"
+            )
+        self.evolution = evolution
         self.normal, self.adhesion, self.friction = normal, adhesion, friction
         self.dtype = STATE
         self.carried = carried(adhesion, friction)
@@ -93,6 +112,7 @@ class PairLaw:
             self.friction.directions.core if self.friction.directions else None,
             second.core if second else None,
             self.friction.rule,
+            self.evolution,
             mirrored,
             [one.on_slave != (mirrored and one.field is not None) for one in self.carried],
         )
@@ -107,12 +127,12 @@ class PairLaw:
         Returns:
             The laws; those given are unchanged.
         """
-        return PairLaw(*_stiffened(self, normal, tangential))
+        return PairLaw(*_stiffened(self, normal, tangential), evolution=self.evolution)
 
     def in_series(self, compliance: float, dt: float) -> tuple[PairLaw, History]:
         """The laws with a compliant layer behind adhesion, see `anisocontact.series.in_series`."""
         adhesion, start = series.in_series(self.adhesion, compliance, dt)
-        return PairLaw(self.normal, adhesion, self.friction), start
+        return PairLaw(self.normal, adhesion, self.friction, evolution=self.evolution), start
 
     def slip_stiffness(self, dt: float) -> float:
         """Largest stiffness of adhesion against slip in an increment of time, stress/length."""
@@ -169,12 +189,12 @@ class Interface:
         self.normal, self.adhesion, self.friction = normal, adhesion, friction
         self.threads = threads or default_threads()
         self.carried: tuple[Carried, ...] = carried(adhesion, friction)
-        if evolution != "transport" and self.needs_slave:
+        if evolution not in VECTOR_FORMS and self.needs_slave:
             raise InputError(
                 f"'slave' given, the evolution {evolution!r} takes directions of the master only",
                 self.needs_slave,
             )
-        if evolution != "transport":
+        if evolution not in VECTOR_FORMS:
             self.carried = tuple(replace(c, on="master") for c in self.carried)
         self.core = _made(
             _core.Interface,
@@ -238,14 +258,16 @@ class Interface:
         return next((f"{c.place}_on" for c in self.carried[:2] if c.on_slave), "")
 
     def takes_slave(self) -> bool:
-        """Whether a surface of the slave would carry directions.
+        """Whether a surface of the slave would change what is answered.
+
+        It carries directions, and its turn against the master turns the slip of `transport`.
 
         Raises:
-            InputError: It would, and one of them goes by coordinates of a surface.
+            InputError: It carries directions, and one goes by coordinates of a surface.
         """
         for one in self.carried:
             one.check_meshed("slave")
-        return any(c.on_slave for c in self.carried)
+        return self.evolution == "transport" or any(c.on_slave for c in self.carried)
 
     def initial_state(self, x: npt.ArrayLike) -> State:
         """State before the first step: projected and free of force.
@@ -282,7 +304,8 @@ class Interface:
             x: Slave points, (n, 3) [length].
             dt: Time step [time]; without meaning for rate-independent laws.
             tangent: Whether dt/dx is wanted.
-            slave: The slave's surface, which carries the directions that lie on it.
+            slave: The slave's surface, which carries the directions that lie on it, and whose turn
+                against the master turns the slip of `transport`.
 
         Returns:
             Tractions, tangent and trial state.

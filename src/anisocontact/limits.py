@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from anisocontact.errors import InputError
 
-__all__ = ["Limits"]
+__all__ = ["FOLLOWED", "Limits"]
+
+#: Angle by which normal, axes of adhesion or slave may turn along a step at a point in contact,
+#: radian: the tangential force is off by some tenths of a per cent there.
+FOLLOWED = math.radians(15.0)
 
 
 @dataclass(frozen=True)

@@ -128,6 +128,7 @@ inline Seen see(const PointState& state, const PairPoint& p, double dt) {
   s.k.xi = {{S(p.master.xi[0]) + s.dxi[0], S(p.master.xi[1]) + s.dxi[1]}};
   s.k.gap = (x - s.k.now.jet.position).dot(s.k.now.normal);
   s.k.dt = dt;
+  s.k.own = s.own.d1;
   s.k.before = s.k.now;
   if (state.facet >= 0) {
     surface::Jet<S> before = at_rest(p.before, {});
@@ -173,6 +174,8 @@ inline Result update(const InterfaceLaw& law, const PointState& state, const Pai
   Result out{reaction.pressure * s.k.now.normal + friction, s.dxi, couple(p, s, friction),
              reaction.state, reaction.failure};
   out.state.facet = p.facet;
+  out.state.spin =
+      state.status == 0 || !looks_back(law.evolution) ? 0.0 : value(relative_spin(state, s.k));
   if (p.feature == Feature::interior || reaction.state.status == 0) return out;
   // the history is kept in the basis of the facet, also where the law saw that of a ridge
   const auto g = surface::value(s.k.now), f = surface::value(s.facet);

@@ -89,7 +89,8 @@ kernel::InterfaceLaw law_of(Random& r, const law::AnyRule& rule, bool sticks) {
           : law::FrictionModels::make("orthotropic", Values({{"coefficients", {mu, 0.4 * mu}}})),
       field(r),
       two ? field(r) : Directions{},
-      rule};
+      rule,
+      kernel::EvolutionForms::make(r(0.0, 1.0) < 0.8 ? "transport" : "backward-euler", Values())};
 }
 
 /// A bent patch near z = 0, the same in another place when asked again.
@@ -137,7 +138,27 @@ kernel::PointState history(Random& r) {
   s.elastic = r.pair(0.01);
   s.pressure = 2.0;
   s.slip_accumulated = 1.0;
+  const double angle = r(-1.2, 1.2);  // that the slave turned since
+  if (r(0.0, 1.0) < 0.3) return s;
+  s.slave = {std::cos(angle), std::sin(angle) + 0.1, -std::sin(angle), std::cos(angle)};
+  if (r.coin()) std::swap_ranges(s.slave.begin(), s.slave.begin() + 2, s.slave.begin() + 2);
   return s;
+}
+
+/// Committed axes of adhesion that have turned since: those of now by up to 0.6, so that none halfway
+/// comes near the other one.
+void put_axes(Random& r, const kernel::InterfaceLaw& law, const kernel::PairPoint& p,
+              kernel::PointState& state) {
+  const auto now = kernel::update_pair<false>(law, state, p, 0.5);
+  const auto before = surface::tangent_plane(p.before);
+  const double angle = r(-0.6, 0.6);
+  for (std::size_t k = 0; k < 2; ++k) {
+    const Vec3<double>& e = now.adhesion_axes[k];
+    const Vec3<double> old = std::cos(angle) * e + std::sin(angle) * now.normal.cross(e);
+    const auto c = before.project_contra(old);
+    state.axes[2 * k] = c[0];
+    state.axes[2 * k + 1] = c[1];
+  }
 }
 
 /// Largest difference of two lists, and the size of what was compared.
@@ -197,7 +218,7 @@ double difference(const kernel::PointState& a, const kernel::PointState& b) {
   for (auto field : {&kernel::PointState::gap, &kernel::PointState::pressure,
                      &kernel::PointState::slip_accumulated, &kernel::PointState::dissipation,
                      &kernel::PointState::dissipation_viscous, &kernel::PointState::energy_adhesion,
-                     &kernel::PointState::energy_normal})
+                     &kernel::PointState::energy_normal, &kernel::PointState::spin})
     if (!std::isnan(a.*field) || !std::isnan(b.*field))  // neither has an energy
       numbers.add(a.*field, b.*field);
   const bool same = a.status == b.status && a.facet == b.facet;
@@ -211,8 +232,9 @@ struct Tally {
 
 void compare(Random& r, const law::AnyRule& rule, Feature feature, Tally& tally) {
   const auto law = law_of(r, rule, r(0.0, 1.0) < 0.3);
-  const auto state = history(r);
+  auto state = history(r);
   const auto p = point(r, feature);
+  if (state.status != 0 && r.coin()) put_axes(r, law, p, state);
   kernel::PairSlopes by;
   const auto fast = kernel::update_pair<true>(law, state, p, 0.5, &by);
   const auto slow = oracle::update(law, state, p, 0.5);

@@ -1,4 +1,4 @@
-"""The four evolution forms on curved surfaces against the differential equation itself.
+"""The evolution forms on curved surfaces against the differential equation itself.
 
 Requirement: the full covariant form and parallel transport converge to the solution of
 dT_i = (b_ij + Gamma^k_ij T_k) dxi^j [Konyukhov Schweizerhof 2006, eq. (8), (29)]; the simplified
@@ -114,11 +114,25 @@ def error(name: str, form: str, length: float, steps: int) -> float:
 
 
 @pytest.mark.parametrize("length", LENGTHS)
-@pytest.mark.parametrize("name", CASES)
-def test_transport_is_of_second_order(name: str, length: float) -> None:
-    """Ten times the steps: a hundredth of the error (asserted 80 to 120)."""
-    e = [error(name, "transport", length, n) for n in (10, 100)]
+@pytest.mark.parametrize(
+    ("name", "form"),
+    [("sphere", "transport"), ("torus", "transport"), *((n, "backward-euler") for n in CASES)],
+)
+def test_forms_in_vectors_are_of_second_order(name: str, form: str, length: float) -> None:
+    """Without axes: ten times the steps, a hundredth of the error (asserted 80 to 120)."""
+    e = [error(name, form, length, n) for n in (10, 100)]
     assert 80.0 < e[0] / e[1] < 120.0
+
+
+def test_transport_is_exact_along_arcs() -> None:
+    """On the cylinder the path across the axis is an arc: 1e-12 in one step over one radius.
+
+    A quarter of a turn in one step has the whole slip, where the chord on the tangent plane of
+    the end has 2 / pi of it.
+    """
+    assert error("cylinder", "transport", 1.0, 1) < 1e-12
+    assert error("cylinder", "transport", 0.5 * np.pi, 1) < 1e-12
+    assert error("cylinder", "backward-euler", 0.5 * np.pi, 1) > 0.3
 
 
 @pytest.mark.parametrize("length", LENGTHS)
@@ -166,4 +180,4 @@ def test_page_shows_these_numbers() -> None:
     for (name, length, form), shown in page.items():
         for n, value in zip(STEPS, shown, strict=True):
             computed = error(name, form, length, n)
-            assert computed == pytest.approx(value, rel=6e-3) or computed < value == 1e-13
+            assert computed == pytest.approx(value, rel=6e-3) or computed < value == 1e-11

@@ -18,16 +18,16 @@ void bind_facet_pair(nb::module_& m) {
       [](PairHandle* self, const Named& normal, const Named& adhesion,
          const FieldHandle* adhesion_directions, const Named& friction,
          const FieldHandle* friction_directions, const FieldHandle* friction_second,
-         const Named& rule, bool mirrored, const OnSlave& on_slave) {
+         const Named& rule, const std::string& evolution, bool mirrored, const OnSlave& on_slave) {
         new (self)
             PairHandle{make_law(normal, adhesion, adhesion_directions, friction,
-                                friction_directions, friction_second, rule, "transport", on_slave),
+                                friction_directions, friction_second, rule, evolution, on_slave),
                        mirrored};
       },
       nb::arg("normal"), nb::arg("adhesion"), nb::arg("adhesion_directions").none(),
       nb::arg("friction"), nb::arg("friction_directions").none(),
-      nb::arg("friction_directions_second").none(), nb::arg("rule"), nb::arg("mirrored") = false,
-      nb::arg("on_slave") = OnSlave{});
+      nb::arg("friction_directions_second").none(), nb::arg("rule"), nb::arg("evolution"),
+      nb::arg("mirrored") = false, nb::arg("on_slave") = OnSlave{});
   def_questions(pairs);
 }
 

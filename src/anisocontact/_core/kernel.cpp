@@ -38,6 +38,10 @@ nb::list state_layout() {
   add("stored", offsetof(PointState, stored), 2, "f8");
   add("elastic", offsetof(PointState, elastic), 2, "f8");
   add("slip", offsetof(PointState, slip), 2, "f8");
+  add("slave", offsetof(PointState, slave), 4, "f8");
+  add("axes", offsetof(PointState, axes), 4, "f8");
+  add("spin", offsetof(PointState, spin), 1, "f8");
+  add("turn", offsetof(PointState, turn), 1, "f8");
   add("gap", offsetof(PointState, gap), 1, "f8");
   add("offset", offsetof(PointState, offset), 1, "f8");
   add("multiplier", offsetof(PointState, multiplier), 1, "f8");

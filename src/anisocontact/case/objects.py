@@ -38,10 +38,6 @@ __all__ = [
 ]
 
 
-#: How the history enters a step where the master is meshed.
-_ON_FACETS = "transport"
-
-
 class Laws(Protocol):
     """What an interface is made of: the tables of a contact."""
 
@@ -163,11 +159,7 @@ def pair_law(section: Laws, place: str, auto: float = 1.0) -> PairLaw:
         InputError: As of `interface`, or an evolution that meshed masters do not have.
     """
     with within(place):
-        if section.evolution != _ON_FACETS:
-            raise InputError(
-                f'"{section.evolution}" given, a meshed master has "{_ON_FACETS}" only', "evolution"
-            )
-        law = PairLaw(*_laws(section, auto))
+        law = PairLaw(*_laws(section, auto), evolution=section.evolution)
         law.pairs()  # the core judges how the values go together
         return law
 

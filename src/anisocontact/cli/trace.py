@@ -51,6 +51,9 @@ def _drive_into(folder: Path, trace: Trace) -> int:
         pictures=trace.case.output.pictures,
         case=trace.text,
     )
+    for run in (history, *compared.values()):
+        if run.warning:
+            say(f"warning: {run.warning}", sys.stderr)
     if message:
         say(f"error: {message}; what converged is in {folder}", sys.stderr)
         return STOPPED

@@ -114,7 +114,7 @@ class Contact(ContactRecord):
         self._base: Base | None = None
         points = self.quadrature.reference
         self._facets, self.facet_size = facets, facet_size(model, slave)
-        self._carries = isinstance(interface, Interface) and interface.takes_slave()
+        self._sees_slave = isinstance(interface, Interface) and interface.takes_slave()
         self._slave = self._surface(self.quadrature.tangents)
         state = adjusted(interface.initial_state(points), adjust)
         start = self._respond(state, points, 1.0)
@@ -147,7 +147,7 @@ class Contact(ContactRecord):
         """
         way = self.quadrature.at_points(u)
         x = self.quadrature.reference + way
-        moved = self.quadrature.moved(u) if self.current_area or self._carries else None
+        moved = self.quadrature.moved(u) if self.current_area or self._sees_slave else None
         if moved is not None:
             self._slave = self._surface(moved.tangents)
         self._moved = moved if self.current_area else None
@@ -198,7 +198,7 @@ class Contact(ContactRecord):
         blocks = self.quadrature.facet_matrices(-self.trial.tangent, self.current.areas)
         if self._moved is not None:
             blocks -= self._moved.area_matrices(self.trial.traction)
-        if self._carries:
+        if self._sees_slave:
             blocks -= self.quadrature.tangent_matrices(self.trial.tangent_slave, self.current.areas)
         return [(self.quadrature.nodes, self.quadrature.nodes, blocks)]
 
@@ -378,7 +378,7 @@ class Contact(ContactRecord):
 
     def _surface(self, tangents: Floats) -> SlaveSurface | None:
         """The slave with its tangents, (m, q, 2, 3), where it carries directions."""
-        if not self._carries:
+        if not self._sees_slave:
             return None
         quadrature = self.quadrature
         return SlaveSurface(

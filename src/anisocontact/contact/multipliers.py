@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from anisocontact.augmentation import NEWTON, Augmentation
 from anisocontact.errors import InputError
-from anisocontact.interface import STATUS, Interface, Response, State
+from anisocontact.interface import STATUS, VECTOR_FORMS, Interface, Response, State
 from anisocontact.python_law import PythonInterface
 from anisocontact.python_pair import PYTHON_LAWS, MeshedLaw
 
@@ -60,9 +60,10 @@ def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
             f'"{law.adhesion.named[0]}" given, an augmented contact needs "elastic"',
             "adhesion.model",
         )
-    if isinstance(law, Interface) and law.evolution != "transport":
+    if isinstance(law, Interface) and law.evolution not in VECTOR_FORMS:
+        allowed = " or ".join(f'"{name}"' for name in VECTOR_FORMS)
         raise InputError(
-            f'"{law.evolution}" given, an augmented contact needs "transport"', "evolution"
+            f'"{law.evolution}" given, an augmented contact needs {allowed}', "evolution"
         )
     if augmentation.multipliers == NEWTON and not follows(augmentation, law):
         raise InputError(
@@ -109,6 +110,15 @@ class Frames:
     def moved(self, contra: Floats) -> Floats:
         """Vectors (n, 3) of contravariant components (n, 2)."""
         return np.asarray(np.einsum("ni,nid->nd", contra, self.tangents))
+
+    def chord(self, path: Floats, spin: Floats) -> Floats:
+        """Chords (n, 3) of the paths that they span where the slave turns by `spin`, (n,)."""
+        half = 0.5 * spin
+        along = np.divide(half, np.tan(half), out=np.ones_like(half), where=half != 0.0)
+        across = np.cross(self.normal, path)
+        return np.asarray(
+            (along[:, None] * path - half[:, None] * across) / (along**2 + half**2)[:, None]
+        )
 
     def turned_to(self, other: Frames, vectors: Floats) -> Floats:
         """Tangent vectors turned with the least rotation of the normal, (n, 3)."""

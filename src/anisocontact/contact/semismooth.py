@@ -138,7 +138,7 @@ class Semismooth(Multipliers):
             state["stored"] = np.einsum("nid,nd->ni", step.before.tangents, shifted[:, 1:])
             kept = step.before.turned_to(step.now, step.before.moved(step.start["elastic"]))
             more = step.now.moved(trial["elastic"]) - kept
-            slip += np.where(step.remembers, more, 0.0)
+            slip += np.where(step.remembers, step.now.chord(more, trial["spin"]), 0.0)
         slip[step.answer.pressure == 0.0] = 0.0
         return state, (1.0 - 1.0 / self.ratio) * slip
 

@@ -100,6 +100,7 @@ def drive(
         np.array([row for row, _ in rows], dtype=STEP),
         np.array([p for _, p in rows], dtype=POINT).reshape(len(rows), len(runner.group.areas)),
         runner.group.areas,
+        runner.turn,
     )
     if message:
         raise StoppedError(message, history)
@@ -124,6 +125,7 @@ class _Runner:
     def __init__(self, interface: PointInterface, load: Load, group: Group) -> None:
         self.interface, self.load, self.group = interface, load, group
         self.stiffness = 0.0
+        self.turn = 0.0  # the largest of all steps
         self.now = self._free()
 
     def _free(self) -> _Accepted:
@@ -166,6 +168,8 @@ class _Runner:
                 pending.append(0.5 * (self.now.time + to))
                 continue
             self.now = new
+            touching = new.state[new.state["status"] > 0]
+            self.turn = max(self.turn, float(touching["turn"].max(initial=0.0)))
             pending.pop()
             iterations += int(new.step["iterations"])
             substeps += 1

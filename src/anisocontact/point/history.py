@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.interface import STATUS, Response
+from anisocontact.limits import FOLLOWED
 from anisocontact.point.balance import Pose
 from anisocontact.surfaces import Floats, Surface
 
@@ -84,10 +86,15 @@ class History:
             the time integration, of first order in the step.
         points: One row a step and point, (m, n) of `POINT`.
         areas: Area of each point, (n,).
+        turn: Largest angle by which normal or axes of adhesion turned at a point in contact along
+            one step, radian.
     """
 
-    def __init__(self, surface: Surface, steps: Table, points: Table, areas: Floats) -> None:
+    def __init__(
+        self, surface: Surface, steps: Table, points: Table, areas: Floats, turn: float = 0.0
+    ) -> None:
         self.surface, self.steps, self.points, self.areas = surface, steps, points, areas
+        self.turn = turn
 
     def __len__(self) -> int:
         return len(self.steps)
@@ -104,6 +111,16 @@ class History:
         """Closest points of the surface, (m, n, 3) [length]."""
         return np.asarray(
             self.points["position"] - self.points["gap"][..., None] * self.points["normal"]
+        )
+
+    @property
+    def warning(self) -> str:
+        """What the user should look at, a line; empty if nothing."""
+        if self.turn <= FOLLOWED:
+            return ""
+        return (
+            f"normal or axes of adhesion turned by {math.degrees(self.turn):.0f} degrees in one "
+            f"step; forces follow up to {math.degrees(FOLLOWED):.0f} well: take more steps"
         )
 
     def to_dict(self) -> dict[str, npt.NDArray[Any]]:

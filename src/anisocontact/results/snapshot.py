@@ -100,6 +100,7 @@ class Observer:
             "max_pressure": contact.extreme(last.pressure),
             "max_penetration": contact.extreme(-last.gap),
             "max_elastic_slip": contact.extreme(np.linalg.norm(slips[:, :3], axis=1)),
+            "max_turn": contact.extreme(contact.state["turn"]),
             "area": area,
             "elastic_slip": mean[:3].tolist(),
             "slip": float(mean[3]),

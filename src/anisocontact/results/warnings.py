@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from anisocontact.contact import AnyContact, coarse_slaves, initial_overlap
 from anisocontact.contact.hints import MISSED
 from anisocontact.interface import STATUS
+from anisocontact.limits import FOLLOWED
 from anisocontact.solver import Accepted
 from anisocontact.solver.imbalance import LARGE
 from anisocontact.solver.rotations import CURE, WARNED
+from anisocontact.solver.turned import MARGIN
 
 __all__ = ["at_end", "at_start", "of_models", "soft", "worst", "worst_of_models"]
 
+#: Angle along a part of an increment beyond which it is worth a warning, radian.
+TURNED = MARGIN * FOLLOWED
 #: Share of the facet size beyond which a penetration or an elastic slip is worth a warning.
 DEEP = 0.05
 #: Share of the approach of the bodies beyond which a penetration is worth a warning.
@@ -46,7 +51,7 @@ def at_start(contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]]) ->
 
 
 def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> dict[str, float]:
-    """Largest penetration and elastic slip of a contact over the run, and when they occurred.
+    """Largest penetration, elastic slip and turn of a contact over the run, and when they occurred.
 
     Args:
         entry: Entry of the contact in the summary, with the largest of now.
@@ -54,8 +59,9 @@ def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> d
         time: Time of now.
 
     Returns:
-        "worst_penetration", "worst_elastic_slip", length, and each with "_time"; the penetration
-        also with "_approach", how far the bodies had come towards each other since they touched.
+        "worst_penetration", "worst_elastic_slip", length, "worst_turn", radian, and each with
+        "_time"; the penetration also with "_approach", how far the bodies had come towards each
+        other since they touched.
     """
     first = before.get("initial_gap", entry["least_gap"])
     found: dict[str, float] = {"initial_gap": first}
@@ -64,7 +70,7 @@ def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> d
         found[come] = entry["approach"] - first
     else:
         found[come] = before[come]
-    for name in ("penetration", "elastic_slip"):
+    for name in ("penetration", "elastic_slip", "turn"):
         key, when, now = f"worst_{name}", f"worst_{name}_time", entry[f"max_{name}"]
         grown = key not in before or now > before[key]
         found |= {key: now, when: time} if grown else {key: before[key], when: before[when]}
@@ -137,6 +143,14 @@ def at_end(
                     f"{entry[f'{key}_time']:.4g}; {cure} makes it smaller, "
                     'method = "augmented" takes it away'
                 )
+        if entry["worst_turn"] > TURNED:
+            found.append(
+                f"{_pair(entry)}: normal, axes of adhesion or slave turned by "
+                f"{math.degrees(entry['worst_turn']):.0f} degrees in one part of an increment, at "
+                f"time {entry['worst_turn_time']:.4g}; friction follows up to "
+                f"{math.degrees(FOLLOWED):.0f} well: more increments or cuts make it smaller, a "
+                "finer or smooth master where its facets meet at such angles"
+            )
         if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
             swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
             found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap]))

@@ -13,6 +13,7 @@ from anisocontact.solver.newton import NewtonResult
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Culprit
 from anisocontact.solver.strategy import AnyNewton
+from anisocontact.solver.turned import TurnWatch
 from anisocontact.solver.watch import StatusWatch
 
 #: Smallest share of a correction that is taken while the status of points alternates.
@@ -77,9 +78,13 @@ class Attempts:
         problem: The problem.
         newton: Its solver.
         watch: Is told of every iteration.
+        turns: Judges how far points in contact turn.
     """
 
-    def __init__(self, problem: Problem, newton: AnyNewton, watch: StatusWatch) -> None:
+    def __init__(
+        self, problem: Problem, newton: AnyNewton, watch: StatusWatch, turns: TurnWatch
+    ) -> None:
+        self._turns = turns
         self._problem = problem
         self._newton = newton
         self._watch = watch
@@ -105,6 +110,8 @@ class Attempts:
             result, culprits = self._attempt(way)
             spent += result.iterations
             if not result.reason:
+                return Outcome(replace(result, iterations=spent))
+            if self._turns.objects:  # nothing but a smaller part can help
                 return Outcome(replace(result, iterations=spent))
             found = _graver(found, culprits)
             if way is ways[-1] and found[:1] and found[0].kind == "flipping":
@@ -134,7 +141,7 @@ class Attempts:
     def _attempt(self, way: _Way) -> tuple[NewtonResult, list[Culprit]]:
         problem = self._problem
         self._watch.clear()
-        self._share, self._final = 1.0, False
+        self._share, self._final, self._turns.objects = 1.0, False, False
         x = way.start.copy()
         try:
             if way.flowing:
@@ -146,6 +153,8 @@ class Attempts:
                 damping = self._damping if way.damped else None
                 result = self._newton.solve(x, way.full_steps, damping)
             refusal = None if result.reason else refused(problem, x)
+            if not result.reason and refusal is None:
+                refusal = self._turns.objection(problem)
             if not result.reason and refusal is None:
                 problem.commit(x)
                 return result, []

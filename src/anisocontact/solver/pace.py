@@ -70,6 +70,15 @@ class Pace:
         """Whether a smaller part than the next one is not allowed, or not likely to help."""
         return self.part <= max(SMALL, self.limits.smallest) or self.cuts >= self.limits.cuts
 
+    @property
+    def cuttable(self) -> bool:
+        """Whether the limits allow to make the next part smaller."""
+        return self.cuts < self.limits.cuts and self.part > self.limits.smallest
+
+    def bound(self, size: float) -> None:
+        """Make the next parts no larger than a size, as far as the limits allow."""
+        self.size = min(self.size, max(size, self.limits.smallest))
+
     def advance(self, iterations: int) -> None:
         """Go on behind a part that has converged.
 
@@ -88,7 +97,7 @@ class Pace:
 
     def cut(self) -> bool:
         """Make the next part smaller; False, and nothing changed, where a limit forbids it."""
-        if self.cuts >= self.limits.cuts or self.part <= self.limits.smallest:
+        if not self.cuttable:
             return False
         self.size = max(CUT * self.part, self.limits.smallest)
         self.cuts += 1

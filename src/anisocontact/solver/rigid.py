@@ -95,6 +95,12 @@ class RigidBodies:
         for body, reaction in zip(self.bodies, reactions, strict=True):
             self._drives[body].begin(step, body.accepted.values, reaction)
 
+    def prescribed_turn(self, step: Step) -> float:
+        """Largest rotation along the step that is prescribed of a body or facet group, radian."""
+        ends = [d.values(1.0) - d.values(0.0) for d in self._drives.values()]
+        turns = [float(np.linalg.norm(end[3:])) for end in ends]
+        return max([*turns, *(abs(turn.angle) for turn in step.rotation.values())], default=0.0)
+
     def set_level(self, fraction: float) -> None:
         """Motions and loads at a fraction of the step."""
         self._level = fraction

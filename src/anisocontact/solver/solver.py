@@ -25,6 +25,7 @@ from anisocontact.solver.persistent import Arrays, Persistent, under
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Accepted, Cut, Progress, Step, StoppedError
 from anisocontact.solver.strategy import AnyNewton, choose, make_newton
+from anisocontact.solver.turned import PRESCRIBED, TurnWatch
 from anisocontact.solver.watch import StatusWatch
 from anisocontact.strategies import AUTO, CONDENSED
 
@@ -116,6 +117,7 @@ class Solver:
         self._on_cut: Callable[[Cut], None] | None = None
         self._watch = StatusWatch(problem.contacts)
         self._energy = EnergyWatch(problem)
+        self._turns = TurnWatch()
 
     def run(
         self,
@@ -153,7 +155,7 @@ class Solver:
             note,
             self._kept,
         )
-        attempts, alarms = Attempts(self.problem, newton, self._watch), Alarms()
+        attempts, alarms = Attempts(self.problem, newton, self._watch, self._turns), Alarms()
         try:
             while self.place.step < len(self.steps):
                 step = self.steps[self.place.step]
@@ -178,6 +180,7 @@ class Solver:
         numbers = asdict(pace)
         del numbers["limits"]
         numbers |= {"step": place.step, "time": place.time, "begun": place.begun}
+        numbers["kink"] = self._turns.kink
         kept.common.update({f"place.{name}": np.array(v) for name, v in numbers.items()})
         if place.before is not None:
             kept.nodal["before"], kept.common["before"] = self.problem.layout.split(place.before)
@@ -189,6 +192,7 @@ class Solver:
         numbers = {name: v.item() for name, v in kept.common.items() if name.startswith("place.")}
         numbers = {name.removeprefix("place."): v for name, v in numbers.items()}
         step, time, begun = (numbers.pop(name) for name in ("step", "time", "begun"))
+        self._turns.kink = numbers.pop("kink")
         before = None
         self.problem.restore(kept, self.steps[: step + begun])
         self._energy.restore(kept.common["energy_watch"])
@@ -206,7 +210,11 @@ class Solver:
         place, pace = self.place, self.place.pace
         if not place.begun:
             self.problem.begin(step)
+            self._turns.begin()
             place.begun = True
+        prescribed = self.problem.rigid.prescribed_turn(step) / step.increments
+        largest = PRESCRIBED / max(prescribed, PRESCRIBED)
+        pace.bound(largest)
         while pace.increment <= step.increments:
             last = self.problem.accepted()
             outcome = self._part(attempts, step, last)
@@ -214,9 +222,10 @@ class Solver:
             if outcome.result.reason:
                 self._cut(step, outcome)
                 continue
-            increment, done = pace.increment, pace.end
+            increment, done, part = pace.increment, pace.end, pace.part
             accepted = self._accepted(step, increment, done, outcome.result)
             pace.advance(outcome.result.iterations)
+            pace.bound(min(self._turns.allowed(part), largest))
             place.before, place.spent = last, 0
             yield accepted
 
@@ -230,6 +239,7 @@ class Solver:
         if before is not None:
             ratio = pace.part / pace.last
             first = (1.0 + ratio) * last - ratio * before
+        self._turns.permitted = pace.cuttable
         return attempts.solve(first, last, pace.small)
 
     def _cut(self, step: Step, outcome: Outcome) -> None:

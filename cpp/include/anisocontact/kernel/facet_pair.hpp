@@ -58,13 +58,14 @@ class PairAxes {
 
 /// Writes all derivatives of a point that touches: of what `foot` and `committed` say of the
 /// geometry and `r` of the law.
-inline void put_slopes(Footing& foot, const PairPoint& p, const Couple& couple,
-                       const Dual<1>& pressure, const FrameReaction& r, const LawAxes& axes,
-                       const CommittedPoint* committed, PairSlopes& d) noexcept {
+inline void put_slopes(const InterfaceLaw& law, Footing& foot, const PairPoint& p,
+                       const Couple& couple, const Dual<1>& pressure, const FrameReaction& r,
+                       const LawAxes& axes, const CommittedPoint* committed,
+                       PairSlopes& d) noexcept {
   const ContactPlane& plane = foot.plane;
   foot.follow(p);
   foot.follow(d);
-  put_friction_forms(r, axes, plane, committed, d.friction);
+  put_friction_forms(law, r, axes, plane, committed, d.friction);
   for (Form& f : d.friction) foot.expand(f, d);
   d.along_friction[0] = plane.t;
   d.direction(0, NearForm::gap) = pressure.d[0] * plane.n;
@@ -117,12 +118,14 @@ PairResult update_pair(const InterfaceLaw& law, const PointState& state, const P
   put_axes(axes, out.adhesion_axes, out.friction_axes);
   std::optional<CommittedPoint> history;
   if (state.facet >= 0)
-    history.emplace(plane, surface::tangent_plane(p.before), p.master.now.position, state);
+    history.emplace(plane, surface::tangent_plane(p.before), p.master.now.position, state, &p.own,
+                    looks_back(law.evolution));
   const CommittedPoint* committed = history ? &*history : nullptr;
-  const FrameInput in = frame_input(gap, dt, pressure, committed, axes, plane);
+  const FrameInput in = frame_input(law, gap, dt, pressure, committed, axes, plane);
   const FrameReaction r = react.template at<tangent>(law, state, in);
   if (r.failure != Failure::none) return fail(r.failure);
-  out.state = in_basis(r, state, p.master.xi, plane, foot.facet());
+  out.state = in_basis(r, state, p.master.xi, plane, foot.facet(), committed,
+                       companions(law, &p.own, axes));
   out.state.facet = p.facet;
   const Vec3<double> friction = plane.spatial(r.traction);
   const Couple couple(foot, friction);
@@ -130,7 +133,7 @@ PairResult update_pair(const InterfaceLaw& law, const PointState& state, const P
   for (std::size_t j = 0; j < 2; ++j) out.couple[j] = couple.on_tangent(j);
   if constexpr (tangent)
     with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
-      detail::put_slopes(foot, p, couple, pressure, r, axes, committed, *d);
+      detail::put_slopes(law, foot, p, couple, pressure, r, axes, committed, *d);
     });
   return out;
 }

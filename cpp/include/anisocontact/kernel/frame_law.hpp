@@ -14,7 +14,7 @@ namespace anisocontact::kernel {
 using Flat = std::array<double, 2>;
 
 /// Numbers that the tangential force depends on. Pairs are components of vectors along t_1, t_2, or
-/// the angles of the two axes of a field.
+/// the angles of the two axes of a field; of adhesion of those that its tensors have.
 enum class Slope : std::size_t {
   gap = 0,
   increment = 1,
@@ -34,6 +34,7 @@ struct FrameInput {
   Flat increment;                     ///< of the slip over the whole step
   std::array<Flat, 2> adhesion_axes;  ///< unit vectors
   std::array<Flat, 2> friction_axes, second_axes;
+  std::array<Flat, 2> rate_axes;  ///< of the tensors of adhesion: halfway, or those of now
 };
 
 struct FrameReaction {
@@ -56,8 +57,7 @@ namespace detail {
 
 /// N and dN/dg.
 inline Dual<1> pressure_of(const InterfaceLaw& l, const PointState& state, double gap, double dt) {
-  return law::pressure(law::normal_model(l.normal), Dual<1>::variable(gap, 0), state.gap,
-                       state.pressure, dt, state.multiplier);
+  return normal_pressure(law::normal_model(l.normal), state, Dual<1>::variable(gap, 0), dt);
 }
 
 /// Unit vector whose angle is variable i of S, if S has variables.
@@ -84,14 +84,17 @@ Tangent2<S, P, P> flat_metric() {
 
 /// The trial force and what it is made of.
 struct FrameTrial {
-  law::AxesComponents<double> axes;
+  law::AxesComponents<double> axes;  ///< of the tensors
   law::LinearTensors<double> tensors;
   law::Trial<double> trial;
 };
 
+inline law::AxesComponents<double> frame_axes(const std::array<Flat, 2>& e) {
+  return {turning<double, Place::co>(e, 0), turning<double, Place::contra>(e, 0)};
+}
+
 inline FrameTrial frame_trial(const InterfaceLaw& l, const FrameInput& in, const Flat& increment) {
-  const law::AxesComponents<double> axes{turning<double, Place::co>(in.adhesion_axes, 0),
-                                         turning<double, Place::contra>(in.adhesion_axes, 0)};
+  const auto axes = frame_axes(in.rate_axes);
   const auto tensors = law::pull_back(law::linear_model(l.adhesion), axes);
   return {axes, tensors,
           law::trial(tensors, {in.stored}, {in.elastic}, Vector<double>{increment}, in.dt)};
@@ -132,7 +135,7 @@ inline TrialSlopes trial_slopes(const InterfaceLaw& l, const FrameInput& in, con
     for (std::size_t j = 0; j < 2; ++j) q[i][j] = m.b[i][j] + in.dt * m.c[i][j];
   TrialSlopes s;
   for (std::size_t k = 0; k < 2; ++k) {
-    const Flat& e = in.adhesion_axes[k];
+    const Flat& e = in.rate_axes[k];
     const Covector<double> de{{-e[1], e[0]}};
     const CoCo<double> dq = turned(q, k, t.axes.lower, de);
     Covector<double> force = dq * increment;
@@ -150,15 +153,23 @@ inline TrialSlopes trial_slopes(const InterfaceLaw& l, const FrameInput& in, con
   return s;
 }
 
-/// Friction tensor and axes; in S with variables their angles are those from `first` on. `Two`:
-/// whether there may be a second field.
-template <bool Two, class S>
-void put_friction(const InterfaceLaw& l, const FrameInput& in, std::size_t first,
-                  law::SlideProblem<S>& p) {
-  p.axes = turning<S>(in.friction_axes, first);
-  auto second = p.axes;
-  if constexpr (Two)
-    if (l.friction_directions_second.field) second = turning<S>(in.second_axes, first + 2);
+/// Unit vectors at fixed angles.
+template <class S>
+std::array<Vector<S>, 2> fixed(const std::array<Flat, 2>& e) {
+  return {constant<S>(Vector<double>{e[0]}), constant<S>(Vector<double>{e[1]})};
+}
+
+/// Axes of the second surface, the first ones where it has no field.
+template <class S>
+std::array<Vector<S>, 2> second_axes(const InterfaceLaw& l, const FrameInput& in) {
+  return fixed<S>(l.friction_directions_second.field ? in.second_axes : in.friction_axes);
+}
+
+/// Friction tensor and axes.
+template <class S>
+void put_friction(const InterfaceLaw& l, const std::array<Vector<S>, 2>& axes,
+                  const std::array<Vector<S>, 2>& second, law::SlideProblem<S>& p) {
+  p.axes = axes;
   p.a_co = flat_metric<S, Place::co>();
   p.friction = law::friction_tensor(l.friction, flat_metric<S, Place::contra>(), p.axes, second);
 }
@@ -172,7 +183,8 @@ std::array<Flat, 3> slide_slopes(const InterfaceLaw& l, const FrameInput& in, co
                                  const law::SlideResult<double>& solved, FrameReaction& r) {
   using S = Dual<2 + Angles>;  // two angles of adhesion, angles of friction
   law::SlideProblem<S> d;
-  put_friction<(Angles > 2)>(l, in, 2, d);
+  const auto axes = turning<S>(in.friction_axes, 2);
+  put_friction(l, axes, Angles > 2 ? turning<S>(in.second_axes, Angles) : axes, d);
   for (std::size_t i = 0; i < 2; ++i)
     for (std::size_t j = 0; j < 2; ++j) {
       d.stiffness(i, j) = S(p.stiffness(i, j));
@@ -207,19 +219,50 @@ inline void add_trial_slopes(const FrameTrial& t, const TrialSlopes& d, double d
     }
 }
 
+/// Change of the force with the time that the law acts, of a point that came into contact.
+inline Covector<double> by_time(const InterfaceLaw& l, const FrameInput& in, const FrameTrial& t,
+                                const law::SlideProblem<double>& p,
+                                const law::SlideResult<double>& solved,
+                                const std::array<Flat, 3>& by_force, bool slips) {
+  const CoContra<double>& response = t.trial.response;
+  const CoCo<double>& stiffness = t.trial.stiffness;
+  const Covector<double> trial =
+      response * (t.tensors.c * Vector<double>{in.increment} - t.tensors.a * t.trial.traction);
+  Covector<double> out{{by_force[0][0] * trial[0] + by_force[1][0] * trial[1],
+                        by_force[0][1] * trial[0] + by_force[1][1] * trial[1]}};
+  if (!slips) return out;
+  const CoCo<double> change = -(response * (t.tensors.c + t.tensors.a * stiffness));
+  using S = Dual<1>;
+  law::SlideProblem<S> d;
+  put_friction(l, fixed<S>(in.friction_axes), second_axes<S>(l, in), d);
+  for (std::size_t i = 0; i < 2; ++i)
+    for (std::size_t j = 0; j < 2; ++j) {
+      d.stiffness(i, j) = S(stiffness(i, j));
+      d.stiffness(i, j).d[0] = change(i, j);
+    }
+  return out + std::visit(
+                   [&](const auto& rule) {
+                     return rule.tensor_tangent(p, solved, rule.tangent(p, solved), d)[0];
+                   },
+                   l.rule);
+}
+
 /// Writes what the law answers to `r`, which is new.
 template <bool tangent>
 void react(const InterfaceLaw& l, const PointState& state, FrameInput in,
            FrameReaction& r) noexcept {
-  Dual<1> share(1.0);
+  Dual<1> share(1.0), time(in.dt);
   const Flat whole = in.increment;
+  const double dt = in.dt;
   if (!remembers(state)) {
     share = contact_fraction(state, Dual<1>::variable(in.gap, 0));
+    time = time_in_contact(share, dt);
+    in.dt = time.v;
     for (double& x : in.increment) x *= share.v;
   }
   const FrameTrial t = frame_trial(l, in, in.increment);
   law::SlideProblem<double> p;
-  put_friction<true>(l, in, 0, p);
+  put_friction(l, fixed<double>(in.friction_axes), second_axes<double>(l, in), p);
   p.stiffness = t.trial.stiffness;
   p.trial = t.trial.traction;
   p.increment = {in.increment};
@@ -235,7 +278,7 @@ void react(const InterfaceLaw& l, const PointState& state, FrameInput in,
   r.increment = in.increment;
   r.state = advanced(l, state,
                      {solved.traction, solved.stored, p.elastic, p.increment, solved.slip, p.a_co,
-                      t.axes, in.gap, in.pressure, in.dt, status});
+                      frame_axes(in.adhesion_axes), in.gap, in.pressure, dt, in.dt, status});
   if constexpr (tangent) {
     const TrialSlopes by_angle = trial_slopes(l, in, t);
     std::array<Flat, 3> by_force{Flat{1.0, 0.0}, Flat{0.0, 1.0}, Flat{0.0, 0.0}};
@@ -246,9 +289,12 @@ void react(const InterfaceLaw& l, const PointState& state, FrameInput in,
                      ? slide_slopes<4>(l, in, by_angle, p, solved, r)
                      : slide_slopes<2>(l, in, by_angle, p, solved, r);
     add_trial_slopes(t, by_angle, in.dt, by_force, r);
+    Covector<double> later{};
+    if (time.d[0] != 0.0 && t.tensors.in_time)
+      later = by_time(l, in, t, p, solved, by_force, status == Contact::slip);
     for (std::size_t a = 0; a < 2; ++a) {
       double& by_gap = r.slope(Slope::gap, 0)[a];
-      by_gap = by_force[2][a] * in.d_pressure;
+      by_gap = by_force[2][a] * in.d_pressure + later[a] * time.d[0];
       for (std::size_t j = 0; j < 2; ++j) {
         by_gap += r.slope(Slope::increment, j)[a] * whole[j] * share.d[0];
         r.slope(Slope::increment, j)[a] *= share.v;

@@ -45,7 +45,7 @@ inline Framed framed(const surface::AnySurface& surface, const law::NormalModel&
     out.elastic[i] = elastic.dot(out.frame[i]);
   }
   out.gap = k.gap;
-  out.pressure = law::pressure(normal, k.gap, state.gap, state.pressure, dt, state.multiplier);
+  out.pressure = normal_pressure(normal, state, k.gap, dt);
   out.xi = value(k.xi);
   return out;
 }
@@ -80,7 +80,7 @@ inline PointState commit(const law::NormalModel& normal, const PointState& old, 
   s.slip_accumulated += std::hypot(r.slip[0], r.slip[1]);
   s.dissipation += r.dissipation;
   s.energy_adhesion = r.energy;
-  const auto e = law::energies(normal, s.gap, s.gap - std::min(old.gap, 0.0), s.pressure, dt);
+  const auto e = normal_energies(normal, old, s.gap, s.pressure, dt);
   s.energy_normal = e.elastic;
   s.dissipation_viscous += e.viscous;
   s.status = static_cast<std::int64_t>(r.status);

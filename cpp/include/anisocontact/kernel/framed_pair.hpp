@@ -74,7 +74,7 @@ inline PointState answered_state(const law::NormalModel& normal, const PointStat
   s.slip_accumulated += std::hypot(a.slip[0], a.slip[1]);
   s.dissipation += a.dissipation;
   s.energy_adhesion = a.energy;
-  const auto e = law::energies(normal, s.gap, s.gap - std::min(old.gap, 0.0), s.pressure, in.dt);
+  const auto e = normal_energies(normal, old, s.gap, s.pressure, in.dt);
   s.energy_normal = e.elastic;
   s.dissipation_viscous += e.viscous;
   s.status = static_cast<std::int64_t>(a.slip == Flat{} ? Contact::stick : Contact::slip);

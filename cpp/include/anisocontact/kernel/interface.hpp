@@ -61,6 +61,30 @@ S contact_fraction(const PointState& state, const S& gap) {
   return gap / (gap - S(state.gap));
 }
 
+/// Time that the law of a point acts in a step: from where the gap closed. Never nothing, so that
+/// a rate keeps its sense.
+template <class S>
+S time_in_contact(const S& fraction, double dt) {
+  constexpr double least = 1e-9;
+  return value(fraction) > least ? fraction * S(dt) : S(least * dt);
+}
+
+/// N of a law with a rate of its own acts from where the gap closed; one that follows the rate of
+/// the gap at once takes the mean rate of the step, for it would jump where the gap closes.
+template <class S>
+S normal_pressure(const law::NormalModel& m, const PointState& state, const S& gap, double dt) {
+  if (m.w == 0.0) return law::pressure(m, gap, state.gap, state.pressure, dt, state.multiplier);
+  const S time = time_in_contact(contact_fraction(state, gap), dt);
+  return law::pressure(m, gap, state.gap, state.pressure, time, state.multiplier);
+}
+
+/// Elastic energy and viscous loss of the normal law in a step that ends at a gap.
+inline law::Energies normal_energies(const law::NormalModel& m, const PointState& old, double gap,
+                                     double pressure, double dt) {
+  const double time = m.w == 0.0 ? dt : time_in_contact(contact_fraction(old, gap), dt);
+  return law::energies(m, gap, gap - std::min(old.gap, 0.0), pressure, time);
+}
+
 /// State of a point that is not in contact: no force, no history but its path.
 template <class S>
 PointState opened(const PointState& old, const Kinematics<S>& k) {
@@ -83,6 +107,30 @@ Transported<S> history(const AnyEvolution& evolution, const PointState& state,
     t.increment = contact_fraction(state, k.gap) * t.increment;
   }
   return t;
+}
+
+/// Time that adhesion acts: the whole step where the point was in contact.
+template <class S>
+S time_of_law(const PointState& state, const Kinematics<S>& k) {
+  if (state.status != static_cast<std::int64_t>(Contact::open)) return S(k.dt);
+  return time_in_contact(contact_fraction(state, k.gap), k.dt);
+}
+
+/// Axes of the tensors of a step. A law in rates takes those halfway from the committed axes, turned
+/// with the normal, to those of now; one that follows at once those of now.
+template <class S>
+std::array<Vec3<S>, 2> axes_of_rate(const AnyEvolution& evolution, const law::LinearModel& model,
+                                    const PointState& state, const Kinematics<S>& k,
+                                    const std::array<Vec3<S>, 2>& now) {
+  using std::sqrt;
+  if (model.w == 0.0 || !has_pair(state.axes) || !looks_back(evolution)) return now;
+  std::array<Vec3<S>, 2> mean = kept_pair(state.axes, k);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const Vec3<S> old = (S(1.0) / sqrt(mean[i].dot(mean[i]))) * mean[i];
+    const Vec3<S> sum = now[i] + (value(old.dot(now[i])) < 0.0 ? Vec3<S>(-old) : old);
+    mean[i] = (S(1.0) / sqrt(sum.dot(sum))) * sum;
+  }
+  return mean;
 }
 
 /// Share of the limit by which a trial force may exceed it and still sticks: a point that has slipped
@@ -115,6 +163,7 @@ struct Solved {
   CoCo<double> a_co;  ///< metric of the basis
   law::AxesComponents<double> adhesion_axes;
   double gap, pressure, dt;
+  double time;  ///< in contact
   Contact status;
 };
 
@@ -132,9 +181,8 @@ inline PointState advanced(const InterfaceLaw& l, const PointState& old, const S
   s.slip_accumulated += std::sqrt(dot(r.slip, r.a_co * r.slip));
   s.dissipation -= dot(r.traction, r.slip);
   const auto tangential = law::energies(law::linear_model(l.adhesion), r.adhesion_axes, r.stored,
-                                        elastic, r.increment - r.slip, r.dt);
-  const auto normal = law::energies(law::normal_model(l.normal), s.gap,
-                                    s.gap - std::min(old.gap, 0.0), s.pressure, r.dt);
+                                        elastic, r.increment - r.slip, r.time);
+  const auto normal = normal_energies(law::normal_model(l.normal), old, s.gap, s.pressure, r.dt);
   s.energy_adhesion = tangential.elastic;
   s.energy_normal = normal.elastic;
   s.dissipation_viscous += tangential.viscous + normal.viscous;
@@ -155,8 +203,7 @@ template <class S, class AxesAt>
 Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinematics<S>& k,
                   const AxesAt& axes_at) {
   Reaction<S> r;
-  r.pressure = law::pressure(law::normal_model(l.normal), k.gap, state.gap, state.pressure, k.dt,
-                             state.multiplier);
+  r.pressure = normal_pressure(law::normal_model(l.normal), state, k.gap, k.dt);
   if (!(value(r.pressure) > 0.0)) {
     r.state = opened(state, k);
     return r;
@@ -170,9 +217,13 @@ Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinemati
     return r;
   }
   const auto adhesion = law::AxesComponents<S>::of(k.now, r.adhesion_axes.e);
-  const auto tensors = law::pull_back(law::linear_model(l.adhesion), adhesion);
+  const auto& model = law::linear_model(l.adhesion);
+  const auto halfway = law::AxesComponents<S>::of(
+      k.now, axes_of_rate(l.evolution, model, state, k, r.adhesion_axes.e));
+  const auto tensors = law::pull_back(model, halfway);
   const Transported<S> t = history(l.evolution, state, k, tensors.b);
-  const auto trial = law::trial(tensors, t.connection, t.stored, t.elastic, t.increment, k.dt);
+  const S time = time_of_law(state, k);
+  const auto trial = law::trial(tensors, t.connection, t.stored, t.elastic, t.increment, time);
   const auto axes = k.now.project_contra(r.friction_axes.e);
   const auto friction =
       law::friction_tensor(l.friction, k.now.a_contra, axes, k.now.project_contra(second.e));
@@ -197,6 +248,7 @@ Reaction<S> react(const InterfaceLaw& l, const PointState& state, const Kinemati
                       value(k.gap),
                       value(r.pressure),
                       k.dt,
+                      value(time),
                       status});
   r.state.xi = value(k.xi).c;
   r.state.origin = origin(state, r.state.xi, value(t.increment));

@@ -179,16 +179,17 @@ PointResult update_in_plane(const Interface& itf, const PointState& state, const
   const LawAxes axes = law_axes(itf.law, axes_at);
   if (!axes.valid()) return fail(Failure::direction);
   const auto before = surface::tangent_plane(surface::jet(itf.surface, state.xi[0], state.xi[1]));
-  const CommittedPoint committed(plane, before, here.jet.position, state);
-  const FrameInput in = frame_input(gap, dt, pressure, &committed, axes, plane);
+  const CommittedPoint committed(plane, before, here.jet.position, state, own,
+                                 looks_back(itf.law.evolution));
+  const FrameInput in = frame_input(itf.law, gap, dt, pressure, &committed, axes, plane);
   const FrameReaction r = react_in_frame<tangent>(itf.law, state, in);
   if (r.failure != Failure::none) return fail(r.failure);
   put_axes(axes, out.adhesion_axes, out.friction_axes);
-  out.state = in_basis(r, state, foot.xi, plane, here);
+  out.state = in_basis(r, state, foot.xi, plane, here, &committed, companions(itf.law, own, axes));
   out.traction = pressure.v * plane.n + plane.spatial(r.traction);
   if constexpr (tangent) {
     std::array<Form, 2> friction;
-    put_friction_forms(r, axes, plane, &committed, friction);
+    put_friction_forms(itf.law, r, axes, plane, &committed, friction);
     const auto forms = traction_forms(friction, r, in, plane);
     const auto dxi = projection::coordinate_gradient(here, foot, x);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -205,8 +206,7 @@ PointResult update_in_plane(const Interface& itf, const PointState& state, const
 template <bool tangent>
 PointResult update(const Interface& itf, const PointState& state, const Vec3<double>& x,
                    const Carrier* own, double dt) noexcept {
-  if (std::holds_alternative<Transport>(itf.law.evolution))
-    return update_in_plane<tangent>(itf, state, x, own, dt);
+  if (in_vectors(itf.law.evolution)) return update_in_plane<tangent>(itf, state, x, own, dt);
   return update_in_basis<std::conditional_t<tangent, Dual<3>, double>>(itf, state, x, dt);
 }
 

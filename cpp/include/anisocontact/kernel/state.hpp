@@ -11,6 +11,9 @@ enum class Contact : std::int64_t { open = 0, stick = 1, slip = 2 };
 /// Why a point could not be updated.
 enum class Failure : std::int64_t { none = 0, projection = 1, direction = 2, law = 3 };
 
+/// Contravariant components of two vectors, one after the other.
+using KeptPair = std::array<double, 4>;
+
 /// Committed state of a point. Plain data of eight-byte fields, so that an array of states is one
 /// block of memory which can be copied, compared and stored whole.
 struct PointState {
@@ -21,6 +24,10 @@ struct PointState {
   std::array<double, 2> stored{};    ///< elastic force the next trial starts from, T_i
   std::array<double, 2> elastic{};   ///< elastic slip, xi^i
   std::array<double, 2> slip{};      ///< last sliding increment, xi^i
+  KeptPair slave{};                  ///< tangents of the slave in the basis at xi, xi^i
+  KeptPair axes{};                   ///< axes of adhesion, xi^i; none without directions
+  double spin{0.0};                  ///< turn of the slave against the master in the last slip
+  double turn{0.0};                  ///< last turn of normal, axes or slave: the largest angle
   double gap{0.0};                   ///< xi^3 less the offset
   double pressure{0.0};              ///< N
   double slip_accumulated{0.0};      ///< length of the sliding path
@@ -34,6 +41,8 @@ struct PointState {
   std::int64_t status{0};
   std::int64_t facet{-1};  ///< facet of a meshed master; -1 on an analytic one
 };
+
+inline bool has_pair(const KeptPair& p) { return p != KeptPair{}; }
 
 /// What a point keeps whatever happens to it.
 inline PointState lasting(const PointState& old) {

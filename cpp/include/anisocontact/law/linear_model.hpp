@@ -41,6 +41,7 @@ template <class S>
 struct LinearTensors {
   double w;
   bool relaxes;  ///< whether A is not zero
+  bool in_time;  ///< whether the force depends on the time of a step: A or C is not zero
   CoContra<S> a;
   CoCo<S> b, c;
 };
@@ -72,7 +73,7 @@ struct AxesComponents {
 template <class S>
 LinearTensors<S> pull_back(const LinearModel& m, const AxesComponents<S>& axes) {
   const bool relaxes = m.a != AxesMatrix{};
-  LinearTensors<S> t{m.w, relaxes, {}, {}, {}};
+  LinearTensors<S> t{m.w, relaxes, relaxes || m.c != AxesMatrix{}, {}, {}, {}};
   const auto& lower = axes.lower;
   const auto dual =
       relaxes ? reciprocal(lower, axes.upper) : std::array<Vector<S>, 2>{};  // of A alone
@@ -95,9 +96,9 @@ struct Trial {
 
 namespace detail {
 
-template <class S>
+template <class S, class Time>
 Trial<S> trial(const LinearTensors<S>& m, const CoContra<S>& response, const Covector<S>& stored,
-               const Vector<S>& elastic, const Vector<S>& increment, double dt) {
+               const Vector<S>& elastic, const Vector<S>& increment, const Time& dt) {
   const CoCo<S> dc = dt * m.c, right = m.b + dc;
   const Covector<S> rhs = m.w * stored + right * increment + dc * elastic;
   return {response * rhs, -(response * right), response};
@@ -107,9 +108,9 @@ Trial<S> trial(const LinearTensors<S>& m, const CoContra<S>& response, const Cov
 
 /// Backward Euler: (w G + dt A) T = w T_n + (B + dt C)(dxi - dxi_sl) + dt C dxi_el,n, where G
 /// carries the connection of the covariant form and is the unit tensor in the transported form.
-template <class S>
+template <class S, class Time>
 Trial<S> trial(const LinearTensors<S>& m, const CoContra<S>& g, const Covector<S>& stored,
-               const Vector<S>& elastic, const Vector<S>& increment, double dt) {
+               const Vector<S>& elastic, const Vector<S>& increment, const Time& dt) {
   const CoContra<S> left = m.w * g + dt * m.a;
   const CoContra<S> inverse = (S(1.0) / det(left)) * (trace(left) * unit<S, Place::co>() - left);
   return detail::trial(m, inverse, stored, elastic, increment, dt);

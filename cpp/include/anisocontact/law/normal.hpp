@@ -15,8 +15,9 @@ struct NormalModel {
 
 /// N at the end of a step; zero where there is a gap or the law would pull. A multiplier is added
 /// to what a law without time gives: N = <lambda - eps_N g> [Alart Curnier 1991].
-template <class S>
-S pressure(const NormalModel& m, const S& gap, double gap_n, double pressure_n, double dt,
+/// `dt` is the time that the law acts, in numbers or in S.
+template <class S, class Time>
+S pressure(const NormalModel& m, const S& gap, double gap_n, double pressure_n, const Time& dt,
            double multiplier = 0.0) {
   if (!(value(gap) < 0.0) && !(multiplier > 0.0)) return S(0.0);
   const double from = std::min(gap_n, 0.0);

@@ -1,0 +1,93 @@
+"""How far points in contact turn along one part of an increment, and what that allows.
+
+A step follows the path of a point to second order in the angle by which normal, axes of adhesion or
+the slave turn along it, see `FOLLOWED`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from anisocontact.limits import FOLLOWED
+from anisocontact.solver.acceptance import Refusal
+from anisocontact.solver.problem import Problem
+
+#: Share of `FOLLOWED` that is let pass: parts are sized for the limit itself.
+MARGIN = 1.05
+#: Prescribed rotation along a part at most: more could pass for another one, radian.
+PRESCRIBED = math.radians(45.0)
+#: Share of its angle that a part cut to a quarter keeps at least where it does not depend on the
+#: size of the part: where a point passes from one facet to another one at an angle.
+_KINK = 0.7
+
+
+@dataclass(frozen=True)
+class Turned:
+    """The largest angle at a point in contact.
+
+    Attributes:
+        angle: Of normal, axes or slave, radian.
+        contact: Name of the contact.
+    """
+
+    angle: float
+    contact: str
+
+    @property
+    def reason(self) -> str:
+        """Why a part is cut, in a line."""
+        return (
+            f"contact {self.contact!r} turns by {math.degrees(self.angle):.0f} degrees in it, "
+            f"{math.degrees(FOLLOWED):.0f} are followed well"
+        )
+
+
+def largest_turn(problem: Problem) -> Turned:
+    """The largest turn of the trial, over all ranks; collective."""
+    found = Turned(0.0, "")
+    for contact in problem.contacts:
+        for one in contact.parts:
+            trial = one.trial
+            angle = one.extreme(trial.state["turn"][trial.status > 0])
+            if angle > found.angle:
+                found = Turned(angle, contact.name)
+    return found
+
+
+class TurnWatch:
+    """Says whether a part turns too far, and how large the next one may be.
+
+    Attributes:
+        permitted: Whether parts may be cut: not at the limits of the cuts.
+        objects: Whether the last part was objected to.
+        kink: Angle up to which turns did not depend on the size of the parts of this step, radian.
+    """
+
+    def __init__(self) -> None:
+        self.permitted, self.objects = True, False
+        self._cut_at = 0.0
+        self.kink = 0.0
+        self._angle = 0.0
+
+    def begin(self) -> None:
+        """Forget what another step has shown."""
+        self._cut_at = self.kink = self._angle = 0.0
+
+    def objection(self, problem: Problem) -> Refusal | None:
+        """Why the trial of a part is to be cut; None where it may be accepted. Collective."""
+        turned = largest_turn(problem)
+        self._angle = turned.angle
+        if self._cut_at > 0.0 and turned.angle > _KINK * self._cut_at:
+            self.kink = max(self.kink, 1.1 * turned.angle)  # cutting does not make it smaller
+        self._cut_at = 0.0
+        if not self.permitted or turned.angle <= max(MARGIN * FOLLOWED, self.kink):
+            return None
+        self._cut_at, self.objects = turned.angle, True
+        return Refusal(turned.reason)
+
+    def allowed(self, part: float) -> float:
+        """Size of the next part after one that was accepted, share of an increment."""
+        if self._angle <= 0.5 * FOLLOWED or self._angle <= self.kink:
+            return 1.0
+        return part * FOLLOWED / self._angle
