@@ -118,7 +118,7 @@ class SlidingRule:
 
 def state_layout() -> list[Any]: ...
 
-state_size: int = 184
+state_size: int = 264
 
 class Interface:
     def __init__(
@@ -155,7 +155,14 @@ class FramedInterface:
         directions: Field | None,
     ) -> None: ...
     def kinematics(
-        self, state: NDArray[numpy.uint8], x: NDArray[numpy.float64], dt: float, threads: int
+        self,
+        state: NDArray[numpy.uint8],
+        x: NDArray[numpy.float64],
+        dt: float,
+        threads: int,
+        own_reference: NDArray[numpy.float64],
+        own_reference_tangents: NDArray[numpy.float64],
+        own_tangents: NDArray[numpy.float64],
     ) -> dict[str, NDArray[Any]]: ...
     def commit(
         self,
@@ -168,6 +175,9 @@ class FramedInterface:
         dissipation: NDArray[numpy.float64],
         energy: NDArray[numpy.float64],
         status: NDArray[numpy.int8],
+        own_reference: NDArray[numpy.float64],
+        own_reference_tangents: NDArray[numpy.float64],
+        own_tangents: NDArray[numpy.float64],
     ) -> Any: ...
     def initial_state(self, x: NDArray[numpy.float64]) -> dict[str, NDArray[Any]]: ...
 

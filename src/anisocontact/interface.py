@@ -42,7 +42,7 @@ __all__ = [
 VECTOR_FORMS = ("transport", "backward-euler")
 
 #: No surface of the slave.
-_POINTS_ALONE = SlaveSurface(np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 2, 3)))
+POINTS_ALONE = SlaveSurface(np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 2, 3)))
 
 
 class PairLaw:
@@ -317,7 +317,7 @@ class Interface:
         x = points(x, 3, rows=len(state))
         if slave is None and self.needs_slave:
             raise InputError("'slave' given, but slave points alone carry none", self.needs_slave)
-        own = (slave or _POINTS_ALONE).arrays
+        own = (slave or POINTS_ALONE).arrays
         r = self.core.update(raw_state(state), x, dt, tangent, self.threads, *own)
         return Response(
             traction=r["traction"],

@@ -19,7 +19,16 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.anisotropy import DirectionField
 from anisocontact.errors import InputError
-from anisocontact.interface import FAILURE, STATE, Response, State, as_state, raw_state
+from anisocontact.interface import (
+    FAILURE,
+    POINTS_ALONE,
+    STATE,
+    Response,
+    SlaveSurface,
+    State,
+    as_state,
+    raw_state,
+)
 from anisocontact.laws import NormalLaw
 from anisocontact.series import History
 from anisocontact.surfaces import Floats, Surface, default_threads, points
@@ -190,8 +199,18 @@ class PythonInterface:
             raise InputError(f"{FAILURE[1]} for the point {x[failed[0]].tolist()}", field="x")
         return with_internal(as_state(r["state"]), np.zeros((len(x), self.law.internal)))
 
+    def takes_slave(self) -> bool:
+        """Whether a surface of the slave would change what is answered: its turn turns the slip."""
+        return True
+
     def update(
-        self, state: State, x: npt.ArrayLike, dt: float = 1.0, *, tangent: bool = True
+        self,
+        state: State,
+        x: npt.ArrayLike,
+        dt: float = 1.0,
+        *,
+        tangent: bool = True,
+        slave: SlaveSurface | None = None,
     ) -> Response:
         """Tractions at new positions; the committed state is not changed.
 
@@ -200,13 +219,15 @@ class PythonInterface:
             x: Slave points, (n, 3) [length].
             dt: Time step [time].
             tangent: Whether dt/dx is wanted.
+            slave: The slave's surface, whose turn against the master turns the slip.
 
         Returns:
             Tractions, tangent and trial state, as of `Interface.update`.
         """
         x = points(x, 3)
         raw = raw_state(common(state))
-        k = self.core.kinematics(raw, x, dt, self.threads)
+        own = (slave or POINTS_ALONE).arrays
+        k = self.core.kinematics(raw, x, dt, self.threads, *own)
         n = len(x)
         frame = k["frame"].reshape(n, 3, 3)
         active = np.flatnonzero((k["pressure"][:, 0] > 0.0) & (k["failure"] == 0))
@@ -216,11 +237,12 @@ class PythonInterface:
         return Response(
             traction=traction,
             tangent=self._tangent(k, frame, active, result) if tangent else np.empty((0, 3, 3)),
-            state=self._commit(raw, x, dt, active, result),
+            state=self._commit(raw, x, dt, active, result, own),
             normal=frame[:, 2].copy(),
             directions_adhesion=_in_contact(frame, active),
             directions_friction=_in_contact(frame, active),
             failure=k["failure"],
+            tangent_slave=_by_slave(k["increment_slave"], frame, active, result),
         )
 
     def _ask(
@@ -268,6 +290,7 @@ class PythonInterface:
         dt: float,
         active: npt.NDArray[np.intp],
         r: LawResult,
+        own: tuple[Floats, Floats, Floats],
     ) -> State:
         n = len(x)
         pairs = {name: np.zeros((n, 2)) for name in ("traction", "stored", "slip")}
@@ -288,6 +311,7 @@ class PythonInterface:
             dissipation,
             energy,
             status,
+            *own,
         )
         internal = np.zeros((n, self.law.internal))
         internal[active] = r.internal
@@ -368,6 +392,24 @@ def with_internal(alone: State, internal: Floats) -> State:
         state[name] = alone[name]
     state["internal"] = internal
     return state
+
+
+def _by_slave(
+    increment: Floats, frame: Floats, active: npt.NDArray[np.intp], r: LawResult
+) -> Floats:
+    """dt/ds_i = e_a (x) dT_a/ds_i by the tangents of the slave, (n, 2, 3, 3); (0, 2, 3, 3) without.
+
+    Args:
+        increment: Derivatives of the slip, (n, 2, 2, 3).
+        frame: Frames, (n, 3, 3).
+        active: Points in contact.
+        r: What the law has answered there.
+    """
+    tangent = np.zeros((len(increment), 2, 3, 3))
+    if len(increment):
+        change = np.einsum("nab,nbij->naij", r.d_increment, increment[active])
+        tangent[active] = np.einsum("nak,naij->nikj", frame[active, :2], change)
+    return tangent
 
 
 def _in_contact(frame: Floats, active: npt.NDArray[np.intp]) -> Floats:

@@ -237,7 +237,7 @@ def evolution_forms() -> tuple[Entry, ...]:
 
     Example:
         >>> [entry.name for entry in evolution_forms()]
-        ['transport', 'covariant', 'incremental', 'total']
+        ['transport', 'backward-euler', 'covariant', 'incremental', 'total']
     """
     return _entries("evolution form", _core.evolution_forms)
 

@@ -64,7 +64,7 @@ WRONG = [
     ('master = "base.top"', 'master = "plate"', "contact[0].pass", '"single" needed'),
     ("pass =", "degree = 31\npass =", "contact[0].degree", "31 given"),
     ("pass =", "degree = 0\npass =", "contact[0].degree", "0 given"),
-    ("pass =", 'evolution = "total"\npass =', "contact[0].evolution", '"transport" only'),
+    ("pass =", 'evolution = "total"\npass =', "contact[0].evolution", '"backward-euler" only'),
     ("coefficients = [0.3, 0.3]", "coefficients = [0.3, 0.1]", "contact[0].friction", "directions"),
 ]
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from anisocontact.errors import InputError
-from anisocontact.interface import Interface
+from anisocontact.interface import Interface, SlaveSurface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.python_law import LawKinematics, LawResult, LawState, PythonInterface
 from anisocontact.surfaces import Surface, make_surface
@@ -78,22 +78,39 @@ def _path(surface: Surface, rng: np.random.Generator) -> list[np.ndarray]:
     return path
 
 
+def _slaves(x: np.ndarray, steps: int, rng: np.random.Generator) -> list[SlaveSurface]:
+    """Slaves that turn and stretch at random, by 0.4 at most entry by entry, from step to step."""
+    start = rng.normal(0.0, 1.0, (len(x), 2, 3))
+    change = rng.uniform(-0.2, 0.2, (steps, len(x), 3, 3)) + np.eye(3)
+    return [SlaveSurface(x, start, start @ one) for one in change]
+
+
+@pytest.mark.parametrize("turning", [False, True], ids=["points", "turning"])
 @pytest.mark.parametrize("name", SURFACES)
-def test_same_as_the_core(name: str) -> None:
+def test_same_as_the_core(name: str, turning: bool) -> None:
     """Forces, states and tangents agree along a path with contact, stick, slip and loss.
 
-    Tolerance 1e-10 relative: rounding of two orders of the same operations over five steps.
+    Also where the slave turns, with the tangent by the tangents of the slave. Tolerance 1e-10
+    relative: rounding of two orders of the same operations over five steps. The angle of `turn`
+    comes from a cosine in the core, 1e-7.
     """
     python, core = _pair(SURFACES[name])
     path = _path(SURFACES[name], np.random.default_rng(3))
     a, b = python.initial_state(path[0]), core.initial_state(path[0])
     seen = set()
-    for x in path:
-        ra, rb = python.update(a, x), core.update(b, x)
+    slaves = _slaves(path[0], len(path), np.random.default_rng(4))
+    for x, each in zip(path, slaves, strict=True):
+        slave = each if turning else None
+        ra, rb = python.update(a, x, slave=slave), core.update(b, x, slave=slave)
         scale = np.abs(rb.traction).max() or 1.0
         assert np.abs(ra.traction - rb.traction).max() <= 1e-10 * scale
         assert np.abs(ra.tangent - rb.tangent).max() <= 1e-10 * max(np.abs(rb.tangent).max(), 1.0)
+        assert ra.tangent_slave.shape == rb.tangent_slave.shape
+        np.testing.assert_allclose(ra.tangent_slave, rb.tangent_slave, rtol=0, atol=1e-10)
         np.testing.assert_array_equal(ra.status, rb.status)
+        np.testing.assert_allclose(ra.state["turn"], rb.state["turn"], rtol=0, atol=1e-7)
+        for f in ("slave", "spin"):
+            np.testing.assert_allclose(ra.state[f], rb.state[f], rtol=0, atol=1e-10)
         for f in ("traction", "elastic", "dissipation", "slip_accumulated", "energy_adhesion"):
             assert np.abs(ra.state[f] - rb.state[f]).max() <= 1e-10 * max(
                 np.abs(rb.state[f]).max(), 1e-3
@@ -101,6 +118,7 @@ def test_same_as_the_core(name: str) -> None:
         seen |= set(rb.status.tolist())
         a, b = ra.state, rb.state
     assert seen == {0, 1, 2}
+    assert (np.abs(a["spin"]).max() > 0.1) == turning
     assert a["internal"].max() > 0.0
 
 

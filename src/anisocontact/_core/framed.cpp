@@ -11,6 +11,7 @@
 
 #include "anisocontact/kernel/parallel.hpp"
 #include "arrays.hpp"
+#include "own_input.hpp"
 #include "rooms.hpp"
 #include "states.hpp"
 #include "types.hpp"
@@ -27,8 +28,11 @@ struct FramedHandle {
   law::AnyNormalLaw normal;
   std::optional<anisotropy::AnyField> directions;
 
-  Framed at(const kernel::PointState& s, const Vec3<double>& x, double dt) const {
-    return kernel::framed(surface, law::normal_model(normal), directions, s, x, dt);
+  Framed at(std::size_t i, const kernel::PointState& s, const Points& x, const OwnInput& own,
+            double dt) const {
+    const kernel::Carrier carrier = own.at(i);
+    return kernel::framed(surface, law::normal_model(normal), directions, s, row3(x.data(), i),
+                          own.given() ? &carrier : nullptr, dt);
   }
 };
 
@@ -50,17 +54,19 @@ struct DualArray {
 };
 
 nb::dict kinematics(const FramedHandle& h, const Bytes& state, const Points& x, double dt,
-                    std::size_t threads) {
+                    std::size_t threads, const Points& own_reference,
+                    const Tangents& own_reference_tangents, const Tangents& own_tangents) {
   const std::size_t n = x.shape(0);
   check_states(state, n);
+  const OwnInput own{own_reference, own_reference_tangents, own_tangents};
   const DualArray frame(n, 9), increment(n, 2), stored(n, 2), elastic(n, 2), gap(n, 1),
       pressure(n, 1);
-  Array<double> xi({n, 2});
+  Array<double> xi({n, 2}), by_slave({own.given() ? n : 0, 2, 2, 3});
   Array<std::int8_t> failure({n});
   {
     nb::gil_scoped_release free;
     kernel::parallel_for(n, threads, [&](std::size_t i) {
-      const Framed f = h.at(load(state.data(), i), row3(x.data(), i), dt);
+      const Framed f = h.at(i, load(state.data(), i), x, own, dt);
       for (std::size_t k = 0; k < 9; ++k)
         frame.put(i, k, f.frame[k / 3][static_cast<Eigen::Index>(k % 3)]);
       for (std::size_t k = 0; k < 2; ++k) {
@@ -68,6 +74,8 @@ nb::dict kinematics(const FramedHandle& h, const Bytes& state, const Points& x, 
         stored.put(i, k, f.stored[k]);
         elastic.put(i, k, f.elastic[k]);
         xi.data[2 * i + k] = f.xi[k];
+        for (std::size_t j = 0; j < 6 && own.given(); ++j)
+          by_slave.data[6 * (2 * i + k) + j] = f.by_slave[k].d[j];
       }
       gap.put(i, 0, f.gap);
       pressure.put(i, 0, f.pressure);
@@ -81,6 +89,7 @@ nb::dict kinematics(const FramedHandle& h, const Bytes& state, const Points& x, 
   elastic.into(r, "elastic");
   gap.into(r, "gap");
   pressure.into(r, "pressure");
+  r["increment_slave"] = by_slave.array;
   r["xi"] = xi.array;
   r["failure"] = failure.array;
   return r;
@@ -88,16 +97,19 @@ nb::dict kinematics(const FramedHandle& h, const Bytes& state, const Points& x, 
 
 nb::object commit(const FramedHandle& h, const Bytes& state, const Points& x, double dt,
                   const Coordinates& traction, const Coordinates& stored, const Coordinates& slip,
-                  const Scalars& dissipation, const Scalars& energy, const Codes& status) {
+                  const Scalars& dissipation, const Scalars& energy, const Codes& status,
+                  const Points& own_reference, const Tangents& own_reference_tangents,
+                  const Tangents& own_tangents) {
   const std::size_t n = x.shape(0);
   check_states(state, n);
+  const OwnInput own{own_reference, own_reference_tangents, own_tangents};
   Array<std::uint8_t> next({n, sizeof(kernel::PointState)});
   const auto pair = [](const Coordinates& a, std::size_t i) -> std::array<double, 2> {
     return {a.data()[2 * i], a.data()[2 * i + 1]};
   };
   for (std::size_t i = 0; i < n; ++i) {
     const auto old = load(state.data(), i);
-    const Framed f = h.at(old, row3(x.data(), i), dt);
+    const Framed f = h.at(i, old, x, own, dt);
     if (f.failure != kernel::Failure::none) {
       store(next.data, i, old);
       continue;
@@ -125,10 +137,12 @@ void bind_framed(nb::module_& m) {
           },
           nb::arg("surface"), nb::arg("normal"), nb::arg("directions").none())
       .def("kinematics", &kinematics, nb::arg("state"), nb::arg("x"), nb::arg("dt"),
-           nb::arg("threads"))
+           nb::arg("threads"), nb::arg("own_reference"), nb::arg("own_reference_tangents"),
+           nb::arg("own_tangents"))
       .def("commit", &commit, nb::arg("state"), nb::arg("x"), nb::arg("dt"), nb::arg("traction"),
            nb::arg("stored"), nb::arg("slip"), nb::arg("dissipation"), nb::arg("energy"),
-           nb::arg("status"))
+           nb::arg("status"), nb::arg("own_reference"), nb::arg("own_reference_tangents"),
+           nb::arg("own_tangents"))
       .def(
           "initial_state",
           [](const FramedHandle& h, const Points& x) { return initial_states(h.surface, x); },

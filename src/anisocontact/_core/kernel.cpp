@@ -12,6 +12,7 @@
 #include "anisocontact/kernel/parallel.hpp"
 #include "anisocontact/kernel/point.hpp"
 #include "arrays.hpp"
+#include "own_input.hpp"
 #include "rooms.hpp"
 #include "states.hpp"
 #include "types.hpp"
@@ -55,27 +56,6 @@ nb::list state_layout() {
   add("facet", offsetof(PointState, facet), 1, "i8");
   return l;
 }
-
-using Tangents = nb::ndarray<const double, nb::shape<-1, 2, 3>, nb::c_contig, nb::device::cpu>;
-
-/// The slave where it has directions: positions in the reference configuration, tangents there and
-/// now. Without rows there are no such directions.
-struct OwnInput {
-  Points reference;
-  Tangents reference_tangents, tangents;
-
-  bool given() const { return reference.shape(0) > 0; }
-  kernel::Carrier at(std::size_t i) const {
-    kernel::Carrier c;
-    if (!given()) return c;
-    c.reference.position = row3(reference.data(), i);
-    for (std::size_t k = 0; k < 2; ++k) {
-      c.reference.d1[k] = row3(reference_tangents.data(), 2 * i + k);
-      c.now.d1[k] = row3(tangents.data(), 2 * i + k);
-    }
-    return c;
-  }
-};
 
 nb::dict update(const InterfaceHandle& h, const Bytes& state, const Points& x, double dt,
                 bool with_tangent, std::size_t threads, const Points& own_reference,

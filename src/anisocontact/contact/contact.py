@@ -114,7 +114,7 @@ class Contact(ContactRecord):
         self._base: Base | None = None
         points = self.quadrature.reference
         self._facets, self.facet_size = facets, facet_size(model, slave)
-        self._sees_slave = isinstance(interface, Interface) and interface.takes_slave()
+        self._sees_slave = interface.takes_slave()
         self._slave = self._surface(self.quadrature.tangents)
         state = adjusted(interface.initial_state(points), adjust)
         start = self._respond(state, points, 1.0)
@@ -309,6 +309,9 @@ class Contact(ContactRecord):
         if self._base is None or np.array_equal(there, self._base_way):
             return
         change = np.einsum("nij,nj->ni", self._base_tangent, there - self._base_way)
+        if self._slave is not None:
+            more = self._slave.tangents @ self._turn() - self._base_slave
+            change += np.einsum("nkij,nkj->ni", self._base_tangent_slave, more)
         state = self._respond(self._start, x, dt).state
         self._start = semismooth.advance(
             self._start,
@@ -324,9 +327,12 @@ class Contact(ContactRecord):
         step = self._step(trial)
         state, slip = semismooth.stiff(step)
         stiff = self._respond(state, trial.points, dt, self._stiff)
-        turn = np.eye(3) if self.body is None else self.body.trial.rotation
+        turn = self._turn()
         self._base_way = self._displaced(way)
         self._base_tangent = turn.T @ stiff.tangent @ turn
+        if self._slave is not None:
+            self._base_slave = self._slave.tangents @ turn
+            self._base_tangent_slave = turn.T @ stiff.tangent_slave @ turn
         lag = np.einsum("nij,nj->ni", self._base_tangent, slip)
         traction = trial.response.traction @ turn
         self._base = Base(semismooth.vector(step), traction, lag)
@@ -341,6 +347,10 @@ class Contact(ContactRecord):
         return np.asarray(
             arms @ (pose.rotation - np.eye(3)) + (way - pose.translation) @ pose.rotation
         )
+
+    def _turn(self) -> Floats:
+        """Rotation of the surface since it was drawn, (3, 3)."""
+        return np.eye(3) if self.body is None else self.body.trial.rotation
 
     def _in_space(self, vectors: Floats) -> Floats:
         return vectors if self.body is None else self.body.to_space(vectors)
@@ -377,7 +387,7 @@ class Contact(ContactRecord):
         return own if self.body is None else own @ self.body.trial.rotation
 
     def _surface(self, tangents: Floats) -> SlaveSurface | None:
-        """The slave with its tangents, (m, q, 2, 3), where it carries directions."""
+        """The slave with its tangents, (m, q, 2, 3), where the laws see it."""
         if not self._sees_slave:
             return None
         quadrature = self.quadrature
@@ -390,10 +400,7 @@ class Contact(ContactRecord):
     def _respond(
         self, state: State, x: Floats, dt: float, master: Master | None = None
     ) -> Response:
-        master = master or self._master
-        if self._slave is None or isinstance(master, PythonInterface):
-            return master.update(state, x, dt)
-        return master.update(state, x, dt, slave=self._slave)
+        return (master or self._master).update(state, x, dt, slave=self._slave)
 
 
 def _checked(model: Model, slave: str, interface: object) -> Ints:

@@ -48,11 +48,8 @@ class MovingInterface:
         """
         body, turn = self._body, self._body.trial.rotation
         y = body.to_body(x)
-        if slave is None or isinstance(self._interface, PythonInterface):
-            answer = self._interface.update(state, y, dt)
-        else:
-            seen = replace(slave, tangents=slave.tangents @ turn)
-            answer = self._interface.update(state, y, dt, slave=seen)
+        seen = None if slave is None else replace(slave, tangents=slave.tangents @ turn)
+        answer = self._interface.update(state, y, dt, slave=seen)
         return replace(
             answer,
             traction=body.to_space(answer.traction),
