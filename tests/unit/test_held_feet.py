@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
 
-from anisocontact.contact import FacetContact
+from anisocontact.contact import FacetContact, TwoHalfPass
 from anisocontact.contact.held_feet import BEYOND, facet_of
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -81,6 +81,48 @@ def test_a_point_far_from_its_facet_is_let_go():
     contact.hold(np.ones(len(left), dtype=bool))
     contact.update(moved(2.0 * BEYOND, -0.02), 1.0)
     assert np.all(contact.footing() != left)
+
+
+def test_points_held_beside_their_closest_are_let_go_once():
+    """In equilibrium they go to the closest facet; where nothing is found they are held as before.
+
+    Requirement: holding changes the way to a state, not the state. A point that is above the facet
+    on which it is held has nothing to be let go for. Tolerance: none, the same operations.
+    """
+    contact, moved, _ = _over_a_valley()
+    contact.update(moved(-0.05, -0.02), 1.0)
+    contact.hold(np.ones(len(contact.footing()), dtype=bool))
+    assert not contact.improve()
+    contact.update(moved(0.05, -0.02), 1.0)
+    held, gap = contact.footing(), contact.trial.gap.copy()
+    assert contact.improve()
+    contact.update(moved(0.05, -0.02), 1.0)
+    assert np.all(contact.footing() != held)
+    np.testing.assert_array_equal(contact.strayed(), 0.0)
+    assert not contact.improve()
+    assert contact.soften()
+    contact.update(moved(0.05, -0.02), 1.0)
+    np.testing.assert_array_equal(contact.footing(), held)
+    np.testing.assert_array_equal(contact.trial.gap, gap)
+    assert not contact.improve()
+    assert not contact.soften()
+
+
+def test_two_half_passes_let_go_in_each():
+    """Each pass lets go what it holds, and holds it again, as above."""
+    single, moved, model = _over_a_valley()
+    law: Any = single.interface
+    contact = TwoHalfPass(model, "block.bottom", "base.top", law=law, degree=1, reach=1.0)
+    contact.update(moved(-0.05, -0.02), 1.0)
+    contact.hold(np.ones(len(contact.footing()), dtype=bool))
+    contact.update(moved(0.05, -0.02), 1.0)
+    held = contact.footing()
+    assert contact.improve()
+    contact.update(moved(0.05, -0.02), 1.0)
+    assert contact.passes[0].footing() != held[0]
+    assert contact.soften()
+    contact.update(moved(0.05, -0.02), 1.0)
+    np.testing.assert_array_equal(contact.footing(), held)
 
 
 @pytest.mark.parametrize(("by", "refuses"), [(1e-4, False), (0.05, True)])

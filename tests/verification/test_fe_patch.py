@@ -37,13 +37,15 @@ def test_balance_of_forces_and_moments(fe):
     """Supports and contact balance in force.
 
     Requirement: sum of reactions and contact force vanishes to 1e-8 of the force. Source:
-    equilibrium of the block. Tolerance: that of Newton, 1e-8 of the forces.
+    equilibrium of the block. Tolerance: Newton leaves a residual of norm 1e-10 of the forces; its
+    sum over 16 nodes of the contact is at most four times that, and the rest is rounding.
     """
     from anisocontact.solver import Step
 
     block = fe.block(fe.interface(angle=0.3), cell="tetrahedron")
     top = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
-    for accepted in block.run(Step("press", 2, top), Step("drag", 5, {"block.top": {"x": 0.02}})):
+    steps = [Step("press", 2, top), Step("drag", 5, {"block.top": {"x": 0.02}})]
+    for accepted in block.run(*steps, snes_rtol=1e-10):
         force, _ = accepted.resultants["block.bottom"]
         total = force + accepted.reactions["block.top"]
         assert np.linalg.norm(total) < 1e-8 * np.linalg.norm(force)

@@ -13,7 +13,7 @@ from anisocontact.augmentation import Augmentation
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.facet_answer import PairKernel, Question, ask
 from anisocontact.contact.gathering import gather, gather_named
-from anisocontact.contact.held_feet import footing, on_held_facets
+from anisocontact.contact.held_feet import HeldFeet, footing, on_held_facets
 from anisocontact.contact.initial import check_start
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.multipliers import Frames
@@ -131,7 +131,7 @@ class FacetContact(ContactRecord):
         self._now = sides.reference
         self._hint = sides.project(self._now)
         self._answer: dict[str, Any] = {}
-        self._held: Mask = np.zeros(len(self._points.nodes), dtype=bool)
+        self._held = HeldFeet(len(self._points.nodes))
         self._transfer = Transfer(sides) if overlaps else None
         self._handed: Mask = np.zeros(len(self._points.nodes), dtype=bool)
         state = adjusted(initial_state(self._hint, law.dtype), adjust)
@@ -316,7 +316,7 @@ class FacetContact(ContactRecord):
         now = self._gathered.local(self._sides.reference) + u
         if self._sides.outrun(now):
             histories = (self.state, self._start, self.last.state)
-            hints = (self._hint, self._committed[1])
+            hints = (self._hint, self._committed[1], *self._held.hints)
             self._sides = gather(self._sides, now, histories, hints, self._transfer)
             self._linear = None
 
@@ -479,7 +479,7 @@ class FacetContact(ContactRecord):
 
     def _begin(self) -> None:
         super()._begin()
-        self._held = np.zeros(len(self._points.nodes), dtype=bool)
+        self._held = HeldFeet(len(self._points.nodes))
 
     def _tangents(self, state: State) -> Floats:
         """Tangents of the master of now, (n, 2, 3), length; any where a point has no facet."""
@@ -491,8 +491,9 @@ class FacetContact(ContactRecord):
     def _project(self, now: Floats) -> FacetProjections:
         before = self._hint
         self._hint = self._sides.project(now, before)
-        if self._held.any():
-            self._hint = on_held_facets(self._sides, now, self._hint, before.facet, self._held)
+        held = self._held.points
+        if held.any():
+            self._hint = on_held_facets(self._sides, now, self._hint, before.facet, held)
         return self._hint
 
     def footing(self) -> npt.NDArray[np.int64]:
@@ -501,13 +502,34 @@ class FacetContact(ContactRecord):
 
     def hold(self, points: Mask) -> None:
         """As of `ContactRecord`."""
-        self._held |= points
+        self._held.points |= points
+
+    def improve(self) -> bool:
+        """As of `ContactRecord`; then points that are held beside their closest ones are let go."""
+        return super().improve() or self._anywhere(self._let_go())
+
+    def soften(self) -> bool:
+        """As of `ContactRecord`; before that points that were let go are held as they were."""
+        before = self._held.again()
+        if before is not None:
+            self._hint = before
+        return self._anywhere(before is not None) or super().soften()
+
+    def _let_go(self) -> bool:
+        # with multipliers the way back costs more than the thousandth of a facet that may be wrong
+        if self._multipliers is not None or not self._held.points.any():
+            return False
+        return self._held.let_go(self._hint, self._sides.project(self._now, self._hint))
+
+    def _anywhere(self, here: bool) -> bool:
+        return bool(self._comm.allreduce(int(here)))
 
     def strayed(self) -> Floats:
         """As of `ContactRecord`."""
-        wrong = np.zeros(len(self._held))
-        if self._held.any():
+        held = self._held.points
+        wrong = np.zeros(len(held))
+        if held.any():
             closest = self._sides.project(self._now, self._hint)
-            both = self._held & located(closest) & located(self._hint)
+            both = held & located(closest) & located(self._hint)
             wrong[both] = np.abs(closest.gap - self._hint.gap)[both]
         return wrong

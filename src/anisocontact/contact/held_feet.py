@@ -26,6 +26,54 @@ BEYOND = 0.1
 MOST, ENOUGH = 12, 1e-14
 
 
+class HeldFeet:
+    """Which slave points are held, and which of them have been let go again.
+
+    A held point that has come to rest beside its facet is let go once: many that have hopped on
+    their way come to rest with their closest point, and the state that is found is then the one
+    without any help. Those that do not are held as they were.
+
+    Args:
+        n: Number of slave points.
+
+    Attributes:
+        points: Those that are held, (n,).
+    """
+
+    def __init__(self, n: int) -> None:
+        self.points: Mask = np.zeros(n, dtype=bool)
+        self._let_go = self.points.copy()
+        self._before: FacetProjections | None = None
+
+    @property
+    def hints(self) -> tuple[FacetProjections, ...]:
+        """Projections that are remembered, whose facets may get other numbers."""
+        return () if self._before is None else (self._before,)
+
+    def let_go(self, hit: FacetProjections, closest: FacetProjections) -> bool:
+        """Let go points that are not above what is closest to them; whether there are any.
+
+        Args:
+            hit: Projections in equilibrium.
+            closest: Closest points there.
+        """
+        beside = (closest.facet != hit.facet) | (closest.feature != hit.feature)
+        free = self.points & beside & ~self._let_go
+        if not free.any():
+            return False
+        self._let_go |= free
+        self.points = self.points & ~free
+        self._before = hit
+        return True
+
+    def again(self) -> FacetProjections | None:
+        """Hold what was let go, after a solution that failed; the projections at that time."""
+        before, self._before = self._before, None
+        if before is not None:
+            self.points = self.points | self._let_go
+        return before
+
+
 def footing(hit: FacetProjections, facets: Ints) -> npt.NDArray[np.int64]:
     """A code of the feature of a facet that each point has below it, (n,).
 

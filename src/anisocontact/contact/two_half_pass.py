@@ -172,6 +172,14 @@ class TwoHalfPass(ContactRecord):
         for half, its in zip(self.passes, np.split(points, [first]), strict=True):
             half.hold(its)
 
+    def improve(self) -> bool:
+        """In both passes, see `FacetContact.improve`."""
+        return any([half.improve() for half in self.passes])
+
+    def soften(self) -> bool:
+        """In both passes, see `FacetContact.soften`."""
+        return any([half.soften() for half in self.passes])
+
     def strayed(self) -> Floats:
         """Of both passes, see `ContactRecord.strayed`."""
         return np.concatenate([half.strayed() for half in self.passes])
