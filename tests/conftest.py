@@ -29,6 +29,7 @@ def make_interface(
     point: Sequence[float] = (0.0, 0.0, 0.0),
     normal: Sequence[float] = (0.0, 0.0, 1.0),
     vector: Sequence[float] = (1.0, 0.0, 0.0),
+    evolution: str = "transport",
     **of_rule: Any,
 ) -> Any:
     """A plane with the axes of friction at `angle`, those of adhesion there too or at their own."""
@@ -45,6 +46,7 @@ def make_interface(
         NormalLaw(penalty=penalty),
         Adhesion(stiffness=stiffness, directions=adhesion_axes),
         Friction(coefficients=coefficients, directions=friction_axes, sliding_rule=rule, **of_rule),
+        evolution=evolution,
     )
 
 

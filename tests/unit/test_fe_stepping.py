@@ -129,8 +129,8 @@ def test_points_without_answer_are_named(fe):
     interface = fe.interface()
     update = interface.update
 
-    def partial(state, x, dt=1.0, *, tangent=True):
-        response = update(state, x, dt, tangent=tangent)
+    def partial(state, x, dt=1.0, *, tangent=True, **more_of_it):
+        response = update(state, x, dt, tangent=tangent, **more_of_it)
         return dataclasses.replace(response, failure=(x[:, 0] > 1.001).astype(np.int8))
 
     interface.update = partial
@@ -200,8 +200,8 @@ def sticky(interface, most=10.0, width=1e-5):
     """
     update = interface.update
 
-    def more(state, x, dt=1.0, *, tangent=True):
-        response = update(state, x, dt, tangent=tangent)
+    def more(state, x, dt=1.0, *, tangent=True, **more_of_it):
+        response = update(state, x, dt, tangent=tangent, **more_of_it)
         traction, slope = response.traction.copy(), response.tangent.copy()
         level = np.tanh(response.gap / width)
         traction[:, 2] -= most * level

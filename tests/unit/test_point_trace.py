@@ -105,7 +105,7 @@ def changed(data: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
         ("load.presure", 1, "load.presure: unknown key; did you mean"),
         ("contact.normal", {}, 'contact.normal.penalty: "auto" given or nothing'),
         ("contact.adhesion", {"stiffness": "auto"}, "contact.adhesion.stiffness"),
-        ("contact.friction.coefficients", 0, "contact.friction.coefficients: [0, 0] given"),
+        ("contact.friction.coefficients", -1, "contact.friction.coefficients: -1 given"),
         ("contact.slave", "a.b", "contact.slave: unknown key"),
         ("surface.shape", "plain", "surface.shape: 'plain' given; did you mean"),
         ("surface.normal", [0, 0, 0], "surface.normal: [0, 0, 0] given"),

@@ -19,6 +19,7 @@ def sticking(fe, cell, order):
         penalty=PENALTY,
         angle=ANGLE,
         point=(0.0, 0.0, OVERLAP),
+        evolution="backward-euler",  # slip that turns with the slave is not linear
     )
     return fe.block(interface, cell=cell, order=order)
 
