@@ -70,7 +70,8 @@ class Attempts:
     adhesion is stiff one with compliant layers comes between them, see `Continuation`. Where the
     status of points alternated, a further one takes a share of each correction: half as much as
     before where it still alternates, twice as much where it does not. Where that does not help
-    either and the part is small, the last one lets the bodies flow, see `Flow`. Where contact may
+    either and the part is small, the last one lets the bodies flow, see `Flow`. Where a part is
+    tiny, both are tried whatever was in the way. Where contact may
     hold free bodies without springs, an attempt without them comes before all these. Multipliers
     that follow every correction have ways of their own, see `_following`.
 
@@ -92,13 +93,14 @@ class Attempts:
         self._final = False
         self._continuation = Continuation(problem, newton)
 
-    def solve(self, first: Vec, last: Vec, small: bool = False) -> Outcome:
+    def solve(self, first: Vec, last: Vec, small: bool = False, tiny: bool = False) -> Outcome:
         """Solve and commit, or roll back.
 
         Args:
             first: Extrapolated state.
             last: Accepted state.
-            small: Whether a smaller part is not likely to help.
+            small: Whether no smaller part will be tried, or is likely to help.
+            tiny: Whether the part is so small that everything is tried, whatever failed.
 
         Returns:
             Whether one converged, and what kept the others from it.
@@ -114,8 +116,9 @@ class Attempts:
             if self._turns.objects:  # nothing but a smaller part can help
                 return Outcome(replace(result, iterations=spent))
             found = _graver(found, culprits)
-            if way is ways[-1] and found[:1] and found[0].kind == "flipping":
-                ways += self._against_flipping(way, small)
+            alternates = bool(found) and found[0].kind == "flipping"
+            if way is ways[-1] and not self._final and (alternates or tiny):
+                ways += self._last_resorts(way, small)
         result = replace(result, iterations=spent, reason=_reason(result.reason, found))
         return Outcome(result, tuple(found), self._final, self._continuation.hint())
 
@@ -130,8 +133,8 @@ class Attempts:
             ways.insert(2 if trusts else 1, _Way(last, layered=True))
         return ways
 
-    def _against_flipping(self, failed: _Way, small: bool) -> list[_Way]:
-        """What is left to be tried where the status of points alternates."""
+    def _last_resorts(self, failed: _Way, small: bool) -> list[_Way]:
+        """What is left to be tried where the status of points alternates, or parts are small."""
         if not failed.damped and not failed.flowing:
             return [replace(failed, damped=True)]
         if small and self._problem.stabilisation.enabled and not failed.flowing:

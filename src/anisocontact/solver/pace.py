@@ -66,9 +66,14 @@ class Pace:
         return self.end - self.done
 
     @property
+    def tiny(self) -> bool:
+        """Whether a part smaller than the next one is not likely to help."""
+        return self.part <= max(SMALL, self.limits.smallest)
+
+    @property
     def small(self) -> bool:
-        """Whether a smaller part than the next one is not allowed, or not likely to help."""
-        return self.part <= max(SMALL, self.limits.smallest) or self.cuts >= self.limits.cuts
+        """Whether the next part is tiny, or the last one that may be tried."""
+        return self.tiny or self.cuts >= self.limits.cuts
 
     @property
     def cuttable(self) -> bool:

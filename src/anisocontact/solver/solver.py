@@ -240,7 +240,7 @@ class Solver:
             ratio = pace.part / pace.last
             first = (1.0 + ratio) * last - ratio * before
         self._turns.permitted = pace.cuttable
-        return attempts.solve(first, last, pace.small)
+        return attempts.solve(first, last, pace.small, pace.tiny)
 
     def _cut(self, step: Step, outcome: Outcome) -> None:
         """Make the next part smaller, or give up."""
