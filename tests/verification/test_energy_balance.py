@@ -149,6 +149,7 @@ normal = [0, 0, 1]
 [[contact]]
 slave = "block.bottom"
 master = "plate"
+evolution = "backward-euler"
 friction = { coefficients = [0.3, 0.3] }
 [[step]]
 name = "press"
@@ -180,7 +181,7 @@ def test_a_coarse_path_is_a_warning(tmp_path: Any, capsys: Any) -> None:
     left = summary["energy_residual"]
     energies = summary["energy"]
     assert left["worst_share"] > 0.05
-    assert abs(energies["residual"]) > 0.02 * energies["external"]
+    assert abs(energies["residual"]) > 0.04 * energies["external"]
     assert left["cause"] in CAUSES
     about = "the balance of energy"
     for text, count in (

@@ -34,7 +34,12 @@ def _laws() -> tuple[NormalLaw, Adhesion, Friction]:
 
 
 def _block(
-    gap: float, unit: float = 1.0, stress: float = 1.0, along_y: float = PENALTY, **options: bool
+    gap: float,
+    unit: float = 1.0,
+    stress: float = 1.0,
+    along_y: float = PENALTY,
+    evolution: str = "transport",
+    **options: bool,
 ) -> Problem:
     """A block above a plane with no support at all."""
     boxes = {"block": BoxSpec((0, 0, gap * unit), (unit, unit, 0.5 * unit), (4, 4, 2))}
@@ -48,7 +53,7 @@ def _block(
         Friction(coefficients=(0.3, 0.3)),
     )
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    contact = Contact(model, "block.bottom", Interface(plane, *laws))
+    contact = Contact(model, "block.bottom", Interface(plane, *laws, evolution=evolution))
     elastic = make_material("linear-elastic", E=YOUNG * stress, nu=0.3)
     return Problem(model, {"block": elastic}, [contact], **options)  # type: ignore[arg-type]
 
@@ -215,12 +220,12 @@ def test_a_body_goes_with_its_supports() -> None:
 def test_no_springs_where_contact_holds() -> None:
     """What springs on a body that sticks cost, and that without them the answer is the same.
 
-    Requirement: at least a quarter fewer iterations (10 and 14 measured), resultants equal
-    to 1e-5 of the load.
+    Requirement: at least a third fewer iterations, resultants equal to 1e-5 of the load. The step
+    is the linear one: a slip that turns with the slave takes a correction of its own either way.
     """
     iterations = []
     for careful in (False, True):
-        problem, steps = _block(0.0), _loads()
+        problem, steps = _block(0.0, evolution="backward-euler"), _loads()
         run = Solver(problem, steps).run()
         accepted = [next(run)]
         problem.stabilisation.careful = careful
@@ -229,7 +234,7 @@ def test_no_springs_where_contact_holds() -> None:
         assert (accepted[-1].energies["stabilisation"] > 0.0) is careful
         force, _ = problem.contacts[0].resultant()
         np.testing.assert_allclose(force, [-2.0, 0.0, 10.0], atol=1e-5)
-    assert iterations[0] < iterations[1] / 1.3
+    assert iterations[0] < iterations[1] / 1.5
 
 
 def test_sticking_without_stiffness_holds_nothing() -> None:
