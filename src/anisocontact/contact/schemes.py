@@ -17,9 +17,8 @@ USUAL, SOFTER, IN_CYCLES = "usual", "softer", "in cycles"
 
 #: Classes of the ways that a scheme has.
 SCHEMES: Mapping[str, Mapping[str, type[Multipliers]]] = {
-    NEWTON: {USUAL: Semismooth, SOFTER: Softer},
+    NEWTON: {USUAL: Semismooth, SOFTER: Softer, IN_CYCLES: Nested},
     UZAWA: {USUAL: Uzawa},
-    AUTO: {USUAL: Semismooth, SOFTER: Softer, IN_CYCLES: Nested},
 }
 
 
@@ -39,7 +38,7 @@ def make_multipliers(
     """
     check(augmentation, law)
     name = augmentation.multipliers
-    if name == AUTO and not follows(augmentation, law):
-        name = UZAWA
+    if name == AUTO:
+        name = NEWTON if follows(augmentation, law) else UZAWA
     ways = SCHEMES[name].items()
     return {way: kind(augmentation, size, law.penalties(), comm) for way, kind in ways}
