@@ -2,7 +2,7 @@
 
 `make mutants`, or `python tools/mutants.py [NAME ...]`. The mutations are in
 `tools/mutations.toml`: a text of a header that occurs once, what stands there instead, the files
-of `_core` that are compiled with it and the tests that have to fail. All runs in a copy of the
+of `cpp/python` that are compiled with it and the tests that have to fail. All runs in a copy of the
 sources in `build/mutants`, without optimisation: the core is compiled once as it is, and for each
 mutation only the files named, which are linked in front of the others, so that the linker takes
 their copies of shared templates. Ends with 1 where a mutation survives, does not compile, or a
@@ -49,7 +49,7 @@ class Mutation:
         file: The header, below `cpp/include/anisocontact`.
         before: Text that occurs once in it.
         after: What stands there instead.
-        compiles: Files of `src/anisocontact/_core`, without suffix, that are compiled anew.
+        compiles: Files of `cpp/python`, without suffix, that are compiled anew.
         tests: Arguments of pytest, one list for each call; the first failure ends it.
     """
 
@@ -137,7 +137,7 @@ class Core:
         return r.returncode == 0
 
     def _objects(self) -> dict[str, Path]:
-        found = self._build.glob("CMakeFiles/_core.dir/src/anisocontact/_core/*.cpp.o")
+        found = self._build.glob("CMakeFiles/_core.dir/cpp/python/*.cpp.o")
         return {path.name.removesuffix(".cpp.o"): path for path in found}
 
     def _compile(self, name: str) -> Path:

@@ -16,6 +16,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[2]
 HEADERS = ROOT / "cpp" / "include" / "anisocontact"
 SOURCES = ROOT / "src" / "anisocontact"
+BINDINGS = ROOT / "cpp" / "python"
 #: Bindings of what a solver calls; the others are functions of scripts and of pictures.
 BOUND = ("kernel", "facet_pair", "facet_framed", "framed", "search")
 #: Where a run goes through, and where it does not yet, or no more.
@@ -55,7 +56,7 @@ def definitions() -> dict[str, frozenset[str]]:
 def reached() -> frozenset[str]:
     """Names of definitions of the core that a solver can reach."""
     todo: list[str] = []
-    for file in (SOURCES / "_core").iterdir():
+    for file in BINDINGS.iterdir():
         if file.stem in BOUND or file.suffix == ".hpp":
             todo += re.findall(r"\w+", file.read_text())
     seen: set[str] = set()

@@ -41,7 +41,7 @@ def test_mutation_fits(one: Any) -> None:
     assert one.after not in (one.before, "")
     assert one.compiles or any("test_pair_tangent" in t for t in one.tests)
     for name in one.compiles:
-        assert (ROOT / "src/anisocontact/_core" / f"{name}.cpp").is_file()
+        assert (ROOT / "cpp/python" / f"{name}.cpp").is_file()
     assert one.tests
     for arguments in one.tests:
         for call in shlex.split(arguments):
