@@ -29,16 +29,22 @@ MU, ANGLE = (0.2, 0.4), np.radians(30.0)
 CLAMP = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
 
 
-def _laws(unit: float = 1.0) -> tuple[NormalLaw, Adhesion, Friction]:
+def _laws(unit: float = 1.0, mu: tuple[float, float] = MU) -> tuple[NormalLaw, Adhesion, Friction]:
     axes = make_directions("constant", vector=(1, 0, 0), angle=ANGLE)
     return (
         NormalLaw(penalty=1e4 / unit),
         Adhesion(stiffness=(1e4 / unit, 1e4 / unit)),
-        Friction(coefficients=MU, directions=axes),
+        Friction(coefficients=mu, directions=axes),
     )
 
 
-def _problem(master: str, unit: float = 1.0, cell: str = "hexahedron", order: int = 1) -> Problem:
+def _problem(
+    master: str,
+    unit: float = 1.0,
+    cell: str = "hexahedron",
+    order: int = 1,
+    mu: tuple[float, float] = MU,
+) -> Problem:
     """A block of unit size that stands at z = 0 on a master of this kind."""
     size = (unit, unit, unit)
     boxes = {"block": BoxSpec((0, 0, 0), size, (2, 2, 2), cell, order)}
@@ -49,12 +55,14 @@ def _problem(master: str, unit: float = 1.0, cell: str = "hexahedron", order: in
         boxes["base"] = BoxSpec(corner, (3 * unit, 3 * unit, thick), (6, 6, 1), cell, order)
     model = build_box(boxes)
     rubber = make_material("neo-hookean", E=1000.0, nu=0.3)
-    contact = _contact(model, master, unit)
+    contact = _contact(model, master, unit, mu)
     return Problem(model, dict.fromkeys(boxes, rubber), [contact])
 
 
-def _contact(model: Model, master: str, unit: float) -> Contact | FacetContact | TwoHalfPass:
-    laws = _laws(unit)
+def _contact(
+    model: Model, master: str, unit: float, mu: tuple[float, float]
+) -> Contact | FacetContact | TwoHalfPass:
+    laws = _laws(unit, mu)
     if master == "plate":
         return FacetContact(model, "block.bottom", "base.top", law=PairLaw(*laws))
     if master == "plate from both sides":
@@ -264,6 +272,25 @@ def test_loads_that_friction_holds_are_not_to_blame() -> None:
     with pytest.raises(StoppedError, match="no convergence in 0 Newton iterations"):
         options = {"snes_max_it": 0}
         list(Solver(problem, steps, options=options, limits=Limits(smallest=0.5)).run())
+
+
+@pytest.mark.parametrize("master", ["plane", "plate"])
+def test_a_block_that_its_load_tips_over(master: str) -> None:
+    """A block of unit size under 1 from above and 0.8 from the side, both at its top.
+
+    Requirement: equilibrium ends where the moment of the side load passes that of the weight, half
+    of it; friction of 3 holds. The run stops, and says that the block goes over: not what Newton's
+    method meets first.
+    """
+    problem = _problem(master, mu=(3.0, 3.0))
+    steps = [
+        Step("press", 1, CLAMP if master == "plate" else {}, force={"block.top": {"z": -1.0}}),
+        Step("pull", 1, force={"block.top": {"x": 0.8}}),
+    ]
+    said = "equilibrium is lost, and the bodies flow until body 'block' (has turned|is behind)"
+    with pytest.raises(StoppedError, match=said) as stopped:
+        list(Solver(problem, steps, limits=Limits(smallest=0.1), strategy="direct").run())
+    assert [culprit.kind for culprit in stopped.value.culprits] == ["behind"]
 
 
 def test_a_script_does_not_accept_it_either(monkeypatch: pytest.MonkeyPatch) -> None:

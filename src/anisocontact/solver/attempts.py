@@ -19,7 +19,9 @@ from anisocontact.solver.watch import StatusWatch
 #: Smallest share of a correction that is taken while the status of points alternates.
 LEAST_SHARE = 1.0 / 64.0
 #: Kinds of culprits, the gravest first.
-GRAVITY = ("law", "inverted", "flipping", "hopping", "behind", "residual")
+GRAVITY = ("law", "behind", "inverted", "flipping", "hopping", "residual")
+#: Kinds that shares of corrections do not help against.
+PLAIN = {"law", "inverted"}
 
 
 @dataclass(frozen=True)
@@ -107,6 +109,7 @@ class Attempts:
         """
         spent = 0
         found: list[Culprit] = []
+        seen: set[str] = set()
         ways = self._ways(first, last)
         for way in ways:
             result, culprits = self._attempt(way)
@@ -116,7 +119,8 @@ class Attempts:
             if self._turns.objects:  # nothing but a smaller part can help
                 return Outcome(replace(result, iterations=spent))
             found = _graver(found, culprits)
-            alternates = bool(found) and found[0].kind == "flipping"
+            seen |= {culprit.kind for culprit in culprits}
+            alternates = "flipping" in seen and not seen & PLAIN
             if way is ways[-1] and not self._final and (alternates or tiny):
                 ways += self._last_resorts(way, small)
         result = replace(result, iterations=spent, reason=_reason(result.reason, found))
@@ -165,7 +169,8 @@ class Attempts:
             if refusal is not None:
                 self._final = refusal.final
                 return replace(result, reason=refusal.reason), list(refusal.culprits)
-            return result, find_culprits(problem, self._watch, self._newton.residual)
+            known = list(result.culprits)
+            return result, known or find_culprits(problem, self._watch, self._newton.residual)
         except (Exception, KeyboardInterrupt):
             problem.together.met()
             raise

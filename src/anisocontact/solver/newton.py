@@ -12,6 +12,7 @@ import numpy.typing as npt
 from anisocontact._fenicsx import SNES, Mat, PETSc, Vec, check_memory
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.persistent import Arrays
+from anisocontact.solver.steps import Culprit, LostError
 
 OptionValue = str | int | float | bool | None
 
@@ -85,6 +86,7 @@ class System(Protocol):
 
         Raises:
             NotHeldError: They do not converge.
+            LostError: A body has got where it cannot be.
         """
         ...
 
@@ -123,11 +125,13 @@ class NewtonResult:
         residuals: Residual over the forces at work, of the start and after each correction with
             the last multipliers.
         reason: Empty if it converged, else why it did not.
+        culprits: Places that ended it, where they are known.
     """
 
     iterations: int
     residuals: list[float]
     reason: str
+    culprits: tuple[Culprit, ...] = ()
 
 
 class Newton:
@@ -211,6 +215,9 @@ class Newton:
                 again = self._problem.soften() if result.reason else self._problem.improve(x)
             except NotHeldError as error:
                 result, again = replace(result, reason=str(error)), False
+            except LostError as error:
+                result = replace(result, reason=str(error), culprits=(error.culprit,))
+                again = False
             if not again:
                 return replace(result, iterations=spent)
             if result.reason:

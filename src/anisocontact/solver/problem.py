@@ -28,7 +28,7 @@ from anisocontact.solver.persistent import Persistent, under
 from anisocontact.solver.reduction import Reduction
 from anisocontact.solver.rotations import Rotations, Turned
 from anisocontact.solver.step_begin import begin_step, contact_must_hold
-from anisocontact.solver.steps import Culprit, Step
+from anisocontact.solver.steps import Culprit, LostError, Step
 from anisocontact.solver.tangent import Tangent, led_unknowns
 
 Floats = npt.NDArray[np.float64]
@@ -261,10 +261,14 @@ class Problem(Following):
 
         Raises:
             NotHeldError: They do not converge.
+            LostError: A body flows to where it cannot be.
         """
         self._evaluate_at(x)
-        moved = self.stabilisation.improve(self._bodies.nodal, self.force_scale)
         flows = self.stabilisation.flow.flows
+        wrong = self.behind_a_master(x) if flows else None
+        if wrong is not None:
+            raise LostError(wrong)
+        moved = self.stabilisation.improve(self._bodies.nodal, self.force_scale)
         if moved and (flows or self.stabilisation.untouched()):
             self._accepted.go_on(x, self._balance.outside)
             self.pass_through(self._bodies.nodal)

@@ -264,6 +264,21 @@ class Cut:
         )
 
 
+class LostError(RuntimeError):
+    """Equilibrium is lost, and what comes of it is a state that cannot be.
+
+    Args:
+        culprit: A body that is where it cannot be.
+    """
+
+    def __init__(self, culprit: Culprit) -> None:
+        super().__init__(
+            f"contact {culprit.contact!r}: equilibrium is lost, and the bodies flow until "
+            f"{culprit.why}"
+        )
+        self.culprit = culprit
+
+
 class StoppedError(RuntimeError):
     """The run stopped before its end; what converged is kept.
 
@@ -290,7 +305,7 @@ class StoppedError(RuntimeError):
         if len(self.points):
             first = ", ".join(f"{v:.6g}" for v in self.points[0])
             where = f"; {len(self.points)} slave points failed, the first at ({first})"
-        elif culprits:
+        elif culprits and culprits[0].why not in reason:
             where = f"; {culprits[0]}"
         tried = f"; {tried}" if tried else ""
         super().__init__(f"step {step!r}, increment {increment}: {reason}{where}{tried}")
