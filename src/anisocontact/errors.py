@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["InputError", "MachineError", "ModelWarning", "one_line", "printable"]
+__all__ = ["InputError", "MachineError", "ModelWarning", "RunError", "one_line", "printable"]
 
 
 def printable(text: str) -> str:
@@ -75,6 +75,10 @@ class MachineError(RuntimeError):
 
     def __init__(self, lack: str, cure: str) -> None:
         super().__init__(one_line(f"{lack}: {cure}"))
+
+
+class RunError(RuntimeError):
+    """A run ended in an error of the program; its results folder has what converged."""
 
 
 class ModelWarning(UserWarning):

@@ -192,7 +192,12 @@ def test_an_internal_error_is_one_line_and_its_details_in_the_log(
     assert error.splitlines() == [
         f"error: internal: RuntimeError: a bug of two lines; details in {out / 'run.log'}"
     ]
-    assert "Traceback" in (out / "run.log").read_text()
+    log = (out / "run.log").read_text()
+    assert "Traceback" in log
+    assert main(["run", str(case), "-o", str(out), "--overwrite", "--debug"]) == 1
+    *traced, last = capsys.readouterr().err.splitlines()
+    assert last == error.strip()
+    assert traced[0].startswith("Traceback") and "    raise RuntimeError(" in "\n".join(traced)
     assert json.loads((out / "summary.json").read_text())["status"] == "stopped"
 
 

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from anisocontact.case.build import Built
 from anisocontact.case.named_files import fingerprints
-from anisocontact.errors import InputError, one_line
+from anisocontact.errors import InputError, RunError, one_line
 from anisocontact.machine import lack
 from anisocontact.results.checkpoint import NAME, Stored, distribute
 from anisocontact.results.files import WriteError
@@ -18,7 +18,7 @@ from anisocontact.results.writer import Writer
 from anisocontact.signals import interrupt, on_signals
 from anisocontact.solver import Accepted, Cut, Progress, StoppedError
 
-__all__ = ["Listener", "Outcome", "RunError", "run"]
+__all__ = ["Listener", "Outcome", "run"]
 
 
 class Listener(Protocol):
@@ -60,10 +60,6 @@ class Outcome:
     folder: Path
     warnings: tuple[str, ...] = ()
     goes_on: bool = False
-
-
-class RunError(RuntimeError):
-    """A run ended in an error of the program; the results folder has what converged."""
 
 
 def run(

@@ -5,12 +5,13 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+import traceback
 from collections.abc import Sequence
 from importlib import import_module
 
 from anisocontact import __version__
 from anisocontact.cli.output import outputs, say
-from anisocontact.errors import InputError, one_line
+from anisocontact.errors import InputError, RunError, one_line
 from anisocontact.machine import lack
 from anisocontact.processes import started_together
 from anisocontact.signals import ended_by_signals
@@ -122,27 +123,42 @@ def _ended(arguments: argparse.Namespace) -> int:
         command = import_module(f"anisocontact.cli.{arguments.command}")
         code: int = command.command(arguments)
         return code
-    except InputError as error:
+    except (Exception, KeyboardInterrupt, SystemExit) as error:
+        if arguments.debug:
+            for line in "".join(traceback.format_exception(error)).splitlines():
+                say(line, sys.stderr)
+        return _told(error)
+
+
+def _told(error: BaseException) -> int:
+    """Say in a line what is wrong; the exit code."""
+    if isinstance(error, InputError):
         for one in getattr(error, "errors", [error]):
             say(f"error: {one}", sys.stderr)
         return BAD_INPUT
-    except KeyboardInterrupt:
+    if isinstance(error, KeyboardInterrupt):
         say("error: interrupted", sys.stderr)
         return STOPPED
-    except (Exception, SystemExit) as error:
-        lacking = lack(error)
-        if lacking is not None:
-            say(f"error: {lacking}", sys.stderr)
-            return STOPPED
-        say(f"error: internal: {one_line(f'{type(error).__name__}: {error}')}", sys.stderr)
-        return INTERNAL
+    lacking = lack(error)
+    if lacking is not None:
+        say(f"error: {lacking}", sys.stderr)
+        return STOPPED
+    text = error if isinstance(error, RunError) else f"{type(error).__name__}: {error}"
+    say(f"error: internal: {one_line(text)}", sys.stderr)
+    return INTERNAL
 
 
 def _command(
     commands: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str
 ) -> argparse.ArgumentParser:
     description = f"{text[0].upper()}{text[1:]}."
-    return commands.add_parser(name, help=text, description=description, allow_abbrev=False)
+    made = commands.add_parser(name, help=text, description=description, allow_abbrev=False)
+    made.add_argument(
+        "--debug",
+        action="store_true",
+        help="before the line that says what is wrong, print the traceback of the error",
+    )
+    return made
 
 
 def _output_arguments(parser: argparse.ArgumentParser) -> argparse._MutuallyExclusiveGroup:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from anisocontact.case import load
 from anisocontact.case.restart import checkpoint_of
-from anisocontact.cli.main import DONE, INTERNAL, STOPPED
+from anisocontact.cli.main import DONE, STOPPED
 from anisocontact.cli.output import Output, say
 from anisocontact.results.files import check_folder
 from anisocontact.results.lock import locked
@@ -48,7 +48,7 @@ def _run(
 ) -> int:
     """Solve a case into a folder that is ours alone."""
     from anisocontact.case.build import build
-    from anisocontact.case.run import RunError, run
+    from anisocontact.case.run import run
     from anisocontact.cli.check import contents
     from anisocontact.cli.progress import progress_on
 
@@ -58,12 +58,8 @@ def _run(
     if arguments.restart:
         say(_beginning(checkpoint))
     shown = Output.of(sys.stdout)
-    try:
-        with progress_on(shown, built.steps) as listener:
-            outcome = run(built, folder, listener, checkpoint)
-    except RunError as error:
-        say(f"error: internal: {error}", sys.stderr)
-        return INTERNAL
+    with progress_on(shown, built.steps) as listener:
+        outcome = run(built, folder, listener, checkpoint)
     for warning in outcome.warnings:
         say(f"warning: {warning}", sys.stderr)
     if outcome.status == "done":
