@@ -107,6 +107,7 @@ class Contact(ContactRecord):
         self.body = body
         self._master: Master = interface if body is None else MovingInterface(interface, body)
         self._stiff = self._master
+        self.groups = (slave,)
         self._area_told = current_area is not None
         self.current_area = current_area is None or current_area
         self.quadrature = facet_quadrature(model.space, facets, degree)
@@ -173,6 +174,15 @@ class Contact(ContactRecord):
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial on the slave to the local nodes, (nodes, 3), force."""
         self.quadrature.to_nodes(self.trial.traction, out, self.current.areas)
+
+    @property
+    def passes(self) -> tuple[Contact, ...]:
+        """The passes over slave points this contact is made of: itself."""
+        return (self,)
+
+    def feet(self) -> Ints:
+        """Local nodes of the master below the points: it has none."""
+        return np.zeros(0, dtype=np.int32)
 
     @property
     def slave_nodes(self) -> Ints:

@@ -111,7 +111,7 @@ class FacetContact(ContactRecord):
         if not hasattr(law, "pairs"):
             text = f"{type(law).__name__} given, PairLaw or PythonPairLaw needed"
             raise InputError(text, "law")
-        self.master = master
+        self.master, self.groups = master, (slave, master)
         self.interface: MeshedLaw = law
         self._laws = self._stiff_laws = law
         self._area_told = current_area is not None

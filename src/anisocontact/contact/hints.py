@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
+from typing import Any
 
-from anisocontact.contact.facet_contact import FacetContact
-from anisocontact.contact.record import ContactRecord
-from anisocontact.contact.self_contact import SelfContact
 from anisocontact.errors import ModelWarning
 
 __all__ = ["COARSE", "coarse_slaves", "warn_of"]
@@ -17,7 +15,7 @@ __all__ = ["COARSE", "coarse_slaves", "warn_of"]
 COARSE, MISSED = 3.0, 1.5
 
 
-def coarse_slaves(contacts: Sequence[ContactRecord], ratio: float = COARSE) -> list[str]:
+def coarse_slaves(contacts: Sequence[Any], ratio: float = COARSE) -> list[str]:
     """Contacts whose slave has much larger facets than the master.
 
     A single pass looks from points of the slave: what of the master lies between two of them is
@@ -32,7 +30,7 @@ def coarse_slaves(contacts: Sequence[ContactRecord], ratio: float = COARSE) -> l
     """
     found = []
     for contact in contacts:
-        if not isinstance(contact, FacetContact) or isinstance(contact, SelfContact):
+        if not contact.of_two_groups or len(contact.passes) > 1:
             continue
         slave, master = contact.facet_size, contact.master_size
         if slave > ratio * master:
@@ -45,7 +43,7 @@ def coarse_slaves(contacts: Sequence[ContactRecord], ratio: float = COARSE) -> l
     return found
 
 
-def warn_of(contacts: Sequence[ContactRecord]) -> None:
+def warn_of(contacts: Sequence[Any]) -> None:
     """Tell a script: a Python warning of the category `ModelWarning` for each line."""
     for line in coarse_slaves(contacts):
         warnings.warn(line, ModelWarning, stacklevel=3)

@@ -15,6 +15,7 @@ from anisocontact.contact.multipliers import AugmentedLaw, Frames, Multipliers, 
 from anisocontact.contact.schemes import USUAL, make_multipliers
 from anisocontact.contact.semismooth import RATIO, Semismooth
 from anisocontact.interface import STATUS, Response, State
+from anisocontact.rigid import RigidBody
 
 Floats = npt.NDArray[np.float64]
 
@@ -94,6 +95,10 @@ class ContactRecord:
             over the surface, stress/length; 0 until they are known.
     """
 
+    #: Facet group of the slave, and of the master if it is one.
+    groups: tuple[str, ...]
+    #: Rigid body that carries the master, if one does.
+    body: RigidBody | None = None
     #: Laws as the user gave them, those of trials, and those that derivatives are taken of.
     interface: Any
     _laws: Any
@@ -124,6 +129,16 @@ class ContactRecord:
         self._ways: Mapping[str, Multipliers] = {}
         self._layer: Layer | None = None
         self.body_stiffness = 0.0
+
+    @property
+    def meshed(self) -> bool:
+        """Whether the master is facets of a mesh."""
+        return len(self.groups) == 2
+
+    @property
+    def of_two_groups(self) -> bool:
+        """Whether facets of one group meet those of another one."""
+        return len(set(self.groups)) == 2
 
     @property
     def points(self) -> Floats:

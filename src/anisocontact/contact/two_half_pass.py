@@ -74,7 +74,7 @@ class TwoHalfPass(ContactRecord):
         name: str = "",
         **options: Unpack[PassOptions],
     ) -> None:
-        self.master = master
+        self.master, self.groups = master, (slave, master)
         self.interface: MeshedLaw = law
         self.passes = tuple(
             FacetContact(

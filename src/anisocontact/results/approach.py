@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact, Contact
+from anisocontact.contact import AnyContact
 
 __all__ = ["approach"]
 
@@ -39,11 +39,9 @@ def approach(
         return 0.0
     away = pressing / size  # from the master to the slave
     slave = _farthest(contact.slave, displacements, -away)
-    if isinstance(contact, Contact):
-        body = contact.body
-        master = 0.0 if body is None else float(np.dot(rigid[body.name]["translation"], away))
-    else:
-        master = _farthest(contact.master, displacements, away)
+    master = sum(_farthest(group, displacements, away) for group in contact.groups[1:])
+    if contact.body is not None:
+        master += float(np.dot(rigid[contact.body.name]["translation"], away))
     return slave + master
 
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.anisotropy import DirectionField
-from anisocontact.contact import AnyContact, Contact
+from anisocontact.contact import AnyContact
 from anisocontact.python_law import PythonInterface
 from anisocontact.results.dataset import DataSet, polygons
 
@@ -39,7 +39,7 @@ class Surfaces:
         self._patches = [
             (number, contact, _patch(contact, comm))
             for number, contact in enumerate(contacts)
-            if isinstance(contact, Contact)
+            if not contact.meshed
         ]
 
     def mesh(self) -> DataSet | None:
@@ -67,14 +67,14 @@ class Surfaces:
         )
 
 
-def _moved(contact: Contact, points: Floats, directions: Floats) -> tuple[Floats, Floats]:
+def _moved(contact: AnyContact, points: Floats, directions: Floats) -> tuple[Floats, Floats]:
     """Points and vectors of a patch where the rigid body is that carries it."""
     if contact.body is None:
         return points, directions
     return contact.body.out_of_body(points), contact.body.to_space(directions)
 
 
-def _patch(contact: Contact, comm: Any) -> tuple[Floats, Floats]:
+def _patch(contact: Any, comm: Any) -> tuple[Floats, Floats]:
     """Points of the patch and first axes of friction there, where the surface was drawn."""
     surface = contact.interface.surface
     xi = surface.project(contact.quadrature.reference, derivatives=False).xi
@@ -94,6 +94,6 @@ def _patch(contact: Contact, comm: Any) -> tuple[Floats, Floats]:
     return surface.position(at), directions
 
 
-def _friction_directions(contact: Contact) -> DirectionField | None:
+def _friction_directions(contact: Any) -> DirectionField | None:
     law = contact.interface
     return law.directions if isinstance(law, PythonInterface) else law.friction.directions

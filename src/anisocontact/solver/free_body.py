@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact, Contact
+from anisocontact.contact import AnyContact
 from anisocontact.contact.transfer import Couplings
 from anisocontact.python_pair import PYTHON_LAWS
 from anisocontact.solver.free_modes import Body
@@ -126,9 +126,8 @@ class FreeBody:
             return self.may_hold()
         projected = self.springs.copy()
         for contact in self.contacts:
-            parts = (contact,) if isinstance(contact, Contact) else contact.passes
-            for part in parts:
-                for blocks in part.couplings():
+            for half in contact.passes:
+                for blocks in half.couplings():
                     projected += self.motions @ self._projected(blocks) @ self.motions.T
         sizes = np.linalg.svd(projected, compute_uv=False)
         return bool(sizes.min(initial=np.inf) > self.least)

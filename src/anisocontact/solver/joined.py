@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from anisocontact.contact import AnyContact, Contact
+from anisocontact.contact import AnyContact
 from anisocontact.mesh import Model
 from anisocontact.solver.free_modes import Body, bodies
 
@@ -23,8 +23,9 @@ def joined(model: Model, contacts: Sequence[AnyContact]) -> list[Body]:
     others: set[str] = set()
     links = []
     for contact in contacts:
-        if isinstance(contact, Contact):
-            others.add(model.body_of(contact.slave))
+        on, *against = (model.body_of(group) for group in contact.groups)
+        if against:
+            links.append((on, against[0]))
         else:
-            links.append((model.body_of(contact.slave), model.body_of(contact.master)))
+            others.add(on)
     return [body for body in bodies(model, links) if not others & set(body.parts)]

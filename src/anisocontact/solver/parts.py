@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
-from anisocontact.contact import AnyContact, Contact
+from anisocontact.contact import AnyContact
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.attached import ElasticSupport, Spring
@@ -96,8 +96,7 @@ def make_parts(
 
 def _finite(model: Model, materials: Mapping[str, Material], contact: AnyContact) -> bool:
     """Whether one of the bodies of a contact is at finite strain."""
-    groups = [contact.slave] if isinstance(contact, Contact) else [contact.slave, contact.master]
-    return not all(materials[model.body_of(group)].linear for group in groups)
+    return not all(materials[model.body_of(group)].linear for group in contact.groups)
 
 
 def _check(

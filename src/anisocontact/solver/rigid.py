@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact, Contact
+from anisocontact.contact import AnyContact
 from anisocontact.contact.transfer import Couplings
 from anisocontact.errors import InputError
 from anisocontact.rigid import RigidBody
@@ -50,7 +50,7 @@ class RigidBodies:
     """
 
     def __init__(self, contacts: Sequence[AnyContact], comm: Any) -> None:
-        on_bodies = [c for c in contacts if isinstance(c, Contact) and c.body is not None]
+        on_bodies: list[Any] = [c for c in contacts if c.body is not None]
         self.bodies: list[RigidBody] = list(
             dict.fromkeys(c.body for c in on_bodies if c.body is not None)
         )

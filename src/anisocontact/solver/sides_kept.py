@@ -67,7 +67,7 @@ class SidesKept:
             if model is None
             else _watched(model, one, contact.name, groups)
             for contact in contacts
-            for one in ((contact,) if isinstance(contact, Contact) else contact.passes)
+            for one in contact.passes
         ]
 
     def objection(self, u: Floats, whole: bool = True) -> Culprit | None:
@@ -144,7 +144,7 @@ def _watched(model: Model, one: Contact | FacetContact, name: str, groups: list[
     places = np.asarray(model.space.tabulate_dof_coordinates())
     slave = model.body_of(one.slave)
     body = next(group for group in groups if slave in group.parts)
-    if isinstance(one, FacetContact) and model.body_of(one.master) in body.parts:
+    if any(model.body_of(group) in body.parts for group in one.groups[1:]):
         return _alone(one, name)
     nodes = body.nodes[:: max(1, len(body.nodes) // MOST_NODES)]
     seen = one.look(places[nodes])

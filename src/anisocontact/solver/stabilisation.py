@@ -18,7 +18,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc
-from anisocontact.contact import AnyContact, Contact, NotHeldError, facet_size
+from anisocontact.contact import AnyContact, NotHeldError, facet_size
 from anisocontact.contact.transfer import Couplings
 from anisocontact.errors import InputError
 from anisocontact.mesh import Model
@@ -343,7 +343,7 @@ class Stabilisation:
         moved = u - self._begun
         ways = [np.abs(moved[nodes] @ axis).max(initial=0.0) for nodes, axis in self._held]
         for contact in self._contacts:
-            if isinstance(contact, Contact) and contact.body is not None:
+            if contact.body is not None:
                 ways.append(contact.body.farthest(contact.current.points))
         if self._attached is not None:
             ways.append(self._attached.way())
@@ -406,7 +406,4 @@ class Stabilisation:
         return [c for c in self._contacts if set(body.parts) & self._sides(c)]
 
     def _sides(self, contact: AnyContact) -> set[str]:
-        groups = [contact.slave]
-        if not isinstance(contact, Contact):
-            groups.append(contact.master)
-        return {self._model.body_of(group) for group in groups}
+        return {self._model.body_of(group) for group in contact.groups}

@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import Mat, PETSc
-from anisocontact.contact import Contact
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.ahead import Ahead
 from anisocontact.solver.coupled import CoupledTangent
@@ -34,8 +33,8 @@ class Tangent:
         self._parts = parts
         self._comm = space.mesh.comm
         contacts = parts.contacts
-        self._analytic = [c for c in contacts if isinstance(c, Contact)]
-        self._meshed = [p for c in contacts if not isinstance(c, Contact) for p in c.passes]
+        self._analytic: list[Any] = [p for c in contacts if not c.meshed for p in c.passes]
+        self._meshed: list[Any] = [p for c in contacts if c.meshed for p in c.passes]
         extra = parts.rigid.size // 3
         self.coupled = (
             CoupledTangent(parts.bulk.stiffness, space, extra)

@@ -21,7 +21,7 @@ from anisocontact._fenicsx import (
     prescribed_rows,
     ufl,
 )
-from anisocontact.contact import AnyContact, Contact, warn_of
+from anisocontact.contact import AnyContact, warn_of
 from anisocontact.errors import InputError
 from anisocontact.solver.balance import ROUND_OFF
 from anisocontact.solver.coupled import CoupledTangent
@@ -83,7 +83,7 @@ class ContactProblem(Following):
                 raise InputError(
                     f"contact {contact.name!r} lives on another space than u", "contacts"
                 )
-        self._bodies = [c.body for c in contacts if isinstance(c, Contact) and c.body is not None]
+        self._bodies = [c.body for c in contacts if c.body is not None]
         for body in self._bodies:
             if body.free:
                 raise InputError(
@@ -104,7 +104,7 @@ class ContactProblem(Following):
         for contact in contacts:
             contact.suit_strain(finite)
             contact.suit(np.array(self._diagonal.array_r).reshape(-1, 3))
-        meshed = not all(isinstance(c, Contact) for c in contacts)
+        meshed = any(c.meshed for c in contacts)
         self._coupled = CoupledTangent(self._matrix, space) if meshed else None
         self._dt = 1.0
         self._parts = parts(space)
@@ -220,13 +220,13 @@ class ContactProblem(Following):
         if not np.array_equal(self.u.x.array[: self._owned], x.array_r):
             self.evaluate(x)
         if self._coupled:
-            meshed = [p for c in self.contacts if not isinstance(c, Contact) for p in c.passes]
+            meshed = [p for c in self.contacts if c.meshed for p in c.passes]
             grown = self._coupled.make_room(out, [k for c in meshed for k in c.couplings()], list)
         out.zeroEntries()
         assemble_into(out, self._tangent)
-        for contact in self.contacts:
-            if isinstance(contact, Contact):
-                contact.add_tangent(out)
+        analytic: list[Any] = [c for c in self.contacts if not c.meshed]
+        for contact in analytic:
+            contact.add_tangent(out)
         out.assemble()
         if self._coupled:
             self._coupled.add(out)

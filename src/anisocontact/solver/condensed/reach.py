@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact, Contact, FacetContact, SelfContact
+from anisocontact.contact import AnyContact
 from anisocontact.mesh import Model
 from anisocontact.solver.persistent import Arrays
 from anisocontact.solver.problem import Problem
@@ -53,13 +54,11 @@ class Reach:
         self.nodes = np.zeros(len(u), dtype=np.bool_)
         self.nodes[self._others] = True
         for contact in self._contacts:
-            if isinstance(contact, Contact):
-                self.nodes[contact.slave_nodes] = True
-            elif isinstance(contact, SelfContact):
-                self.nodes[contact.slave_facets] = True
-            else:
-                for half in contact.passes:
+            for half in contact.passes:
+                if half.of_two_groups:
                     self._select_pass(half, self._reference + u)
+                else:
+                    self.nodes[half.couplable()] = True
 
     def persistent(self) -> Arrays:
         """Where the last selection was made, and what came of it."""
@@ -86,9 +85,8 @@ class Reach:
     def valid(self, u: Floats) -> bool:
         """Whether no body has moved by more than what was allowed for."""
         for contact in self._contacts:
-            if isinstance(contact, Contact | SelfContact):
-                continue
-            for half in contact.passes:
+            searched: tuple[Any, ...] = contact.passes if contact.of_two_groups else ()
+            for half in searched:
                 sides = (half.slave_facets, half.master_facets)
                 if sum(self._moved(side, u) for side in sides) > self._motion(half):
                     return False
@@ -100,13 +98,13 @@ class Reach:
         step = np.linalg.norm(u[nodes] - self._start[nodes], axis=1)
         return float(step.max(initial=0.0))
 
-    def _motion(self, half: FacetContact) -> float:
+    def _motion(self, half: Any) -> float:
         """Motion of slave and master that is allowed for, length."""
         bodies = [self._ranges[name.partition(".")[0]] for name in (half.slave, half.master)]
         planned = sum(float(np.linalg.norm(extent)) for extent in bodies)
-        return self._factor * (planned + _SLACK * half.facet_size)
+        return float(self._factor * (planned + _SLACK * half.facet_size))
 
-    def _select_pass(self, half: FacetContact, x: Floats) -> None:
+    def _select_pass(self, half: Any, x: Floats) -> None:
         from scipy.spatial import cKDTree  # slow to import, and not needed for analytic masters
 
         motion = self._motion(half)

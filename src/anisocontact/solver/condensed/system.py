@@ -10,7 +10,7 @@ import numpy.typing as npt
 import scipy.sparse
 
 from anisocontact._fenicsx import Mat, PETSc, Vec
-from anisocontact.contact import AnyContact, Contact
+from anisocontact.contact import AnyContact
 from anisocontact.contact.transfer import Couplings
 from anisocontact.solver.balance import LOAD_SHARE, ROUND_OFF
 from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor
@@ -265,12 +265,11 @@ class ContactSystem(Following):
 
 def couplings(contact: AnyContact) -> list[Couplings]:
     """Tangent of a contact as blocks of nodes."""
-    parts = (contact,) if isinstance(contact, Contact) else contact.passes
-    return [blocks for part in parts for blocks in part.couplings()]
+    return [blocks for half in contact.passes for blocks in half.couplings()]
 
 
 def used(contacts: Sequence[AnyContact], forces: Floats) -> npt.NDArray[np.int64]:
     """Nodes whose displacement the trial depends on: below slave points, or under forces."""
-    found = [half.feet() for c in contacts if not isinstance(c, Contact) for half in c.passes]
+    found = [half.feet() for c in contacts for half in c.passes]
     loaded = np.flatnonzero(forces.reshape(-1, 3).any(axis=1))
     return np.concatenate([loaded, *found])

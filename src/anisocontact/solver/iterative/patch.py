@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._fenicsx import PETSc
-from anisocontact.contact import Contact
 from anisocontact.solver.condensed.reach import Reach
 from anisocontact.solver.problem import Problem
 from anisocontact.solver.steps import Step
@@ -28,7 +27,7 @@ class Patch:
 
     def __init__(self, problem: Problem, steps: Sequence[Step]) -> None:
         self._problem = problem
-        meshed = [c for c in problem.contacts if not isinstance(c, Contact)]
+        meshed = [c for c in problem.contacts if c.meshed]
         #: On several processes the reach of meshed contacts is not searched: all their nodes count.
         self._whole = meshed if problem.comm.size > 1 else []
         self._searched = [c for c in meshed if c not in self._whole]
