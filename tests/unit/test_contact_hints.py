@@ -17,6 +17,7 @@ from anisocontact.errors import ModelWarning
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
+from anisocontact.results.warnings import at_end
 from anisocontact.solver import Problem, Solver, Step
 
 LAW = PairLaw(NormalLaw(penalty=1e3), Adhesion(stiffness=1e3), Friction(coefficients=0.3))
@@ -148,3 +149,12 @@ def test_a_penetration_is_held_against_the_approach(tmp_path, gap):
     assert "penalty" in said and "augmented" in said
     text = BLOCK.format(gap=gap, penalty=1e6, way=-gap - 0.006)
     assert not any("penetration" in line for line in _summary(tmp_path, text)["warnings"])
+
+
+@pytest.mark.parametrize(
+    ("work", "said"), [(50.0, "12% of"), (1e-9, "more than all (6 against 1e-09) of")]
+)
+def test_stabilisation_is_told_over_the_work_there_is(work: float, said: str) -> None:
+    """Without work from outside a share of it says nothing: both are told."""
+    (line,) = at_end([], [], {"external": -work, "stabilisation": 6.0, "flow": 0.0})
+    assert line.startswith(f"stabilisation took up {said} the work from outside")

@@ -115,3 +115,23 @@ def test_cycle_of_two_is_given_up():
     result = newton.solve(x, full_steps=True)
     assert result.reason.startswith("no convergence")
     assert result.iterations < 8
+
+
+class Floating(Valley):
+    """Nothing pushes: 1e-9 is the rounding of forces that cancel."""
+
+    force_scale, round_off = 1e-12, 1e-9
+
+    def evaluate(self, x: Vec) -> np.ndarray:
+        return np.array([5e-10, x.array_r[1]])
+
+
+def test_what_rounding_leaves_is_told_over_what_was_rounded():
+    """Without forces at work a residual of rounding is no share of them that anybody could read."""
+    system = Floating(1.0)
+    newton = Newton(system, "floating_", {}, lambda *_: None)
+    x = system.new_vector()
+    result = newton.solve(x)
+    newton.close()
+    assert not result.reason
+    assert result.residuals == pytest.approx([5e-9])

@@ -155,8 +155,10 @@ def at_end(
             swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
             found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap]))
     for name, text in _TAKEN.items():
-        share = abs(energy[name]) / max(abs(energy["external"]), _TINY)
-        if share > STABILISED:
+        taken, work = abs(energy[name]), abs(energy["external"])
+        if taken > STABILISED * work:
+            all_of_it = f"more than all ({taken:.3g} against {work:.3g})"
+            share = f"{taken / work:.0%}" if taken <= work else all_of_it
             found.append(text.format(share))
     return found
 
@@ -183,12 +185,11 @@ def soft(contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]]) -> lis
     return found
 
 
-_TINY = 1e-300
 #: Energies that are no part of what was to be computed, and what is said of them.
 _TAKEN = {
-    "stabilisation": "stabilisation took up {:.0%} of the work from outside: bodies moved while "
+    "stabilisation": "stabilisation took up {} of the work from outside: bodies moved while "
     "nothing held them; let them touch at the start, or support them",
-    "flow": "jumps set free {:.0%} of the work from outside: inertia, which is left out, would "
+    "flow": "jumps set free {} of the work from outside: inertia, which is left out, would "
     "decide where the bodies come to rest",
 }
 

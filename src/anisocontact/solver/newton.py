@@ -274,7 +274,9 @@ class Newton:
         reasons = PETSc.SNES.ConvergedReason
         norm = self._problem.unbalanced(norms[2])
         rtol, atol, _, _ = snes.getTolerances()
-        relative = norm / max(self._problem.force_scale, self._problem.round_off, _TINY)
+        # where next to no forces are at work, what is left of them is rounding of larger ones
+        rounded = self._problem.round_off / max(rtol, _EPSILON)
+        relative = norm / max(self._problem.force_scale, rounded, _TINY)
         self._residuals.append(relative)
         self._on_iteration(iteration, relative)
         if not np.isfinite(norm):
@@ -331,6 +333,7 @@ class Newton:
 
 # Stands for the forces where there are none, so that zero over zero is zero.
 _TINY = float(np.finfo(np.float64).tiny)
+_EPSILON = float(np.finfo(np.float64).eps)
 
 
 class Database:

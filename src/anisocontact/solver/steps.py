@@ -147,7 +147,8 @@ class Progress:
         step: Name of the step.
         increment: Number of the increment in the step, from 1.
         iteration: Number of the iteration, from 0 (the start).
-        residual: Residual over the forces at work.
+        residual: Residual over the forces at work, or over those whose rounding is a hundred
+            millionth of them where next to none are.
         contacts: Number of "open", "stick" and "slip" points of each contact, by name.
     """
 
