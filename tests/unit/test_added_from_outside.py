@@ -5,8 +5,12 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
+
+from anisocontact.results import Results
 
 ROOT = Path(__file__).parents[2]
 CASE = """
@@ -39,13 +43,65 @@ increments = 2
 """
 
 
-def run(tmp_path: Path, section: str, more: str) -> subprocess.CompletedProcess[str]:
-    """The code of a section of the page and then more, in a process of its own."""
+RELAX = """
+[mesh.box.bar]
+origin = [0, 0, 0]
+size = [1, 1, 1]
+cells = [2, 1, 1]
+order = 2
+
+[material.bar]
+model = "standard-linear-solid"
+E = 2.0
+E_1 = 3.0
+nu = 0.3
+tau = 0.5
+
+[[step]]
+name = "pull"
+increments = 1
+duration = 0.1
+[step.displacement]
+"bar.bottom" = { z = 0 }
+"bar.left" = { x = 0 }
+"bar.front" = { y = 0 }
+"bar.top" = { z = 0.01 }
+
+[[step]]
+name = "hold"
+increments = 6
+duration = 1.2
+
+[output]
+pictures = false
+"""
+RUN_AND_GO_ON = """
+import os, signal
+
+from anisocontact.cli import main
+from anisocontact.results.writer import Writer
+
+keep = Writer.keep
+
+def interrupted(self, *arguments):
+    keep(self, *arguments)
+    if self.summary["steps"] == 3:
+        os.kill(os.getpid(), signal.SIGINT)
+
+assert main(["run", "case.toml", "-o", "whole"]) == 0
+Writer.keep = interrupted
+assert main(["run", "case.toml", "-o", "out"]) == 3
+Writer.keep = keep
+assert main(["run", "case.toml", "-o", "out", "--restart"]) == 0
+"""
+
+
+def run(tmp_path: Path, section: str, more: str, number: int = 0) -> Any:
+    """A block of code of a section of the page and then more, in a process of its own."""
     pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
     page = (ROOT / "docs" / "dev" / "how-to-add.md").read_text().partition(f"## {section}\n")[2]
-    code = re.search(r"```python\n(.*?)```", page, re.S)
-    assert code is not None
-    script = f"import anisocontact._fenicsx\n{code[1]}\n{more}"
+    codes = re.findall(r"```python\n(.*?)```", page.partition("\n## ")[0], re.S)
+    script = f"import anisocontact._fenicsx\n{codes[number]}\n{more}"
     return subprocess.run(
         [sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True, check=False
     )
@@ -70,6 +126,31 @@ def test_its_parameters_are_checked_as_all_are(tmp_path):
     (tmp_path / "case.toml").write_text(BAR.format(shear=-2.0))
     done = run(tmp_path, "A material", CASE)
     assert "material.bar.G: -2.0 given, must be > 0" in done.stderr
+
+
+def test_material_with_a_history_relaxes_and_goes_on(tmp_path):
+    """Requirement: internal variables advance with accepted increments, and are in checkpoints.
+
+    Source: a bar that is stretched in one increment and held; backward Euler leaves the strain
+    `e (tau / (tau + dt))` of the Maxwell element after each. The sides are free, so that the force
+    is `E e + E_1 e_1`. Tolerance: that of Newton's method. The true stress at the nodes is
+    `force (1 + e) / J`. A run that was halted while it relaxed is the whole one, bit by bit.
+    """
+    (tmp_path / "case.toml").write_text(RELAX)
+    done = run(tmp_path, "A material", RUN_AND_GO_ON, 1)
+    assert done.returncode == 0, done.stderr
+    history = (tmp_path / "whole" / "history.csv").read_bytes()
+    assert history == (tmp_path / "out" / "history.csv").read_bytes()
+    results = Results(tmp_path / "whole")
+    steps = np.array([0.1] + [0.2] * 6)
+    maxwell = 0.01 * np.cumprod(0.5 / (0.5 + steps))
+    force = results.history["reactions.bar.top.z"]
+    np.testing.assert_allclose(force, 2.0 * 0.01 + 3.0 * maxwell, rtol=1e-7)
+    for found in (results, Results(tmp_path / "out")):
+        stress = found.fields().point_data["stress"]
+        true = force[-1] / (1.0 - 0.3 * 0.01) ** 2
+        np.testing.assert_allclose(stress, [[0, 0, true, 0, 0, 0]] * len(stress), atol=1e-7 * true)
+    assert results.summary["energy"]["elastic"] == 0.0
 
 
 UNIT_CUBE = {

@@ -1,5 +1,6 @@
 """Materials of the bodies and the forces inside them."""
 
+from anisocontact.bulk.history import Before, BodyHistory, HistoryMaterial
 from anisocontact.bulk.hyperelastic import (
     NeoHookean,
     NeoHookeanIncompressible,
@@ -17,6 +18,9 @@ from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
 from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
 
 __all__ = [
+    "Before",
+    "BodyHistory",
+    "HistoryMaterial",
     "LinearBulk",
     "LinearElastic",
     "Material",

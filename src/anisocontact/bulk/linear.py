@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from anisocontact._fenicsx import Mat, PETSc, Vec, compiled, create_stiffness, ufl
+from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Material
 from anisocontact.mesh import Model
 
@@ -34,6 +36,8 @@ class LinearBulk:
     rest_length = 0.0
     #: Whether `energy` is that of all bodies.
     stores = True
+    #: Linear materials have no history.
+    histories: Mapping[str, BodyHistory] = MappingProxyType({})
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
         self.stiffness = create_stiffness(
@@ -65,6 +69,12 @@ class LinearBulk:
             The energy over all ranks, force times length.
         """
         return 0.5 * float(u.dot(self.force(u)))
+
+    def set_time(self, dt: float) -> None:
+        """Take over a time increment, which changes nothing."""
+
+    def commit(self, u: Vec) -> None:
+        """Accept a state, which changes nothing."""
 
     def tangent(self, out: Mat) -> None:
         """Write the stiffness into a matrix.

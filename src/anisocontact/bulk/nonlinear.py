@@ -19,6 +19,7 @@ from anisocontact._fenicsx import (
     fem,
     ufl,
 )
+from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material
 from anisocontact.mesh import Model
 
@@ -29,12 +30,24 @@ class NonlinearBulk:
     Args:
         model: Mesh with its bodies.
         materials: Body name -> material, one for each body; linear ones may be among them.
+
+    Attributes:
+        histories: What bodies whose material has a history have gone through, by body name.
     """
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
         self._u: Any = fem.Function(model.space)
         v, du = ufl.TestFunction(model.space), ufl.TrialFunction(model.space)
-        work, energy = _forms(model, materials, self._u, v)
+        self._dt: Any = fem.Constant(model.mesh, 0.0)
+        # full integration of the stiffness at rest; UFL's own estimate grows with every power of J
+        full = 2 * model.order
+        given: Mapping[str, Any] = materials
+        self.histories = {
+            name: BodyHistory(law, model, name, self._u, self._dt, full)
+            for name, law in given.items()
+            if hasattr(law, "history")
+        }
+        work, energy = _forms(model, {**given, **self.histories}, self._u, v, full)
         self._comm = model.mesh.comm
         self._work = compiled(work, self._comm)
         self._tangent = compiled(ufl.derivative(work, self._u, du), self._comm)
@@ -87,6 +100,21 @@ class NonlinearBulk:
         assemble_into(out, self._tangent)
         out.assemble(PETSc.Mat.AssemblyType.FINAL)
 
+    def set_time(self, dt: float) -> None:
+        """Take over the time increment of the next states."""
+        self._dt.value = dt
+
+    def commit(self, u: Vec) -> None:
+        """Accept a state: histories advance.
+
+        Args:
+            u: Displacement of the nodes this rank owns, length.
+        """
+        if self.histories:
+            self._set(u)
+        for history in self.histories.values():
+            history.commit()
+
     def _set(self, u: Vec) -> None:
         self._u.x.array[: len(u.array_r)] = u.array_r
         self._u.x.scatter_forward()
@@ -101,16 +129,13 @@ def _cell_size(model: Model) -> float:
 
 
 def _forms(
-    model: Model, materials: Mapping[str, Material], u: Any, v: Any
+    model: Model, laws: Mapping[str, Any], u: Any, v: Any, full: int
 ) -> tuple[Any, Any | None]:
     """Virtual work of the stresses and, where every material has one, the energy."""
     names = model.body_names()
     cells = [(i, np.sort(model.cells(name))) for i, name in enumerate(names)]
     dx = ufl.Measure("dx", domain=model.mesh, subdomain_data=cells)
-    # full integration of the stiffness at rest; UFL's own estimate grows with every power of J
-    full = 2 * model.order
     work, energy = 0, 0
-    laws: Mapping[str, Any] = materials
     complete = all(law.linear or hasattr(law, "energy") for law in laws.values())
     for i, name in enumerate(names):
         material = laws[name]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import compiled_expression, dolfinx, fem, ufl
+from anisocontact._fenicsx import compiled_expression, dolfinx, fem, scalar_element, ufl
 from anisocontact.bulk import cauchy_stress
 from anisocontact.contact import AnyContact
 from anisocontact.results.dataset import DataSet, vertices
@@ -39,6 +39,11 @@ class Bodies:
         self._expressions = [
             (_stress_at(problem, body, discontinuous), model.cells(body))
             for body in model.body_names()
+            if body not in problem.bulk.histories
+        ]
+        self._histories = [
+            (history, _from_points(discontinuous, history.points))
+            for history in problem.bulk.histories.values()
         ]
         continuous = fem.functionspace(model.mesh, ("Lagrange", model.order, (len(_SYMMETRIC),)))
         self._mean = fem.Function(continuous)
@@ -63,6 +68,11 @@ class Bodies:
         u = self._problem.u.x.array.reshape(-1, 3)
         for expression, cells in self._expressions:
             self._stress.interpolate(expression, cells0=cells)
+        values = self._stress.x.array.reshape(-1, len(_SYMMETRIC))
+        for history, spread in self._histories:
+            cells, at_points = history.stress()
+            components = np.stack([at_points[..., i, j] for i, j in _SYMMETRIC], axis=-1)
+            values[self._stress.function_space.dofmap.list[cells]] = spread @ components
         stress = self._summed(np.asarray(self._stress.x.array, dtype=np.float64)) * self._share
         components = stress.reshape(-1, len(_SYMMETRIC))
         at_nodes = {
@@ -154,6 +164,11 @@ def _stress_at(problem: Problem, body: str, space: Any) -> Any:
     components = ufl.as_vector([stress[i, j] for i, j in _SYMMETRIC])
     points = space.element.interpolation_points
     return compiled_expression(components, points, problem.model.mesh.comm)
+
+
+def _from_points(space: Any, points: Floats) -> Floats:
+    """Values at the nodes of a cell by those at points in it, least squares, (nodes, points)."""
+    return np.asarray(np.linalg.pinv(scalar_element(space).tabulate(0, points)[0, :, :, 0]))
 
 
 #: Nodes of a tetrahedron of VTK with four or ten of them, seen in a mirror.

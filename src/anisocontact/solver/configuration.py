@@ -66,6 +66,10 @@ class Configuration:
         # a process whose own unknowns have not moved goes along
         return bool(self._parts.layout.comm.allreduce(here, MPI.LAND))
 
+    def commit(self) -> None:
+        """Accept the state: histories of materials advance."""
+        self._parts.bulk.commit(self._owned)
+
     def forget(self) -> None:
         """Something else has changed: the same state has to be evaluated anew."""
         self._at = None

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.bulk.history import BodyHistory
 from anisocontact.contact import AnyContact
 from anisocontact.solver.accepted import AcceptedState
 from anisocontact.solver.configuration import Configuration
@@ -72,19 +73,26 @@ class Memory:
         return nodal, common | own | parts.rigid.persistent()
 
 
-def persistent_points(contacts: Sequence[AnyContact]) -> list[Arrays]:
-    """History of every pass over slave points."""
-    return [part.persistent() for contact in contacts for part in contact.parts]
+def persistent_points(
+    contacts: Sequence[AnyContact], histories: Mapping[str, BodyHistory]
+) -> list[Arrays]:
+    """History of every pass over slave points, and of every body whose material has one."""
+    passes = [part.persistent() for contact in contacts for part in contact.parts]
+    return passes + [history.persistent() for history in histories.values()]
 
 
 def restore_points(
-    contacts: Sequence[AnyContact], kept: Sequence[Arrays], nodal: npt.NDArray[np.float64]
+    contacts: Sequence[AnyContact],
+    histories: Mapping[str, BodyHistory],
+    kept: Sequence[Arrays],
+    nodal: npt.NDArray[np.float64],
 ) -> None:
     """Go on from what `persistent_points` gave.
 
     Args:
         contacts: The contacts.
-        kept: The histories.
+        histories: Bodies whose material has a history, by name.
+        kept: What was kept of them.
         nodal: Displacement of the local nodes in that state, (nodes, 3), length.
     """
     points = iter(kept)
@@ -92,3 +100,5 @@ def restore_points(
         for part in contact.parts:
             part.restore(next(points), nodal)
         contact.rejoin()
+    for history in histories.values():
+        history.restore(next(points))

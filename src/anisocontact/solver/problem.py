@@ -218,6 +218,7 @@ class Problem(Following):
         self._bodies.forget()
         self._level = fraction
         self._dt = dt
+        self.bulk.set_time(dt)
         self.rigid.set_level(fraction)
         self.loads.set_level(fraction)
         self.attached.set_level(fraction)
@@ -385,7 +386,7 @@ class Problem(Following):
         nodal, common = self._memory.persistent()
         if self.reduction is not None:
             nodal |= {f"{PENDING}{name}": v for name, v in self.reduction.pending().items()}
-        points = persistent_points(self.contacts)
+        points = persistent_points(self.contacts, self.bulk.histories)
         common |= {"rotations": self.rotations.persistent()} | self._tangent.persistent()
         return Persistent(nodal, points, common)
 
@@ -405,7 +406,7 @@ class Problem(Following):
         self._memory.restore(kept)
         self._tangent.restore(kept.common)
         self.rotations.restore(kept.common["rotations"])
-        restore_points(self.contacts, kept.points, self._bodies.nodal)
+        restore_points(self.contacts, self.bulk.histories, kept.points, self._bodies.nodal)
         pending = under(PENDING, kept.nodal)
         self.reduction = Interior(self, pending) if pending else None
 
@@ -465,4 +466,5 @@ class Problem(Following):
         self._evaluate_at(x)
         self._accepted.go_on(x, self._balance.outside)
         self._accepted.take(self._balance.outside, self._balance.load)
+        self._bodies.commit()
         return self._accepted.way_work + self.attached.commit(self._bodies.nodal)
