@@ -22,8 +22,9 @@ from pathlib import Path
 import numpy as np
 
 import anisocontact
-from anisocontact import _core, registry
+from anisocontact import _core
 from anisocontact.anisotropy import make_directions
+from anisocontact.base import registry
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw, slide
 from anisocontact.surfaces import make_surface

@@ -18,12 +18,12 @@ import numpy as np
 from facet_grid import grid
 from mpi4py import MPI
 
-from anisocontact import registry
 from anisocontact.anisotropy import make_directions
+from anisocontact.base import registry
 from anisocontact.contact.facet_mesh import FacetMesh, SlavePoints, facet_rule
-from anisocontact.facets import TOPOLOGIES, FacetProjections, FacetSurface
 from anisocontact.interface import STATE, PairLaw, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.surfaces import TOPOLOGIES, FacetProjections, FacetSurface
 
 PASSES = 7
 #: Points of quadrature on a facet: degree of the rule, twice the order of the facet.

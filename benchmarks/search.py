@@ -15,7 +15,7 @@ from collections.abc import Callable
 import numpy as np
 from facet_grid import grid
 
-from anisocontact.facets import TOPOLOGIES, FacetProjections, FacetSurface
+from anisocontact.surfaces import TOPOLOGIES, FacetProjections, FacetSurface
 
 POINTS = 200_000
 

@@ -187,5 +187,5 @@ class FiniteElements:
 @pytest.fixture(scope="session")
 def fe() -> FiniteElements:
     """Builders of small contact problems; skips where DOLFINx is not installed."""
-    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     return FiniteElements()

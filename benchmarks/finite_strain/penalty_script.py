@@ -7,7 +7,7 @@ the four corners of the face give those at the points.
 
 from __future__ import annotations
 
-import anisocontact._fenicsx  # isort: skip  # noqa: F401  (loads the PETSc of the wheel)
+import anisocontact  # isort: skip  # noqa: F401  (before dolfinx)
 
 import sys
 import time

@@ -120,7 +120,7 @@ def escape_bars(
 
 def write_pages(app: Sphinx) -> None:
     """Write the pages that changed and remove those whose origin is gone."""
-    from anisocontact import registry
+    from anisocontact.base import registry
     from anisocontact.case import json_schema
     from anisocontact.case.trace import trace_schema
     from anisocontact.cli import build_parser

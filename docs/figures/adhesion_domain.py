@@ -8,15 +8,17 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from anisocontact.adhesion_domain import (
+from anisocontact.anisotropy import make_directions
+from anisocontact.interface import Interface
+from anisocontact.laws import (
+    Adhesion,
+    Friction,
+    NormalLaw,
     adhesion_domain,
     draw_force_plane,
     draw_tangent_plane,
     force_domain,
 )
-from anisocontact.anisotropy import make_directions
-from anisocontact.interface import Interface
-from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface
 
 HERE = Path(__file__).parent

@@ -8,10 +8,9 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from anisocontact.adhesion_domain import force_domain
 from anisocontact.anisotropy import make_directions
 from anisocontact.interface import Interface
-from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw, force_domain
 from anisocontact.surfaces import make_surface
 
 HERE = Path(__file__).parent

@@ -4,7 +4,7 @@ The pad is pressed by its upper face, then dragged along x; the plate is brushed
 the pad is pushed sideways too. Run it with `python rubber_pad.py`.
 """
 
-import anisocontact._fenicsx  # isort: skip  # noqa: F401  (loads the wheel's PETSc; not needed with conda)
+import anisocontact  # isort: skip  # noqa: F401  (before dolfinx)
 
 import numpy as np
 import ufl

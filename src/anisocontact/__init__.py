@@ -2,6 +2,11 @@
 
 from importlib.metadata import version
 
-__all__ = ["__version__"]
+from anisocontact.base import import_hooks
+from anisocontact.base.errors import InputError
+
+__all__ = ["InputError", "__version__"]
 
 __version__ = version("anisocontact")
+
+import_hooks.install()

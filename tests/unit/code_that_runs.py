@@ -20,8 +20,8 @@ BINDINGS = ROOT / "cpp" / "python"
 #: Bindings of what a solver calls; the others are functions of scripts and of pictures.
 BOUND = ("kernel", "facet_pair", "facet_framed", "framed", "search")
 #: Where a run goes through, and where it does not yet, or no more.
-ENTRIES = ("case.build", "solver", "contact", "rigid", "interface", "python_law", "python_pair")
-BESIDE = ("results", "point", "figure_style", "cli")
+ENTRIES = ("case.build", "solver", "contact", "rigid", "interface")
+BESIDE = ("results", "point", "base.figure_style", "cli")
 NAMED = re.compile(r"\b(?:struct|class|concept|using)\s+(\w+)|\b(\w+)\s*\(")
 
 
@@ -68,13 +68,31 @@ def reached() -> frozenset[str]:
     return frozenset(seen & definitions().keys())
 
 
-def _imports(file: Path) -> Iterator[str]:
+def _statements(file: Path) -> Iterator[tuple[str, str | None]]:
+    """Modules that a file imports, and the names that it takes from them."""
     for node in ast.walk(ast.parse(file.read_text())):
         if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
+            yield from ((alias.name, None) for alias in node.names)
         elif isinstance(node, ast.ImportFrom) and node.module:
-            yield node.module
-            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+            yield from ((node.module, alias.name) for alias in node.names)
+
+
+@cache
+def _exported(module: str) -> dict[str, str]:
+    """Where a package has the names from that it exports."""
+    init = SOURCES.joinpath(*module.removeprefix("anisocontact.").split("."), "__init__.py")
+    if not init.is_file():
+        return {}
+    return {name: source for source, name in _statements(init) if name}
+
+
+def _imports(file: Path) -> Iterator[str]:
+    """Modules that a file imports, and names as `module.name` of the module that defines them."""
+    for module, name in _statements(file):
+        source = _exported(module).get(name or "", module)
+        yield source
+        if name:
+            yield f"{source}.{name}"
 
 
 def _files(module: str) -> Iterable[Path]:
@@ -86,7 +104,9 @@ def _closure(entries: Iterable[str], without: Iterable[str]) -> frozenset[str]:
     todo, seen = list(entries), set()
     while todo:
         module = todo.pop()
-        if module in seen or module.split(".")[0] in without or not _files(module):
+        if module in seen or any(f"{module}.".startswith(f"{w}.") for w in without):
+            continue
+        if not _files(module):
             continue
         seen.add(module)
         for file in _files(module):

@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact._fenicsx import MPI
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI
 from anisocontact.mesh import BallSpec, Body, BoxSpec, Model, Placement
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.gmsh import gmsh_arrays

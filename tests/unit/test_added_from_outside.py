@@ -14,7 +14,7 @@ from anisocontact.results import Results
 
 ROOT = Path(__file__).parents[2]
 CASE = """
-from anisocontact._fenicsx import MPI
+from anisocontact.base.fenicsx import MPI
 from anisocontact.case import load
 from anisocontact.case.build import build
 
@@ -98,10 +98,10 @@ assert main(["run", "case.toml", "-o", "out", "--restart"]) == 0
 
 def run(tmp_path: Path, section: str, more: str, number: int = 0) -> Any:
     """A block of code of a section of the page and then more, in a process of its own."""
-    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     page = (ROOT / "docs" / "dev" / "how-to-add.md").read_text().partition(f"## {section}\n")[2]
     codes = re.findall(r"```python\n(.*?)```", page.partition("\n## ")[0], re.S)
-    script = f"import anisocontact._fenicsx\n{codes[number]}\n{more}"
+    script = f"import anisocontact\n{codes[number]}\n{more}"
     return subprocess.run(
         [sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True, check=False
     )

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.laws import Friction
 from anisocontact.rigid.body import RigidBody, turns_in_radian
 from anisocontact.surfaces import make_surface
@@ -76,7 +76,7 @@ def test_turns_of_rigid_bodies():
 
 def test_rotations_shapes_and_steps():
     """Where the finite elements take an angle it is the same."""
-    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     from anisocontact.mesh import Rotation, make_shape
     from anisocontact.solver import Step, Turn
 
@@ -101,7 +101,7 @@ def test_rotations_shapes_and_steps():
 
 
 def test_a_shape_takes_one_number_for_a_pair():
-    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     from anisocontact.mesh import make_shape
 
     given = {"radius": 1, "length": 1, "cells": (4, 1, 1)}

@@ -15,7 +15,7 @@ from anisocontact.anisotropy import (
     tensor,
     tensor_derivative,
 )
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.laws import Adhesion, Friction
 from anisocontact.surfaces import make_surface
 

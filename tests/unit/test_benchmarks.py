@@ -133,7 +133,7 @@ def test_the_command_runs_and_keeps(benchmarks, tmp_path):
     """Requirement: forces of the coarse block to 1e-4. Source: CalculiX 2.20, same mesh: 22.8364
     and 6.4937. Tolerance: it balances to 0.5 % of the mean force, 2.3e-4 of the forces here.
     """
-    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     path = tmp_path / "records.json"
     arguments = ["4", "--only", "anisocontact", "--problems", "plane", "--records", str(path)]
     benchmarks("run").main(arguments)
@@ -149,7 +149,7 @@ def test_finite_strain_agrees_with_a_dolfinx_script(benchmarks):
     """Requirement: forces to 1e-7. Source: an independent script in UFL of the same equations
     and points. Tolerance: both balance to 1e-8 of the forces at work.
     """
-    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     runs = benchmarks("finite_strain.runs")
     ours, script = (runs.one(name, "plane", 4, 300.0) for name in (runs.OURS, runs.SCRIPT))
     for name in ("normal force pressed", "tangential force at the end"):

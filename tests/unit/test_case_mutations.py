@@ -12,11 +12,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.errors import InputError
 from anisocontact.case import CaseError, validate
 from anisocontact.cli import main
-from anisocontact.errors import InputError
 
 CASE = Path(__file__).with_name("small_block.toml").read_text()
 Place = tuple[Any, ...]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import main
 
@@ -36,7 +36,7 @@ nu = 0.3
 #: A law that gives no force, and may fail.
 SMOOTH = """
 import numpy as np
-from anisocontact.python_law import LawResult
+from anisocontact.interface import LawResult
 
 class Smooth:
     internal = 0

@@ -8,7 +8,7 @@ import tomllib
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.case.build import build
 from anisocontact.case.read import CaseError, load, validate

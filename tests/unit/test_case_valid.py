@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from anisocontact import registry
 from anisocontact.anisotropy import make_directions
-from anisocontact.registry import Entry, Parameter
+from anisocontact.base import registry
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.surfaces import make_surface
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.case import json_schema, load, objects, validate
 from anisocontact.case.model import Registries, case_type

@@ -10,7 +10,7 @@ import sys
 
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import build_parser, main
 from anisocontact.solver import Progress

@@ -17,15 +17,15 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.compiler import lack_of_compiler
+from anisocontact.base.errors import MachineError
+from anisocontact.base.machine import lack
+from anisocontact.base.signals import on_signals
 from anisocontact.cli import main
-from anisocontact.compiler import lack_of_compiler
-from anisocontact.errors import MachineError
-from anisocontact.machine import lack
 from anisocontact.results.read import Results
-from anisocontact.signals import on_signals
-from anisocontact.solver.problem import Problem
+from anisocontact.solver.system.problem import Problem
 
 COMMAND = (sys.executable, "-m", "anisocontact")
 #: Names and texts that terminals, rich, HTML and Matplotlib would read as something else.

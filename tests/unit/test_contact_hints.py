@@ -8,12 +8,12 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.errors import ModelWarning
 from anisocontact.bulk import make_material
 from anisocontact.cli import main
 from anisocontact.contact import FacetContact, TwoHalfPass, coarse_slaves
-from anisocontact.errors import ModelWarning
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box

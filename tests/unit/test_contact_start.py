@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import DirectionField, make_directions
-from anisocontact.augmentation import Augmentation
+from anisocontact.base.errors import InputError
 from anisocontact.contact import Contact, FacetContact, TwoHalfPass, initial_overlap
-from anisocontact.errors import InputError
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import Augmentation, Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
-from anisocontact.solver.free_modes import bodies
+from anisocontact.solver.terms.free_modes import bodies
 from anisocontact.surfaces import make_surface
 
 SIZE = 0.5

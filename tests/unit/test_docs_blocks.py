@@ -14,7 +14,7 @@ from typing import Any
 
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.case import validate
 from anisocontact.case.model import StepSection

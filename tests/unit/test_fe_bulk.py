@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 
 CELLS = [("hexahedron", 1), ("hexahedron", 2), ("tetrahedron", 1), ("tetrahedron", 2)]
 

@@ -10,7 +10,7 @@ import time
 
 import pytest
 
-_fenicsx = pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+_fenicsx = pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 ANSWER = "JIT compilation timed out, probably due to x. Try cleaning cache (e.g. remove {}) or so."
 

@@ -11,14 +11,15 @@ import numpy as np
 import pytest
 import scipy.sparse
 
-from anisocontact.errors import InputError
-from anisocontact.solver import Problem, Solver, Step, costs, strategy
-from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor, gmres
-from anisocontact.solver.condensed.eliminate import WAYS
-from anisocontact.solver.condensed.parts import Condensation
-from anisocontact.solver.condensed.patterns import Patterns, State
-from anisocontact.solver.iterative.coarse import CoarseLevel
-from anisocontact.solver.newton import SingularError
+from anisocontact.base.errors import InputError
+from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver.stepping.newton import SingularError
+from anisocontact.solver.strategies import costs, strategy
+from anisocontact.solver.strategies.condensed.dense import ContactTangent, KeptFactor, gmres
+from anisocontact.solver.strategies.condensed.eliminate import WAYS
+from anisocontact.solver.strategies.condensed.parts import Condensation
+from anisocontact.solver.strategies.condensed.patterns import Patterns, State
+from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
 
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
 
@@ -261,7 +262,7 @@ def test_unknown_strategy(fe: Any) -> None:
 
 def test_bulk_is_recovered_only_when_asked_for(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Reactions, energies and means need no solution with the interior; the displacement does."""
-    from anisocontact.solver.condensed.parts import Condensation as Bulk
+    from anisocontact.solver.strategies.condensed.parts import Condensation as Bulk
 
     calls = []
     interior = Bulk.interior

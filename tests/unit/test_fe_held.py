@@ -2,9 +2,9 @@
 
 import pytest
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.bulk import make_material
 from anisocontact.case import load

@@ -6,9 +6,10 @@ from typing import Any
 
 import pytest
 
-from anisocontact.solver import Problem, Solver, Step, StoppedError, strategy
-from anisocontact.solver.costs import factor_bytes
-from anisocontact.solver.iterative import IterativeNewton
+from anisocontact.solver import Problem, Solver, Step, StoppedError
+from anisocontact.solver.strategies import strategy
+from anisocontact.solver.strategies.costs import factor_bytes
+from anisocontact.solver.strategies.iterative import IterativeNewton
 
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
 RUBBER = {"model": "neo-hookean", "E": 1000.0, "nu": 0.3}

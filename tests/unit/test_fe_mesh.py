@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "milled_block" / "block.msh"
 FORMATS = [("4.1", False), ("4.1", True), ("2.2", False), ("2.2", True)]
@@ -59,7 +59,7 @@ def written(gmsh, path, *, version="4.1", binary=False, order=1, hexahedra=False
 
 def volume_and_areas(model):
     """Volume of the mesh and area of each facet group, by UFL."""
-    from anisocontact._fenicsx import fem, ufl
+    from anisocontact.base.fenicsx import fem, ufl
 
     one = fem.Constant(model.mesh, 1.0)
     volume = fem.assemble_scalar(fem.form(one * ufl.dx))
@@ -246,7 +246,7 @@ def test_something_else_than_a_mesh(tmp_path, text):
 
 def two_tetrahedra(order):
     """Two tetrahedra with a common facet, as plain arrays."""
-    from anisocontact._fenicsx import middle_nodes
+    from anisocontact.base.fenicsx import middle_nodes
     from anisocontact.mesh.arrays import MeshArrays
 
     points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 1]], dtype=float)

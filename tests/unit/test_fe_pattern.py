@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.bulk import make_material
 from anisocontact.contact import FacetContact, TwoHalfPass
@@ -15,9 +15,9 @@ from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Problem, Solver, Step
-from anisocontact.solver.ahead import FARTHEST, SPACING, Ahead
-from anisocontact.solver.coupled import MOST_LEFT
-from anisocontact.solver.turn import Turn
+from anisocontact.solver.system.ahead import FARTHEST, SPACING, Ahead
+from anisocontact.solver.system.coupled import MOST_LEFT
+from anisocontact.solver.terms.turn import Turn
 
 LAW = PairLaw(
     NormalLaw(penalty=2e3), Adhesion(stiffness=(1e3, 1e3)), Friction(coefficients=(0.3, 0.3))

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact._fenicsx import fem, ufl
+from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.mesh import (
     BallSpec,
     Body,

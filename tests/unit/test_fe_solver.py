@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 
 PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
 
@@ -205,7 +205,7 @@ def test_progress_tells_iterations_and_contact(block):
 
 def test_options_prefix_reaches_snes(block):
     """Requirement: users control SNES by its prefix; the database goes before our defaults."""
-    from anisocontact._fenicsx import PETSc
+    from anisocontact.base.fenicsx import PETSc
     from anisocontact.solver import Solver, Step, StoppedError
 
     options = PETSc.Options("mine_")
@@ -270,9 +270,9 @@ def test_options_read_late_are_seen(fe):
 
     Source: PETSc reads `mat_mumps_icntl_<n>` when the factor is made.
     """
-    from anisocontact._fenicsx import PETSc
+    from anisocontact.base.fenicsx import PETSc
     from anisocontact.solver import Step
-    from anisocontact.solver.newton import Newton
+    from anisocontact.solver.stepping.newton import Newton
 
     problem = fe.block(fe.interface(), cells=(2, 2, 1)).problem
     newton = Newton(problem, "late_", {"mat_mumps_icntl_14": 77}, lambda *_: None)

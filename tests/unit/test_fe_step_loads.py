@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.case import load
 from anisocontact.case.build import build

@@ -10,14 +10,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact.errors import InputError
-from anisocontact.limits import Limits
+from anisocontact.base.errors import InputError
+from anisocontact.base.limits import Limits
 from anisocontact.solver import Solver, Step, StoppedError
-from anisocontact.solver.culprits import NAMED
-from anisocontact.solver.pace import Pace
-from anisocontact.solver.watch import StatusWatch
+from anisocontact.solver.stepping.culprits import NAMED
+from anisocontact.solver.stepping.pace import Pace
+from anisocontact.solver.stepping.watch import StatusWatch
 
 PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
 DRAG = {"block.top": {"x": 0.02, "y": 0.01}}
@@ -220,7 +220,7 @@ def test_chattering_is_named_and_damped(fe, monkeypatch):
     with a share of them the increment converges without a cut. Without the treatment, and without
     flow, it is cut, and the reason names the points.
     """
-    from anisocontact.solver.attempts import Attempts
+    from anisocontact.solver.stepping.attempts import Attempts
 
     step = Step("hold", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": 0.0}})
     basic = {"snes_linesearch_type": "basic"}

@@ -6,10 +6,10 @@ import tomllib
 
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
-from anisocontact.errors import InputError
 from anisocontact.mesh import Body, BoxSpec, Placement, Rotation, build_mesh
 from anisocontact.solver import Problem, Solver, Spring, Step
 

@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.contact import FacetContact, TwoHalfPass
 from anisocontact.contact.held_feet import BEYOND, facet_of
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
-from anisocontact.solver.acceptance import held_points_stray
-from anisocontact.solver.culprits import find_culprits
-from anisocontact.solver.feet_watch import FeetWatch
-from anisocontact.solver.watch import StatusWatch
+from anisocontact.solver.stepping.acceptance import held_points_stray
+from anisocontact.solver.stepping.culprits import find_culprits
+from anisocontact.solver.stepping.feet_watch import FeetWatch
+from anisocontact.solver.stepping.watch import StatusWatch
 
 #: Slope of both facets of the base, which fall towards their common side at x = 1.
 SLOPE = 0.2

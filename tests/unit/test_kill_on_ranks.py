@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import main
 from anisocontact.results.checkpoint import load_checkpoint
@@ -26,7 +26,7 @@ report.write_report = lambda folder: []
 real = getattr(checkpoint, name)
 
 def dying(*arguments):
-    from anisocontact._fenicsx import MPI
+    from anisocontact.base.fenicsx import MPI
     left[0] -= str(MPI.COMM_WORLD.rank) == where
     last = left[0] == 0
     if not (last and when == "before"):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from anisocontact import registry
-from anisocontact.errors import InputError
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
 from anisocontact.laws import Friction, slide
 
 S, F, T, N = np.eye(2)[None] * 50.0, np.eye(2)[None] / 0.09, [[1.0, 0.5]], [1.0]

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact._fenicsx import dolfinx, fem, ufl
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import dolfinx, fem, ufl
 from anisocontact.mesh import GmshFile, Placement, Rotation, build_mesh
 from anisocontact.mesh.readers import file_arrays
 

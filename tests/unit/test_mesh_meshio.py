@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 pytest.importorskip("meshio")
 
 import meshio
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.mesh import MeshFile, build_mesh
 from anisocontact.mesh.readers import file_arrays
 
@@ -100,7 +100,7 @@ def test_quadratic_cells_are_in_order(tmp_path, kind, nodes, order):
     arrays = file_arrays(path)
     assert arrays.degree == order
     # straight edges: every node is where the affine map of the corners has it
-    from anisocontact._fenicsx import cell_nodes
+    from anisocontact.base.fenicsx import cell_nodes
 
     place = 0.5 * cell_nodes(arrays.cell, 2)
     assert np.allclose(arrays.points[arrays.cells[0]], place)

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact._fenicsx import MPI, Mat, PETSc, Vec
-from anisocontact.solver.newton import STUCK_OVER, Newton
+from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
+from anisocontact.solver.stepping.newton import STUCK_OVER, Newton
 
 
 class Valley:

@@ -51,7 +51,7 @@ def block(case_text: str) -> str:
 @pytest.mark.parametrize("command", ["run", "trace"])
 def test_tensors_that_create_energy_are_one_line(command, block, tmp_path, capsys) -> None:
     if command == "run":
-        pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+        pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     path = tmp_path / "case.toml"
     path.write_text((block if command == "run" else TRACE) % (LAW % ""))
     assert main([command, str(path), "-o", str(tmp_path / "out")]) == 2
@@ -61,7 +61,7 @@ def test_tensors_that_create_energy_are_one_line(command, block, tmp_path, capsy
 
 
 def test_run_says_no_energy(block, tmp_path, capsys) -> None:
-    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     from anisocontact.results.report import page, step_rows
     from anisocontact.results.report.run_data import RunData
 

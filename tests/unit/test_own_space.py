@@ -7,13 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 import basix.ufl
 
-from anisocontact._fenicsx import MPI, fem
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI, fem
 from anisocontact.contact import Contact
-from anisocontact.errors import InputError
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import main
 from anisocontact.results.read import Results
@@ -24,7 +24,7 @@ where, what = sys.argv.pop(1), sys.argv.pop(1)
 
 def prepared():
     from anisocontact.results import report
-    from anisocontact.solver.problem import Problem
+    from anisocontact.solver.system.problem import Problem
 
     report.write_report = lambda folder: []
     evaluate, count = Problem.evaluate, [0]
@@ -42,7 +42,7 @@ def prepared():
 
     Problem.evaluate = failing
 
-from anisocontact.processes import started_together
+from anisocontact.base.processes import started_together
 entry = sys.modules["anisocontact.cli.main"]
 entry.started_together = lambda: (started_together(), prepared())[0]
 sys.exit(main(sys.argv[1:]))
@@ -98,7 +98,7 @@ def test_a_law_in_python_that_fails_on_one_rank(case: Path) -> None:
     (case.parent / "own.py").write_text(
         "import numpy as np\n"
         "from mpi4py import MPI\n"
-        "from anisocontact.python_law import LawResult\n\n"
+        "from anisocontact.interface import LawResult\n\n"
         "class Own:\n"
         "    internal = 0\n"
         "    def update(self, state, kinematics):\n"

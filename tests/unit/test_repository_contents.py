@@ -93,7 +93,7 @@ def test_ci_runs_what_a_person_runs(tmp_path: Path, failing: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "module", ["anisocontact", "anisocontact.interface", "anisocontact.registry"]
+    "module", ["anisocontact", "anisocontact.interface", "anisocontact.base.registry"]
 )
 def test_point_level_imports_nothing_heavy(module: str) -> None:
     heavy = {"dolfinx", "petsc4py", "ufl", "gmsh", "pydantic", "pyvista", "matplotlib", "rich"}

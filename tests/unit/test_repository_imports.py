@@ -1,38 +1,99 @@
 """A room uses those below it and never one that uses it."""
 
 import ast
+import subprocess
+import sys
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 
 SOURCES = Path(__file__).parents[2] / "src" / "anisocontact"
+#: From the bottom up, as `docs/dev/architecture.md` draws them.
+ROOMS = (
+    *("base", "surfaces", "anisotropy", "laws", "interface", "point"),
+    *("rigid", "mesh", "bulk", "contact", "solver", "results", "case", "cli"),
+)
+MOST_ROOMS = 14
+
+
+def name_of(path: Path) -> str:
+    """Dotted name of the module of a file."""
+    parts = path.relative_to(SOURCES.parent).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+@cache
+def modules() -> Mapping[str, Path]:
+    return {name_of(path): path for path in sorted(SOURCES.rglob("*.py"))}
 
 
 def imported(path: Path) -> Iterator[str]:
-    """Modules of the package that a file imports, wherever in it."""
+    """Modules of the package that a file imports, wherever in it, also for types alone."""
     for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("anisocontact."):
-            yield str(node.module)
+        if isinstance(node, ast.ImportFrom) and node.module is not None:
+            for alias in node.names:
+                whole = f"{node.module}.{alias.name}"
+                yield whole if whole in modules() else node.module
+        elif isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
 
 
-def used() -> dict[str, set[str]]:
-    """Rooms that each room uses: the packages and single modules below `anisocontact`."""
-    rooms: dict[str, set[str]] = defaultdict(set)
-    for path in SOURCES.rglob("*.py"):
-        room = path.relative_to(SOURCES).with_suffix("").parts[0]
-        rooms[room] |= {module.split(".")[1] for module in imported(path)} - {room}
-    return rooms
+@cache
+def uses() -> Mapping[str, set[str]]:
+    """Modules of the package that each module uses."""
+    return {
+        name: {m for m in imported(path) if m in modules()} - {name, "anisocontact"}
+        for name, path in modules().items()
+    }
 
 
-def test_imports_go_one_way() -> None:
-    rooms = used()
-    left = set(rooms)
-    while lowest := {room for room in left if not rooms[room] & left}:
-        left -= lowest
-    assert left == set(), f"use each other: {sorted(left)}"
-    assert {"solver", "contact", "mesh"} <= rooms["case"]
+def rooms() -> Mapping[str, set[str]]:
+    """Rooms that each room uses."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for name, used in uses().items():
+        room = [*name.split("."), ""][1]
+        found[room] |= {m.split(".")[1] for m in used} - {room}
+    return found
+
+
+def test_rooms_are_few_and_known() -> None:
+    """A new room is drawn in the architecture page before it is built."""
+    present = {p.name for p in SOURCES.iterdir() if (p / "__init__.py").exists()}
+    assert present == set(ROOMS)
+    assert len(present) <= MOST_ROOMS
+    assert {p.stem for p in SOURCES.glob("*.py")} == {"__init__", "__main__"}
+
+
+def test_no_arrow_points_up() -> None:
+    for room, used in rooms().items():
+        if room in ROOMS:
+            above = set(ROOMS[ROOMS.index(room) + 1 :])
+            assert not used & above, f"{room} uses {sorted(used & above)} above it"
 
 
 def test_points_know_nothing_of_results() -> None:
-    rooms = used()
-    assert "results" not in rooms["point"]
+    assert {"solver", "contact", "mesh"} <= rooms()["case"]
+    assert "results" not in rooms()["point"]
+
+
+def test_paths_of_before_name_those_of_today() -> None:
+    """A module that has moved is imported by its old path, with a warning that names the new."""
+    code = (
+        "import warnings; warnings.simplefilter('error', DeprecationWarning)\n"
+        "try:\n    import anisocontact.errors\n"
+        "except DeprecationWarning as text:\n    print(text)\n"
+        "warnings.simplefilter('ignore')\n"
+        "from anisocontact.base.import_hooks import MOVED\n"
+        "import importlib, anisocontact.base.errors, anisocontact.errors\n"
+        "assert anisocontact.errors.InputError is anisocontact.base.errors.InputError\n"
+        "for old, new in MOVED.items():\n"
+        "    if 'fenicsx' not in new:\n"
+        "        there = set(vars(importlib.import_module(old)))\n"
+        "        assert {n for n in vars(importlib.import_module(new)) if n[:2] != '__'} <= there\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=SOURCES.parent
+    )
+    moved = "anisocontact.errors has moved: import from anisocontact.base.errors"
+    assert done.stdout.strip() == moved

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.results import Results
 from anisocontact.results.files import OWN, check_folder, clear, replacing, write_text
 from anisocontact.results.history import History, flat, read_history

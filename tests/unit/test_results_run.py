@@ -10,12 +10,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact import __version__
+from anisocontact.base.errors import InputError
 from anisocontact.case import load
 from anisocontact.case.build import build
-from anisocontact.errors import InputError
 from anisocontact.results import Results
 from anisocontact.results.paraview import Bodies, von_mises
 from anisocontact.results.report import maps, shape, write_report

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.contact import Contact

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.rigid import RigidBody, rotation, rotation_vector, skew, spin_of
 from anisocontact.rigid.rotation import orthonormal
@@ -166,7 +166,7 @@ def test_one_body_for_two_contacts(fe):
 
 
 def test_a_script_moves_bodies_and_frees_none(fe):
-    from anisocontact._fenicsx import fem, ufl
+    from anisocontact.base.fenicsx import fem, ufl
     from anisocontact.solver import ContactProblem
 
     die = RigidBody("die", (0.5, 0.5, 0.0))

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
-from anisocontact.facets import FacetSets, FacetSurface, outward_flips
+from anisocontact.base.errors import InputError
+from anisocontact.surfaces.facets import FacetSets, FacetSurface, outward_flips
 
 SQUARE = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]]
 TETRAHEDRON = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]

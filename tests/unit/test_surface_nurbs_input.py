@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.surfaces import make_surface
 
 SQUARE: dict[str, Any] = {

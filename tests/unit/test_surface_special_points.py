@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import PROJECTION_STATUS, Surface, make_surface

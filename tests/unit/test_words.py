@@ -6,11 +6,11 @@ import tomllib
 
 import pytest
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.words import elsewhere, meant
 from anisocontact.laws import Friction
-from anisocontact.words import elsewhere, meant
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.bulk import make_material
 from anisocontact.case import CaseError, validate

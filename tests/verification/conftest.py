@@ -11,7 +11,7 @@ import numpy.typing as npt
 import pytest
 from scipy.interpolate import NdBSpline
 
-from anisocontact import registry
+from anisocontact.base import registry
 from anisocontact.surfaces import PROJECTION_STATUS, Surface, make_surface
 
 Floats = npt.NDArray[np.float64]

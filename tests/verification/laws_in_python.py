@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from anisocontact.python_law import LawKinematics, LawResult, LawState
+from anisocontact.interface import LawKinematics, LawResult, LawState
 
 Floats = np.ndarray
 

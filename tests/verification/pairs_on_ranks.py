@@ -20,13 +20,11 @@ from tests.verification.laws_in_python import RadialReturn
 from tests.verification.test_fe_self_contact import GAP, hairpin
 
 from anisocontact.anisotropy import make_directions
-from anisocontact.augmentation import Augmentation
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact, SelfContact, TwoHalfPass
-from anisocontact.interface import PairLaw
+from anisocontact.interface import Augmentation, PairLaw, PythonPairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
-from anisocontact.python_pair import PythonPairLaw
 from anisocontact.results.checkpoint import (
     distribute,
     keep_checkpoint,

@@ -11,8 +11,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from anisocontact.adhesion_domain import (
+from anisocontact.anisotropy import make_directions
+from anisocontact.base.errors import InputError
+from anisocontact.interface import Interface
+from anisocontact.laws import (
+    Adhesion,
     Ellipse,
+    Friction,
+    NormalLaw,
     Strip,
     adhesion_domain,
     domain_from_tensors,
@@ -20,10 +26,6 @@ from anisocontact.adhesion_domain import (
     draw_tangent_plane,
     force_domain,
 )
-from anisocontact.anisotropy import make_directions
-from anisocontact.errors import InputError
-from anisocontact.interface import Interface
-from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface
 
 EPS = np.finfo(float).eps

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from anisocontact import registry
 from anisocontact.anisotropy import make_directions, tensor, tensor_derivative
+from anisocontact.base import registry
 from anisocontact.laws import Friction
 from anisocontact.surfaces import make_surface
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions, oblique_principal, tensor
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.laws import Friction
 from anisocontact.surfaces import make_surface
 

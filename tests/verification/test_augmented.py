@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions
-from anisocontact.augmentation import Augmentation
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import Augmentation, Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Accepted, Problem, Solver, Step

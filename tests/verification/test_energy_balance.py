@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import main
-from anisocontact.solver import Solver, Step, attempts
-from anisocontact.solver.attempts import Attempts
-from anisocontact.solver.energy_watch import CAUSES
+from anisocontact.solver import Solver, Step
+from anisocontact.solver.stepping import attempts
+from anisocontact.solver.stepping.attempts import Attempts
+from anisocontact.solver.stepping.energy_watch import CAUSES
 
 STRATEGIES = ["direct", "condensed", "iterative"]
 
@@ -198,7 +199,7 @@ def test_a_coarse_path_is_a_warning(tmp_path: Any, capsys: Any) -> None:
 
 def test_the_end_of_a_master_is_named(fe: Any) -> None:
     """Requirement: increments in which points run off are told apart from those that are coarse."""
-    from anisocontact.solver.energy_watch import EnergyWatch
+    from anisocontact.solver.stepping.energy_watch import EnergyWatch
 
     block = fe.block(fe.interface(), cells=(2, 2, 1))
     watch = EnergyWatch(block.problem)

@@ -12,9 +12,9 @@ import pytest
 
 from anisocontact.anisotropy import DirectionField, make_directions, tensor
 from anisocontact.interface import Interface
-from anisocontact.kinematics import relative_variation
 from anisocontact.laws import Adhesion, Friction, NormalLaw, slide
 from anisocontact.surfaces import make_surface
+from anisocontact.surfaces.kinematics import relative_variation
 
 TIGHT = 1e-12
 N, PENALTY = 10.0, 1e5

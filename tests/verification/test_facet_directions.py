@@ -8,12 +8,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact._fenicsx import fem
 from anisocontact.anisotropy import make_directions
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import fem
 from anisocontact.contact import FacetContact, facet_directions
-from anisocontact.errors import InputError
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, build_box, build_mesh, make_shape

@@ -15,8 +15,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from anisocontact import _core, registry
+from anisocontact import _core
 from anisocontact.anisotropy import make_directions
+from anisocontact.base import registry
 from anisocontact.interface import STATE, PairLaw, as_state, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 

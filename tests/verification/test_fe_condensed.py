@@ -17,13 +17,20 @@ from tests.verification.test_fe_self_contact import hairpin
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import AnyContact, Contact, FacetContact, SelfContact, TwoHalfPass
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import (
+    Interface,
+    LawKinematics,
+    LawResult,
+    LawState,
+    PairLaw,
+    PythonInterface,
+)
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, Placement, Rotation, build_box, build_mesh
-from anisocontact.python_law import LawKinematics, LawResult, LawState, PythonInterface
 from anisocontact.rigid import RigidBody
-from anisocontact.solver import Accepted, ElasticSupport, Problem, Solver, Spring, Step, attempts
-from anisocontact.solver.condensed import reach
+from anisocontact.solver import Accepted, ElasticSupport, Problem, Solver, Spring, Step
+from anisocontact.solver.stepping import attempts
+from anisocontact.solver.strategies.condensed import reach
 from anisocontact.surfaces import make_surface
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)

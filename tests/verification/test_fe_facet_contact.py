@@ -14,9 +14,9 @@ import pytest
 from tests.conftest import difference_errors
 
 from anisocontact.anisotropy import make_directions
+from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
 from anisocontact.contact import FacetContact, TwoHalfPass
-from anisocontact.errors import InputError
 from anisocontact.interface import PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box

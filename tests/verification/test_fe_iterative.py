@@ -19,10 +19,9 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions
-from anisocontact.augmentation import Augmentation
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact, TwoHalfPass
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import Augmentation, Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh
 from anisocontact.rigid import RigidBody

@@ -111,7 +111,7 @@ def test_thick_cylinder_converges_to_lame(order, cell):
 
 def displacement_error(problem):
     """Root of the mean square of the error over that of the displacement."""
-    from anisocontact._fenicsx import fem, ufl
+    from anisocontact.base.fenicsx import fem, ufl
 
     x = ufl.SpatialCoordinate(problem.model.mesh)
     square = x[0] ** 2 + x[1] ** 2
@@ -157,7 +157,7 @@ def test_tangent_of_a_pressure_that_follows(fe, cell, order):
 
 def enclosed_volume(problem, group):
     """Integral of x . n / 3 over a facet group in the deformed configuration, by UFL."""
-    from anisocontact._fenicsx import fem, ufl
+    from anisocontact.base.fenicsx import fem, ufl
 
     model, u = problem.model, problem.u
     sides = fem.compute_integration_domains(

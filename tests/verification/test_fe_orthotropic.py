@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.errors import InputError
 from anisocontact.bulk import LinearBulk, LinearElastic, NonlinearBulk, make_material
-from anisocontact.errors import InputError
 from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh
 from anisocontact.solver import Problem, Solver, Step
 

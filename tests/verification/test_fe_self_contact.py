@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact, SelfContact
-from anisocontact.errors import InputError
 from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model

@@ -62,7 +62,7 @@ def test_free_sides_against_an_elastic_support_in_ufl(fe, cell, order):
     with the same quadrature. Tolerance: both solve the same linear system, up to the tolerance of
     Newton (1e-11) and round-off of the factorisation.
     """
-    from anisocontact._fenicsx import fem, ufl
+    from anisocontact.base.fenicsx import fem, ufl
     from anisocontact.solver import Step
 
     from dolfinx.fem.petsc import LinearProblem

@@ -202,7 +202,7 @@ def test_oblique_plane_with_prescribed_components():
 
 def test_prescribed_motion_out_of_a_plane_is_refused():
     """Requirement: one line with the plane and how far it leads."""
-    from anisocontact.errors import InputError
+    from anisocontact.base.errors import InputError
     from anisocontact.solver import Step
 
     problem = make([bar("bar")], symmetry=["bar.left"])

@@ -7,14 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.limits import Limits
 from anisocontact.contact import NotHeldError
-from anisocontact.limits import Limits
 from anisocontact.mesh import BoxSpec, build_box
-from anisocontact.solver import Solver, Step, StoppedError, attempts, flow
-from anisocontact.solver.attempts import Attempts
-from anisocontact.solver.flow import Flow
+from anisocontact.solver import Solver, Step, StoppedError
+from anisocontact.solver.stepping import attempts
+from anisocontact.solver.stepping.attempts import Attempts
+from anisocontact.solver.terms import flow
+from anisocontact.solver.terms.flow import Flow
 
 PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
 DRAG = {"block.top": {"x": 0.02, "y": 0.01}}

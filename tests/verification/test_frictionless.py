@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from anisocontact import registry
 from anisocontact.anisotropy import make_directions
-from anisocontact.errors import InputError
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
 from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface
@@ -132,7 +132,7 @@ def test_a_block_on_a_frictionless_table_is_in_uniaxial_stress(kind, method, str
     1e-6 of a facet, a share SIZE 1e-6 / PRESS = 2.5e-5 of the way. Newton's method ends at 1e-10
     of the forces. Two half passes have nu = 0: what widens comes to lie on further points.
     """
-    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     series = 1.0 / PENALTY if method == "penalty" else 0.0
     pressure = PRESS / (SIZE / YOUNG + series)
     force, normal = _pressed(kind, method, strategy, pressure)
@@ -178,8 +178,8 @@ def _pressed(
 
 
 def _contact(kind: str, method: str, model: Any, normal: np.ndarray) -> Any:
-    from anisocontact.augmentation import Augmentation
     from anisocontact.contact import Contact, FacetContact, TwoHalfPass
+    from anisocontact.interface import Augmentation
 
     laws = NormalLaw(penalty=PENALTY), Adhesion(stiffness=PENALTY), Friction(coefficients=0)
     if kind == "two-half":

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 #: Two soft bodies whose meshes do not match, both half passes; so few Newton iterations are not
 #: enough for some increments, so that parts, cuts and extrapolation are at work too.

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions
-from anisocontact.interface import Interface
+from anisocontact.interface import Interface, LawKinematics, LawResult, LawState, PythonInterface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.point import (
     DeadLoad,
@@ -17,7 +17,6 @@ from anisocontact.point import (
     StoppedError,
     drive,
 )
-from anisocontact.python_law import LawKinematics, LawResult, LawState, PythonInterface
 from anisocontact.surfaces import make_surface
 
 PLANE = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1), tangent=(1, 0, 0))

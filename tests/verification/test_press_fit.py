@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact._fenicsx import fem
 from anisocontact.anisotropy import make_directions
+from anisocontact.base.fenicsx import fem
 from anisocontact.bulk import make_material
 from anisocontact.contact import FacetContact
 from anisocontact.interface import PairLaw

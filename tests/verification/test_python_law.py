@@ -9,10 +9,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
-from anisocontact.interface import Interface, SlaveSurface
+from anisocontact.base.errors import InputError
+from anisocontact.interface import (
+    Interface,
+    LawKinematics,
+    LawResult,
+    LawState,
+    PythonInterface,
+    SlaveSurface,
+)
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.python_law import LawKinematics, LawResult, LawState, PythonInterface
 from anisocontact.surfaces import Surface, make_surface
 
 STIFFNESS, MU = 2e3, 0.3

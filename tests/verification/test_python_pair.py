@@ -15,22 +15,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from tests.conftest import difference_errors
 from tests.verification.laws_in_python import RadialReturn, Skew, Spoiled
 from tests.verification.test_fe_self_contact import GAP, hairpin
 
 from anisocontact.anisotropy import make_directions
-from anisocontact.augmentation import Augmentation
+from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact, SelfContact, TwoHalfPass
-from anisocontact.errors import InputError
-from anisocontact.interface import PairLaw
+from anisocontact.interface import Augmentation, PairLaw, PythonInterface, PythonPairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
-from anisocontact.python_law import PythonInterface
-from anisocontact.python_pair import PythonPairLaw
 from anisocontact.results import checkpoint
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.surfaces import make_surface
@@ -276,7 +273,7 @@ def test_wrong_answers_are_said(name: str) -> None:
 
 ON_ONE = """
 import numpy as np
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from mpi4py import MPI
 from tests.verification import pairs_on_ranks as pairs
 from tests.verification.laws_in_python import RadialReturn, Spoiled

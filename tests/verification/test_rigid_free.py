@@ -232,7 +232,7 @@ def test_a_load_beyond_the_limit_of_friction(fe):
     Coulomb, T = mu N when all points slip. Tolerance: parts are cut to quarters, so the last one
     that is tried is below 4e-3 of an increment of 4, or 5e-3 of the limit of 3.6.
     """
-    from anisocontact.limits import Limits
+    from anisocontact.base.limits import Limits
     from anisocontact.rigid import RigidBody
     from anisocontact.solver import Solver, Step, StoppedError
 
@@ -278,7 +278,7 @@ def test_augmented_contact_on_a_free_body(fe):
     balance to 1e-8. Source: `F = d / (H/(M A) + 1/k)`; the augmentation goes on until the gaps are
     1e-7 of a facet. Tolerance: that gap over the compression, some 3e-6.
     """
-    from anisocontact.augmentation import Augmentation
+    from anisocontact.interface import Augmentation
     from anisocontact.rigid import RigidBody
     from anisocontact.solver import Step
 

@@ -38,7 +38,7 @@ def test_processes_change_nothing():
     Requirement: 1e-9. Source: the same equations. Tolerance: Newton to 1e-12, and sums
     in another order.
     """
-    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     if shutil.which("mpirun") is None:
         pytest.skip("no mpirun")
     root = Path(__file__).parents[2]

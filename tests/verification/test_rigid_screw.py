@@ -19,7 +19,7 @@ def friction_tensor():
 
 def pushed(free, travel=0.02, increments=10):
     """Rod squeezed by the ring and pushed along its axis; turning is free or held."""
-    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     from anisocontact.anisotropy import make_directions
     from anisocontact.bulk import make_material
     from anisocontact.contact import Contact

@@ -17,8 +17,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from anisocontact import registry
 from anisocontact.anisotropy import make_directions
+from anisocontact.base import registry
 from anisocontact.interface import Interface, SlaveSurface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.point import PrescribedPath, drive

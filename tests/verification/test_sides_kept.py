@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from anisocontact._fenicsx import Vec
 from anisocontact.anisotropy import make_directions
+from anisocontact.base.fenicsx import Vec
+from anisocontact.base.limits import Limits
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact, TwoHalfPass
 from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.limits import Limits
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import ContactProblem, Problem, Solver, Step, StoppedError
-from anisocontact.solver.newton import Newton, NewtonResult
+from anisocontact.solver.stepping.newton import Newton, NewtonResult
 from anisocontact.surfaces import make_surface
 
 type Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -295,7 +295,7 @@ def test_a_block_that_its_load_tips_over(master: str) -> None:
 
 def test_a_script_does_not_accept_it_either(monkeypatch: pytest.MonkeyPatch) -> None:
     """The same state in a problem written in UFL: refused, displacement and history as before."""
-    from anisocontact._fenicsx import fem, ufl
+    from anisocontact.base.fenicsx import fem, ufl
 
     problem = _problem("plane")
     over = _state(problem, lambda x: x * [1.0, -1.0, -1.0] + [0.0, 1.0, -1e-3]).array.copy()

@@ -10,10 +10,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from anisocontact._fenicsx import MPI
 from anisocontact.anisotropy import make_directions
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI
 from anisocontact.contact.facet_mesh import FacetMesh, SlavePoints, facet_rule
-from anisocontact.errors import InputError
 from anisocontact.interface import Interface, PairLaw, SlaveSurface, as_state, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions
+from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact
-from anisocontact.errors import InputError
 from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box

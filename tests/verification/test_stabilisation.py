@@ -8,17 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from anisocontact._fenicsx import Vec
 from anisocontact.anisotropy import make_directions
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import Vec
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact
-from anisocontact.errors import InputError
 from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, build_box
 from anisocontact.solver import Cut, Problem, Solver, Step, StoppedError
-from anisocontact.solver.free_modes import bodies, free_modes, named
-from anisocontact.solver.newton import Newton, NewtonResult
+from anisocontact.solver.stepping.newton import Newton, NewtonResult
+from anisocontact.solver.terms.free_modes import bodies, free_modes, named
 from anisocontact.surfaces import make_surface
 
 YOUNG, PENALTY = 1000.0, 4e4

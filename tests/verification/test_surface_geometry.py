@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from anisocontact import registry
+from anisocontact.base import registry
 
 LIMIT = 1e-12
 

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
-from anisocontact.kinematics import convective_velocity, relative_variation
+from anisocontact.base.errors import InputError
 from anisocontact.surfaces import Surface, make_surface
+from anisocontact.surfaces.kinematics import convective_velocity, relative_variation
 
 SPIN, DRIFT, GROWTH = np.array([0.3, -0.5, 0.9]), np.array([0.2, 0.1, -0.4]), 0.35
 

@@ -7,8 +7,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact import _core, registry
-from anisocontact.errors import InputError
+from anisocontact import _core
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
 from anisocontact.surfaces import Floats, Surface, points
 
 Pair = Sequence[float]

@@ -10,7 +10,7 @@ import sysconfig
 import tempfile
 from pathlib import Path
 
-from anisocontact.errors import MachineError
+from anisocontact.base.errors import MachineError
 
 __all__ = ["lack_of_compiler"]
 

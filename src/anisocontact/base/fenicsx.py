@@ -43,9 +43,9 @@ except ImportError as missing:
         name="dolfinx",
     ) from missing
 
-from anisocontact.compiler import lack_of_compiler
-from anisocontact.errors import MachineError
-from anisocontact.machine import MEMORY
+from anisocontact.base.compiler import lack_of_compiler
+from anisocontact.base.errors import MachineError
+from anisocontact.base.machine import MEMORY
 
 __all__ = [
     "MPI",

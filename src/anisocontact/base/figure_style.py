@@ -9,8 +9,8 @@ from pathlib import Path
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from anisocontact.errors import printable
-from anisocontact.whole_files import replacing
+from anisocontact.base.errors import printable
+from anisocontact.base.whole_files import replacing
 
 __all__ = ["ACCENT", "GREY", "STATUS_COLOURS", "STEP_COLOURS", "new_figure", "plain", "save"]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 
 __all__ = ["FOLLOWED", "Limits"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import errno
 
-from anisocontact.errors import MachineError
+from anisocontact.base.errors import MachineError
 
 __all__ = ["MEMORY", "lack"]
 

@@ -113,7 +113,7 @@ def started_together() -> Together | None:
     if not any(name in os.environ for name in _TOLD):
         return None
     try:
-        from anisocontact._fenicsx import MPI
+        from anisocontact.base.fenicsx import MPI
     except ImportError:  # the command says what it lacks
         return None
     return Together(MPI.COMM_WORLD)

@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 from anisocontact import _core
-from anisocontact.errors import InputError
-from anisocontact.words import meant
+from anisocontact.base.errors import InputError
+from anisocontact.base.words import meant
 
 _SIZES = {"scalar": 1, "integer": 1, "flag": 1, "choice": 1, "pair": 2, "vector": 3, "axis": 6}
 
@@ -316,7 +316,7 @@ def in_radian(
         {'angle': 3.141592653589793}
         >>> in_radian([angle], {"angle": 30.0})
         Traceback (most recent call last):
-        anisocontact.errors.InputError: angle: 30 given in radian, more than a full turn; ...
+        anisocontact.base.errors.InputError: angle: 30 given in radian, more than a full turn; ...
     """
     path = f"{prefix}." if prefix else ""
     result = dict(given)

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import basix, compiled_expression, fem, ufl
+from anisocontact.base.fenicsx import basix, compiled_expression, fem, ufl
 from anisocontact.bulk.hyperelastic import cauchy_stress
 from anisocontact.mesh import Model
 

@@ -6,9 +6,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any
 
-from anisocontact._fenicsx import ufl
+from anisocontact.base.fenicsx import ufl
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.bulk.materials import Density, Isotropic
-from anisocontact.registry import Entry, Parameter
 
 _MODULI = (
     Parameter("E", "scalar", "stress", "Young's modulus at rest", "positive"),

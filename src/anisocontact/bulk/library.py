@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from anisocontact import registry
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.base.registry import Entry
 from anisocontact.bulk.hyperelastic import (
     NeoHookean,
     NeoHookeanIncompressible,
@@ -13,8 +15,6 @@ from anisocontact.bulk.hyperelastic import (
 from anisocontact.bulk.materials import LinearElastic, Material
 from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
 from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
-from anisocontact.errors import InputError
-from anisocontact.registry import Entry
 
 _MATERIALS: dict[str, type[Any]] = {
     model.entry.name: model
@@ -46,7 +46,7 @@ def register_material[T: type[Any]](model: T) -> T:
     Example:
         >>> register_material(LinearElastic)
         Traceback (most recent call last):
-        anisocontact.errors.InputError: material: 'linear-elastic' is registered already
+        anisocontact.base.errors.InputError: material: 'linear-elastic' is registered already
     """
     if model.entry.name in _MATERIALS:
         raise InputError(f"{model.entry.name!r} is registered already", field="material")

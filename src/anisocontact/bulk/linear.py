@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact._fenicsx import Mat, PETSc, Vec, compiled, create_stiffness, ufl
+from anisocontact.base.fenicsx import Mat, PETSc, Vec, compiled, create_stiffness, ufl
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Material
 from anisocontact.mesh import Model

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
-from anisocontact import registry
-from anisocontact._fenicsx import fem, ufl
-from anisocontact.errors import InputError
-from anisocontact.registry import Entry, Parameter
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import fem, ufl
+from anisocontact.base.registry import Entry, Parameter
 
 
 class Material(Protocol):

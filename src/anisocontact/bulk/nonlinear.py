@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact._fenicsx import (
+from anisocontact.base.fenicsx import (
     Mat,
     PETSc,
     Vec,

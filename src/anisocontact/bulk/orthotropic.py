@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact import registry
-from anisocontact._fenicsx import fem, ufl
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import fem, ufl
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.bulk.hyperelastic import deformation_gradient
 from anisocontact.bulk.materials import Density
-from anisocontact.errors import InputError
-from anisocontact.registry import Entry, Parameter
 
 Floats = npt.NDArray[np.float64]
 

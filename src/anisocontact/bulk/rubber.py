@@ -9,12 +9,12 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import Any
 
-from anisocontact import registry
-from anisocontact._fenicsx import fem, ufl
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import fem, ufl
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.bulk.hyperelastic import Hyperelastic, volumetric
 from anisocontact.bulk.materials import Density
-from anisocontact.errors import InputError
-from anisocontact.registry import Entry, Parameter
 
 _BULK = Parameter(
     "bulk_modulus", "scalar", "stress", "bulk modulus K of the energy K/2 (J - 1)^2", "positive"

@@ -6,10 +6,10 @@ from typing import Annotated, Any
 
 from pydantic import Field, create_model
 
+from anisocontact.base.registry import Entry
 from anisocontact.case.quantity import number, word
 from anisocontact.case.registered import Registered, table_of
 from anisocontact.case.section import Section
-from anisocontact.registry import Entry
 
 __all__ = ["Mesh", "MeshFile", "Placed", "Point", "Rotate", "Shaped", "mesh_type"]
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 
-from anisocontact._fenicsx import MPI, PETSc
+from anisocontact.base.errors import InputError, ModelWarning
+from anisocontact.base.fenicsx import MPI, PETSc
+from anisocontact.base.limits import Limits
 from anisocontact.case import objects
 from anisocontact.case.contacts import contact
 from anisocontact.case.law_file import law_of
 from anisocontact.case.model import Case
 from anisocontact.case.quantity import FREE
 from anisocontact.case.read import CaseFile
-from anisocontact.errors import InputError, ModelWarning
-from anisocontact.limits import Limits
 from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.merge import merge
@@ -58,7 +58,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
         >>> from anisocontact.case import load
         >>> build(load("no-such-case.toml"))
         Traceback (most recent call last):
-        anisocontact.errors.InputError: case file 'no-such-case.toml' does not exist
+        anisocontact.base.errors.InputError: case file 'no-such-case.toml' does not exist
     """
     case = file.case
     own = [

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from anisocontact.augmentation import AUTO as AUTO_MULTIPLIERS
+from anisocontact.base.errors import InputError
+from anisocontact.base.words import meant
 from anisocontact.case import law_file, objects
 from anisocontact.case.model import (
     AUGMENTED,
@@ -17,9 +18,8 @@ from anisocontact.case.model import (
 )
 from anisocontact.case.rigid_checks import check_rigid
 from anisocontact.case.section import near
-from anisocontact.errors import InputError
+from anisocontact.interface.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.surfaces import Surface
-from anisocontact.words import meant
 
 __all__ = ["check"]
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from anisocontact.augmentation import Augmentation
 from anisocontact.bulk import Material
 from anisocontact.case import law_file, objects
 from anisocontact.case.model import AUGMENTED, Case, ContactSection
@@ -18,9 +17,10 @@ from anisocontact.contact import (
     auto_penalty,
 )
 from anisocontact.interface import Interface
+from anisocontact.interface.augmentation import Augmentation
+from anisocontact.interface.python_law import PythonInterface, TangentialLaw
+from anisocontact.interface.python_pair import MeshedLaw
 from anisocontact.mesh import Model
-from anisocontact.python_law import PythonInterface, TangentialLaw
-from anisocontact.python_pair import MeshedLaw
 from anisocontact.rigid import RigidBody
 
 __all__ = ["contact"]

@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 import numpy as np
 from pydantic import Field
 
+from anisocontact.base.errors import InputError
 from anisocontact.case import objects
 from anisocontact.case.quantity import number
 from anisocontact.case.section import Section, near
-from anisocontact.errors import InputError
-from anisocontact.laws import SIDES
-from anisocontact.python_law import (
+from anisocontact.interface.python_law import (
     LawKinematics,
     LawResult,
     LawState,
@@ -26,7 +25,8 @@ from anisocontact.python_law import (
     TangentialLaw,
     where_failed,
 )
-from anisocontact.python_pair import PythonPairLaw
+from anisocontact.interface.python_pair import PythonPairLaw
+from anisocontact.laws import SIDES
 from anisocontact.surfaces import Surface
 
 if TYPE_CHECKING:

@@ -18,9 +18,10 @@ from pydantic import (
     create_model,
 )
 
-from anisocontact import registry
-from anisocontact.augmentation import AUTO as AUTO_MULTIPLIERS
-from anisocontact.augmentation import NEWTON, SCHEMES, UZAWA, Augmentation
+from anisocontact.base import registry
+from anisocontact.base.limits import Limits
+from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.strategies import AUTO, STRATEGIES
 from anisocontact.case.bodies import Mesh, mesh_type
 from anisocontact.case.law_file import PythonSection
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
@@ -31,10 +32,9 @@ from anisocontact.case.registered import Key, OneOf, Registered, default_of
 from anisocontact.case.rigid import Load, Motion, Rigid
 from anisocontact.case.section import Section
 from anisocontact.interface import Interface
+from anisocontact.interface.augmentation import AUTO as AUTO_MULTIPLIERS
+from anisocontact.interface.augmentation import NEWTON, SCHEMES, UZAWA, Augmentation
 from anisocontact.laws import SIDES, Adhesion, Friction, NormalLaw
-from anisocontact.limits import Limits
-from anisocontact.registry import Entry, Parameter
-from anisocontact.strategies import AUTO, STRATEGIES
 
 __all__ = [
     "Case",

@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 
 if TYPE_CHECKING:
     from anisocontact.case.read import CaseFile

@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from anisocontact.anisotropy import DirectionField, make_directions
+from anisocontact.base.errors import InputError
 from anisocontact.case.quantity import AUTO
 from anisocontact.case.registered import Registered
-from anisocontact.errors import InputError
 from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import Surface, make_surface

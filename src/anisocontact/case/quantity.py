@@ -10,9 +10,9 @@ from typing import Any
 from pydantic import GetJsonSchemaHandler
 from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
-from anisocontact import registry
-from anisocontact.errors import InputError
-from anisocontact.registry import Parameter
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.base.registry import Parameter
 
 __all__ = ["AUTO", "FREE", "Quantity", "key_of", "line", "number", "shown", "word"]
 

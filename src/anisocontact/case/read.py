@@ -11,9 +11,9 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from anisocontact.base.errors import InputError
 from anisocontact.case.checks import check
 from anisocontact.case.model import Case, Registries, case_type
-from anisocontact.errors import InputError
 
 __all__ = [
     "CaseError",
@@ -89,7 +89,7 @@ def load(path: str | Path) -> CaseFile:
         >>> load("nowhere.toml")
         Traceback (most recent call last):
             ...
-        anisocontact.errors.InputError: case file 'nowhere.toml' does not exist
+        anisocontact.base.errors.InputError: case file 'nowhere.toml' does not exist
     """
     path = Path(path)
     return CaseFile(validate(read_table(path)), path)

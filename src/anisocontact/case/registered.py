@@ -12,9 +12,9 @@ from typing import Annotated, Any, ClassVar
 from pydantic import GetCoreSchemaHandler, ValidationError, WithJsonSchema, create_model
 from pydantic_core import CoreSchema, InitErrorDetails, core_schema
 
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.case.quantity import AUTO, Quantity, key_of, line, shown
 from anisocontact.case.section import Section, near
-from anisocontact.registry import Entry, Parameter
 
 __all__ = ["Key", "OneOf", "Registered", "default_of", "table", "table_of"]
 

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from anisocontact.base.errors import InputError
 from anisocontact.case.named_files import check_files
-from anisocontact.errors import InputError
 from anisocontact.results.files import MARKS
 
 if TYPE_CHECKING:

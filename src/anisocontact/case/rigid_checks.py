@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from anisocontact.base.errors import InputError
 from anisocontact.case.model import Case, StepSection
 from anisocontact.case.section import near
-from anisocontact.errors import InputError
 
 __all__ = ["check_rigid"]
 

@@ -8,14 +8,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol
 
+from anisocontact.base.errors import InputError, RunError, one_line
+from anisocontact.base.machine import lack
+from anisocontact.base.signals import interrupt, on_signals
 from anisocontact.case.build import Built
 from anisocontact.case.named_files import fingerprints
-from anisocontact.errors import InputError, RunError, one_line
-from anisocontact.machine import lack
 from anisocontact.results.checkpoint import NAME, Stored, distribute
 from anisocontact.results.files import WriteError
 from anisocontact.results.writer import Writer
-from anisocontact.signals import interrupt, on_signals
 from anisocontact.solver import Accepted, Cut, Progress, StoppedError
 
 __all__ = ["Listener", "Outcome", "run"]

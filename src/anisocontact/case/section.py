@@ -13,8 +13,8 @@ from pydantic import (
 )
 from pydantic_core import ErrorDetails, InitErrorDetails
 
+from anisocontact.base.words import elsewhere, meant
 from anisocontact.case.quantity import Quantity, line, shown
-from anisocontact.words import elsewhere, meant
 
 __all__ = ["Section", "near"]
 

@@ -10,6 +10,8 @@ from typing import Annotated, Any
 
 from pydantic import Field, ValidationError, create_model
 
+from anisocontact.base.errors import InputError
+from anisocontact.base.registry import Parameter
 from anisocontact.case import objects
 from anisocontact.case.model import Registries, laws
 from anisocontact.case.quantity import AUTO, Quantity
@@ -17,10 +19,8 @@ from anisocontact.case.read import CaseError, as_input, read_table, without_null
 from anisocontact.case.registered import Key, OneOf, Registered
 from anisocontact.case.section import Section
 from anisocontact.case.trace_load import LOADS, GroupSection
-from anisocontact.errors import InputError
 from anisocontact.interface import Interface
 from anisocontact.point import Group, Load
-from anisocontact.registry import Parameter
 
 __all__ = ["Trace", "TraceCase", "load_trace", "trace_schema", "validate_trace"]
 

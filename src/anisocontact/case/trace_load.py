@@ -10,13 +10,13 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.case.quantity import Quantity, line, shown
 from anisocontact.case.registered import Registered
 from anisocontact.case.section import Section
 from anisocontact.point import DeadLoad, DraggingSpring, Group, Load, PrescribedPath, Push
 from anisocontact.point.device import FRAMES
 from anisocontact.point.group import ORIENTATIONS
-from anisocontact.registry import Entry, Parameter
 
 __all__ = ["LOADS", "GroupSection", "LoadSection"]
 

@@ -9,9 +9,9 @@ from importlib import metadata
 from typing import Any
 
 from anisocontact import __version__
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.case.model import Registries
 from anisocontact.case.quantity import Quantity, key_of
-from anisocontact.registry import Entry, Parameter
 
 __all__ = ["command", "facts"]
 
@@ -61,7 +61,7 @@ def _versions() -> dict[str, str]:
 
 def _finite_elements() -> dict[str, str]:
     try:
-        from anisocontact._fenicsx import MPI, PETSc, dolfinx
+        from anisocontact.base.fenicsx import MPI, PETSc, dolfinx
     except ImportError:
         return {"dolfinx": "not installed", "petsc": "not installed", "mpi": "not installed"}
     return {

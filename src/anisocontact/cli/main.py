@@ -10,11 +10,11 @@ from collections.abc import Sequence
 from importlib import import_module
 
 from anisocontact import __version__
+from anisocontact.base.errors import InputError, RunError, one_line
+from anisocontact.base.machine import lack
+from anisocontact.base.processes import started_together
+from anisocontact.base.signals import ended_by_signals
 from anisocontact.cli.output import outputs, say
-from anisocontact.errors import InputError, RunError, one_line
-from anisocontact.machine import lack
-from anisocontact.processes import started_together
-from anisocontact.signals import ended_by_signals
 
 __all__ = ["BAD_INPUT", "DONE", "INTERNAL", "STOPPED", "build_parser", "main"]
 

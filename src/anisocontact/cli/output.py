@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, Protocol, TextIO, cast
 
-from anisocontact.errors import printable
+from anisocontact.base.errors import printable
 
 __all__ = ["Output", "outputs", "say"]
 

@@ -10,9 +10,9 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 
+from anisocontact.base.errors import printable
 from anisocontact.case.run import Listener, accepted_line, points_text, ran_off_lines
 from anisocontact.cli.output import Output, say
-from anisocontact.errors import printable
 from anisocontact.solver import Accepted, Cut, Progress, Step
 
 __all__ = ["progress_on"]

@@ -6,9 +6,9 @@ import argparse
 import sys
 from pathlib import Path
 
+from anisocontact.base.errors import InputError
 from anisocontact.cli.main import DONE
 from anisocontact.cli.output import say
-from anisocontact.errors import InputError
 
 __all__ = ["command"]
 

@@ -30,7 +30,7 @@ def command(arguments: argparse.Namespace) -> int:
     if not arguments.restart:
         check_folder(folder, arguments.overwrite)
 
-    from anisocontact._fenicsx import MPI
+    from anisocontact.base.fenicsx import MPI
 
     with locked(folder, MPI.COMM_WORLD) as warning:
         if warning:

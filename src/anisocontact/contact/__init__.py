@@ -1,6 +1,5 @@
 """Which facets meet what: forces and tangent of contact, history of the slave points."""
 
-from anisocontact.augmentation import Augmentation
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.directions import facet_directions
 from anisocontact.contact.facet_contact import FacetContact
@@ -11,6 +10,7 @@ from anisocontact.contact.penalty import PENALTY_FACTOR, auto_penalty, facet_siz
 from anisocontact.contact.quadrature import FacetQuadrature, facet_quadrature
 from anisocontact.contact.self_contact import SelfContact
 from anisocontact.contact.two_half_pass import TwoHalfPass
+from anisocontact.interface.augmentation import Augmentation
 
 #: Contact of two meshed bodies.
 type MeshedContact = FacetContact | TwoHalfPass

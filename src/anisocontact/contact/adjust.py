@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.interface import State
 
 

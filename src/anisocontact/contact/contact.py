@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, PETSc
-from anisocontact.augmentation import Augmentation
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
 from anisocontact.contact.initial import check_start
@@ -21,11 +21,11 @@ from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.contact.semismooth import Base, Semismooth
 from anisocontact.contact.transfer import Couplings
 from anisocontact.contact.whereabouts import Seen, Whereabouts, turned
-from anisocontact.errors import InputError
 from anisocontact.interface import Interface, Response, SlaveSurface, State
+from anisocontact.interface.augmentation import Augmentation
+from anisocontact.interface.python_law import PythonInterface, common
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
-from anisocontact.python_law import PythonInterface, common
 from anisocontact.rigid import MovingInterface, RigidBody
 from anisocontact.surfaces import PROJECTION_STATUS
 

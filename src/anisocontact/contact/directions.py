@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import facet_sides
 from anisocontact.anisotropy import DirectionField, make_directions
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import facet_sides
 from anisocontact.contact.quadrature import facet_quadrature
-from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.surfaces import PROJECTION_STATUS, Surface
 

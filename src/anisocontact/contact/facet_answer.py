@@ -10,13 +10,13 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact._core import FacetPairs
+from anisocontact.base.errors import InputError
 from anisocontact.contact.record import Snapshot
 from anisocontact.contact.sides import Sides, located
-from anisocontact.errors import InputError
-from anisocontact.facets import FACET_STATUS, FacetProjections
 from anisocontact.interface import Response, State, as_state, raw_state
-from anisocontact.python_law import common
-from anisocontact.python_pair import PythonPairs
+from anisocontact.interface.python_law import common
+from anisocontact.interface.python_pair import PythonPairs
+from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
 
 #: Code of the kernel for a point without a facet below it.
 OFF = 3

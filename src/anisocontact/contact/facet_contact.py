@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.augmentation import Augmentation
+from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.facet_answer import PairKernel, Question, ask
 from anisocontact.contact.gathering import gather, gather_named
@@ -28,12 +28,12 @@ from anisocontact.contact.sides import check_sides, initial_state, located, make
 from anisocontact.contact.transfer import Couplings, Transfer
 from anisocontact.contact.transfer_work import transfer_work
 from anisocontact.contact.whereabouts import Seen, Whereabouts, carried
-from anisocontact.errors import InputError
-from anisocontact.facets import FacetProjections
 from anisocontact.interface import PairLaw, Response, State
+from anisocontact.interface.augmentation import Augmentation
+from anisocontact.interface.python_pair import MeshedLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
-from anisocontact.python_pair import MeshedLaw
+from anisocontact.surfaces.facets import FacetProjections
 
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]

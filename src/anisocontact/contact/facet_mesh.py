@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact._fenicsx import basix, facet_sides, scalar_element
-from anisocontact.facets import FacetSets, FacetSurface, outward_flips
+from anisocontact.base.fenicsx import basix, facet_sides, scalar_element
+from anisocontact.surfaces.facets import FacetSets, FacetSurface, outward_flips
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]

@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.transfer import Transfer
-from anisocontact.facets import FacetProjections
 from anisocontact.interface import State
+from anisocontact.surfaces.facets import FacetProjections
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]

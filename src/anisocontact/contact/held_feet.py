@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact.sides import Sides, located
-from anisocontact.facets import FACET_STATUS, FEATURES, FacetProjections, FacetSurface
+from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, FacetProjections, FacetSurface
 
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]

@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Sequence
 from typing import Any
 
-from anisocontact.errors import ModelWarning
+from anisocontact.base.errors import ModelWarning
 
 __all__ = ["COARSE", "coarse_slaves", "warn_of"]
 

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
 from anisocontact.contact.record import ContactRecord
-from anisocontact.errors import InputError
 from anisocontact.interface import FAILURE, Interface
+from anisocontact.interface.python_law import PythonInterface
+from anisocontact.interface.python_pair import MeshedLaw
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw
-from anisocontact.python_law import PythonInterface
-from anisocontact.python_pair import MeshedLaw
 
 if TYPE_CHECKING:  # they ask for the checks here
     from anisocontact.contact.contact import Contact

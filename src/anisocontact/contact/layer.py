@@ -24,7 +24,7 @@ import numpy.typing as npt
 from anisocontact.contact.multipliers import Frames, Step
 from anisocontact.contact.semismooth import RATIO, Semismooth
 from anisocontact.interface import STATUS, Response, State
-from anisocontact.series import History
+from anisocontact.interface.series import History
 
 Floats = npt.NDArray[np.float64]
 

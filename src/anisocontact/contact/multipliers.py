@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.augmentation import NEWTON, Augmentation
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.interface import STATUS, VECTOR_FORMS, Interface, Response, State
-from anisocontact.python_law import PythonInterface
-from anisocontact.python_pair import PYTHON_LAWS, MeshedLaw
+from anisocontact.interface.augmentation import NEWTON, Augmentation
+from anisocontact.interface.python_law import PythonInterface
+from anisocontact.interface.python_pair import PYTHON_LAWS, MeshedLaw
 
 #: Laws whose penalties can be augmented.
 type AugmentedLaw = Interface | MeshedLaw | PythonInterface

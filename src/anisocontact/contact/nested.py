@@ -12,12 +12,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.augmentation import Augmentation
 from anisocontact.contact.multipliers import Multipliers, Step
 from anisocontact.contact.penalty import PENALTY_FACTOR
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.contact.uzawa import Uzawa
 from anisocontact.interface import State
+from anisocontact.interface.augmentation import Augmentation
 
 #: Cycles after which the semismooth iteration is tried.
 TRIED_AFTER = (1, 3, 6)

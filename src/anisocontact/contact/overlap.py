@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import basix
+from anisocontact.base.fenicsx import basix
 from anisocontact.contact.facet_mesh import FacetMesh, FacetShapes, facet_corners
-from anisocontact.facets import FacetSets, FacetSurface
+from anisocontact.surfaces.facets import FacetSets, FacetSurface
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact._fenicsx import basix, facet_sides, geometry, scalar_element
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import basix, facet_sides, geometry, scalar_element
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]

@@ -7,8 +7,8 @@ import numpy.typing as npt
 from scipy.sparse import csr_array
 
 from anisocontact.contact.sides import Sides, located
-from anisocontact.facets import FACET_STATUS, FacetProjections
 from anisocontact.interface import State
+from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
 
 Ints = npt.NDArray[np.int32]
 Numbers = npt.NDArray[np.int64]

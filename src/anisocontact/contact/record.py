@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.augmentation import Augmentation
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.multipliers import AugmentedLaw, Frames, Multipliers, Step
 from anisocontact.contact.schemes import USUAL, make_multipliers
 from anisocontact.contact.semismooth import RATIO, Semismooth
 from anisocontact.interface import STATUS, Response, State
+from anisocontact.interface.augmentation import Augmentation
 from anisocontact.rigid import RigidBody
 
 Floats = npt.NDArray[np.float64]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from anisocontact.augmentation import AUTO, NEWTON, UZAWA, Augmentation
 from anisocontact.contact.multipliers import AugmentedLaw, Multipliers, check, follows
 from anisocontact.contact.nested import Nested
 from anisocontact.contact.semismooth import Semismooth, Softer
 from anisocontact.contact.uzawa import Uzawa
+from anisocontact.interface.augmentation import AUTO, NEWTON, UZAWA, Augmentation
 
 #: Ways of an increment, the usual one and what is tried where that fails: with smaller penalties,
 #: in cycles.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.penalty import facet_size
+from anisocontact.interface.python_pair import MeshedLaw
 from anisocontact.mesh import Model
-from anisocontact.python_pair import MeshedLaw
 
 #: Reference distance below which facets do not meet, in facet sizes: more than the search reaches,
 #: so that nothing touches at the start.

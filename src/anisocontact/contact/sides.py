@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import facet_keys, facet_sides
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import facet_keys, facet_sides
 from anisocontact.contact.facet_mesh import (
     FacetMesh,
     FacetRule,
@@ -24,11 +25,16 @@ from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.overlap import largest_radius
 from anisocontact.contact.record import Snapshot
 from anisocontact.contact.whereabouts import Seen
-from anisocontact.errors import InputError
-from anisocontact.facets import FACET_STATUS, TOPOLOGIES, FacetProjections, FacetSets, FacetSurface
 from anisocontact.interface import State
 from anisocontact.mesh import Model
 from anisocontact.surfaces import default_threads
+from anisocontact.surfaces.facets import (
+    FACET_STATUS,
+    TOPOLOGIES,
+    FacetProjections,
+    FacetSets,
+    FacetSurface,
+)
 
 Mask = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]

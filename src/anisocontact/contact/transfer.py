@@ -30,7 +30,7 @@ from anisocontact.contact.couples import Couples
 from anisocontact.contact.facet_mesh import FacetShapes
 from anisocontact.contact.overlap import Overlaps, largest_radius, overlaps
 from anisocontact.contact.sides import Sides
-from anisocontact.facets import FEATURES, FacetProjections
+from anisocontact.surfaces.facets import FEATURES, FacetProjections
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]

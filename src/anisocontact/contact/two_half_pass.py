@@ -10,8 +10,8 @@ import numpy.typing as npt
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.record import ContactRecord, Snapshot
 from anisocontact.interface import Response
+from anisocontact.interface.python_pair import MeshedLaw
 from anisocontact.mesh import Model
-from anisocontact.python_pair import MeshedLaw
 
 Floats = npt.NDArray[np.float64]
 

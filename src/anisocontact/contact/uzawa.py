@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.augmentation import Augmentation
 from anisocontact.contact.multipliers import SHARE, Multipliers, NotHeldError, Step
 from anisocontact.interface import State
+from anisocontact.interface.augmentation import Augmentation
 
 Floats = npt.NDArray[np.float64]
 

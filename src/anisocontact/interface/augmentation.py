@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 
 __all__ = ["AUTO", "NEWTON", "SCHEMES", "UZAWA", "Augmentation"]
 

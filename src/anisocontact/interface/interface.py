@@ -8,8 +8,12 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact import _core, registry, series
-from anisocontact._states import (
+from anisocontact import _core
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.interface import series
+from anisocontact.interface.series import History
+from anisocontact.interface.states import (
     FAILURE,
     STATE,
     STATUS,
@@ -19,9 +23,7 @@ from anisocontact._states import (
     as_state,
     raw_state,
 )
-from anisocontact.errors import InputError
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw, carried
-from anisocontact.series import History
 from anisocontact.surfaces import Surface, default_threads, points
 
 __all__ = [
@@ -130,7 +132,7 @@ class PairLaw:
         return PairLaw(*_stiffened(self, normal, tangential), evolution=self.evolution)
 
     def in_series(self, compliance: float, dt: float) -> tuple[PairLaw, History]:
-        """The laws with a compliant layer behind adhesion, see `anisocontact.series.in_series`."""
+        """The laws with a compliant layer behind adhesion, see `series.in_series`."""
         adhesion, start = series.in_series(self.adhesion, compliance, dt)
         return PairLaw(self.normal, adhesion, self.friction, evolution=self.evolution), start
 

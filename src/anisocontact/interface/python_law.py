@@ -2,8 +2,8 @@
 
 A law gives the tangential force of many points at once in an orthonormal frame of the tangent
 plane. `PythonInterface` does the rest (projection, pressure, transport of the history, tangent in
-space) and can be used wherever an `Interface` can. `PythonPairLaw` of `anisocontact.python_pair`
-is the same for two meshed bodies.
+space) and can be used wherever an `Interface` can. `PythonPairLaw` is the same for two meshed
+bodies.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.anisotropy import DirectionField
-from anisocontact.errors import InputError
-from anisocontact.interface import (
+from anisocontact.base.errors import InputError
+from anisocontact.interface.interface import (
     FAILURE,
     POINTS_ALONE,
     STATE,
@@ -29,8 +29,8 @@ from anisocontact.interface import (
     as_state,
     raw_state,
 )
+from anisocontact.interface.series import History
 from anisocontact.laws import NormalLaw
-from anisocontact.series import History
 from anisocontact.surfaces import Floats, Surface, default_threads, points
 
 

@@ -16,10 +16,9 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.anisotropy import DirectionField
-from anisocontact.errors import InputError
-from anisocontact.interface import PairLaw, State, as_state, raw_state
-from anisocontact.laws import Carried, NormalLaw
-from anisocontact.python_law import (
+from anisocontact.base.errors import InputError
+from anisocontact.interface.interface import PairLaw, State, as_state, raw_state
+from anisocontact.interface.python_law import (
     LawInSeries,
     LawKinematics,
     LawResult,
@@ -32,7 +31,8 @@ from anisocontact.python_law import (
     state_type,
     with_internal,
 )
-from anisocontact.series import History
+from anisocontact.interface.series import History
+from anisocontact.laws import Carried, NormalLaw
 from anisocontact.surfaces import Floats
 
 __all__ = ["PYTHON_LAWS", "MeshedLaw", "PythonPairLaw", "PythonPairs"]

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.surfaces import Floats
 
 #: Names of the codes of a point's status.

@@ -8,15 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact import _core, registry
+from anisocontact import _core
 from anisocontact.anisotropy import (
     BY_COORDINATES,
     DirectionField,
     components,
     require_regular,
 )
-from anisocontact.errors import InputError
-from anisocontact.registry import Entry
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.base.registry import Entry
 from anisocontact.surfaces import Floats, Surface, default_threads, points
 
 Named = tuple[str, dict[str, list[float]]]

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact._fenicsx import MPI, cell_nodes, facet_nodes
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI, cell_nodes, facet_nodes
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays, Nodes
 from anisocontact.mesh.lattice import Block, Lattice, Side, Weld
 from anisocontact.mesh.split import share_of

@@ -8,8 +8,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, Protocol
 
-from anisocontact._fenicsx import MPI
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI
 from anisocontact.mesh.arrays import MeshArrays, rename_bodies
 from anisocontact.mesh.blocks import mesh_blocks
 from anisocontact.mesh.merge import merge

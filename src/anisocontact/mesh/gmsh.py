@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import MPI, cell_permutation
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI, cell_permutation
 from anisocontact.mesh.arrays import MeshArrays, check_boundary, facet_owners
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.msh import Block, MshFile, read_msh
@@ -51,7 +51,7 @@ def read_gmsh(path: str | Path, bodies: Sequence[str] | None = None) -> Model:
     Example:
         >>> read_gmsh("no-such-file.msh")
         Traceback (most recent call last):
-        anisocontact.errors.InputError: mesh.file: mesh file 'no-such-file.msh' does not exist
+        anisocontact.base.errors.InputError: mesh.file: mesh file 'no-such-file.msh' does not exist
     """
     return Model.from_arrays(gmsh_arrays(Path(path), bodies, comm=MPI.COMM_WORLD))
 

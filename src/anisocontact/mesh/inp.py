@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, read_cards
 from anisocontact.mesh.placement import Rotation
 from anisocontact.mesh.whole import WholeMesh

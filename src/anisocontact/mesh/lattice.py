@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.mesh.arrays import Floats, Nodes
 
 Mask = npt.NDArray[np.bool_]

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact._fenicsx import cell_nodes, facet_nodes, middle_nodes
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import cell_nodes, facet_nodes, middle_nodes
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays, Nodes, facet_owners
 from anisocontact.mesh.split import Route, Split, arranged
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import MPI, create_mesh, locate_entities, vector_space
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI, create_mesh, locate_entities, vector_space
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.own_space import check_space, named_facets
 

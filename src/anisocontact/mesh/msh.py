@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import MPI
+from anisocontact.base.fenicsx import MPI
 from anisocontact.mesh.split import Route, Split, share_of
 from anisocontact.mesh.stream import FLOAT, SIZE, MshError, Stream
 

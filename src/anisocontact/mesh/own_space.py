@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 
 Ints = npt.NDArray[np.int32]
 

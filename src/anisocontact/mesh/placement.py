@@ -8,11 +8,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from anisocontact import registry
-from anisocontact.errors import InputError
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.base.registry import Parameter
 from anisocontact.mesh.arrays import Floats, MeshArrays
 from anisocontact.mesh.quality import check_cells
-from anisocontact.registry import Parameter
 
 _ANGLE = Parameter("angle", "scalar", "angle", "angle of a rotation")
 

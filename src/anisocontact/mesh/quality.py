@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import curved_gradients, middle_nodes
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import curved_gradients, middle_nodes
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.split import Route
 

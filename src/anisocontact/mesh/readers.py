@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-from anisocontact._fenicsx import MPI
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.gmsh import gmsh_arrays
 from anisocontact.mesh.inp import read_inp
@@ -36,7 +36,7 @@ def register_reader(*suffixes: str) -> Callable[[Reader], Reader]:
         ...     raise InputError("nothing is in it", field)
         >>> file_arrays(Path("a.none"))
         Traceback (most recent call last):
-        anisocontact.errors.InputError: mesh.file: mesh file 'a.none' does not exist
+        anisocontact.base.errors.InputError: mesh.file: mesh file 'a.none' does not exist
     """
 
     def register(read: Reader) -> Reader:

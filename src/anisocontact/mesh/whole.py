@@ -13,8 +13,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import cell_nodes, facet_nodes, middle_nodes
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import cell_nodes, facet_nodes, middle_nodes
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.quality import check_cells

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.point.foot import Foot
 from anisocontact.surfaces import Floats
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.interface import State
 from anisocontact.point.balance import (
     Balance,

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.limits import FOLLOWED
 from anisocontact.interface import STATUS, Response
-from anisocontact.limits import FOLLOWED
 from anisocontact.point.balance import Pose
 from anisocontact.surfaces import Floats, Surface
 

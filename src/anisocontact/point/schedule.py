@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.surfaces import Floats
 
 #: A number or vector, knots of it, or a function of time.

@@ -21,11 +21,11 @@ import numpy as np
 import numpy.typing as npt
 from numpy.lib.recfunctions import repack_fields
 
+from anisocontact.base.errors import InputError
 from anisocontact.contact.facet_mesh import node_positions
-from anisocontact.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.results.files import Disk, replacing
-from anisocontact.solver.persistent import Arrays, Persistent, under
+from anisocontact.solver.system.persistent import Arrays, Persistent, under
 
 __all__ = [
     "NAME",

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from anisocontact.errors import InputError
-from anisocontact.whole_files import replacing
+from anisocontact.base.errors import InputError
+from anisocontact.base.whole_files import replacing
 
 __all__ = [
     "LOCK",

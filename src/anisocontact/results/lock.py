@@ -11,7 +11,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.results.files import LOCK
 
 __all__ = ["locked"]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import compiled_expression, dolfinx, fem, scalar_element, ufl
+from anisocontact.base.fenicsx import compiled_expression, dolfinx, fem, scalar_element, ufl
 from anisocontact.bulk import cauchy_stress
 from anisocontact.contact import AnyContact
 from anisocontact.results.dataset import DataSet, vertices

@@ -13,7 +13,7 @@ from xml.etree import ElementTree
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.results.history import read_history
 
 if TYPE_CHECKING:
@@ -33,9 +33,9 @@ class Results:
             no such time.
 
     Example:
-        >>> Results("no-such-folder")
+        >>> Results("no-folder")
         Traceback (most recent call last):
-        anisocontact.errors.InputError: 'no-such-folder' holds no results: no summary.json in it
+        anisocontact.base.errors.InputError: 'no-folder' holds no results: no summary.json in it
     """
 
     def __init__(self, folder: str | Path) -> None:

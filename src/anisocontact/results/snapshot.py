@@ -10,11 +10,11 @@ import numpy.typing as npt
 
 from anisocontact.contact import AnyContact
 from anisocontact.interface import STATUS
-from anisocontact.python_pair import PYTHON_LAWS
+from anisocontact.interface.python_pair import PYTHON_LAWS
 from anisocontact.results.approach import approach
 from anisocontact.rigid import RigidBody, rotation_vector
 from anisocontact.solver import Accepted, Problem, Step
-from anisocontact.solver.loads import mean_shares
+from anisocontact.solver.terms.loads import mean_shares
 
 __all__ = ["Observer", "laws", "named_groups"]
 

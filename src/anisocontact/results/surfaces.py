@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.anisotropy import DirectionField
 from anisocontact.contact import AnyContact
-from anisocontact.python_law import PythonInterface
+from anisocontact.interface.python_law import PythonInterface
 from anisocontact.results.dataset import DataSet, polygons
 
 __all__ = ["Surfaces"]

@@ -6,14 +6,14 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from anisocontact.base.limits import FOLLOWED
 from anisocontact.contact import AnyContact, coarse_slaves, initial_overlap
 from anisocontact.contact.hints import MISSED
 from anisocontact.interface import STATUS
-from anisocontact.limits import FOLLOWED
 from anisocontact.solver import Accepted
-from anisocontact.solver.imbalance import LARGE
-from anisocontact.solver.rotations import CURE, WARNED
-from anisocontact.solver.turned import MARGIN
+from anisocontact.solver.stepping.imbalance import LARGE
+from anisocontact.solver.stepping.rotations import CURE, WARNED
+from anisocontact.solver.stepping.turned import MARGIN
 
 __all__ = ["at_end", "at_start", "of_models", "soft", "worst", "worst_of_models"]
 

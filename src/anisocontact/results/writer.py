@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from anisocontact import __version__
+from anisocontact.base.errors import printable
 from anisocontact.contact import facet_size
-from anisocontact.errors import printable
 from anisocontact.results.checkpoint import keep_checkpoint
 from anisocontact.results.collection import Collection
 from anisocontact.results.files import Disk, clear, clear_drafts, write_text
@@ -24,7 +24,7 @@ from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
 from anisocontact.results.warnings import at_end, at_start, of_models, soft, worst, worst_of_models
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
-from anisocontact.solver.persistent import Persistent
+from anisocontact.solver.system.persistent import Persistent
 
 __all__ = ["Writer"]
 

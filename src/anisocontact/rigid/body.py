@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact import registry
-from anisocontact.errors import InputError
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
 from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
 
 Floats = npt.NDArray[np.float64]

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.interface import Interface, Response, SlaveSurface, State
-from anisocontact.python_law import PythonInterface
+from anisocontact.interface.python_law import PythonInterface
 from anisocontact.rigid.body import RigidBody
 from anisocontact.rigid.rotation import skew
 

@@ -1,12 +1,12 @@
 """Newton's method, load steps and what a run reports."""
 
-from anisocontact.limits import Limits
-from anisocontact.solver.attached import ElasticSupport, Spring
-from anisocontact.solver.problem import Problem
-from anisocontact.solver.solver import Solver
-from anisocontact.solver.steps import Accepted, Culprit, Cut, Progress, Step, StoppedError
-from anisocontact.solver.turn import Turn
-from anisocontact.solver.user import ContactProblem
+from anisocontact.base.limits import Limits
+from anisocontact.solver.stepping.solver import Solver
+from anisocontact.solver.stepping.steps import Accepted, Culprit, Cut, Progress, Step, StoppedError
+from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.system.user import ContactProblem
+from anisocontact.solver.terms.attached import ElasticSupport, Spring
+from anisocontact.solver.terms.turn import Turn
 
 __all__ = [
     "Accepted",

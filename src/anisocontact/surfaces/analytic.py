@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact import _core, registry
-from anisocontact.arrays import Floats, points
-from anisocontact.errors import InputError
-from anisocontact.geometry import Geometry, GeometryDerivatives
+from anisocontact import _core
+from anisocontact.base import registry
+from anisocontact.base.arrays import Floats, points
+from anisocontact.base.errors import InputError
+from anisocontact.surfaces.geometry import Geometry, GeometryDerivatives
 
 __all__ = [
     "PROJECTION_STATUS",

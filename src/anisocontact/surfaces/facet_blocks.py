@@ -9,8 +9,8 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.arrays import Floats
-from anisocontact.errors import InputError
+from anisocontact.base.arrays import Floats
+from anisocontact.base.errors import InputError
 
 Integers = npt.NDArray[np.int32]
 

@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
-from anisocontact.arrays import Floats, points
-from anisocontact.errors import InputError
-from anisocontact.facet_blocks import TOPOLOGIES, FacetBlocks, Integers, finite
-from anisocontact.geometry import PointGeometry
-from anisocontact.orientation import Orientation, orientation, triangular
-from anisocontact.surfaces import Jet, default_threads
+from anisocontact.base.arrays import Floats, points
+from anisocontact.base.errors import InputError
+from anisocontact.surfaces.analytic import Jet, default_threads
+from anisocontact.surfaces.facet_blocks import TOPOLOGIES, FacetBlocks, Integers, finite
+from anisocontact.surfaces.geometry import PointGeometry
+from anisocontact.surfaces.orientation import Orientation, orientation, triangular
 
 Codes = npt.NDArray[np.int8]
 

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
-from anisocontact.arrays import Floats, blocks
-from anisocontact.errors import InputError
+from anisocontact.base.arrays import Floats, blocks
+from anisocontact.base.errors import InputError
 
 
 @dataclass(frozen=True)

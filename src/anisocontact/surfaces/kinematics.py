@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy.typing as npt
 
-from anisocontact.arrays import Floats, blocks, points
-from anisocontact.surfaces import Surface
+from anisocontact.base.arrays import Floats, blocks, points
+from anisocontact.surfaces.analytic import Surface
 
 
 class ConvectiveRate(NamedTuple):
@@ -60,7 +60,7 @@ def convective_velocity(
         InputError: An array of another shape was given.
 
     Example:
-        >>> from anisocontact.surfaces import make_surface
+        >>> from anisocontact.surfaces.analytic import make_surface
         >>> roll = make_surface("cylinder", point=(0, 0, 0), axis=(0, 0, 1), radius=1.0)
         >>> start = roll.project([[0.0, 2.0, 0.0]])
         >>> convective_velocity(roll, start.xi, start.gap, (-1, 0, 0)).xi.round(12).tolist()

@@ -9,10 +9,10 @@ import numpy.typing as npt
 from scipy.sparse import bsr_array
 
 from anisocontact import _core
-from anisocontact.arrays import points
-from anisocontact.errors import InputError
-from anisocontact.facet_blocks import FacetBlocks, finite
-from anisocontact.facets import FacetSurface
+from anisocontact.base.arrays import points
+from anisocontact.base.errors import InputError
+from anisocontact.surfaces.facet_blocks import FacetBlocks, finite
+from anisocontact.surfaces.facets import FacetSurface
 
 #: Patches over linear facets, and the number of their nodes.
 PATCHES = {"tri3": ("tri6", 6), "quad4": ("quad8", 8)}

@@ -10,7 +10,7 @@ import random
 
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 #: Seeds of the slow tests and what each makes: 600 cases, 300 meshes and 100 texts in all.
 SEEDS = range(1, 21)

@@ -12,7 +12,7 @@ import sys
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import main
 from anisocontact.results import checkpoint
@@ -87,7 +87,7 @@ def test_files_that_may_not_grow(case, whole, same):
     out = case.parent / "out"
     code = (
         "import resource, signal, sys; from anisocontact.cli import main; "
-        "import anisocontact._fenicsx  # MPI needs larger files\n"
+        "import anisocontact.base.fenicsx  # MPI needs larger files\n"
         "from anisocontact.results import report; report.write_report = lambda folder: []; "
         "signal.signal(signal.SIGXFSZ, signal.SIG_IGN); "
         "resource.setrlimit(resource.RLIMIT_FSIZE, ({0}, {0})); "

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.errors import InputError
 from anisocontact.cli import main
-from anisocontact.errors import InputError
 from anisocontact.results.lock import locked
 
 #: One hexahedron: body "block" with the facets "block.bottom" and "block.top" of unit size.

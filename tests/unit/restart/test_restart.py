@@ -12,13 +12,13 @@ import tomllib
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.errors import InputError
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.case.restart import check_same
 from anisocontact.cli import main
-from anisocontact.errors import InputError
 from anisocontact.results.history import flat
 
 

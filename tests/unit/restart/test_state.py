@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from anisocontact.base.errors import InputError
 from anisocontact.case import load
 from anisocontact.case.build import build
-from anisocontact.errors import InputError
 from anisocontact.results import checkpoint
 
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 import pytest
 from scipy.spatial import Delaunay
 
-from anisocontact.facets import FacetSurface
+from anisocontact.surfaces.facets import FacetSurface
 
 Floats = npt.NDArray[np.float64]
 Integers = npt.NDArray[np.int64]

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize
 
-from anisocontact.facets import FacetProjections, FacetSurface
+from anisocontact.surfaces.facets import FacetProjections, FacetSurface
 
 TOPOLOGIES = ("tri3", "tri6", "quad4", "quad8", "quad9")
 

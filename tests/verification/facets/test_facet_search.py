@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from anisocontact.facets import FacetSurface
+from anisocontact.surfaces.facets import FacetSurface
 
 TOPOLOGIES = ("tri3", "tri6", "quad4", "quad8", "quad9")
 #: Flat minima of curved facets are found to 1e-9 of the squared distance; else rounding.

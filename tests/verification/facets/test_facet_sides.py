@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from anisocontact.facets import FacetSets, FacetSurface
+from anisocontact.surfaces.facets import FacetSets, FacetSurface
 
 TOPOLOGIES = ("tri3", "tri6", "quad4", "quad8", "quad9")
 CUBE = np.array([[i, j, k] for k in (0, 1) for j in (0, 1) for i in (0, 1)], dtype=float)

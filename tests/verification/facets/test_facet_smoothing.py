@@ -11,9 +11,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from anisocontact.errors import InputError
-from anisocontact.facets import FacetSurface
-from anisocontact.smooth_facets import SmoothSurface
+from anisocontact.base.errors import InputError
+from anisocontact.surfaces.facets import FacetSurface
+from anisocontact.surfaces.smooth_facets import SmoothSurface
 
 LINEAR = ("tri3", "quad4")
 

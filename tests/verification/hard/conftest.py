@@ -41,7 +41,7 @@ class Run:
 @pytest.fixture
 def to_the_end(tmp_path) -> Callable[..., Run]:
     """Runs the text of a case file with default settings; every increment is met, in order."""
-    pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     from anisocontact.case import load
     from anisocontact.case.build import build
 

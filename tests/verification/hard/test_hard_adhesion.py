@@ -141,7 +141,7 @@ def test_stiff_adhesion_with_multipliers_and_two_passes(to_the_end, more):
 
 def test_failure_names_stiff_adhesion(to_the_end):
     """Where a run stops all the same, here with two iterations, the message names the adhesion."""
-    from anisocontact.solver.steps import StoppedError
+    from anisocontact.solver.stepping.steps import StoppedError
 
     text = case(RIGID, "stiffness = 1e9")
     with pytest.raises(StoppedError, match=r"adhesion of block.bottom on plate is .* as stiff as"):

@@ -15,8 +15,8 @@ import pytest
 from tests.verification.independent import law as numpy_law
 from tests.verification.independent.patch import Patch, Place, skew_sheet, skew_tube
 
-from anisocontact import registry
 from anisocontact.anisotropy import make_directions
+from anisocontact.base import registry
 from anisocontact.interface import Interface, SlaveSurface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface

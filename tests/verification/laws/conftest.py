@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 
-from anisocontact import registry
+from anisocontact.base import registry
 
 Floats = npt.NDArray[np.float64]
 

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from anisocontact import registry
+from anisocontact.base import registry
 from anisocontact.laws import slide
 
 POINTS = 500

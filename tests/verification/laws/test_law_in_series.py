@@ -7,9 +7,8 @@ import pytest
 from tests.verification.laws_in_python import RadialReturn
 
 from anisocontact.anisotropy import make_directions
-from anisocontact.interface import Interface
+from anisocontact.interface import Interface, LawInSeries, LawKinematics, LawState
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.python_law import LawInSeries, LawKinematics, LawState
 from anisocontact.surfaces import make_surface
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=0.5)

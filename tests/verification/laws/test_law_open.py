@@ -90,7 +90,7 @@ def extended(tmp_path_factory):
 
 USE = """
 import anisocontact, json
-from anisocontact import registry
+from anisocontact.base import registry
 from anisocontact.laws import Friction, slide
 
 e = registry.entry(registry.sliding_rules(), "toy")

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from anisocontact import registry
+from anisocontact.base import registry
+from anisocontact.base.registry import Entry
 from anisocontact.mesh.shapes.ball import BallSpec
 from anisocontact.mesh.shapes.box import BoxSpec
 from anisocontact.mesh.shapes.cylinder import CylinderSpec
 from anisocontact.mesh.shapes.dome import DomeSpec
 from anisocontact.mesh.shapes.ring import RingSpec
 from anisocontact.mesh.shapes.shape import CELLS, Shape, checked_blocks
-from anisocontact.registry import Entry
 
 __all__ = [
     "CELLS",

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block, Side, even, graded
 from anisocontact.mesh.shapes.shape import (
@@ -19,7 +20,6 @@ from anisocontact.mesh.shapes.shape import (
     core_parameter,
     ratio_parameter,
 )
-from anisocontact.registry import Entry, Parameter
 
 # Part -> range along each axis of a cube from -1 to 1.
 PARTS: dict[str, tuple[tuple[int, int], ...]] = {

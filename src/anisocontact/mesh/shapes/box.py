@@ -8,11 +8,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block, Side, graded
 from anisocontact.mesh.shapes.shape import cells_parameter, check_shape, ratio_parameter
-from anisocontact.registry import Entry, Parameter
 
 AXES = ("x", "y", "z")
 FACES: dict[Side, str] = {

@@ -8,9 +8,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.lattice import Block
 from anisocontact.mesh.shapes.disc import check_disc, disc_blocks, disc_parameters
-from anisocontact.registry import Entry, Parameter
 
 
 @dataclass(frozen=True)

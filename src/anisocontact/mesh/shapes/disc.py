@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from anisocontact.base.registry import Parameter
 from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block, even, graded
 from anisocontact.mesh.shapes.shape import (
@@ -18,7 +19,6 @@ from anisocontact.mesh.shapes.shape import (
     core_parameter,
     ratio_parameter,
 )
-from anisocontact.registry import Parameter
 
 #: Facet groups of bodies made of discs.
 ENDS = {(2, 0): "bottom", (2, 1): "top"}

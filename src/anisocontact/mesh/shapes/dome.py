@@ -9,11 +9,11 @@ from typing import ClassVar
 
 import numpy as np
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block
 from anisocontact.mesh.shapes.disc import check_disc, disc_blocks, disc_parameters
-from anisocontact.registry import Entry, Parameter
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
-from anisocontact import registry
-from anisocontact.errors import InputError
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block, Side, graded
 from anisocontact.mesh.shapes.shape import (
@@ -19,7 +20,6 @@ from anisocontact.mesh.shapes.shape import (
     full_circle,
     ratio_parameter,
 )
-from anisocontact.registry import Entry, Parameter
 
 
 @dataclass(frozen=True)

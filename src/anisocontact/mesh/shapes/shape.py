@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 from typing import ClassVar, Protocol
 
-from anisocontact import registry
-from anisocontact.errors import InputError
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.blocks import check_count
 from anisocontact.mesh.lattice import Block
-from anisocontact.registry import Entry, Parameter
 
 CELLS = ("hexahedron", "tetrahedron")
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from anisocontact.figure_style import plain
-from anisocontact.figure_style import save as write
+from anisocontact.base.figure_style import plain
+from anisocontact.base.figure_style import save as write
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
 from anisocontact.point.pictures.compare import compare

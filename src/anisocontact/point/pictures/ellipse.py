@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.adhesion_domain import Strip, domain_from_tensors
+from anisocontact.laws.domain import Strip, domain_from_tensors
 from anisocontact.point.history import Table
 from anisocontact.surfaces import Floats
 

@@ -6,7 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from anisocontact.figure_style import new_figure
+from anisocontact.base.figure_style import new_figure
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History, Table
 from anisocontact.point.pictures.ellipse import yield_ellipse

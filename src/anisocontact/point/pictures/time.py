@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from anisocontact.figure_style import new_figure
+from anisocontact.base.figure_style import new_figure
 from anisocontact.interface import STATUS
 from anisocontact.point.history import History
 from anisocontact.point.pictures.style import AXES, COLOURS, INK, UNITS, runs

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from anisocontact.figure_style import save
+from anisocontact.base.figure_style import save
 from anisocontact.results.files import write_text
 from anisocontact.results.no_energy import told
 from anisocontact.results.report import curves, maps, shape

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.ticker import MaxNLocator
 
-from anisocontact.figure_style import ACCENT, GREY, STEP_COLOURS, new_figure, plain
+from anisocontact.base.figure_style import ACCENT, GREY, STEP_COLOURS, new_figure, plain
 from anisocontact.results.report.run_data import RunData
 
 if TYPE_CHECKING:

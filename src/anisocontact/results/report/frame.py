@@ -11,7 +11,7 @@ import numpy.typing as npt
 from matplotlib.colors import ListedColormap
 from scipy.spatial import KDTree
 
-from anisocontact.figure_style import STATUS_COLOURS
+from anisocontact.base.figure_style import STATUS_COLOURS
 
 if TYPE_CHECKING:
     import pyvista

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
-from anisocontact.figure_style import STATUS_COLOURS, new_figure, plain
+from anisocontact.base.figure_style import STATUS_COLOURS, new_figure, plain
 from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import Moment, RunData
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from anisocontact.errors import printable
+from anisocontact.base.errors import printable
 
 __all__ = ["Picture", "as_html", "document", "figure", "page", "table"]
 

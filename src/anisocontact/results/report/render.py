@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pyvista
 
-from anisocontact.figure_style import GREY
+from anisocontact.base.figure_style import GREY
 from anisocontact.results.report.shape import LABEL, caption, magnification, round_box, surfaces
 
 #: The scale of colours.

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.figure_style import plain
+from anisocontact.base.figure_style import plain
 from anisocontact.results.read import Results
 from anisocontact.results.report.frame import ContactView
 

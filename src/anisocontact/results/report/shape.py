@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from anisocontact.figure_style import new_figure, save
-from anisocontact.whole_files import draft_of
+from anisocontact.base.figure_style import new_figure, save
+from anisocontact.base.whole_files import draft_of
 
 if TYPE_CHECKING:
     import pyvista

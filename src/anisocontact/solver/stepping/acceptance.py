@@ -10,11 +10,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from anisocontact._fenicsx import Vec
-from anisocontact.solver.culprits import inverted_cells, strayed
-from anisocontact.solver.problem import Problem
-from anisocontact.solver.rotations import CURE, WARNED
-from anisocontact.solver.steps import Culprit
+from anisocontact.base.fenicsx import Vec
+from anisocontact.solver.stepping.culprits import inverted_cells, strayed
+from anisocontact.solver.stepping.rotations import CURE, WARNED
+from anisocontact.solver.stepping.steps import Culprit
+from anisocontact.solver.system.problem import Problem
 
 #: Error of the gap of a point that is held on a facet, over the size of a facet, that is none.
 STRAYED = 1e-3

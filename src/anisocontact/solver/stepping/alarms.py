@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from anisocontact.solver.rotations import CURE, WARNED
-from anisocontact.solver.steps import Accepted
+from anisocontact.solver.stepping.rotations import CURE, WARNED
+from anisocontact.solver.stepping.steps import Accepted
 
 
 class Alarms:

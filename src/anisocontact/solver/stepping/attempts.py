@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from anisocontact._fenicsx import Vec
+from anisocontact.base.fenicsx import Vec
 from anisocontact.contact.schemes import IN_CYCLES, SOFTER, USUAL
-from anisocontact.solver.acceptance import refused
-from anisocontact.solver.continuation import Continuation
-from anisocontact.solver.culprits import find_culprits
-from anisocontact.solver.newton import NewtonResult
-from anisocontact.solver.problem import Problem
-from anisocontact.solver.steps import Culprit
-from anisocontact.solver.strategy import AnyNewton
-from anisocontact.solver.turned import TurnWatch
-from anisocontact.solver.watch import StatusWatch
+from anisocontact.solver.stepping.acceptance import refused
+from anisocontact.solver.stepping.continuation import Continuation
+from anisocontact.solver.stepping.culprits import find_culprits
+from anisocontact.solver.stepping.newton import NewtonResult
+from anisocontact.solver.stepping.steps import Culprit
+from anisocontact.solver.stepping.turned import TurnWatch
+from anisocontact.solver.stepping.watch import StatusWatch
+from anisocontact.solver.strategies.strategy import AnyNewton
+from anisocontact.solver.system.problem import Problem
 
 #: Smallest share of a correction that is taken while the status of points alternates.
 LEAST_SHARE = 1.0 / 64.0

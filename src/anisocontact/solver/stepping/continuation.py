@@ -12,11 +12,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from anisocontact._fenicsx import Vec
+from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import AnyContact
-from anisocontact.solver.newton import NewtonResult
-from anisocontact.solver.problem import Problem
-from anisocontact.solver.strategy import AnyNewton
+from anisocontact.solver.stepping.newton import NewtonResult
+from anisocontact.solver.strategies.strategy import AnyNewton
+from anisocontact.solver.system.problem import Problem
 
 #: Stiffness of adhesion over that of the bodies beyond which an attempt with a layer is made.
 STIFF = 100.0

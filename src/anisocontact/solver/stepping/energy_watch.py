@@ -12,8 +12,8 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.solver.imbalance import Imbalance
-from anisocontact.solver.problem import Problem
+from anisocontact.solver.stepping.imbalance import Imbalance
+from anisocontact.solver.system.problem import Problem
 
 Floats = npt.NDArray[np.float64]
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
 from anisocontact.bulk import Material
-from anisocontact.errors import InputError
 from anisocontact.mesh import Model
-from anisocontact.solver.rotations import CURE, REFUSED, WARNED, spurious
-from anisocontact.solver.steps import Step
-from anisocontact.solver.supports import Supports
+from anisocontact.solver.stepping.rotations import CURE, REFUSED, WARNED, spurious
+from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.terms.supports import Supports
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

@@ -9,10 +9,10 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import SNES, Mat, PETSc, Vec, check_memory
+from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec, check_memory
 from anisocontact.contact import NotHeldError
-from anisocontact.solver.persistent import Arrays
-from anisocontact.solver.steps import Culprit, LostError
+from anisocontact.solver.stepping.steps import Culprit, LostError
+from anisocontact.solver.system.persistent import Arrays
 
 OptionValue = str | int | float | bool | None
 

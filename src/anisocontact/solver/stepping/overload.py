@@ -15,8 +15,8 @@ import numpy.typing as npt
 
 from anisocontact.contact import AnyContact
 from anisocontact.laws import Friction
-from anisocontact.solver.free_body import FreeBody
-from anisocontact.solver.problem import Problem
+from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.free_body import FreeBody
 
 Floats = npt.NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from anisocontact.limits import Limits
+from anisocontact.base.limits import Limits
 
 #: What is left of a part that failed.
 CUT = 0.25

@@ -15,10 +15,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import MPI, Vec, basix, scalar_element
+from anisocontact.base.fenicsx import MPI, Vec, basix, scalar_element
 from anisocontact.bulk import Material
 from anisocontact.mesh import Model
-from anisocontact.solver.reduction import Kept, Reduction
+from anisocontact.solver.system.reduction import Kept, Reduction
 
 Floats = npt.NDArray[np.float64]
 

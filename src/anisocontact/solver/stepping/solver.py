@@ -8,26 +8,26 @@ from typing import NoReturn
 
 import numpy as np
 
-from anisocontact._fenicsx import Vec
+from anisocontact.base.fenicsx import Vec
+from anisocontact.base.limits import Limits
+from anisocontact.base.strategies import AUTO, CONDENSED
 from anisocontact.contact import warn_of
-from anisocontact.limits import Limits
-from anisocontact.solver.alarms import Alarms
-from anisocontact.solver.attempts import Attempts, Outcome
-from anisocontact.solver.culprits import NAMED
-from anisocontact.solver.energy_watch import EnergyWatch
-from anisocontact.solver.interior import PENDING
-from anisocontact.solver.led_turns import led_turns
-from anisocontact.solver.loads import check_steps
-from anisocontact.solver.newton import NewtonResult, OptionValue
-from anisocontact.solver.overload import too_much_load
-from anisocontact.solver.pace import Pace
-from anisocontact.solver.persistent import Arrays, Persistent, under
-from anisocontact.solver.problem import Problem
-from anisocontact.solver.steps import Accepted, Cut, Progress, Step, StoppedError
-from anisocontact.solver.strategy import AnyNewton, choose, make_newton
-from anisocontact.solver.turned import PRESCRIBED, TurnWatch
-from anisocontact.solver.watch import StatusWatch
-from anisocontact.strategies import AUTO, CONDENSED
+from anisocontact.solver.stepping.alarms import Alarms
+from anisocontact.solver.stepping.attempts import Attempts, Outcome
+from anisocontact.solver.stepping.culprits import NAMED
+from anisocontact.solver.stepping.energy_watch import EnergyWatch
+from anisocontact.solver.stepping.led_turns import led_turns
+from anisocontact.solver.stepping.newton import NewtonResult, OptionValue
+from anisocontact.solver.stepping.overload import too_much_load
+from anisocontact.solver.stepping.pace import Pace
+from anisocontact.solver.stepping.steps import Accepted, Cut, Progress, Step, StoppedError
+from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch
+from anisocontact.solver.stepping.watch import StatusWatch
+from anisocontact.solver.strategies.strategy import AnyNewton, choose, make_newton
+from anisocontact.solver.system.interior import PENDING
+from anisocontact.solver.system.persistent import Arrays, Persistent, under
+from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.loads import check_steps
 
 
 @dataclass

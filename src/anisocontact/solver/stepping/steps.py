@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.rigid import turns_in_radian
-from anisocontact.solver.imbalance import Imbalance
-from anisocontact.solver.rotations import Turned
-from anisocontact.solver.turn import Turn
+from anisocontact.solver.stepping.imbalance import Imbalance
+from anisocontact.solver.stepping.rotations import Turned
+from anisocontact.solver.terms.turn import Turn
 
 AXES = ("x", "y", "z")
 # Fields of a step that are forces with a direction.

@@ -9,9 +9,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from anisocontact.limits import FOLLOWED
-from anisocontact.solver.acceptance import Refusal
-from anisocontact.solver.problem import Problem
+from anisocontact.base.limits import FOLLOWED
+from anisocontact.solver.stepping.acceptance import Refusal
+from anisocontact.solver.system.problem import Problem
 
 #: Share of `FOLLOWED` that is let pass: parts are sized for the limit itself.
 MARGIN = 1.05

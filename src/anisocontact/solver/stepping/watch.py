@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact import AnyContact
-from anisocontact.solver.feet_watch import FeetWatch
+from anisocontact.solver.stepping.feet_watch import FeetWatch
 
 Codes = npt.NDArray[np.int8]
 Flags = npt.NDArray[np.bool_]

@@ -9,17 +9,17 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import PETSc, Vec
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import PETSc, Vec
+from anisocontact.base.strategies import CONDENSED, DIRECT, ITERATIVE, STRATEGIES
 from anisocontact.bulk import LinearBulk
-from anisocontact.errors import InputError
-from anisocontact.solver.condensed import Condensed, CondensedNewton, contact_unknowns
-from anisocontact.solver.costs import factor_bytes, free_memory, memory_needed
-from anisocontact.solver.iterative import IterativeNewton, Patch
-from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
-from anisocontact.solver.persistent import Arrays
-from anisocontact.solver.problem import Problem
-from anisocontact.solver.steps import Step
-from anisocontact.strategies import CONDENSED, DIRECT, ITERATIVE, STRATEGIES
+from anisocontact.solver.stepping.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.strategies.condensed import Condensed, CondensedNewton, contact_unknowns
+from anisocontact.solver.strategies.costs import factor_bytes, free_memory, memory_needed
+from anisocontact.solver.strategies.iterative import IterativeNewton, Patch
+from anisocontact.solver.system.persistent import Arrays
+from anisocontact.solver.system.problem import Problem
 
 #: Contact unknowns beyond which their dense matrix costs more than it saves.
 MOST_CONTACT = 8000

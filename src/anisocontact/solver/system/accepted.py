@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Vec
-from anisocontact.solver.layout import Layout
-from anisocontact.solver.persistent import Arrays
+from anisocontact.base.fenicsx import Vec
+from anisocontact.solver.system.layout import Layout
+from anisocontact.solver.system.persistent import Arrays
 
 Floats = npt.NDArray[np.float64]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Vec
-from anisocontact.solver.parts import Parts
+from anisocontact.base.fenicsx import Vec
+from anisocontact.solver.system.parts import Parts
 
 Floats = npt.NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import basix, scalar_element
+from anisocontact.base.fenicsx import basix, scalar_element
 from anisocontact.mesh import Model
 
 Ints = npt.NDArray[np.int32]

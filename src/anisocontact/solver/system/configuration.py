@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import MPI, Vec, fem
+from anisocontact.base.fenicsx import MPI, Vec, fem
 from anisocontact.bulk import Material
 from anisocontact.mesh import Model
-from anisocontact.solver.balance import Place
-from anisocontact.solver.cells import DeformedCells
-from anisocontact.solver.parts import Parts
+from anisocontact.solver.system.balance import Place
+from anisocontact.solver.system.cells import DeformedCells
+from anisocontact.solver.system.parts import Parts
 
 Floats = npt.NDArray[np.float64]
 

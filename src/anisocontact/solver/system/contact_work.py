@@ -20,10 +20,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import MPI
+from anisocontact.base.fenicsx import MPI
 from anisocontact.interface import STATUS
-from anisocontact.solver.imbalance import LARGE
-from anisocontact.solver.parts import Parts
+from anisocontact.solver.stepping.imbalance import LARGE
+from anisocontact.solver.system.parts import Parts
 
 Floats = npt.NDArray[np.float64]
 

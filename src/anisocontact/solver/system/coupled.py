@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from scipy.sparse import bsr_array, csr_array
 
-from anisocontact._fenicsx import Mat, PETSc
+from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.transfer import Couplings
 

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import PETSc, Vec
-from anisocontact.solver.persistent import Arrays
-from anisocontact.solver.reduction import Kept
+from anisocontact.base.fenicsx import PETSc, Vec
+from anisocontact.solver.system.persistent import Arrays
+from anisocontact.solver.system.reduction import Kept
 
 if TYPE_CHECKING:
-    from anisocontact.solver.problem import Problem
+    from anisocontact.solver.system.problem import Problem
 
 Floats = npt.NDArray[np.float64]
 

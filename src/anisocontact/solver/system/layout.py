@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import MPI, PETSc, Vec, fem
+from anisocontact.base.fenicsx import MPI, PETSc, Vec, fem
 
 Floats = npt.NDArray[np.float64]
 

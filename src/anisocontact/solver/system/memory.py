@@ -9,10 +9,10 @@ import numpy.typing as npt
 
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.contact import AnyContact
-from anisocontact.solver.accepted import AcceptedState
-from anisocontact.solver.configuration import Configuration
-from anisocontact.solver.parts import Parts
-from anisocontact.solver.persistent import Arrays, Persistent
+from anisocontact.solver.system.accepted import AcceptedState
+from anisocontact.solver.system.configuration import Configuration
+from anisocontact.solver.system.parts import Parts
+from anisocontact.solver.system.persistent import Arrays, Persistent
 
 #: In front of the names of what was when the step began.
 BEGUN = "begun_"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.solver.parts import Parts
+from anisocontact.solver.system.parts import Parts
 
 Floats = npt.NDArray[np.float64]
 

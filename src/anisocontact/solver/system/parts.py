@@ -7,19 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from anisocontact.base.errors import InputError
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
 from anisocontact.contact import AnyContact
-from anisocontact.errors import InputError
 from anisocontact.mesh import Model
-from anisocontact.solver.attached import ElasticSupport, Spring
-from anisocontact.solver.attachments import Attachments
-from anisocontact.solver.constraints import Constraints
-from anisocontact.solver.layout import Layout
-from anisocontact.solver.loads import Loads
-from anisocontact.solver.rigid import RigidBodies
-from anisocontact.solver.sides_kept import SidesKept
-from anisocontact.solver.stabilisation import Stabilisation
-from anisocontact.solver.supports import Supports
+from anisocontact.solver.stepping.sides_kept import SidesKept
+from anisocontact.solver.system.layout import Layout
+from anisocontact.solver.terms.attached import ElasticSupport, Spring
+from anisocontact.solver.terms.attachments import Attachments
+from anisocontact.solver.terms.constraints import Constraints
+from anisocontact.solver.terms.loads import Loads
+from anisocontact.solver.terms.rigid import RigidBodies
+from anisocontact.solver.terms.stabilisation import Stabilisation
+from anisocontact.solver.terms.supports import Supports
 
 
 @dataclass(frozen=True)

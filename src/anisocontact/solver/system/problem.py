@@ -8,28 +8,28 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, Vec
+from anisocontact.base.fenicsx import Mat, Vec
+from anisocontact.base.processes import Together
 from anisocontact.bulk import LinearBulk, Material
 from anisocontact.contact import AnyContact
 from anisocontact.mesh import Model
-from anisocontact.processes import Together
-from anisocontact.solver.accepted import AcceptedState
-from anisocontact.solver.attached import ElasticSupport, Spring
-from anisocontact.solver.balance import Balance, balance
-from anisocontact.solver.configuration import Configuration
-from anisocontact.solver.contact_work import ContactWork
-from anisocontact.solver.flow import pass_through
-from anisocontact.solver.following import Following
-from anisocontact.solver.interior import PENDING, Interior
-from anisocontact.solver.memory import BEGUN, Memory, persistent_points, restore_points
-from anisocontact.solver.outcome import energies, reactions
-from anisocontact.solver.parts import make_parts
-from anisocontact.solver.persistent import Persistent, under
-from anisocontact.solver.reduction import Reduction
-from anisocontact.solver.rotations import Rotations, Turned
-from anisocontact.solver.step_begin import begin_step, contact_must_hold
-from anisocontact.solver.steps import Culprit, LostError, Step
-from anisocontact.solver.tangent import Tangent, led_unknowns
+from anisocontact.solver.stepping.rotations import Rotations, Turned
+from anisocontact.solver.stepping.steps import Culprit, LostError, Step
+from anisocontact.solver.system.accepted import AcceptedState
+from anisocontact.solver.system.balance import Balance, balance
+from anisocontact.solver.system.configuration import Configuration
+from anisocontact.solver.system.contact_work import ContactWork
+from anisocontact.solver.system.following import Following
+from anisocontact.solver.system.interior import PENDING, Interior
+from anisocontact.solver.system.memory import BEGUN, Memory, persistent_points, restore_points
+from anisocontact.solver.system.outcome import energies, reactions
+from anisocontact.solver.system.parts import make_parts
+from anisocontact.solver.system.persistent import Persistent, under
+from anisocontact.solver.system.reduction import Reduction
+from anisocontact.solver.system.step_begin import begin_step, contact_must_hold
+from anisocontact.solver.system.tangent import Tangent, led_unknowns
+from anisocontact.solver.terms.attached import ElasticSupport, Spring
+from anisocontact.solver.terms.flow import pass_through
 
 Floats = npt.NDArray[np.float64]
 

@@ -8,8 +8,8 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Vec
-from anisocontact.solver.persistent import Arrays
+from anisocontact.base.fenicsx import Vec
+from anisocontact.solver.system.persistent import Arrays
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]

@@ -9,10 +9,10 @@ import numpy.typing as npt
 
 from anisocontact.bulk import Material
 from anisocontact.mesh import Model
-from anisocontact.solver.loads import Loads
-from anisocontact.solver.parts import Parts
-from anisocontact.solver.steps import Step
-from anisocontact.solver.supports import Supports
+from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.system.parts import Parts
+from anisocontact.solver.terms.loads import Loads
+from anisocontact.solver.terms.supports import Supports
 
 Floats = npt.NDArray[np.float64]
 

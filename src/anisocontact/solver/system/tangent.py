@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, PETSc
+from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.reachable import NodePairs
-from anisocontact.solver.ahead import Ahead
-from anisocontact.solver.coupled import CoupledTangent
-from anisocontact.solver.parts import Parts
-from anisocontact.solver.persistent import Arrays
-from anisocontact.solver.steps import Step
+from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.system.ahead import Ahead
+from anisocontact.solver.system.coupled import CoupledTangent
+from anisocontact.solver.system.parts import Parts
+from anisocontact.solver.system.persistent import Arrays
 
 
 class Tangent:

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import (
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import (
     Mat,
     PETSc,
     Vec,
@@ -22,13 +23,12 @@ from anisocontact._fenicsx import (
     ufl,
 )
 from anisocontact.contact import AnyContact, warn_of
-from anisocontact.errors import InputError
-from anisocontact.solver.balance import ROUND_OFF
-from anisocontact.solver.coupled import CoupledTangent
-from anisocontact.solver.following import Following
-from anisocontact.solver.loose import Part, loose_motions, parts
-from anisocontact.solver.newton import Newton, OptionValue
-from anisocontact.solver.sides_kept import SidesKept
+from anisocontact.solver.stepping.newton import Newton, OptionValue
+from anisocontact.solver.stepping.sides_kept import SidesKept
+from anisocontact.solver.system.balance import ROUND_OFF
+from anisocontact.solver.system.coupled import CoupledTangent
+from anisocontact.solver.system.following import Following
+from anisocontact.solver.terms.loose import Part, loose_motions, parts
 
 Floats = npt.NDArray[np.float64]
 

@@ -9,16 +9,16 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact import registry
-from anisocontact._fenicsx import Mat, PETSc
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import Mat, PETSc
+from anisocontact.base.registry import Parameter
 from anisocontact.contact import facet_quadrature
 from anisocontact.contact.transfer import Couplings
-from anisocontact.errors import InputError
 from anisocontact.mesh import Model
-from anisocontact.registry import Parameter
-from anisocontact.solver.loads import mean_shares
-from anisocontact.solver.pressure import outward
-from anisocontact.solver.steps import AXES, Step
+from anisocontact.solver.stepping.steps import AXES, Step
+from anisocontact.solver.terms.loads import mean_shares
+from anisocontact.solver.terms.pressure import outward
 
 Floats = npt.NDArray[np.float64]
 

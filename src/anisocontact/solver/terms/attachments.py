@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import Mat
 from anisocontact.contact.transfer import Couplings
-from anisocontact.errors import InputError
 from anisocontact.mesh import Model
-from anisocontact.solver.attached import Anchored, Attached, ElasticSupport, Spring
-from anisocontact.solver.steps import AXES, Step
+from anisocontact.solver.stepping.steps import AXES, Step
+from anisocontact.solver.terms.attached import Anchored, Attached, ElasticSupport, Spring
 
 Floats = npt.NDArray[np.float64]
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact._fenicsx import Mat, PETSc, Vec
+from anisocontact.base.fenicsx import Mat, PETSc, Vec
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

@@ -8,11 +8,11 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact._fenicsx import Mat, Vec
+from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.mesh import Model
-from anisocontact.solver.constraint import Constraint
-from anisocontact.solver.symmetry import SymmetryPlanes
-from anisocontact.solver.ties import tie, tied_nodes
+from anisocontact.solver.terms.constraint import Constraint
+from anisocontact.solver.terms.symmetry import SymmetryPlanes
+from anisocontact.solver.terms.ties import tie, tied_nodes
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

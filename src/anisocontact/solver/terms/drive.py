@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.rigid import COMPONENTS, RigidBody
 from anisocontact.rigid.body import component_number
-from anisocontact.solver.steps import Step
-from anisocontact.solver.turn import Turn
+from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.terms.turn import Turn
 
 Floats = npt.NDArray[np.float64]
 

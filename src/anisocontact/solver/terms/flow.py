@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import PETSc
+from anisocontact.base.fenicsx import PETSc
 from anisocontact.contact import AnyContact, NotHeldError
 from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model

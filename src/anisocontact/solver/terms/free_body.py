@@ -10,8 +10,8 @@ import numpy.typing as npt
 
 from anisocontact.contact import AnyContact
 from anisocontact.contact.transfer import Couplings
-from anisocontact.python_pair import PYTHON_LAWS
-from anisocontact.solver.free_modes import Body
+from anisocontact.interface.python_pair import PYTHON_LAWS
+from anisocontact.solver.terms.free_modes import Body
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

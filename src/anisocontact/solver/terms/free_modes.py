@@ -11,7 +11,7 @@ import numpy.typing as npt
 import scipy.sparse
 from scipy.sparse.csgraph import connected_components
 
-from anisocontact._fenicsx import fem
+from anisocontact.base.fenicsx import fem
 from anisocontact.mesh import Model
 
 Floats = npt.NDArray[np.float64]

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.linalg
 
-from anisocontact.solver.free_modes import FREE, Body
+from anisocontact.solver.terms.free_modes import FREE, Body
 
 Floats = npt.NDArray[np.float64]
 

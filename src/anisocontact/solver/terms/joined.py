@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from anisocontact.contact import AnyContact
 from anisocontact.mesh import Model
-from anisocontact.solver.free_modes import Body, bodies
+from anisocontact.solver.terms.free_modes import Body, bodies
 
 
 def joined(model: Model, contacts: Sequence[AnyContact]) -> list[Body]:

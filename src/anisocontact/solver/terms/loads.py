@@ -7,16 +7,16 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, body_shares
+from anisocontact.base.fenicsx import Mat, body_shares
 from anisocontact.bulk import Material
 from anisocontact.contact import facet_quadrature
 from anisocontact.mesh import Model
-from anisocontact.solver.layout import Layout
-from anisocontact.solver.pressure import Pressures
-from anisocontact.solver.steps import AXES, Step
-from anisocontact.solver.supports import Supports
-from anisocontact.solver.swallowed import Given, check_swallowed
-from anisocontact.solver.symmetry import SymmetryPlanes
+from anisocontact.solver.stepping.steps import AXES, Step
+from anisocontact.solver.system.layout import Layout
+from anisocontact.solver.terms.pressure import Pressures
+from anisocontact.solver.terms.supports import Supports
+from anisocontact.solver.terms.swallowed import Given, check_swallowed
+from anisocontact.solver.terms.symmetry import SymmetryPlanes
 
 Floats = npt.NDArray[np.float64]
 

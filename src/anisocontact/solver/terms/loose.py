@@ -10,8 +10,8 @@ import numpy.typing as npt
 import scipy.sparse
 from scipy.sparse.csgraph import connected_components
 
-from anisocontact._fenicsx import MPI, Mat
-from anisocontact.solver.free_modes import named
+from anisocontact.base.fenicsx import MPI, Mat
+from anisocontact.solver.terms.free_modes import named
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

@@ -7,13 +7,13 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, PETSc, facet_sides, geometry
+from anisocontact.base.fenicsx import Mat, PETSc, facet_sides, geometry
 from anisocontact.bulk import Material
 from anisocontact.contact import FacetQuadrature, facet_quadrature
 from anisocontact.contact.quadrature import Surfaced
 from anisocontact.mesh import Model
-from anisocontact.solver.steps import Step
-from anisocontact.solver.swallowed import Given
+from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.terms.swallowed import Given
 
 Floats = npt.NDArray[np.float64]
 

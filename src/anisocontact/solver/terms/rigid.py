@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
 from anisocontact.contact import AnyContact
 from anisocontact.contact.transfer import Couplings
-from anisocontact.errors import InputError
 from anisocontact.rigid import RigidBody
 from anisocontact.rigid.body import Pose
-from anisocontact.solver.drive import Drive
-from anisocontact.solver.newton import SingularError
-from anisocontact.solver.steps import Step
+from anisocontact.solver.stepping.newton import SingularError
+from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.terms.drive import Drive
 
 Floats = npt.NDArray[np.float64]
 

@@ -17,18 +17,18 @@ from typing import NoReturn
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, PETSc
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact import AnyContact, NotHeldError, facet_size
 from anisocontact.contact.transfer import Couplings
-from anisocontact.errors import InputError
 from anisocontact.mesh import Model
-from anisocontact.solver.attachments import Attachments
-from anisocontact.solver.flow import Flow
-from anisocontact.solver.free_body import FreeBody
-from anisocontact.solver.free_modes import Body, Held, bodies, free_modes, named
-from anisocontact.solver.holding import NOTHING as NO_STIFFNESS
-from anisocontact.solver.holding import stiffness, unheld, work
-from anisocontact.solver.joined import joined
+from anisocontact.solver.terms.attachments import Attachments
+from anisocontact.solver.terms.flow import Flow
+from anisocontact.solver.terms.free_body import FreeBody
+from anisocontact.solver.terms.free_modes import Body, Held, bodies, free_modes, named
+from anisocontact.solver.terms.holding import NOTHING as NO_STIFFNESS
+from anisocontact.solver.terms.holding import stiffness, unheld, work
+from anisocontact.solver.terms.joined import joined
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]

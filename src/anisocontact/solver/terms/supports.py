@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import MPI, fem
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI, fem
 from anisocontact.mesh import Model
-from anisocontact.solver.steps import AXES, Step
-from anisocontact.solver.turn import Turn
+from anisocontact.solver.stepping.steps import AXES, Step
+from anisocontact.solver.terms.turn import Turn
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

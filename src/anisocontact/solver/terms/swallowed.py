@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.errors import InputError
-from anisocontact.solver.layout import Layout
-from anisocontact.solver.steps import Step
+from anisocontact.base.errors import InputError
+from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.system.layout import Layout
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import MPI, Vec, fem
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI, Vec, fem
 from anisocontact.contact import facet_quadrature
-from anisocontact.errors import InputError
 from anisocontact.mesh import Model
-from anisocontact.solver.constraint import Constraint
-from anisocontact.solver.pressure import outward
+from anisocontact.solver.terms.constraint import Constraint
+from anisocontact.solver.terms.pressure import outward
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

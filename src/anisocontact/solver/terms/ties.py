@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Vec, corner_weights
+from anisocontact.base.fenicsx import Vec, corner_weights
 from anisocontact.mesh import Model
-from anisocontact.solver.constraint import Constraint
+from anisocontact.solver.terms.constraint import Constraint
 
 Ints = npt.NDArray[np.int64]
 

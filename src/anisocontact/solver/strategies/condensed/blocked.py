@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact._fenicsx import PETSc, check_memory
-from anisocontact.solver.condensed.factor import Eliminated, aij, singular, solves
+from anisocontact.base.fenicsx import PETSc, check_memory
+from anisocontact.solver.strategies.condensed.factor import Eliminated, aij, singular, solves
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]

@@ -9,15 +9,15 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact._fenicsx import Vec
-from anisocontact.solver.condensed.parts import Condensation, connected
-from anisocontact.solver.condensed.patterns import Probe, State
-from anisocontact.solver.condensed.reach import Reach
-from anisocontact.solver.condensed.system import ContactSystem
-from anisocontact.solver.persistent import Arrays
-from anisocontact.solver.problem import Problem
-from anisocontact.solver.reduction import Kept
-from anisocontact.solver.steps import Step
+from anisocontact.base.fenicsx import Vec
+from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.strategies.condensed.parts import Condensation, connected
+from anisocontact.solver.strategies.condensed.patterns import Probe, State
+from anisocontact.solver.strategies.condensed.reach import Reach
+from anisocontact.solver.strategies.condensed.system import ContactSystem
+from anisocontact.solver.system.persistent import Arrays
+from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.system.reduction import Kept
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]

@@ -9,9 +9,9 @@ from typing import override
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.solver.condensed import mumps, pardiso
-from anisocontact.solver.condensed.blocked import BlockedFactor
-from anisocontact.solver.condensed.factor import Eliminated, Way
+from anisocontact.solver.strategies.condensed import mumps, pardiso
+from anisocontact.solver.strategies.condensed.blocked import BlockedFactor
+from anisocontact.solver.strategies.condensed.factor import Eliminated, Way
 
 Floats = npt.NDArray[np.float64]
 

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact._fenicsx import Mat, PETSc
-from anisocontact.solver.newton import SingularError
+from anisocontact.base.fenicsx import Mat, PETSc
+from anisocontact.solver.stepping.newton import SingularError
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]

@@ -10,8 +10,14 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact._fenicsx import PETSc, call_petsc, check_memory, has_petsc
-from anisocontact.solver.condensed.factor import Eliminated, aij, mirror, singular, solves
+from anisocontact.base.fenicsx import PETSc, call_petsc, check_memory, has_petsc
+from anisocontact.solver.strategies.condensed.factor import (
+    Eliminated,
+    aij,
+    mirror,
+    singular,
+    solves,
+)
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]

@@ -7,11 +7,11 @@ from collections.abc import Callable, Mapping
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import PETSc, Vec
-from anisocontact.solver.condensed.condensed import Condensed
-from anisocontact.solver.condensed.system import ContactSystem
-from anisocontact.solver.newton import Newton, NewtonResult, OptionValue, SingularError
-from anisocontact.solver.persistent import Arrays
+from anisocontact.base.fenicsx import PETSc, Vec
+from anisocontact.solver.stepping.newton import Newton, NewtonResult, OptionValue, SingularError
+from anisocontact.solver.strategies.condensed.condensed import Condensed
+from anisocontact.solver.strategies.condensed.system import ContactSystem
+from anisocontact.solver.system.persistent import Arrays
 
 #: How often an increment may begin anew because a slave point has left the reach.
 _MOST_GROWTHS = 6

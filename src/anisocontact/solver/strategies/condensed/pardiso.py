@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact.solver.condensed.factor import Eliminated, mirror, singular
+from anisocontact.solver.strategies.condensed.factor import Eliminated, mirror, singular
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]

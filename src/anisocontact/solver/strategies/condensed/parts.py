@@ -10,9 +10,9 @@ import numpy.typing as npt
 import scipy.sparse
 from scipy.sparse.csgraph import connected_components
 
-from anisocontact.solver.condensed.dense import blocks_times
-from anisocontact.solver.condensed.eliminate import WholeBorder, chosen
-from anisocontact.solver.condensed.factor import Eliminated
+from anisocontact.solver.strategies.condensed.dense import blocks_times
+from anisocontact.solver.strategies.condensed.eliminate import WholeBorder, chosen
+from anisocontact.solver.strategies.condensed.factor import Eliminated
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]

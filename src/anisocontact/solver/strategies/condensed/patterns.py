@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.solver.condensed.parts import Condensation
-from anisocontact.solver.persistent import Arrays
+from anisocontact.solver.strategies.condensed.parts import Condensation
+from anisocontact.solver.system.persistent import Arrays
 
 Floats = npt.NDArray[np.float64]
 

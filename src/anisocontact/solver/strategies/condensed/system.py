@@ -9,16 +9,16 @@ import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact._fenicsx import Mat, PETSc, Vec
+from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.contact import AnyContact
 from anisocontact.contact.transfer import Couplings
-from anisocontact.solver.balance import LOAD_SHARE, ROUND_OFF
-from anisocontact.solver.condensed.dense import ContactTangent, KeptFactor
-from anisocontact.solver.condensed.parts import Condensation
-from anisocontact.solver.condensed.patterns import Patterns, State
-from anisocontact.solver.following import Following
-from anisocontact.solver.newton import TOLERANCE
-from anisocontact.solver.problem import Problem
+from anisocontact.solver.stepping.newton import TOLERANCE
+from anisocontact.solver.strategies.condensed.dense import ContactTangent, KeptFactor
+from anisocontact.solver.strategies.condensed.parts import Condensation
+from anisocontact.solver.strategies.condensed.patterns import Patterns, State
+from anisocontact.solver.system.balance import LOAD_SHARE, ROUND_OFF
+from anisocontact.solver.system.following import Following
+from anisocontact.solver.system.problem import Problem
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]

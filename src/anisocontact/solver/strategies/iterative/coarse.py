@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from anisocontact._fenicsx import Mat, PETSc, Vec, check_memory
-from anisocontact.solver.iterative.split import Split, sparse
+from anisocontact.base.fenicsx import Mat, PETSc, Vec, check_memory
+from anisocontact.solver.strategies.iterative.split import Split, sparse
 
 #: Diagonal over its largest entry below which a coarse unknown moves nothing.
 IDLE = 1e-13

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, PETSc
-from anisocontact.solver.iterative.split import Split, sparse, weights
-from anisocontact.solver.problem import Problem
+from anisocontact.base.fenicsx import Mat, PETSc
+from anisocontact.solver.strategies.iterative.split import Split, sparse, weights
+from anisocontact.solver.system.problem import Problem
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]

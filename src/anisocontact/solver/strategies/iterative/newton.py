@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
-from anisocontact._fenicsx import SNES, Mat, PETSc, Vec
-from anisocontact.solver.iterative.patch import Patch
-from anisocontact.solver.iterative.twolevel import TwoLevel
-from anisocontact.solver.newton import Newton, NewtonResult, OptionValue
-from anisocontact.solver.problem import Problem
-from anisocontact.solver.steps import Step
+from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
+from anisocontact.solver.stepping.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.strategies.iterative.patch import Patch
+from anisocontact.solver.strategies.iterative.twolevel import TwoLevel
+from anisocontact.solver.system.problem import Problem
 
 DEFAULTS: dict[str, OptionValue] = {
     "ksp_type": "fgmres",

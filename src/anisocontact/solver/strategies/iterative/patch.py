@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import PETSc
-from anisocontact.solver.condensed.reach import Reach
-from anisocontact.solver.problem import Problem
-from anisocontact.solver.steps import Step
+from anisocontact.base.fenicsx import PETSc
+from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.strategies.condensed.reach import Reach
+from anisocontact.solver.system.problem import Problem
 
 Flags = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int64]

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, PETSc, Vec
-from anisocontact.solver.problem import Problem
+from anisocontact.base.fenicsx import Mat, PETSc, Vec
+from anisocontact.solver.system.problem import Problem
 
 Flags = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]

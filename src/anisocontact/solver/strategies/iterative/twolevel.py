@@ -7,12 +7,12 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._fenicsx import Mat, PETSc, Vec
-from anisocontact.solver.iterative.coarse import CoarseLevel
-from anisocontact.solver.iterative.interpolation import interpolation
-from anisocontact.solver.iterative.patch import Patch
-from anisocontact.solver.iterative.split import Split, interior_matrix
-from anisocontact.solver.problem import Problem
+from anisocontact.base.fenicsx import Mat, PETSc, Vec
+from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
+from anisocontact.solver.strategies.iterative.interpolation import interpolation
+from anisocontact.solver.strategies.iterative.patch import Patch
+from anisocontact.solver.strategies.iterative.split import Split, interior_matrix
+from anisocontact.solver.system.problem import Problem
 
 Ints = npt.NDArray[np.int64]
 

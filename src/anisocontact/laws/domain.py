@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.errors import InputError
+from anisocontact.base.errors import InputError
 from anisocontact.surfaces import Floats, points
 
 if TYPE_CHECKING:

@@ -1,0 +1,29 @@
+"""Directions of a surface and the tensors that they carry."""
+
+from anisocontact.anisotropy.fields import (
+    BY_COORDINATES,
+    PLACEMENTS,
+    DirectionField,
+    components,
+    from_callable,
+    from_reparametrisation,
+    make_directions,
+    oblique_principal,
+    require_regular,
+    tensor,
+    tensor_derivative,
+)
+
+__all__ = [
+    "BY_COORDINATES",
+    "PLACEMENTS",
+    "DirectionField",
+    "components",
+    "from_callable",
+    "from_reparametrisation",
+    "make_directions",
+    "oblique_principal",
+    "require_regular",
+    "tensor",
+    "tensor_derivative",
+]

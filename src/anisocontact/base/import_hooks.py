@@ -1,0 +1,75 @@
+"""What `import anisocontact` changes of imports: the wheel's order, and paths of before."""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import sys
+import warnings
+from collections.abc import Sequence
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
+
+__all__ = ["install"]
+
+#: Modules that have moved into a package: their path of before and that of today. An import by the
+#: path of before works for one more version.
+MOVED = {
+    "anisocontact._fenicsx": "anisocontact.base.fenicsx",
+    "anisocontact.adhesion_domain": "anisocontact.laws",
+    "anisocontact.arrays": "anisocontact.base.arrays",
+    "anisocontact.augmentation": "anisocontact.interface",
+    "anisocontact.errors": "anisocontact.base.errors",
+    "anisocontact.facet_blocks": "anisocontact.surfaces.facet_blocks",
+    "anisocontact.facets": "anisocontact.surfaces",
+    "anisocontact.figure_style": "anisocontact.base.figure_style",
+    "anisocontact.geometry": "anisocontact.surfaces.geometry",
+    "anisocontact.kinematics": "anisocontact.surfaces",
+    "anisocontact.limits": "anisocontact.base.limits",
+    "anisocontact.orientation": "anisocontact.surfaces.orientation",
+    "anisocontact.processes": "anisocontact.base.processes",
+    "anisocontact.python_law": "anisocontact.interface",
+    "anisocontact.python_pair": "anisocontact.interface",
+    "anisocontact.registry": "anisocontact.base.registry",
+    "anisocontact.series": "anisocontact.interface.series",
+    "anisocontact.smooth_facets": "anisocontact.surfaces",
+    "anisocontact.strategies": "anisocontact.base.strategies",
+    "anisocontact.whole_files": "anisocontact.base.whole_files",
+}
+
+
+class MovedModules(MetaPathFinder, Loader):
+    """Finds modules by their paths of before; a `DeprecationWarning` names the new one."""
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """The module, if it has moved."""
+        return ModuleSpec(name, self) if name in MOVED else None
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Let the module of before have what that of today has."""
+        new = MOVED[module.__name__]
+        text = f"{module.__name__} has moved: import from {new}"
+        warnings.warn(text, DeprecationWarning, stacklevel=2)
+        of_today = importlib.import_module(new)
+        module.__dict__.update({k: v for k, v in vars(of_today).items() if not k.startswith("__")})
+
+
+class LibrariesOfWheels(MetaPathFinder):
+    """Loads MPI before DOLFINx and PETSc: in the wheels their compiled modules need it loaded."""
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> None:
+        """Nothing is found here, what is asked for is only prepared."""
+        if name in {"dolfinx", "petsc4py"}:
+            with contextlib.suppress(ImportError):
+                importlib.import_module("mpi4py.MPI")
+
+
+def install() -> None:
+    """Put both in front of Python's own ways to find a module, once."""
+    if not any(isinstance(finder, MovedModules) for finder in sys.meta_path):
+        sys.meta_path[:0] = [LibrariesOfWheels(), MovedModules()]

@@ -1,0 +1,39 @@
+"""Normal law, adhesion and friction with their sliding rules, and the adhesion domain."""
+
+from anisocontact.laws.core import (
+    SIDES,
+    Adhesion,
+    Carried,
+    Friction,
+    NormalLaw,
+    Slide,
+    carried,
+    slide,
+)
+from anisocontact.laws.domain import (
+    Ellipse,
+    Strip,
+    adhesion_domain,
+    domain_from_tensors,
+    draw_force_plane,
+    draw_tangent_plane,
+    force_domain,
+)
+
+__all__ = [
+    "SIDES",
+    "Adhesion",
+    "Carried",
+    "Ellipse",
+    "Friction",
+    "NormalLaw",
+    "Slide",
+    "Strip",
+    "adhesion_domain",
+    "carried",
+    "domain_from_tensors",
+    "draw_force_plane",
+    "draw_tangent_plane",
+    "force_domain",
+    "slide",
+]

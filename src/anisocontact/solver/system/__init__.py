@@ -1,0 +1,1 @@
+"""Unknowns, what acts on them assembled, the accepted state."""

@@ -1,0 +1,1 @@
+"""What acts on the bodies: loads, supports, springs, ties, rigid bodies, stabilisation."""
