@@ -8,15 +8,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Any
 
 import numpy as np
-from pydantic import Field
 
 from anisocontact.base.errors import InputError
 from anisocontact.case import objects
-from anisocontact.case.quantity import number
-from anisocontact.case.section import Section, near
+from anisocontact.case.model import ContactSection
+from anisocontact.case.section import near
 from anisocontact.interface.python_law import (
     LawKinematics,
     LawResult,
@@ -29,32 +28,10 @@ from anisocontact.interface.python_pair import PythonPairLaw
 from anisocontact.laws import SIDES
 from anisocontact.surfaces import Surface
 
-if TYPE_CHECKING:
-    from anisocontact.case.model import ContactSection
-
-__all__ = ["PythonSection", "interface", "law_of", "pair_law"]
+__all__ = ["interface", "law_of", "pair_law"]
 
 #: How the history enters a step: a law of one's own sees it turned to where the point is.
 _EVOLUTION = "transport"
-
-
-class PythonSection(Section):
-    """A tangential law of your own, a class in a Python file, in place of adhesion and friction."""
-
-    file: str = Field(
-        description="Python file, from the folder of the case file on; `run` and `check` run it "
-        "with all rights of whoever calls them, `check --no-python` does not"
-    )
-    law: str = Field(description="name of the class in it")
-    arguments: dict[str, Any] = Field(
-        default_factory=dict, description="what the class is made with, by name"
-    )
-    isotropic: Annotated[
-        bool,
-        number("flag", "1", "whether the law is the same in all directions, so that it needs none"),
-    ] = False
-    directions: Any = None
-    directions_on: str = SIDES[0]
 
 
 class _Later:

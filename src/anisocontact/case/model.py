@@ -23,8 +23,8 @@ from anisocontact.base.limits import Limits
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.strategies import AUTO, STRATEGIES
 from anisocontact.case.bodies import Mesh, mesh_type
-from anisocontact.case.law_file import PythonSection
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
+from anisocontact.case.python_section import PythonSection
 from anisocontact.case.quantity import Quantity, line, shown
 from anisocontact.case.quantity import number as _number
 from anisocontact.case.quantity import word as _word

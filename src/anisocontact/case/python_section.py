@@ -1,0 +1,32 @@
+"""The table of a contact that names a law in a Python file."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from anisocontact.case.quantity import number
+from anisocontact.case.section import Section
+from anisocontact.laws import SIDES
+
+__all__ = ["PythonSection"]
+
+
+class PythonSection(Section):
+    """A tangential law of your own, a class in a Python file, in place of adhesion and friction."""
+
+    file: str = Field(
+        description="Python file, from the folder of the case file on; `run` and `check` run it "
+        "with all rights of whoever calls them, `check --no-python` does not"
+    )
+    law: str = Field(description="name of the class in it")
+    arguments: dict[str, Any] = Field(
+        default_factory=dict, description="what the class is made with, by name"
+    )
+    isotropic: Annotated[
+        bool,
+        number("flag", "1", "whether the law is the same in all directions, so that it needs none"),
+    ] = False
+    directions: Any = None
+    directions_on: str = SIDES[0]
