@@ -1,5 +1,6 @@
 """Augmented Lagrangian: multipliers of the slave points that make penalties exact.
 
+They bring the Signorini conditions `g >= 0, N >= 0, N g = 0` and stick without elastic slip.
 A point that carries multipliers answers with the projections of Alart and Curnier (1991),
 
     N = <lambda_N - eps_N g>,    T = return(lambda_T - eps_T dxi, N) ,

@@ -1,4 +1,4 @@
-"""Integration on facets: points, areas and basis of the displacement there."""
+"""Surface-to-surface contact: points on the facets, areas and basis of the displacement there."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A body that folds onto itself: facets of a group against the others of the same group."""
+"""Self-contact, a body that folds onto itself: facets of a group against others of the group."""
 
 from __future__ import annotations
 

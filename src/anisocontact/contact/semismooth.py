@@ -1,5 +1,6 @@
 """Multipliers together with the displacements: semismooth Newton method of Alart and Curnier.
 
+A primal-dual active set: every correction takes points as open, sticking or slipping as they are.
 Unknowns are the displacement u and the traction lambda of every point, equations
 
     K(u) - integral of P(u, lambda) = 0,    lambda - P(u, lambda) = 0,

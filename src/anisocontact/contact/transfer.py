@@ -1,4 +1,4 @@
-"""Forces of slave points on the master, integrated over the overlaps of the facets.
+"""Two half passes: forces of slave points on the master, by the overlaps of the facets.
 
 Where meshes do not match, the shape functions of the master have kinks inside a slave facet and
 the points of the slave do not integrate them. The traction, as a polynomial through its values at

@@ -12,7 +12,7 @@
 
 namespace anisocontact::kernel {
 
-/// Where a point is on the master.
+/// Where a point is on the master: its closest point, convective coordinates and signed gap.
 template <class S>
 struct Kinematics {
   surface::Geometry<S> now;

@@ -1,7 +1,7 @@
 #pragma once
-// The law of an interface in an orthonormal frame t_1, t_2, n of the contact plane, with the slopes
-// of the tangential force by every number that it depends on. Whoever knows how these numbers
-// change with positions has the exact tangent by the chain rule.
+// The law of an interface in the contact frame, orthonormal t_1, t_2, n of the contact plane; the
+// slopes of the tangential force by every number that it depends on. Whoever knows how these
+// numbers change with positions has the exact tangent by the chain rule.
 //
 // The frame is one that does not spin about n (dt_1 . t_2 = 0), so that a tangent vector v has
 // d(v_a) = t_a . dv, and an axis changes by its angle d alpha = (n x e) . de.

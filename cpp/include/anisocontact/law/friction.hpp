@@ -1,5 +1,5 @@
 #pragma once
-// Friction tensors: what the yield ellipse T . F T = N^2 is built from.
+// Friction tensors: what the friction ellipse of the yield function, T . F T = N^2, is built from.
 
 #include <algorithm>
 #include <array>

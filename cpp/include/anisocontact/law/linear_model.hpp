@@ -86,7 +86,7 @@ LinearTensors<S> pull_back(const LinearModel& m, const AxesComponents<S>& axes) 
   return t;
 }
 
-/// Trial force and the stiffness with which slip relieves it.
+/// Trial state: the trial force and the stiffness with which slip relieves it.
 template <class S>
 struct Trial {
   Covector<S> traction;  ///< T_tr

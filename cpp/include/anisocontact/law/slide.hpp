@@ -1,5 +1,6 @@
 #pragma once
-// What a sliding rule is given and what it returns.
+// What a sliding rule, the return mapping of a trial force, is given and what it returns.
+// Karush-Kuhn-Tucker conditions: Phi <= 0, lambda >= 0, lambda Phi = 0, Phi = sqrt(T . F T) - N.
 
 #include <array>
 #include <concepts>
@@ -25,7 +26,7 @@ struct SlideProblem {
 template <class S>
 struct SlideResult {
   Covector<S> traction;  ///< T on the yield ellipse, acts in this step
-  Covector<S> stored;    ///< elastic force the next trial starts from; T but for the explicit rule
+  Covector<S> stored;    ///< elastic traction of the next trial; T but for the explicit rule
   Vector<S> slip;        ///< dxi_sl
   bool converged{true};
   S multiplier{0.0};  ///< lambda of an implicit rule; infinite where the strip cannot yield

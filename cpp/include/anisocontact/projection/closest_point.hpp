@@ -1,5 +1,5 @@
 #pragma once
-// Closest point of a surface.
+// Closest point projection onto a surface.
 
 #include <cmath>
 #include <concepts>

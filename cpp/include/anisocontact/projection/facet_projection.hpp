@@ -1,5 +1,5 @@
 #pragma once
-// Closest point of one facet, inside it, on its sides or at its vertices.
+// Closest point projection onto one facet: inside it, on its sides or at its vertices.
 //
 // The squared distance f(xi) = |rho(xi) - x|^2 is a polynomial. Where its Bernstein coefficients
 // certify that it has a single minimum, Newton's method finds it; elsewhere the facet is halved,

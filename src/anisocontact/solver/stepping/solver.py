@@ -230,7 +230,7 @@ class Solver:
             yield accepted
 
     def _part(self, attempts: Attempts, step: Step, last: Vec) -> Outcome:
-        """Solve the next part, from the state extrapolated to its end."""
+        """Solve the next part from the predictor: the state extrapolated to its end."""
         pace, before = self.place.pace, self.place.before
         dt = step.duration / step.increments
         whole = _whole(pace.increment, pace.end)

@@ -170,8 +170,8 @@ class Accepted:
         done: Share of that increment that is done: below 1 where it was cut into parts.
         time: Time that is reached.
         iterations: Newton iterations, with those of attempts that failed.
-        residuals: Residual over the forces at work, of the start and after each iteration of the
-            attempt that converged.
+        residuals: Residual (out-of-balance force) over the forces at work, of the start and after
+            each iteration of the attempt that converged.
         contacts: Number of "open", "stick" and "slip" points of each contact, by name.
         resultants: Force and moment about the origin on each slave, by name of the contact.
         reactions: Force of each support on the body, by facet group.
@@ -233,7 +233,7 @@ class Culprit:
 
 @dataclass(frozen=True)
 class Cut:
-    """An increment, or a part of one, that failed and is tried again in smaller parts.
+    """A cutback: an increment, or a part of one, that failed and is tried again in smaller parts.
 
     Attributes:
         step: Name of the step.

@@ -114,7 +114,7 @@ class Problem(Following):
 
     @property
     def level(self) -> float:
-        """Fraction of the step at which the loads are."""
+        """Load factor: fraction of the step at which the loads are."""
         return self._level
 
     @property

@@ -1,4 +1,4 @@
-"""All constraints of a problem: ties of middle nodes, then symmetry planes."""
+"""All multi-point constraints of a problem: ties of middle nodes, then symmetry planes."""
 
 from __future__ import annotations
 

@@ -5,7 +5,7 @@
 
 namespace anisocontact::law {
 
-/// Associated rule [Konyukhov Schweizerhof 2006, section 4.1 a)-d)], backward Euler.
+/// Associated slip rule [Konyukhov Schweizerhof 2006, section 4.1 a)-d)], backward Euler.
 class MaximumDissipation : public Normality<MaximumDissipation> {
  public:
   static Descriptor describe() {

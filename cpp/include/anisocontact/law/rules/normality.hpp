@@ -1,5 +1,5 @@
 #pragma once
-// The implicit rules: slip normal to a second ellipse K, backward Euler in time.
+// Return mapping of the implicit rules: slip normal to a second ellipse K, backward Euler in time.
 //   T = (I + lambda S K)^-1 T_tr,   T . F T = N^2,   dxi_sl = -lambda K T,   lambda >= 0.
 
 #include <cmath>

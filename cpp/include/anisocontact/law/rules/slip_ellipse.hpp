@@ -1,5 +1,5 @@
 #pragma once
-// Slip normal to an ellipse of its own, measured apart from the friction ellipse.
+// Non-associated slip rule: normal to an ellipse of its own, measured apart from the friction one.
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-"""Linear bulk condensed on the unknowns that can be touched."""
+"""Static condensation (Schur complement) of linear bulk on the unknowns that can be touched."""
 
 from anisocontact.solver.strategies.condensed.condensed import Condensed
 from anisocontact.solver.strategies.condensed.newton import CondensedNewton

@@ -1,4 +1,4 @@
-"""Two levels: Chebyshev smoothing of the interior, and a factorisation of the coarse level."""
+"""Two-level preconditioner: Chebyshev smoothing of the interior, a factorised coarse level."""
 
 from __future__ import annotations
 
