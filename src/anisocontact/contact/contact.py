@@ -113,6 +113,7 @@ class Contact(ContactRecord):
         self.quadrature = facet_quadrature(model.space, facets, degree)
         self._moved: Surfaced | None = None
         self._base: Base | None = None
+        self._dt = 1.0
         points = self.quadrature.reference
         self._facets, self.facet_size = facets, facet_size(model, slave)
         self._sees_slave = interface.takes_slave()
@@ -146,6 +147,7 @@ class Contact(ContactRecord):
         Returns:
             The response; the committed history is unchanged.
         """
+        self._dt = dt
         way = self.quadrature.at_points(u)
         x = self.quadrature.reference + way
         moved = self.quadrature.moved(u) if self.current_area or self._sees_slave else None
@@ -286,8 +288,7 @@ class Contact(ContactRecord):
         """
         now = self.current
         stiffness = np.linalg.norm(now.response.tangent, axis=(1, 2)) * now.areas
-        if self._semismooth is not None:
-            stiffness /= self._semismooth.ratio
+        stiffness = self._unstiffened(stiffness, now, self._dt)
         distance = np.linalg.norm(now.points, axis=1)
         if self.body is not None:
             distance += np.linalg.norm(self.body.position)

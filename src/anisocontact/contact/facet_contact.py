@@ -224,7 +224,7 @@ class FacetContact(ContactRecord):
         state, slip = semismooth.stiff(step)
         answer = self._answer
         self._ask(self._stiff, state, hit, dt, tangent=True)
-        stiff = self._answer["stiffness"] / semismooth.ratio
+        stiff = self._unstiffened(self._answer["stiffness"], trial, dt)
         kept = {name: self._answer[name] for name in ("tangent", "nodes")}
         self._answer = answer | kept | {"stiffness": stiff}
         vector = semismooth.vector(step)

@@ -382,6 +382,15 @@ class ContactRecord:
         own = None if self._multipliers is None else self._multipliers.follower
         return self._layer or own
 
+    def _unstiffened(self, stiffness: Floats, trial: Snapshot, dt: float) -> Floats:
+        """Stiffness of the points of a trial, from that of the derivative, (n,), force/length."""
+        semismooth = self._semismooth
+        if semismooth is None:
+            return stiffness
+        physical = 0.0 if semismooth.tangential else self._laws.slip_stiffness(dt)
+        sticks = trial.response.status == STATUS.index("stick")
+        return np.asarray(stiffness / semismooth.ratio + physical * trial.areas * sticks)
+
     def _step(self, trial: Snapshot) -> Step:
         """A trial with the frames of the master."""
         return Step(

@@ -139,6 +139,17 @@ def test_stiff_adhesion_with_multipliers_and_two_passes(to_the_end, more):
     assert np.linalg.norm(run.force("drag") - wanted) < 2e-3 * np.linalg.norm(wanted)
 
 
+@pytest.mark.parametrize("bodies", [PAIR, RIGID], ids=["pair", "rigid"])
+def test_what_stiff_adhesion_rounds_is_no_residual(to_the_end, bodies):
+    """Multipliers of the pressure beside an adhesion of 1e9, which is none of their penalties.
+
+    Requirement: no cut, though positions at 1 are rounded to slips that are 1e-7 of the forces: a
+    residual below 1e-8 of them is chance. Source: the precision of the machine times 1e9.
+    """
+    text = case(bodies, f"stiffness = [1e2, 1e9], {DIRECTIONS}", 'method = "augmented"')
+    assert not to_the_end(text.split('[[step]]\nname = "drag"')[0]).cuts
+
+
 def test_failure_names_stiff_adhesion(to_the_end):
     """Where a run stops all the same, here with two iterations, the message names the adhesion."""
     from anisocontact.solver.stepping.steps import StoppedError
