@@ -94,10 +94,14 @@ def parameter_default(parameter: Any) -> str:
 # --- Python ------------------------------------------------------------------------------------
 
 
+#: What users need of the lowest room; the rest of it is for the other rooms alone.
+OF_BASE = {"base.errors", "base.registry"}
+
+
 def public_modules(folder: Path) -> list[str]:
     """Return the names of the modules a user imports from: what is inside a package, it exports."""
-    names = (module.name for module in pkgutil.iter_modules([str(folder)]))
-    return [f"anisocontact.{name}" for name in sorted(names) if not name.startswith("_")]
+    names = {m.name for m in pkgutil.iter_modules([str(folder)]) if not m.name.startswith("_")}
+    return [f"anisocontact.{name}" for name in sorted(names - {"base"} | OF_BASE)]
 
 
 def module_page(name: str) -> str:

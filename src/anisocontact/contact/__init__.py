@@ -10,7 +10,7 @@ from anisocontact.contact.penalty import PENALTY_FACTOR, auto_penalty, facet_siz
 from anisocontact.contact.quadrature import FacetQuadrature, facet_quadrature
 from anisocontact.contact.self_contact import SelfContact
 from anisocontact.contact.two_half_pass import TwoHalfPass
-from anisocontact.interface.augmentation import Augmentation
+from anisocontact.interface import Augmentation as Augmentation
 
 #: Contact of two meshed bodies.
 type MeshedContact = FacetContact | TwoHalfPass
@@ -20,7 +20,6 @@ type AnyContact = Contact | MeshedContact
 __all__ = [
     "PENALTY_FACTOR",
     "AnyContact",
-    "Augmentation",
     "Contact",
     "FacetContact",
     "FacetQuadrature",
