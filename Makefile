@@ -1,7 +1,7 @@
 # `make run` and `make test` need nothing but make, a C++20 compiler and a Python >= 3.12.
 .DEFAULT_GOAL := help
 .NOTPARALLEL:
-.PHONY: help setup run test verify mutants wheel sanitize lint format bench scoreboard docs clean distclean
+.PHONY: help setup run test verify mutants wheel sanitize clang lint format bench scoreboard docs clean distclean
 
 IN_VENV := tools/venv-run
 EXAMPLE := milled_block
@@ -18,17 +18,24 @@ run: setup ## run the main example and say where its pictures are
 	@$(IN_VENV) anisocontact run examples/$(EXAMPLE)/case.toml -o results/$(EXAMPLE) --overwrite
 	@echo "pictures: results/$(EXAMPLE)/report.html   fields for ParaView: results/$(EXAMPLE)/*.pvd"
 
+# Lint and tests at once; what lint has to say comes last. Durations are kept in build.
+define tested
+  mkdir -p build; $(MAKE) --no-print-directory lint >build/lint.log 2>&1 & lint=$$!; tests=; \
+  $(IN_VENV) pytest -n auto --durations=10 --junitxml=build/durations.xml $(1) && tests=good; \
+  wait $$lint || { cat build/lint.log >&2; exit 1; }; [ "$$tests" ]
+endef
+
 lint: setup ## style, types and format of Python and C++
 	@$(IN_VENV) ruff check --quiet .
 	@$(IN_VENV) ruff format --check --quiet . || { echo "error: not formatted: make format" >&2; exit 1; }
 	@$(IN_VENV) mypy
 	@[ -z "$(CPP)" ] || $(IN_VENV) clang-format --dry-run -Werror $(CPP)
 
-test: lint ## lint and all tests but the slow ones
-	@$(IN_VENV) pytest -n auto
+test: setup ## lint and all tests but the slow ones
+	@$(call tested)
 
-verify: lint ## lint and all tests
-	@$(IN_VENV) pytest -n auto -m ""
+verify: setup ## lint and all tests
+	@$(call tested,-m "")
 
 wheel: setup ## sdist and wheel of the last commit, installed and used in clean environments
 	@.venv/bin/python tools/wheel.py
@@ -41,6 +48,13 @@ sanitize: setup ## the programs of tests/cpp under address and undefined-behavio
 	  -DPython_EXECUTABLE="$(CURDIR)/.venv/bin/python" --log-level=WARNING
 	@$(IN_VENV) cmake --build build/sanitize
 	@UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 $(IN_VENV) ctest --test-dir build/sanitize --output-on-failure -E no_allocation
+
+clang: setup ## the core and the programs of tests/cpp by clang++, where that is installed
+	@command -v clang++ >/dev/null 2>&1 || { echo "skipped: no clang++ on this machine"; exit 0; }; \
+	$(IN_VENV) cmake -S . -B build/clang -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DANISOCONTACT_WERROR=ON \
+	  -DANISOCONTACT_CPP_TESTS=ON -DPython_EXECUTABLE="$(CURDIR)/.venv/bin/python" --log-level=WARNING && \
+	$(IN_VENV) cmake --build build/clang && \
+	$(IN_VENV) ctest --test-dir build/clang --output-on-failure
 
 mutants: setup ## change the core in one place at a time; some test has to notice each
 	@$(IN_VENV) python tools/mutants.py

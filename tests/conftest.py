@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -16,6 +17,24 @@ settings.register_profile("repeatable", derandomize=True)
 settings.load_profile("repeatable")
 
 Pair = tuple[float, float]
+
+#: What a test may take that `make test` runs, s.
+LONGEST = 5.0
+
+
+def pytest_terminal_summary(terminalreporter: Any) -> None:
+    """Name the tests that take too long without being marked so; it is no failure."""
+    spent: dict[str, float] = defaultdict(float)
+    for reports in terminalreporter.stats.values():
+        for report in reports:
+            if isinstance(report, pytest.TestReport) and "slow" not in report.keywords:
+                spent[report.nodeid] += report.duration
+    long = sorted((took, name) for name, took in spent.items() if took > LONGEST)
+    if long:
+        title = f"longer than {LONGEST:g} s: make them smaller, or mark them slow"
+        terminalreporter.section(title)
+    for took, name in reversed(long):
+        terminalreporter.line(f"{took:.1f} s {name}")
 
 
 def make_interface(

@@ -9,7 +9,6 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact.cli import main
 from anisocontact.results import Results
 
 CASE = Path(__file__).parents[2] / "examples" / "polar_plate" / "case.toml"
@@ -17,11 +16,9 @@ MU = np.array([0.4, 0.2])  # along the ray and around
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory) -> Results:
+def results(tmp_path_factory, solved) -> Results:
     """The results folder of the example."""
-    folder = tmp_path_factory.mktemp("polar_plate") / "out"
-    assert main(["run", str(CASE), "-o", str(folder)]) == 0
-    return Results(folder)
+    return solved(CASE, tmp_path_factory.mktemp("polar_plate") / "out")
 
 
 def steady_slip(x: np.ndarray) -> np.ndarray:
@@ -32,6 +29,7 @@ def steady_slip(x: np.ndarray) -> np.ndarray:
     return -np.einsum("nij,ni->nj", axes, MU**2 * e) / np.linalg.norm(MU * e, axis=1)[:, None]
 
 
+@pytest.mark.slow
 def test_force_along_the_way(results: Results) -> None:
     """Drag and lateral force in every written state: each point's pressure times its closed form.
 

@@ -75,14 +75,13 @@ def test_the_path_of_the_whole_run(tmp_path: Path) -> None:
     assert results.history["newton_iterations"].mean() <= 7.0
 
 
-def test_the_torque_of_the_held_ring(tmp_path: Path) -> None:
+def test_the_torque_of_the_held_ring(tmp_path: Path, solved) -> None:
     """Held against turning: torque and axial force of slip along z, within 0.1 %.
 
     Over the sum of the pressures, so that each is compared by itself. Demanded is 1 % of their
     ratio.
     """
-    assert main(["run", str(FOLDER / "held.toml"), "-o", str(tmp_path / "out")]) == 0
-    results = Results(tmp_path / "out")
+    results = solved(FOLDER / "held.toml", tmp_path / "out")
     points = results.contact()
     normal = points.point_data["pressure"] @ points.point_data["area"]
     contact = results.summary["contacts"][0]

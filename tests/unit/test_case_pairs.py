@@ -47,6 +47,8 @@ increments = 1
 [step.displacement]
 "base.bottom" = { x = 0, y = 0, z = 0 }
 "block.top" = { x = 0, y = 0, z = -0.01 }
+[output]
+pictures = false
 """
 
 WRONG = [

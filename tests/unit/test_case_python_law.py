@@ -59,6 +59,7 @@ def case(tmp_path: Path, laws: str, *, meshed: bool = False, name: str = "case")
         text = text.replace('master = "plate"', 'master = "base.top"')
         held = '"base.bottom" = { x = 0, y = 0, z = 0 }, "block.top" = { x = 0, y = 0'
         text = text.replace('"block.top" = { x = 0, y = 0', held)
+    text = text.replace("[output]", "[output]\npictures = false")
     path = tmp_path / f"{name}.toml"
     path.write_text(text, encoding="utf-8")
     return path

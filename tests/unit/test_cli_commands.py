@@ -17,17 +17,11 @@ from anisocontact.solver import Progress
 
 
 @pytest.fixture
-def case(tmp_path, case_text):
+def case(tmp_path, unpictured):
     """The small case in a folder of its own."""
     path = tmp_path / "case.toml"
-    path.write_text(case_text)
+    path.write_text(unpictured)
     return path
-
-
-@pytest.fixture
-def no_report(monkeypatch):
-    """The pictures take longer than the run; most tests do not look at them."""
-    monkeypatch.setattr("anisocontact.results.writer.Writer._report", lambda self: None)
 
 
 def test_help_names_every_command_and_the_exit_codes(capsys):
@@ -86,7 +80,7 @@ def test_check_says_what_is_in_a_case(capsys, case):
     assert [entry.name for entry in case.parent.iterdir()] == ["case.toml"]
 
 
-def test_run_in_a_pipe_prints_a_line_for_each_increment(no_report, capsys, case):
+def test_run_in_a_pipe_prints_a_line_for_each_increment(capsys, case):
     out = case.parent / "out"
     assert main(["run", str(case), "-o", str(out)]) == 0
     captured = capsys.readouterr()
@@ -100,7 +94,7 @@ def test_run_in_a_pipe_prints_a_line_for_each_increment(no_report, capsys, case)
     assert lines[-1] == f"done      {out}"
 
 
-def test_results_are_not_overwritten_unasked(no_report, capsys, case):
+def test_results_are_not_overwritten_unasked(capsys, case):
     out = case.parent / "out"
     arguments = ["run", str(case), "-o", str(out)]
     assert main(arguments) == 0
@@ -121,15 +115,15 @@ def test_a_folder_that_is_not_ours_is_never_touched(capsys, case):
     assert [entry.name for entry in case.parent.iterdir()] == ["case.toml"]
 
 
-def test_default_folder(no_report, monkeypatch, capsys, case):
+def test_default_folder(monkeypatch, capsys, case):
     monkeypatch.chdir(case.parent)
     assert main(["run", "case.toml"]) == 0
     assert (case.parent / "results" / case.parent.name / "summary.json").is_file()
 
 
-def test_a_run_that_cannot_go_on_keeps_what_converged(no_report, capsys, case, case_text):
+def test_a_run_that_cannot_go_on_keeps_what_converged(capsys, case, unpictured):
     """Pressing takes four iterations; the whole drag in one increment takes more."""
-    text = case_text.replace("increments = 4", "increments = 1")
+    text = unpictured.replace("increments = 4", "increments = 1")
     case.write_text(text + "[solver]\ncuts = 0\noptions = { snes_max_it = 4 }\n")
     out = case.parent / "out"
     assert main(["run", str(case), "-o", str(out)]) == 3
@@ -143,8 +137,8 @@ def test_a_run_that_cannot_go_on_keeps_what_converged(no_report, capsys, case, c
     assert len(rows) == 1 + summary["steps"] >= 3
 
 
-def test_ctrl_c_ends_after_the_increment_and_keeps_it(case, case_text):
-    case.write_text(case_text.replace("increments = 4", "increments = 4000"))
+def test_ctrl_c_ends_after_the_increment_and_keeps_it(case, unpictured):
+    case.write_text(unpictured.replace("increments = 4", "increments = 4000"))
     out = case.parent / "out"
     command = [sys.executable, "-m", "anisocontact", "run", str(case), "-o", str(out)]
     with subprocess.Popen(
@@ -163,7 +157,7 @@ def test_ctrl_c_ends_after_the_increment_and_keeps_it(case, case_text):
     assert len((out / "history.csv").read_text().splitlines()) == 1 + summary["steps"]
 
 
-def test_a_first_ctrl_c_says_once_what_it_does(no_report, monkeypatch, capsys, case):
+def test_a_first_ctrl_c_says_once_what_it_does(monkeypatch, capsys, case):
     from anisocontact.cli.progress import Lines
 
     def interrupted(_: Lines, progress: Progress) -> None:
@@ -177,9 +171,7 @@ def test_a_first_ctrl_c_says_once_what_it_does(no_report, monkeypatch, capsys, c
     assert [line for line in said if line.startswith("drag")][-1].startswith("drag 1 ")
 
 
-def test_an_internal_error_is_one_line_and_its_details_in_the_log(
-    no_report, monkeypatch, capsys, case
-):
+def test_an_internal_error_is_one_line_and_its_details_in_the_log(monkeypatch, capsys, case):
     from anisocontact.results.writer import Writer
 
     def broken(*_: object) -> None:
@@ -227,29 +219,17 @@ def test_a_terminal_shows_a_bar_and_loses_nothing(case):
     assert [f"drag {i}  " in log for i in (1, 2, 3, 4)] == [True] * 4
 
 
-def test_report_is_made_again_from_the_folder(capsys, case, monkeypatch):
-    """Also after a run that was killed: it needs nothing but the folder."""
+def test_no_pictures_until_they_are_asked_for(capsys, case):
+    """`output.pictures = false`: the run draws nothing; `report` does, from the folder alone."""
     out = case.parent / "out"
-    with monkeypatch.context() as patch:
-        patch.setattr("anisocontact.results.writer.Writer._report", lambda self: None)
-        assert main(["run", str(case), "-o", str(out)]) == 0
+    assert main(["run", str(case), "-o", str(out)]) == 0
     assert not (out / "report.html").exists()
+    assert not (out / "pictures").exists()
     capsys.readouterr()
     assert main(["report", str(out)]) == 0
     assert capsys.readouterr().out == f"report    {out / 'report.html'}\n"
     assert "Small block on a turned plate" in (out / "report.html").read_text()
     assert (out / "pictures" / "pressure.png").is_file()
-
-
-def test_no_pictures_until_they_are_asked_for(capsys, case):
-    """`output.pictures = false`: the run draws nothing, `report` does."""
-    case.write_text(case.read_text().replace("[output]", "[output]\npictures = false"))
-    out = case.parent / "out"
-    assert main(["run", str(case), "-o", str(out)]) == 0
-    assert not (out / "report.html").exists()
-    assert not (out / "pictures").exists()
-    assert main(["report", str(out)]) == 0
-    assert (out / "report.html").is_file()
 
 
 @pytest.mark.parametrize("kind", ["none", "empty", "damaged", "trace"])
@@ -276,7 +256,7 @@ def quick_pictures(monkeypatch):
     monkeypatch.setattr(shape, "_start_vtk", lambda *_: None)
 
 
-def test_report_while_the_run_goes_on(quick_pictures, no_report, capsys, case, monkeypatch):
+def test_report_while_the_run_goes_on(quick_pictures, capsys, case, monkeypatch):
     """From another process at any moment: here before, at and after the first increments.
 
     Nothing of the run changes by it.
@@ -328,7 +308,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_report_of_a_broken_folder_is_one_line(quick_pictures, no_report, capsys, case, name):
+def test_report_of_a_broken_folder_is_one_line(quick_pictures, capsys, case, name):
     """A file that somebody has cut, emptied or written over: no traceback, nothing lost."""
     out = case.parent / "out"
     assert main(["run", str(case), "-o", str(out)]) == 0
@@ -351,7 +331,7 @@ def test_report_of_a_broken_folder_is_one_line(quick_pictures, no_report, capsys
 @pytest.mark.parametrize(
     "missing", ["history.csv", "fields.pvd", "contact.pvd", "contact/0003.vtp"]
 )
-def test_report_of_what_is_left(quick_pictures, no_report, capsys, case, missing):
+def test_report_of_what_is_left(quick_pictures, capsys, case, missing):
     """Files that are gone: the report says what could not be drawn, and is made all the same."""
     out = case.parent / "out"
     assert main(["run", str(case), "-o", str(out)]) == 0

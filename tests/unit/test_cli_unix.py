@@ -36,10 +36,10 @@ SHOWN = STEP.replace("\x1b", "\\x1b").replace("\x07", "\\x07").replace("\u202e",
 
 
 @pytest.fixture
-def case(tmp_path: Path, case_text: str) -> Path:
+def case(tmp_path: Path, unpictured: str) -> Path:
     """The small case in a folder of its own, without pictures."""
     path = tmp_path / "case.toml"
-    path.write_text(case_text.replace("[output]", "[output]\npictures = false"))
+    path.write_text(unpictured)
     return path
 
 

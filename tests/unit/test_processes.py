@@ -50,11 +50,11 @@ sys.exit(main(sys.argv[1:]))
 
 
 @pytest.fixture
-def case(tmp_path: Path, case_text: str) -> Path:
+def case(tmp_path: Path, unpictured: str) -> Path:
     if shutil.which("mpirun") is None:
         pytest.skip("no mpirun")
     path = tmp_path / "case.toml"
-    path.write_text(case_text)
+    path.write_text(unpictured)
     return path
 
 
@@ -93,6 +93,7 @@ def test_an_error_on_some_ranks_ends_all(case: Path, where: str) -> None:
 
 
 @pytest.mark.mpi
+@pytest.mark.slow
 def test_a_law_in_python_that_fails_on_one_rank(case: Path) -> None:
     """The run stops with the file and line of the law, on both processes, and says it once."""
     (case.parent / "own.py").write_text(
