@@ -100,7 +100,7 @@ struct Array {
       Pool::Block block;
       std::shared_ptr<Pool> pool;
     };
-    auto loan = std::make_unique<Loan>(pool->take(count(shape)), pool);
+    std::unique_ptr<Loan> loan(new Loan{pool->take(count(shape)), pool});
     data = loan->block.data.get();
     nb::capsule owner(loan.release(), [](void* p) noexcept {
       const std::unique_ptr<Loan> back(static_cast<Loan*>(p));

@@ -10,7 +10,7 @@ import pytest
 
 import anisocontact
 
-pytest.importorskip("anisocontact._fenicsx", exc_type=ImportError)
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 #: What others bring is loaded once, then each module in a child that has none of ours. Those that a
 #: room loads itself come with the room, whoever names them; the others are tried from there.
@@ -19,7 +19,7 @@ import importlib, os, sys
 
 for name in sys.argv[1:]:
     importlib.import_module(name)
-kept = ("anisocontact", "anisocontact._core", "anisocontact._fenicsx")
+kept = ("anisocontact", "anisocontact._core", "anisocontact.base.fenicsx")
 for name in [name for name in sys.modules if name.split(".")[0] == "anisocontact"]:
     if name not in kept:
         del sys.modules[name]
