@@ -68,6 +68,7 @@ class Layer:
         self._normal, self._master, self._comm = normal, master, comm
         self._force: Floats = np.zeros((0, 3))
         self._way = _Way(np.zeros((0, 2, 3)), np.zeros((0, 3, 3)))
+        self._spin: Floats = np.zeros(0)
         self.share = 1.0
         self.ratio = 1.0 if normal is None else normal.ratio
 
@@ -87,7 +88,7 @@ class Layer:
         begun = start.copy()
         frames = Frames.of(self._master(start)[1])
         if not len(self._force):
-            self._force = np.zeros((len(start), 3))
+            self._force, self._spin = np.zeros((len(start), 3)), np.zeros(len(start))
             self._way = _Way(axes, np.zeros((len(start), 3, 3)))
         self._shift(begun, self._histories[0], self._way.under(self._force), frames)
         return begun
@@ -129,10 +130,12 @@ class Layer:
             self._normal.share = self.share
             state, slip = self._normal.stiff(step)
         self._way = _Way.of(step, self._compliance)
+        self._spin = step.answer.state["spin"]
         found, rest = self._found(step), 1.0 / RATIO
         way = self._way.under(self._force - (1.0 - rest) * found)
         self._shift(state, self._histories[1], way, step.now)
-        return state, slip + (1.0 - rest) * self._way.under(self._force - found)
+        more = (1.0 - rest) * self._way.under(self._force - found)
+        return state, slip + step.now.chord(more, self._spin)
 
     def advance(self, start: State, traction: Floats, now: Frames, before: Frames) -> State:
         """State with other multipliers, see `Semismooth.advance`."""
@@ -162,13 +165,14 @@ class Layer:
             state: The state, changed.
             history: What it starts from.
             way: How much farther, (n, 3), length. It is elastic slip times the ratio of the
-                stiffnesses, so that its square is felt.
+                stiffnesses, so that its square is felt, and that a slave which turns spans it on
+                an arc.
             now: Frames where the points are.
         """
         state["xi"] = self._own["xi"]
         before, tangents = self._master(state)
         force = self._start(history, Frames.of(tangents), now)
-        there = before
+        there, way = before, now.chord(way, self._spin)
         for _ in range(_CORRECTIONS):
             along = np.einsum("nid,nd->ni", now.tangents, way - (there - before))[..., None]
             both = np.einsum("nid,njd->nij", now.tangents, tangents)

@@ -150,6 +150,28 @@ def test_what_stiff_adhesion_rounds_is_no_residual(to_the_end, bodies):
     assert not to_the_end(text.split('[[step]]\nname = "drag"')[0]).cuts
 
 
+@pytest.mark.parametrize("bodies", [PAIR, RIGID], ids=["pair", "rigid"])
+@pytest.mark.parametrize("more", ["", 'method = "augmented"'])
+def test_points_that_stick_turn_with_the_layer_behind_them(to_the_end, bodies, more):
+    """Facets under points that stick by 1e9 since the last increment turn a little in this one.
+
+    Requirement: the layer gives way along the arc that a slave which turns spans, so that the
+    iteration converges at the pace of Newton's method: no cut, and with multipliers, whose points
+    sit in the middles of facets, few corrections. Source: the point that sticks moves by force over
+    stiffness, 1e-10, along the layer by 1e-3; a turn of 1e-3 makes 1e-6 of that.
+    """
+    text = case(
+        bodies,
+        'stiffness = [1e2, 1e9], directions = { kind = "constant", vector = [1, 0, 0] }',
+        more,
+    )
+    text = text.replace("increments = 1", "increments = 2").replace("z = -0.025", "z = -0.05")
+    run = to_the_end(text.split('[[step]]\nname = "drag"')[0])
+    assert not run.cuts
+    if more:
+        assert run.accepted[-1].iterations <= 25
+
+
 def test_failure_names_stiff_adhesion(to_the_end):
     """Where a run stops all the same, here with two iterations, the message names the adhesion."""
     from anisocontact.solver.stepping.steps import StoppedError
