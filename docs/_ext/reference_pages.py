@@ -75,6 +75,24 @@ def registry_page(rooms: Mapping[str, Iterable[Any]]) -> str:
     return "\n".join(parts)
 
 
+def quantities_page(rows: Iterable[Any], files: Mapping[str, str]) -> str:
+    """Return the page of all that a run writes of bodies and contacts."""
+    parts = [
+        "# Output quantities\n",
+        "What a [results folder](../results-folder.md) has, one table for each sort of file. "
+        "`quantities` of `[output]` chooses among the arrays for ParaView; `*` marks the ones that "
+        "are always there, for pictures are made of them. [](../../dev/how-to-add.md) adds one.\n",
+    ]
+    known = list(rows)
+    for at, file in files.items():
+        body = table(
+            ("quantity", "unit", "meaning"),
+            ((f"`{q.name}`{' *' * q.always}", q.unit, q.doc) for q in known if q.at == at),
+        )
+        parts.append(f"## Of a {at}: {file}\n\n{body}\n")
+    return "\n".join(parts)
+
+
 def parameter_form(parameter: Any) -> str:
     """Return the form and bound of a parameter."""
     if parameter.choices:
@@ -128,6 +146,7 @@ def write_pages(app: Sphinx) -> None:
     from anisocontact.case import json_schema
     from anisocontact.case.trace import trace_schema
     from anisocontact.cli import build_parser
+    from anisocontact.results.quantities import FILES, quantities
 
     rooms = {
         "Surfaces": registry.surfaces(),
@@ -142,6 +161,7 @@ def write_pages(app: Sphinx) -> None:
         "trace-file": CaseReference(trace_schema(), TRACE_INTRODUCTION, "trace-").page(),
         "command": command_page(build_parser()),
         "laws": registry_page(rooms),
+        "quantities": quantities_page(quantities(), FILES),
     }
     source = Path(app.srcdir).parent / "src" / "anisocontact"
     for name in public_modules(source):

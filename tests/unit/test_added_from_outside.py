@@ -180,3 +180,52 @@ def test_its_groups_are_checked_as_all_are(tmp_path):
     done = run(tmp_path, "A format of meshes", READ)
     text = "facet group 'lower': 1 of 1 facets belong to no cell of a body"
     assert text in done.stderr
+
+
+WRITE = """
+import sys
+
+from anisocontact.cli import main
+from anisocontact.cli.info import facts
+
+assert main(["run", "case.toml", "-o", "out"]) == 0
+names = [entry["name"] for entry in facts()["registries"]["output quantities"]]
+assert {"mobilised", "normal_force"} <= set(names)
+sys.path.insert(0, PAGES)
+from reference_pages import quantities_page
+from anisocontact.results.quantities import FILES, quantities
+assert "| `mobilised` | 1 | tangential traction over" in quantities_page(quantities(), FILES)
+"""
+
+
+def test_quantities_of_the_page_are_written(tmp_path):
+    """Requirement: a function and a decorator make array or number, page and name in `[output]`.
+
+    Source: what else is in the files. Arrays that are not chosen are not there, but for those that
+    pictures are made of. Tolerance: rounding.
+    """
+    case = (ROOT / "tests/unit/small_block.toml").read_text()
+    chosen = '[output]\npictures = false\nquantities = ["mobilised", "stress"]\n'
+    (tmp_path / "case.toml").write_text(case.replace("[output]\n", chosen))
+    pytest.importorskip("sphinx")
+    pages = f"PAGES = {str(ROOT / 'docs' / '_ext')!r}\n"
+    done = run(tmp_path, "An output quantity", pages + WRITE)
+    assert done.returncode == 0, done.stderr
+    results = Results(tmp_path / "out")
+    points, fields = results.contact().point_data, results.fields().point_data
+    size = np.linalg.norm(points["traction_principal"], axis=1)
+    np.testing.assert_allclose(points["mobilised"] * points["pressure"], size, atol=1e-12)
+    assert 0.0 < points["mobilised"].max() < 1.0
+    assert ("gap" in points, "von_mises" in fields, "stress" in fields) == (False, False, True)
+    normal = points["pressure"] @ points["area"]
+    assert results.history["contacts.0.normal_force"][-1] == pytest.approx(normal, rel=1e-12)
+
+
+def test_quantities_that_there_are_not_are_refused(tmp_path):
+    case = (ROOT / "tests/unit/small_block.toml").read_text()
+    (tmp_path / "case.toml").write_text(
+        case.replace("[output]\n", '[output]\nquantities = ["mobilized"]\n')
+    )
+    check = 'from anisocontact.cli import main\nmain(["check", "case.toml"])'
+    done = run(tmp_path, "An output quantity", check)
+    assert "output.quantities[0]: 'mobilized' given; did you mean \"mobilised\"?" in done.stderr

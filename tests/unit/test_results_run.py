@@ -17,7 +17,8 @@ from anisocontact.base.errors import InputError
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.results import Results
-from anisocontact.results.paraview import Bodies, von_mises
+from anisocontact.results.paraview import Bodies
+from anisocontact.results.quantities import von_mises
 from anisocontact.results.report import maps, shape, write_report
 from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import RunData

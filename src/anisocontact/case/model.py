@@ -11,9 +11,11 @@ from functools import cache
 from typing import Annotated, Any
 
 from pydantic import (
+    AfterValidator,
     Field,
     ValidationError,
     ValidatorFunctionWrapHandler,
+    WithJsonSchema,
     WrapValidator,
     create_model,
 )
@@ -30,11 +32,12 @@ from anisocontact.case.quantity import number as _number
 from anisocontact.case.quantity import word as _word
 from anisocontact.case.registered import Key, OneOf, Registered, default_of
 from anisocontact.case.rigid import Load, Motion, Rigid
-from anisocontact.case.section import Section
+from anisocontact.case.section import Section, near
 from anisocontact.interface import Interface
 from anisocontact.interface.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.interface.augmentation import NEWTON, SCHEMES, UZAWA, Augmentation
 from anisocontact.laws import SIDES, Adhesion, Friction, NormalLaw
+from anisocontact.results.quantities import CONTACT, FILES, RIGID, quantities
 
 __all__ = [
     "Case",
@@ -91,6 +94,11 @@ class Output(Section):
             )
         ),
     ] = True
+    quantities: list[str] = Field(
+        default_factory=list,
+        description="arrays of the files for ParaView, all if left out; those that pictures are "
+        "made of are always there",
+    )
 
 
 def _option(given: object, inner: ValidatorFunctionWrapHandler) -> Any:
@@ -275,12 +283,25 @@ class Registries:
     evolution_forms: tuple[Entry, ...]
     materials: tuple[Entry, ...]
     shapes: tuple[Entry, ...] = ()
+    output_quantities: tuple[Entry, ...] = ()
 
     @classmethod
     def current(cls) -> Registries:
         """What is registered now."""
         materials, shapes = _of_bodies()
-        return replace(cls.of_points(), materials=materials, shapes=shapes)
+        written = tuple(
+            Entry(q.name, q.at, f"{q.doc} [{q.unit}]; at a {q.at}, {FILES[q.at]}", ())
+            for q in quantities()
+        )
+        return replace(
+            cls.of_points(), materials=materials, shapes=shapes, output_quantities=written
+        )
+
+    @property
+    def arrays(self) -> list[str]:
+        """Names of the quantities of the files for ParaView."""
+        numbers = (CONTACT, RIGID)
+        return list(dict.fromkeys(q.name for q in self.output_quantities if q.kind not in numbers))
 
     @classmethod
     def of_points(cls) -> Registries:
@@ -339,6 +360,22 @@ def case_type(known: Registries) -> type[Case]:
             list[contact],  # type: ignore[valid-type]
             Field(default_factory=list, description="pairs in contact"),
         ),
+        output=(_output(known.arrays), Output()),
+    )
+
+
+def _output(names: list[str]) -> type[Output]:
+    """The table `[output]`, whose quantities are those of the table of quantities."""
+
+    def check(given: str) -> str:
+        if given not in names:
+            raise line(f"{shown(given)} given; {near(given, names)}")
+        return given
+
+    name = Annotated[str, AfterValidator(check), WithJsonSchema({"enum": names})]
+    of_base = Output.model_fields["quantities"]
+    return create_model(
+        "Output", __base__=Output, __doc__=Output.__doc__, quantities=(list[name], of_base)
     )
 
 

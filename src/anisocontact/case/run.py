@@ -163,6 +163,7 @@ def _writer(built: Built, folder: str | Path, text: str, checkpoint: Stored | No
         masters=[contact.master for contact in case.contact],
         title=case.title or built.file.name,
         every=case.output.every,
+        quantities=case.output.quantities,
         pictures=case.output.pictures,
         case=text,
         resumed=checkpoint.facts["writer"] if checkpoint else None,

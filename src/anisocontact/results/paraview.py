@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from anisocontact.base.fenicsx import compiled_expression, dolfinx, fem, scalar_
 from anisocontact.bulk import cauchy_stress
 from anisocontact.contact import AnyContact
 from anisocontact.results.dataset import DataSet, vertices
+from anisocontact.results.quantities import CELL, NODE, POINT, SlavePoints, arrays
 from anisocontact.solver import Problem
 
 __all__ = ["Bodies", "slave_points"]
@@ -27,10 +29,11 @@ class Bodies:
 
     Args:
         problem: The problem.
+        chosen: Quantities to write; all if not given.
     """
 
-    def __init__(self, problem: Problem) -> None:
-        self._problem = problem
+    def __init__(self, problem: Problem, chosen: Collection[str] = ()) -> None:
+        self.problem, self._chosen = problem, chosen
         model = problem.model
         discontinuous = fem.functionspace(
             model.mesh, ("Discontinuous Lagrange", model.order, (len(_SYMMETRIC),))
@@ -57,15 +60,17 @@ class Bodies:
             "offsets": ends,
             "types": kinds.astype(np.uint8),
         }
-        self._numbers = self._body_numbers(len(kinds))
+        self.numbers = self._body_numbers(len(kinds))
 
     def grid(self) -> DataSet:
-        """The accepted state of the cells of this rank.
+        """The accepted state of the cells of this rank."""
+        now = [_BodiesNow(self)]
+        cells = {"Cells": self._cells}
+        at_nodes, at_cells = (arrays(at, now, self._chosen) for at in (NODE, CELL))
+        return DataSet("UnstructuredGrid", self._points, cells, at_nodes, at_cells)
 
-        Point data: `displacement` (3) [length], `stress` (6: XX YY ZZ XY YZ XZ, mean of the cells
-        at a node) and `von_mises` [stress]. Cell data: `body`, its number.
-        """
-        u = self._problem.u.x.array.reshape(-1, 3)
+    def stress(self) -> Floats:
+        """Stress of the accepted state at the nodes, XX YY ZZ XY YZ XZ, (nodes, 6); collective."""
         for expression, cells in self._expressions:
             self._stress.interpolate(expression, cells0=cells)
         values = self._stress.x.array.reshape(-1, len(_SYMMETRIC))
@@ -74,20 +79,13 @@ class Bodies:
             components = np.stack([at_points[..., i, j] for i, j in _SYMMETRIC], axis=-1)
             values[self._stress.function_space.dofmap.list[cells]] = spread @ components
         stress = self._summed(np.asarray(self._stress.x.array, dtype=np.float64)) * self._share
-        components = stress.reshape(-1, len(_SYMMETRIC))
-        at_nodes = {
-            "displacement": u.copy(),
-            "stress": components,
-            "von_mises": von_mises(components),
-        }
-        at_cells = {"body": self._numbers}
-        return DataSet("UnstructuredGrid", self._points, {"Cells": self._cells}, at_nodes, at_cells)
+        return stress.reshape(-1, len(_SYMMETRIC))
 
     def _summed(self, at_cells: Floats) -> Floats:
         """Sum over the cells at each node of values at the nodes of each cell."""
         rows = self._stress.function_space.dofmap.list
         nodes = self._mean.function_space.dofmap.list
-        owned = self._problem.model.mesh.topology.index_map(3).size_local
+        owned = self.problem.model.mesh.topology.index_map(3).size_local
         width = len(_SYMMETRIC)
         self._mean.x.array[:] = 0.0
         target = self._mean.x.array.reshape(-1, width)
@@ -98,65 +96,49 @@ class Bodies:
 
     def _body_numbers(self, count: int) -> npt.NDArray[np.int32]:
         numbers = np.zeros(count, dtype=np.int32)
-        for i, body in enumerate(self._problem.model.body_names()):
-            cells = self._problem.model.cells(body)
+        for i, body in enumerate(self.problem.model.body_names()):
+            cells = self.problem.model.cells(body)
             numbers[cells[cells < count]] = i
         return numbers
 
 
-def von_mises(stress: Floats) -> Floats:
-    """Equivalent stress of (n, 6) components XX YY ZZ XY YZ XZ, (n,)."""
-    xx, yy, zz, xy, yz, xz = stress.T
-    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
-    return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
+class _BodiesNow:
+    """The accepted state of all bodies, as quantities are made of it.
+
+    Args:
+        bodies: The bodies.
+    """
+
+    def __init__(self, bodies: Bodies) -> None:
+        self._bodies, self.problem = bodies, bodies.problem
+
+    @property
+    def displacement(self) -> Floats:
+        """At the nodes, (nodes, 3), length."""
+        return np.array(self.problem.u.x.array.reshape(-1, 3))
+
+    @cached_property
+    def stress(self) -> Floats:
+        return self._bodies.stress()
+
+    @property
+    def numbers(self) -> npt.NDArray[np.int32]:
+        """Number of the body of each cell, (cells,)."""
+        return self._bodies.numbers
 
 
-def slave_points(contacts: Iterable[AnyContact]) -> DataSet | None:
+def slave_points(contacts: Iterable[AnyContact], chosen: Collection[str] = ()) -> DataSet | None:
     """The slave points of this rank of all contacts where they are now; None without a contact.
 
     Args:
         contacts: The contacts.
-
-    Returns:
-        Points with `contact` (its number), `pass` (1 on the master of two half passes, else 0),
-        `area` [length^2], `gap` [length], `pressure`,
-        `traction` and its tangential part `traction_t` [stress], `traction_principal` along the
-        friction axes,
-        `elastic_slip` and `slip_accumulated` [length], `status` (0 open, 1 stick, 2 slip),
-        `dissipation` [stress length], `normal` of the master, and both axes of adhesion and
-        friction, `direction_adhesion_1` and so on.
+        chosen: Quantities to write; all if not given.
     """
-    parts = [_point_data(i, contact) for i, contact in enumerate(contacts)]
+    parts = [SlavePoints(number, contact) for number, contact in enumerate(contacts)]
     if not parts:
         return None
-    joined = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-    points = joined.pop("points")
-    return DataSet("PolyData", points, vertices(len(points)), joined)
-
-
-def _point_data(number: int, contact: AnyContact) -> dict[str, npt.NDArray[Any]]:
-    last, state = contact.last, contact.state
-    counts = [len(part.areas) for part in contact.parts]
-    return {
-        "points": contact.points,
-        "contact": np.full(len(contact.areas), number, dtype=np.int32),
-        "pass": np.repeat(np.arange(len(counts), dtype=np.int32), counts),
-        "area": contact.areas,
-        "gap": last.gap,
-        "pressure": last.pressure,
-        "traction": last.traction,
-        "traction_t": last.traction_t,
-        "traction_principal": last.traction_principal,
-        "elastic_slip": contact.elastic_slip(),
-        "slip_accumulated": state["slip_accumulated"],
-        "status": last.status.astype(np.int32),
-        "dissipation": state["dissipation"],
-        "normal": last.normal,
-        "direction_adhesion_1": last.directions_adhesion[:, 0],
-        "direction_adhesion_2": last.directions_adhesion[:, 1],
-        "direction_friction_1": last.directions_friction[:, 0],
-        "direction_friction_2": last.directions_friction[:, 1],
-    }
+    points = np.concatenate([part.contact.points for part in parts])
+    return DataSet("PolyData", points, vertices(len(points)), arrays(POINT, parts, chosen))
 
 
 def _stress_at(problem: Problem, body: str, space: Any) -> Any:

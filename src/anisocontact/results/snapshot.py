@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,7 +14,8 @@ from anisocontact.contact import AnyContact
 from anisocontact.interface import STATUS
 from anisocontact.interface.python_pair import PYTHON_LAWS
 from anisocontact.results.approach import approach
-from anisocontact.rigid import RigidBody, rotation_vector
+from anisocontact.results.quantities import CONTACT, RIGID, SlavePoints, numbers
+from anisocontact.rigid import Pose, RigidBody, rotation_vector
 from anisocontact.solver import Accepted, Problem, Step
 from anisocontact.solver.terms.loads import mean_shares
 
@@ -31,7 +34,6 @@ class Observer:
 
     def __init__(self, problem: Problem, steps: Iterable[Step]) -> None:
         self._problem = problem
-        self._comm = problem.model.mesh.comm
         model = problem.model
         steps = list(steps)
         self._supports = named_groups([problem.holding, *(step.led() for step in steps)])
@@ -56,13 +58,17 @@ class Observer:
             g: self._problem.mean_displacement(g, shares).tolist()
             for g, shares in self._watched.items()
         }
-        rigid = {body.name: self._rigid(body) for body in self._problem.rigid.bodies}
-        contacts = self._problem.contacts
-        approaches = [approach(contact, displacements, rigid) for contact in contacts]
+        bodies = self._problem.rigid
+        rigid = {
+            body.name: numbers(
+                RIGID, _RigidNow(body, bodies.contact_force(body), bodies.support(body))
+            )
+            for body in bodies.bodies
+        }
         return {
             "contacts": [
-                self._contact(contact) | {"approach": come}
-                for contact, come in zip(contacts, approaches, strict=True)
+                numbers(CONTACT, _ContactNow(number, contact, displacements, rigid))
+                for number, contact in enumerate(self._problem.contacts)
             ],
             "reactions": {g: reactions.get(g, zero).tolist() for g in self._supports},
             "displacements": displacements,
@@ -70,50 +76,68 @@ class Observer:
             "energy": accepted.energies if accepted else self._problem.energies(),
         }
 
-    def _rigid(self, body: RigidBody) -> dict[str, Any]:
-        """Where a rigid body is and what acts on it; moments about its reference point of now."""
-        rigid, now = self._problem.rigid, body.accepted
-        force, support = rigid.contact_force(body), rigid.support(body)
-        return {
-            "position": (body.reference + now.translation).tolist(),
-            "translation": now.translation.tolist(),
-            "rotation": rotation_vector(now.rotation).tolist(),
-            "turn": now.turn.tolist(),
-            "force": force[:3].tolist(),
-            "moment": force[3:].tolist(),
-            "support_force": support[:3].tolist(),
-            "support_moment": support[3:].tolist(),
-        }
 
-    def _contact(self, contact: AnyContact) -> dict[str, Any]:
-        """Resultant, extremes and counts; the means are over the area that touches."""
-        force, moment = contact.resultant()
-        last = contact.last
-        touching = contact.areas * (last.status != STATUS.index("open"))
-        slips = np.column_stack([contact.elastic_slip(), contact.state["slip_accumulated"]])
-        total = self._comm.allreduce(np.append(touching @ slips, touching.sum()))
+@dataclass(frozen=True)
+class _RigidNow:
+    """A rigid body in the accepted state.
+
+    Args:
+        body: The body.
+        force: Force and moment of the contacts about its reference point of now, (6,).
+        support: What holds its prescribed components, (6,).
+    """
+
+    body: RigidBody
+    force: Floats
+    support: Floats
+
+    @property
+    def pose(self) -> Pose:
+        return self.body.accepted
+
+    @property
+    def rotation(self) -> Floats:
+        return rotation_vector(self.pose.rotation)
+
+
+@dataclass(frozen=True)
+class _ContactNow(SlavePoints):
+    """A contact in the accepted state, all processes together.
+
+    Args:
+        displacements: Mean displacement of the facet groups that are led or loaded, by name.
+        rigid: What the summary has of rigid bodies, by name.
+    """
+
+    displacements: Mapping[str, Any]
+    rigid: Mapping[str, Any]
+
+    @cached_property
+    def resultant(self) -> tuple[Floats, Floats]:
+        force, moment = self.contact.resultant()
+        return force, moment
+
+    @cached_property
+    def means(self) -> tuple[float, Floats, float]:
+        """Area that touches; means over it of elastic slip and accumulated slip."""
+        touching = self.contact.areas * (self.last.status != STATUS.index("open"))
+        slips = np.column_stack([self.contact.elastic_slip(), self.state["slip_accumulated"]])
+        comm = self.contact.space.mesh.comm
+        total = comm.allreduce(np.append(touching @ slips, touching.sum()))
         area = float(total[4])
         mean = total[:4] / area if area > 0.0 else np.zeros(4)
-        return {
-            "force": force.tolist(),
-            "moment": moment.tolist(),
-            "max_pressure": contact.extreme(last.pressure),
-            "max_penetration": contact.extreme(-last.gap),
-            "max_elastic_slip": contact.extreme(np.linalg.norm(slips[:, :3], axis=1)),
-            "max_turn": contact.extreme(contact.state["turn"]),
-            "area": area,
-            "elastic_slip": mean[:3].tolist(),
-            "slip": float(mean[3]),
-            "least_gap": self._least_gap(contact),
-            "points": contact.counts(),
-        }
+        return area, mean[:3], float(mean[3])
 
-    def _least_gap(self, contact: AnyContact) -> float:
+    def least_gap(self) -> float:
         """Smallest gap, negative where points overlap; 0 where no point has a surface below it."""
-        located = [part.located(part.state) for part in contact.parts]
-        gaps = [p.state["gap"][on] for p, on in zip(contact.parts, located, strict=True)]
-        least = min(self._comm.allgather(float(np.concatenate(gaps).min(initial=np.inf))))
+        parts = self.contact.parts
+        gaps = [part.state["gap"][part.located(part.state)] for part in parts]
+        comm = self.contact.space.mesh.comm
+        least = min(comm.allgather(float(np.concatenate(gaps).min(initial=np.inf))))
         return float(least) if np.isfinite(least) else 0.0
+
+    def approach(self) -> float:
+        return approach(self.contact, self.displacements, self.rigid)
 
 
 def named_groups(loads: Iterable[Iterable[str]]) -> list[str]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from anisocontact.anisotropy import DirectionField
 from anisocontact.contact import AnyContact
 from anisocontact.interface.python_law import PythonInterface
 from anisocontact.results.dataset import DataSet, polygons
+from anisocontact.results.quantities import PATCH, arrays
 
 __all__ = ["Surfaces"]
 
@@ -32,9 +34,13 @@ class Surfaces:
     Args:
         contacts: All contacts; those with a meshed master have no patch.
         comm: Communicator of the mesh.
+        chosen: Quantities to write; all if not given.
     """
 
-    def __init__(self, contacts: Iterable[AnyContact], comm: Any) -> None:
+    def __init__(
+        self, contacts: Iterable[AnyContact], comm: Any, chosen: Collection[str] = ()
+    ) -> None:
+        self._chosen = chosen
         self._first = comm.rank == 0
         self._patches = [
             (number, contact, _patch(contact, comm))
@@ -43,35 +49,43 @@ class Surfaces:
         ]
 
     def mesh(self) -> DataSet | None:
-        """The patches of the accepted state; None without one, and but on the first rank.
-
-        Point data: `contact` (its number) and `direction_friction_1`, the first axis of friction,
-        zero where there is none.
-        """
+        """The patches of the accepted state; None without one, and but on the first rank."""
         if not (self._first and self._patches):
             return None
         corners = np.arange(POINTS * POINTS).reshape(POINTS, POINTS)
         ring = (corners[:-1, :-1], corners[1:, :-1], corners[1:, 1:], corners[:-1, 1:])
         faces = np.stack(ring, axis=-1).reshape(-1, 4)
-        moved = [_moved(contact, *drawn) for _, contact, drawn in self._patches]
-        numbers = np.array([number for number, _, _ in self._patches], dtype=np.int32)
+        moved = [_moved(number, contact, *drawn) for number, contact, drawn in self._patches]
         starts = POINTS * POINTS * np.arange(len(moved))
         return DataSet(
             "PolyData",
-            np.concatenate([points for points, _ in moved]),
+            np.concatenate([patch.points for patch in moved]),
             polygons(np.concatenate([faces + start for start in starts])),
-            {
-                "contact": np.repeat(numbers, POINTS * POINTS),
-                "direction_friction_1": np.concatenate([axes for _, axes in moved]),
-            },
+            arrays(PATCH, moved, self._chosen),
         )
 
 
-def _moved(contact: AnyContact, points: Floats, directions: Floats) -> tuple[Floats, Floats]:
-    """Points and vectors of a patch where the rigid body is that carries it."""
-    if contact.body is None:
-        return points, directions
-    return contact.body.out_of_body(points), contact.body.to_space(directions)
+@dataclass(frozen=True)
+class Patch:
+    """A patch of an analytic master where it is now.
+
+    Attributes:
+        numbers: Number of the contact, (n,).
+        points: Positions, (n, 3), length.
+        directions: First axes of friction, zero where there are none, (n, 3).
+    """
+
+    numbers: npt.NDArray[np.int32]
+    points: Floats
+    directions: Floats
+
+
+def _moved(number: int, contact: AnyContact, points: Floats, directions: Floats) -> Patch:
+    """A patch where the rigid body is that carries it."""
+    if contact.body is not None:
+        points = contact.body.out_of_body(points)
+        directions = contact.body.to_space(directions)
+    return Patch(np.full(len(points), number, dtype=np.int32), points, directions)
 
 
 def _patch(contact: Any, comm: Any) -> tuple[Floats, Floats]:

@@ -42,6 +42,7 @@ class Writer:
         masters: Name of the master of each contact; the name of the contact if not given.
         title: Heading of the report.
         every: Fields are written every so many increments, and at the end of each step.
+        quantities: Names of the arrays to write for ParaView; all if not given.
         pictures: Whether the report with its pictures is made at the end.
         case: Text of the case file, kept beside the results.
         resumed: What `state` gave: the folder is that of a run which goes on.
@@ -63,6 +64,7 @@ class Writer:
         masters: Sequence[str] = (),
         title: str = "",
         every: int = 1,
+        quantities: Sequence[str] = (),
         pictures: bool = True,
         case: str = "",
         resumed: Mapping[str, Any] | None = None,
@@ -70,7 +72,7 @@ class Writer:
         self._began = time.perf_counter()
         self._problem = problem
         self._steps = list(steps)
-        self._every = every
+        self._every, self._quantities = every, quantities
         self._pictures = pictures
         self._increments = 0
         self._kept = 0
@@ -81,11 +83,11 @@ class Writer:
         self._observer = Observer(problem, self._steps)
         self._constants = _constants(problem, names)
         self._history = History(self.folder / "history.csv")
-        self._bodies = Bodies(problem)
+        self._bodies = Bodies(problem, quantities)
         comm = problem.model.mesh.comm
         self._fields = Collection(self.folder / "fields.pvd", ".vtu", comm)
         self._points = Collection(self.folder / "contact.pvd", ".vtp", comm)
-        self._masters = Surfaces(problem.contacts, comm)
+        self._masters = Surfaces(problem.contacts, comm, quantities)
         self._surfaces = Collection(self.folder / "surfaces.pvd", ".vtp", comm)
         self.summary: dict[str, Any] = self._head(title)
         if resumed is None:
@@ -290,7 +292,8 @@ class Writer:
 
     def _write_fields(self, at: float) -> None:
         self._fields.add(self._disk, at, self._bodies.grid())
-        self._points.add(self._disk, at, slave_points(self._problem.contacts))
+        points = slave_points(self._problem.contacts, self._quantities)
+        self._points.add(self._disk, at, points)
         self._surfaces.add(self._disk, at, self._masters.mesh())
         self._written = at
 

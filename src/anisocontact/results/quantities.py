@@ -1,0 +1,415 @@
+"""Output quantities: one table makes arrays and numbers of a run, their pages and `[output]`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.errors import InputError
+
+__all__ = [
+    "CELL",
+    "CONTACT",
+    "FILES",
+    "NODE",
+    "PATCH",
+    "POINT",
+    "RIGID",
+    "OutputQuantity",
+    "SlavePoints",
+    "arrays",
+    "numbers",
+    "quantities",
+    "register_quantity",
+]
+
+#: What a quantity belongs to.
+NODE, CELL, POINT, PATCH = "node", "cell", "slave point", "patch"
+CONTACT, RIGID = "contact", "rigid body"
+#: The files that have it; the first ones are for ParaView.
+FILES = {
+    NODE: "fields.pvd",
+    CELL: "fields.pvd",
+    POINT: "contact.pvd",
+    PATCH: "surfaces.pvd",
+    CONTACT: "summary.json and history.csv",
+    RIGID: "summary.json and history.csv",
+}
+
+
+@dataclass(frozen=True)
+class OutputQuantity:
+    """A row of the table.
+
+    Args:
+        name: Its name in the file.
+        at: What it belongs to, one of `FILES`.
+        unit: Dimension, such as "length"; "1" where there is none.
+        doc: One line.
+        values: Makes it of what is there, see `register_quantity`.
+        always: Whether it is written whatever `output.quantities` says: pictures are made of it.
+    """
+
+    name: str
+    at: str
+    unit: str
+    doc: str
+    values: Callable[[Any], Any]
+    always: bool = False
+
+
+def register_quantity[T: Callable[[Any], Any]](
+    name: str, at: str, unit: str, doc: str
+) -> Callable[[T], T]:
+    """Let runs write a quantity, and case files that are read afterwards name it.
+
+    Args:
+        name: Its name in the file.
+        at: What it belongs to. The function that is decorated takes what there is, and returns a
+            number or a vector for each: at a "slave point" it takes `SlavePoints`; at a "node" or a
+            "cell" an object with the `problem`, the `displacement` (nodes, 3) and the `stress`
+            (nodes, 6); at a "patch" of an analytic master one with its `numbers` and `directions`.
+            At a "contact" it takes `SlavePoints` as well, at a "rigid body" one with the `body`
+            and its `force` and `support`; there it is called on every process, and returns what
+            holds for all of them.
+        unit: Dimension, such as "length"; "1" where there is none.
+        doc: One line.
+
+    Returns:
+        A decorator.
+
+    Raises:
+        InputError: There is such a quantity, or nothing that it could belong to.
+
+    Example:
+        >>> register_quantity("gap", "slave point", "length", "once more")
+        Traceback (most recent call last):
+        anisocontact.base.errors.InputError: quantity: 'gap' of a slave point is registered already
+    """
+    if at not in FILES:
+        raise InputError(f"{at!r} given, must be one of {', '.join(FILES)}", "quantity")
+    if (at, name) in _TABLE:
+        raise InputError(f"{name!r} of a {at} is registered already", "quantity")
+
+    def register(values: T) -> T:
+        _TABLE[at, name] = OutputQuantity(name, at, unit, doc, values)
+        return values
+
+    return register
+
+
+def quantities(*at: str) -> tuple[OutputQuantity, ...]:
+    """The registered quantities.
+
+    Args:
+        *at: What they belong to; all if not given.
+
+    Returns:
+        Rows of the table, in the order in which files have them.
+
+    Example:
+        >>> [q.name for q in quantities("node")]
+        ['displacement', 'stress', 'von_mises']
+    """
+    return tuple(q for q in _TABLE.values() if q.at in (at or FILES))
+
+
+def arrays(
+    at: str, parts: Sequence[Any], chosen: Collection[str] = ()
+) -> dict[str, npt.NDArray[Any]]:
+    """Arrays of a file for ParaView.
+
+    Args:
+        at: What they belong to.
+        parts: What there is of these, such as the slave points of each contact.
+        chosen: Names of the ones to write; all if not given.
+
+    Returns:
+        Name -> rows of all parts, one after the other.
+    """
+    return {
+        q.name: np.concatenate([np.asarray(q.values(part)) for part in parts])
+        for q in quantities(at)
+        if q.always or not chosen or q.name in chosen
+    }
+
+
+def numbers(at: str, of: Any) -> dict[str, Any]:
+    """Numbers of a contact or a rigid body as JSON can have them; collective."""
+    found = {q.name: q.values(of) for q in quantities(at)}
+    return {
+        n: v.tolist() if isinstance(v, np.ndarray | np.generic) else v for n, v in found.items()
+    }
+
+
+@dataclass(frozen=True)
+class SlavePoints:
+    """The slave points of a contact on this rank, in the accepted state.
+
+    Args:
+        number: Which contact.
+        contact: The contact.
+    """
+
+    number: int
+    contact: Any
+
+    @property
+    def last(self) -> Any:
+        """Response of the laws: `gap`, `pressure`, `traction`, `status`, ..., (n, ...)."""
+        return self.contact.last
+
+    @property
+    def state(self) -> Any:
+        """History: records with `slip_accumulated`, `dissipation`, ..., (n,)."""
+        return self.contact.state
+
+    @property
+    def numbers(self) -> npt.NDArray[np.int32]:
+        """Number of the contact for each point, (n,)."""
+        return np.full(len(self.contact.areas), self.number, dtype=np.int32)
+
+    @property
+    def passes(self) -> npt.NDArray[np.int32]:
+        """Number of the pass that each point belongs to, (n,)."""
+        counts = [len(part.areas) for part in self.contact.parts]
+        return np.repeat(np.arange(len(counts), dtype=np.int32), counts)
+
+
+def von_mises(stress: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Equivalent stress of (n, 6) components XX YY ZZ XY YZ XZ, (n,)."""
+    xx, yy, zz, xy, yz, xz = stress.T
+    normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
+    return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
+
+
+def _axis(law: str, number: int) -> OutputQuantity:
+    """The row of an axis of a law."""
+    return OutputQuantity(
+        f"direction_{law}_{number}",
+        POINT,
+        "1",
+        f"unit vector of an axis of {law}, zero where the point is open",
+        lambda p: getattr(p.last, f"directions_{law}")[:, number - 1],
+        always=True,
+    )
+
+
+#: All of the project, in the order in which files have them.
+_ROWS = (
+    OutputQuantity(
+        "displacement", NODE, "length", "displacement", lambda b: b.displacement, always=True
+    ),
+    OutputQuantity(
+        "stress",
+        NODE,
+        "stress",
+        "Cauchy stress, XX, YY, ZZ, XY, YZ, XZ; at a node the mean of its cells",
+        lambda b: b.stress,
+    ),
+    OutputQuantity("von_mises", NODE, "stress", "equivalent stress", lambda b: von_mises(b.stress)),
+    OutputQuantity(
+        "body", CELL, "1", "number of the body in `summary.json`", lambda b: b.numbers, always=True
+    ),
+    OutputQuantity(
+        "contact", POINT, "1", "number of the contact", lambda p: p.numbers, always=True
+    ),
+    OutputQuantity(
+        "pass",
+        POINT,
+        "1",
+        "1 for points on the master of two half passes, which have the same quantities as seen "
+        "from the slave; 0 for all others",
+        lambda p: p.passes,
+        always=True,
+    ),
+    OutputQuantity("area", POINT, "length^2", "slave area", lambda p: p.contact.areas, always=True),
+    OutputQuantity(
+        "gap",
+        POINT,
+        "length",
+        "distance along the normal of the master, negative in contact",
+        lambda p: p.last.gap,
+    ),
+    OutputQuantity("pressure", POINT, "stress", "pressure", lambda p: p.last.pressure, always=True),
+    OutputQuantity("traction", POINT, "stress", "traction on the slave", lambda p: p.last.traction),
+    OutputQuantity(
+        "traction_t",
+        POINT,
+        "stress",
+        "tangential part of the traction",
+        lambda p: p.last.traction_t,
+    ),
+    OutputQuantity(
+        "traction_principal",
+        POINT,
+        "stress",
+        "components of the tangential traction along the two friction axes",
+        lambda p: p.last.traction_principal,
+        always=True,
+    ),
+    OutputQuantity(
+        "elastic_slip",
+        POINT,
+        "length",
+        "elastic part of the relative displacement",
+        lambda p: p.contact.elastic_slip(),
+    ),
+    OutputQuantity(
+        "slip_accumulated",
+        POINT,
+        "length",
+        "length of slip so far",
+        lambda p: p.state["slip_accumulated"],
+    ),
+    OutputQuantity(
+        "status",
+        POINT,
+        "1",
+        "0 open, 1 stick, 2 slip",
+        lambda p: p.last.status.astype(np.int32),
+        always=True,
+    ),
+    OutputQuantity(
+        "dissipation",
+        POINT,
+        "stress length",
+        "energy dissipated by friction so far, per area",
+        lambda p: p.state["dissipation"],
+    ),
+    OutputQuantity(
+        "normal", POINT, "1", "normal of the master", lambda p: p.last.normal, always=True
+    ),
+    *(_axis(law, number) for law in ("adhesion", "friction") for number in (1, 2)),
+    OutputQuantity(
+        "contact", PATCH, "1", "number of the contact", lambda p: p.numbers, always=True
+    ),
+    OutputQuantity(
+        "direction_friction_1",
+        PATCH,
+        "1",
+        "first axis of friction, zero where there is none",
+        lambda p: p.directions,
+    ),
+    OutputQuantity("force", CONTACT, "force", "resultant on the slave", lambda c: c.resultant[0]),
+    OutputQuantity(
+        "moment", CONTACT, "force length", "its moment about the origin", lambda c: c.resultant[1]
+    ),
+    OutputQuantity(
+        "max_pressure",
+        CONTACT,
+        "stress",
+        "largest pressure of a slave point",
+        lambda c: c.contact.extreme(c.last.pressure),
+    ),
+    OutputQuantity(
+        "max_penetration",
+        CONTACT,
+        "length",
+        "largest penetration of a slave point",
+        lambda c: c.contact.extreme(-c.last.gap),
+    ),
+    OutputQuantity(
+        "max_elastic_slip",
+        CONTACT,
+        "length",
+        "largest elastic slip of a slave point",
+        lambda c: c.contact.extreme(np.linalg.norm(c.contact.elastic_slip(), axis=1)),
+    ),
+    OutputQuantity(
+        "max_turn",
+        CONTACT,
+        "radian",
+        "the largest angle by which normal, axes of adhesion or slave turned at a point in "
+        "contact along the last part of an increment",
+        lambda c: c.contact.extreme(c.state["turn"]),
+    ),
+    OutputQuantity("area", CONTACT, "length^2", "slave area that touches", lambda c: c.means[0]),
+    OutputQuantity(
+        "elastic_slip",
+        CONTACT,
+        "length",
+        "mean over that area of the elastic part of the relative displacement, a vector",
+        lambda c: c.means[1],
+    ),
+    OutputQuantity(
+        "slip",
+        CONTACT,
+        "length",
+        "mean over that area of the accumulated length of slip",
+        lambda c: c.means[2],
+    ),
+    OutputQuantity(
+        "least_gap", CONTACT, "length", "smallest gap of the points", lambda c: c.least_gap()
+    ),
+    OutputQuantity(
+        "points",
+        CONTACT,
+        "1",
+        "number of `open`, `stick` and `slip` points",
+        lambda c: c.contact.counts(),
+    ),
+    OutputQuantity(
+        "approach",
+        CONTACT,
+        "length",
+        "how far the bodies have moved towards each other, by the facet groups that are led or "
+        "loaded",
+        lambda c: c.approach(),
+    ),
+    OutputQuantity(
+        "position",
+        RIGID,
+        "length",
+        "reference point of now",
+        lambda b: b.body.reference + b.pose.translation,
+    ),
+    OutputQuantity(
+        "translation",
+        RIGID,
+        "length",
+        "how far the reference point has moved",
+        lambda b: b.pose.translation,
+    ),
+    OutputQuantity(
+        "rotation",
+        RIGID,
+        "radian",
+        "rotation vector of the orientation, angle at most π",
+        lambda b: b.rotation,
+    ),
+    OutputQuantity(
+        "turn",
+        RIGID,
+        "radian",
+        "sum of the rotations about the axes of space, as the steps prescribe it",
+        lambda b: b.pose.turn,
+    ),
+    OutputQuantity("force", RIGID, "force", "of the contacts on the body", lambda b: b.force[:3]),
+    OutputQuantity(
+        "moment",
+        RIGID,
+        "force length",
+        "of the contacts on the body, about its reference point of now",
+        lambda b: b.force[3:],
+    ),
+    OutputQuantity(
+        "support_force",
+        RIGID,
+        "force",
+        "what holds the prescribed components",
+        lambda b: b.support[:3],
+    ),
+    OutputQuantity(
+        "support_moment",
+        RIGID,
+        "force length",
+        "what holds the prescribed rotations",
+        lambda b: b.support[3:],
+    ),
+)
+_TABLE = {(q.at, q.name): q for q in _ROWS}
