@@ -13,13 +13,13 @@ import scipy.sparse
 
 from anisocontact.base.errors import InputError
 from anisocontact.solver import Problem, Solver, Step
-from anisocontact.solver.stepping.newton import SingularError
 from anisocontact.solver.strategies import costs, strategy
 from anisocontact.solver.strategies.condensed.dense import ContactTangent, KeptFactor, gmres
 from anisocontact.solver.strategies.condensed.eliminate import WAYS
 from anisocontact.solver.strategies.condensed.parts import Condensation
 from anisocontact.solver.strategies.condensed.patterns import Patterns, State
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
+from anisocontact.solver.terms.term import SingularError
 
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
 

@@ -93,7 +93,7 @@ def test_another_preconditioner() -> None:
         problem, [PRESS], "another_", {"pc_type": "jacobi"}, lambda *_: None, notes.append
     )
     problem.begin(PRESS)
-    problem.set_level(1.0, 1.0)
+    problem.set_load_factor(1.0, 1.0)
     x = problem.accepted()
     assert not newton.solve(x).reason
     newton.close()

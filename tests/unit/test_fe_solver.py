@@ -272,12 +272,12 @@ def test_options_read_late_are_seen(fe):
     """
     from anisocontact.base.fenicsx import PETSc
     from anisocontact.solver import Step
-    from anisocontact.solver.stepping.newton import Newton
+    from anisocontact.solver.strategies.newton import Newton
 
     problem = fe.block(fe.interface(), cells=(2, 2, 1)).problem
     newton = Newton(problem, "late_", {"mat_mumps_icntl_14": 77}, lambda *_: None)
     problem.begin(Step("push", 1, PRESS))
-    problem.set_level(1.0, 1.0)
+    problem.set_load_factor(1.0, 1.0)
     assert not newton.solve(problem.accepted()).reason
     assert newton.snes.getKSP().getPC().getFactorMatrix().getMumpsIcntl(14) == 77
     assert not PETSc.Options("late_").hasName("mat_mumps_icntl_14")

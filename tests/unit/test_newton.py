@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
-from anisocontact.solver.stepping.newton import STUCK_OVER, Newton
+from anisocontact.solver.strategies.newton import STUCK_OVER, Newton
 
 
 class Valley:

@@ -58,7 +58,7 @@ def test_tangent_by_order(surface: Surface, cell: str, order: int) -> None:
     rng = np.random.default_rng(4)
     x = problem.accepted()
     x.array[:] += rng.normal(0.0, 1e-3, x.getLocalSize())
-    problem.set_level(1.0, 1.0)
+    problem.set_load_factor(1.0, 1.0)
     problem.evaluate(x)
     assert problem.contacts[0].counts()["slip"] > 3
     direction = x.duplicate()

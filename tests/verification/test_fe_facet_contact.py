@@ -113,7 +113,7 @@ def test_tangent_of_the_system_by_order(
     rng = np.random.default_rng(2)
     x = problem.accepted()
     x.array[:] += rng.normal(0.0, 2e-4, x.getLocalSize())
-    problem.set_level(1.0, 1.0)
+    problem.set_load_factor(1.0, 1.0)
     problem.evaluate(x)
     counts = problem.contacts[0].counts()
     assert counts["slip" if mu < 1.0 else "stick"] > 10

@@ -149,7 +149,7 @@ def test_tangent_of_a_pressure_that_follows(fe, cell, order):
     for group, shape in shapes(cell, order):
         problem = soft(shape)
         problem.begin(Step("press", 1, {"body.bottom": NOTHING}, pressure={f"body.{group}": 30.0}))
-        problem.set_level(1.0, 1.0)
+        problem.set_load_factor(1.0, 1.0)
         errors = fe.tangent_errors(problem, rng, 0.02)
         assert np.all(np.abs(errors[:-1] / errors[1:] - 4.0) < 0.15)
         assert errors[-1] < 1e-5

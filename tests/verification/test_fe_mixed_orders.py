@@ -100,7 +100,7 @@ def test_tangent_with_ties_and_planes(fe, cell):
     supports = {"one.bottom": {"y": 0.0, "z": 0.0}, "two.bottom": {"x": 0.0, "z": 0.0}}
     made = problem([block("one", 1, cell), block("two", 2, cell, x=5.0)], symmetry=planes)
     made.begin(Step("a", 1, supports, pressure={"one.top": 2.0}))
-    made.set_level(1.0, 1.0)
+    made.set_load_factor(1.0, 1.0)
     errors = fe.tangent_errors(made, np.random.default_rng(3), 0.01)
     assert np.all(np.abs(errors[:-1] / errors[1:] - 4.0) < 0.15)
 

@@ -226,7 +226,7 @@ def test_tangent_of_everything_that_holds(fe):
     problem = make([bar("bar", rotate=turn)], soft, attached=attached, symmetry=planes)
     loads = Step("a", 1, {"bar.bottom": {"x": 0.0}}, pressure={"bar.back": 2.0})
     problem.begin(loads)
-    problem.set_level(1.0, 1.0)
+    problem.set_load_factor(1.0, 1.0)
     errors = fe.tangent_errors(problem, np.random.default_rng(3), 0.02)
     assert np.all(np.abs(errors[:-1] / errors[1:] - 4.0) < 0.15)
 

@@ -33,7 +33,7 @@ def random_state(fe, seed, rule, of_rule, **block):
     )
     made = fe.block(interface, young=10.0, **block)
     made.problem.begin(Step("random", 1, {"block.top": {"x": 0.1, "z": -0.02}}))
-    made.problem.set_level(1.0, 1.0)
+    made.problem.set_load_factor(1.0, 1.0)
     x = made.problem.accepted()
     for scale in (0.02, 0.01):
         made.problem.commit(x)
@@ -80,7 +80,7 @@ def test_linear_statuses(fe, status):
         coefficients=(90.0, 80.0), angle=0.4, adhesion_angle=1.0, point=(0.0, 0.0, height)
     )
     block = fe.block(interface)
-    block.problem.set_level(1.0, 1.0)
+    block.problem.set_load_factor(1.0, 1.0)
     x = random_vector(block.problem, rng, 1e-3)
     direction = random_vector(block.problem, rng, 1.0)
     errors, same, found = errors_and_status(block.problem, block.contact, x, direction, [1e-4])

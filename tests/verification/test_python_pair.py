@@ -175,7 +175,7 @@ def test_tangent_by_order(law: Any, cell: str, order: int, kind: Any, on: str) -
     rng = np.random.default_rng(2)
     x = problem.accepted()
     x.array[:] += rng.normal(0.0, 2e-4, x.getLocalSize())
-    problem.set_level(1.0, 1.0)
+    problem.set_load_factor(1.0, 1.0)
     problem.evaluate(x)
     counts = problem.contacts[0].counts()
     assert counts["stick"] + counts["slip"] > 10

@@ -43,7 +43,7 @@ def state(fe, seed, surface, coefficients, lift, free, current_area, on="master"
     block = fe.block(law, cells=(2, 2, 1), young=10.0, body=body, current_area=current_area)
     motion = {"die": dict.fromkeys(free)}
     block.problem.begin(Step("random", 1, {"block.top": {"x": 0.1}}, motion=motion))
-    block.problem.set_level(1.0, 1.0)
+    block.problem.set_load_factor(1.0, 1.0)
     x = block.problem.accepted()
     for scale in (0.02, 0.01):
         block.problem.commit(x)

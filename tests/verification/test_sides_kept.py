@@ -19,7 +19,7 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import ContactProblem, Problem, Solver, Step, StoppedError
-from anisocontact.solver.stepping.newton import Newton, NewtonResult
+from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.surfaces import make_surface
 
 type Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -94,7 +94,7 @@ def _state(problem: Problem, move: Move) -> Vec:
 def _said(problem: Problem, move: Move) -> str:
     x = _state(problem, move)
     problem.begin(Step("any", 1, CLAMP if "base" in problem.model.body_names() else {}))
-    problem.set_level(1.0, 1.0)
+    problem.set_load_factor(1.0, 1.0)
     found = problem.behind_a_master(x)
     problem.roll_back()
     return "" if found is None else f"{found.contact}: {found.why}"
@@ -197,7 +197,7 @@ def test_beneath_the_plate_by_the_way_around() -> None:
     problem = _problem("plate")
     problem.begin(Step("any", 1, CLAMP))
     for by in ((2.5, 0, 0.0), (2.5, 0, -2.0), (0, 0, -2.0)):
-        problem.set_level(1.0, 1.0)
+        problem.set_load_factor(1.0, 1.0)
         x = _state(problem, _shifted(*by))
         assert problem.behind_a_master(x) is None
         problem.commit(x)

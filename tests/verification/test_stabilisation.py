@@ -17,7 +17,7 @@ from anisocontact.interface import Interface, PairLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, build_box
 from anisocontact.solver import Cut, Problem, Solver, Step, StoppedError
-from anisocontact.solver.stepping.newton import Newton, NewtonResult
+from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.terms.free_modes import bodies, free_modes, named
 from anisocontact.surfaces import make_surface
 

@@ -25,7 +25,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.contact.facet_mesh import node_positions
 from anisocontact.mesh import Model
 from anisocontact.results.files import Disk, replacing
-from anisocontact.solver.system.persistent import Arrays, Persistent, under
+from anisocontact.solver.terms.persistent import Arrays, Persistent, under
 
 __all__ = [
     "NAME",

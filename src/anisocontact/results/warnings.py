@@ -11,9 +11,9 @@ from anisocontact.contact import AnyContact, coarse_slaves, initial_overlap
 from anisocontact.contact.hints import MISSED
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
-from anisocontact.solver.stepping.imbalance import LARGE
-from anisocontact.solver.stepping.rotations import CURE, WARNED
 from anisocontact.solver.stepping.turned import MARGIN
+from anisocontact.solver.system.imbalance import LARGE
+from anisocontact.solver.system.rotations import CURE, WARNED
 
 __all__ = ["at_end", "at_start", "of_models", "soft", "worst", "worst_of_models"]
 

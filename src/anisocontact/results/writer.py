@@ -24,7 +24,7 @@ from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
 from anisocontact.results.warnings import at_end, at_start, of_models, soft, worst, worst_of_models
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
-from anisocontact.solver.system.persistent import Persistent
+from anisocontact.solver.terms.persistent import Persistent
 
 __all__ = ["Writer"]
 

@@ -1,11 +1,13 @@
 """Newton's method, load steps and what a run reports."""
 
 from anisocontact.base.limits import Limits
+from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
+from anisocontact.solver.stepping.script import ContactProblem
 from anisocontact.solver.stepping.solver import Solver
-from anisocontact.solver.stepping.steps import Accepted, Culprit, Cut, Progress, Step, StoppedError
+from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
-from anisocontact.solver.system.user import ContactProblem
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
+from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.turn import Turn
 
 __all__ = [

@@ -174,7 +174,7 @@ def test_points_that_stick_turn_with_the_layer_behind_them(to_the_end, bodies, m
 
 def test_failure_names_stiff_adhesion(to_the_end):
     """Where a run stops all the same, here with two iterations, the message names the adhesion."""
-    from anisocontact.solver.stepping.steps import StoppedError
+    from anisocontact.solver.stepping.report import StoppedError
 
     text = case(RIGID, "stiffness = 1e9")
     with pytest.raises(StoppedError, match=r"adhesion of block.bottom on plate is .* as stiff as"):

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.stepping.culprits import inverted_cells, strayed
-from anisocontact.solver.stepping.rotations import CURE, WARNED
-from anisocontact.solver.stepping.steps import Culprit
+from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.system.rotations import CURE, WARNED
 
 #: Error of the gap of a point that is held on a facet, over the size of a facet, that is none.
 STRAYED = 1e-3

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from anisocontact.solver.stepping.rotations import CURE, WARNED
-from anisocontact.solver.stepping.steps import Accepted
+from anisocontact.solver.stepping.report import Accepted
+from anisocontact.solver.system.rotations import CURE, WARNED
 
 
 class Alarms:

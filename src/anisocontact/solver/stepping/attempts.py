@@ -9,11 +9,11 @@ from anisocontact.contact.schemes import IN_CYCLES, SOFTER, USUAL
 from anisocontact.solver.stepping.acceptance import refused
 from anisocontact.solver.stepping.continuation import Continuation
 from anisocontact.solver.stepping.culprits import find_culprits
-from anisocontact.solver.stepping.newton import NewtonResult
-from anisocontact.solver.stepping.steps import Culprit
 from anisocontact.solver.stepping.turned import TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
+from anisocontact.solver.strategies.newton import NewtonResult
 from anisocontact.solver.strategies.strategy import AnyNewton
+from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
 
 #: Smallest share of a correction that is taken while the status of points alternates.

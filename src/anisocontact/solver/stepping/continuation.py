@@ -14,7 +14,7 @@ from dataclasses import replace
 
 from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import AnyContact
-from anisocontact.solver.stepping.newton import NewtonResult
+from anisocontact.solver.strategies.newton import NewtonResult
 from anisocontact.solver.strategies.strategy import AnyNewton
 from anisocontact.solver.system.problem import Problem
 

@@ -10,8 +10,8 @@ import numpy.typing as npt
 from anisocontact.contact import facet_size
 from anisocontact.contact.held_feet import facet_of
 from anisocontact.interface import FAILURE, STATUS
-from anisocontact.solver.stepping.steps import Culprit
 from anisocontact.solver.stepping.watch import StatusWatch
+from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
 
 Floats = npt.NDArray[np.float64]

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.solver.stepping.imbalance import Imbalance
+from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.problem import Problem
 
 Floats = npt.NDArray[np.float64]

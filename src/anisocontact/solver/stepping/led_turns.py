@@ -11,8 +11,8 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import Material
 from anisocontact.mesh import Model
-from anisocontact.solver.stepping.rotations import CURE, REFUSED, WARNED, spurious
-from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.system.rotations import CURE, REFUSED, WARNED, spurious
+from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.supports import Supports
 
 Floats = npt.NDArray[np.float64]
@@ -71,7 +71,8 @@ def _angles(
         own = {name: np.isin(held // 3, nodes[name]) for name in linear}
         places = _PLACES if step.turned_groups() else 1
         for share in np.arange(1, places + 1) / places:
-            u[held] = supports.at(float(share))
+            supports.set_load_factor(float(share))
+            u[held] = supports.values
             for name in linear:
                 rows = held[own[name]]
                 yield step, name, _turn(reference, rows, u[rows], model.mesh.comm)

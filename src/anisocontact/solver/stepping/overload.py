@@ -54,11 +54,10 @@ def too_much_load(problem: Problem, fraction: float) -> str:
     """
     if not problem.stabilisation.loose:
         return ""
-    level = problem.level
-    problem.loads.set_level(fraction)
-    load = problem.layout.assembled(problem.loads.force(problem.u.x.array.reshape(-1, 3)))
-    problem.loads.set_level(level)
-    found = list(_found(problem, load.reshape(-1, 3)))
+    problem.loads.set_load_factor(fraction, problem.dt)
+    load = problem.loads.force(problem.u.x.array.reshape(-1, 3))
+    problem.loads.set_load_factor(problem.load_factor, problem.dt)
+    found = list(_found(problem, problem.layout.assembled(load.reshape(-1)).reshape(-1, 3)))
     return "; ".join(found)
 
 

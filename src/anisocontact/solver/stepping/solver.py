@@ -17,17 +17,17 @@ from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.stepping.culprits import NAMED
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.led_turns import led_turns
-from anisocontact.solver.stepping.newton import NewtonResult, OptionValue
 from anisocontact.solver.stepping.overload import too_much_load
 from anisocontact.solver.stepping.pace import Pace
-from anisocontact.solver.stepping.steps import Accepted, Cut, Progress, Step, StoppedError
+from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
+from anisocontact.solver.strategies.newton import NewtonResult, OptionValue
 from anisocontact.solver.strategies.strategy import AnyNewton, choose, make_newton
 from anisocontact.solver.system.interior import PENDING
-from anisocontact.solver.system.persistent import Arrays, Persistent, under
 from anisocontact.solver.system.problem import Problem
-from anisocontact.solver.terms.loads import check_steps
+from anisocontact.solver.terms.persistent import Arrays, Persistent, under
+from anisocontact.solver.terms.step import Step
 
 
 @dataclass
@@ -100,13 +100,8 @@ class Solver:
         self.problem = problem
         self.steps = list(steps)
         self.limits = limits or Limits()
-        planes = problem.constraints.planes
-        check_steps(problem.model, problem.materials, self.steps, planes)
+        problem.check(self.steps)
         self.cautions = led_turns(problem.model, problem.materials, self.steps)
-        for step in self.steps:
-            problem.attached.check(step)
-        problem.rigid.check(self.steps)
-        problem.check_held(self.steps)
         self.place = self._beginning(0, 0.0)
         self._prefix = options_prefix
         self._options = dict(options or {})
@@ -198,7 +193,7 @@ class Solver:
         self._energy.restore(kept.common["energy_watch"])
         self._kept = kept.strategy and kept.strategy | under(PENDING, kept.nodal)
         # without its interior it is no state to extrapolate from
-        whole = self.problem.reduction is None or (self.choice.name == CONDENSED and self._kept)
+        whole = self.problem.whole or (self.choice.name == CONDENSED and self._kept)
         if "before" in kept.nodal and whole:
             before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
         self.place = Place(step, time, Pace(self.limits, **numbers), begun, before)
@@ -234,7 +229,8 @@ class Solver:
         pace, before = self.place.pace, self.place.before
         dt = step.duration / step.increments
         whole = _whole(pace.increment, pace.end)
-        self.problem.set_level(whole / step.increments, dt if pace.part == 1.0 else pace.part * dt)
+        part = dt if pace.part == 1.0 else pace.part * dt
+        self.problem.set_load_factor(whole / step.increments, part)
         first = last
         if before is not None:
             ratio = pace.part / pace.last

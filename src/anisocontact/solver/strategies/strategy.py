@@ -12,14 +12,13 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import PETSc, Vec
 from anisocontact.base.strategies import CONDENSED, DIRECT, ITERATIVE, STRATEGIES
-from anisocontact.bulk import LinearBulk
-from anisocontact.solver.stepping.newton import Newton, NewtonResult, OptionValue
-from anisocontact.solver.stepping.steps import Step
 from anisocontact.solver.strategies.condensed import Condensed, CondensedNewton, contact_unknowns
 from anisocontact.solver.strategies.costs import factor_bytes, free_memory, memory_needed
 from anisocontact.solver.strategies.iterative import IterativeNewton, Patch
-from anisocontact.solver.system.persistent import Arrays
+from anisocontact.solver.strategies.newton import Newton, NewtonResult, OptionValue
 from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.step import Step
 
 #: Contact unknowns beyond which their dense matrix costs more than it saves.
 MOST_CONTACT = 8000
@@ -126,8 +125,8 @@ def make_newton(
         note: Told what is worth a line in the log.
         kept: What `AnyNewton.persistent` gave in the run that goes on; empty for a new one.
     """
-    if problem.reduction is not None and not (choice.name == CONDENSED and kept):
-        problem.reduction.recover()
+    if not (choice.name == CONDENSED and kept):
+        problem.recover()
     if choice.name == CONDENSED:
         condensed = Condensed(problem, steps, note, kept)
         return CondensedNewton(condensed, prefix, options, on_iteration)
@@ -145,7 +144,7 @@ def _obstacles(
         yield f"it runs in one process, {problem.comm.size} given"
     if not problem.contacts:
         yield "there is no contact"
-    if not isinstance(problem.bulk, LinearBulk):
+    if not problem.linear:
         names = [name for name, law in problem.materials.items() if not law.linear]
         yield f"material.{names[0]} is not linear"
     yield from _asked_solver(prefix, options)

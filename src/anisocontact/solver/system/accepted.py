@@ -7,7 +7,7 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.layout import Layout
-from anisocontact.solver.system.persistent import Arrays
+from anisocontact.solver.terms.persistent import Arrays
 
 Floats = npt.NDArray[np.float64]
 

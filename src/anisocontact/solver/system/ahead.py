@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.contact import FacetContact
 from anisocontact.contact.reachable import NodePairs
-from anisocontact.solver.stepping.steps import AXES, Step
+from anisocontact.solver.terms.step import AXES, Step
 
 Floats = npt.NDArray[np.float64]
 

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import MPI, Vec, fem
-from anisocontact.bulk import Material
-from anisocontact.mesh import Model
-from anisocontact.solver.system.balance import Place
+from anisocontact.solver.system.assembly import TrialState
 from anisocontact.solver.system.cells import DeformedCells
 from anisocontact.solver.system.parts import Parts
 
@@ -23,19 +20,16 @@ class Configuration:
 
     Args:
         parts: Parts of the problem.
-        model: Mesh of the bodies.
-        materials: Material of each body.
 
     Attributes:
         u: Displacement, a DOLFINx function.
     """
 
-    def __init__(self, parts: Parts, model: Model, materials: Mapping[str, Material]) -> None:
+    def __init__(self, parts: Parts) -> None:
         self._parts = parts
-        self.u: Any = fem.Function(model.space, name="displacement")
-        self._owned = parts.bulk.stiffness.createVecRight()
-        finite = [name for name, material in materials.items() if not material.linear]
-        self._cells = DeformedCells(model, finite)
+        self.u: Any = fem.Function(parts.model.space, name="displacement")
+        finite = [name for name, material in parts.materials.items() if not material.linear]
+        self._cells = DeformedCells(parts.model, finite)
         self._at: Floats | None = None
 
     @property
@@ -43,7 +37,7 @@ class Configuration:
         """Displacement of the local nodes, (nodes, 3), length."""
         return np.asarray(self.u.x.array.reshape(-1, 3))
 
-    def take(self, x: Vec) -> Place:
+    def take(self, x: Vec) -> TrialState:
         """Bring all bodies to a state.
 
         Args:
@@ -54,11 +48,10 @@ class Configuration:
         """
         self._at = np.array(x.array_r)
         nodal, rigid = self._parts.layout.split(x)
-        self._owned.array[:] = nodal.reshape(-1)
-        self.u.x.array[: self._parts.layout.owned] = self._owned.array_r
+        self.u.x.array[: self._parts.layout.owned] = nodal.reshape(-1)
         self.u.x.scatter_forward()
         self._parts.rigid.place(rigid)
-        return Place(x, self._owned, self.nodal, rigid)
+        return TrialState(x, self.nodal, rigid)
 
     def is_at(self, x: Vec) -> bool:
         """Whether the bodies are at a state, and nothing else has changed since; collective."""
@@ -66,18 +59,9 @@ class Configuration:
         # a process whose own unknowns have not moved goes along
         return bool(self._parts.layout.comm.allreduce(here, MPI.LAND))
 
-    def commit(self) -> None:
-        """Accept the state: histories of materials advance."""
-        self._parts.bulk.commit(self._owned)
-
     def forget(self) -> None:
         """Something else has changed: the same state has to be evaluated anew."""
         self._at = None
-
-    def elastic(self, x: Vec) -> float:
-        """Elastic energy of a state, force times length."""
-        self._owned.array[:] = x.array_r[: self._parts.layout.owned]
-        return self._parts.bulk.energy(self._owned)
 
     def inverted(self) -> Floats:
         """Middles of the cells of this rank that are turned inside out, (n, 3), length.

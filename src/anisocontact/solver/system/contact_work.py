@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import MPI
 from anisocontact.interface import STATUS
-from anisocontact.solver.stepping.imbalance import LARGE
+from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.parts import Parts
 
 Floats = npt.NDArray[np.float64]

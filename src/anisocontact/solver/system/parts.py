@@ -11,15 +11,20 @@ from anisocontact.base.errors import InputError
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
 from anisocontact.contact import AnyContact
 from anisocontact.mesh import Model
-from anisocontact.solver.stepping.sides_kept import SidesKept
+from anisocontact.solver.system.assembly import Assembly
 from anisocontact.solver.system.layout import Layout
+from anisocontact.solver.system.sides_kept import SidesKept
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.attachments import Attachments
+from anisocontact.solver.terms.bodies import Bodies
 from anisocontact.solver.terms.constraints import Constraints
+from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.rigid import RigidBodies
 from anisocontact.solver.terms.stabilisation import Stabilisation
 from anisocontact.solver.terms.supports import Supports
+from anisocontact.solver.terms.symmetry import SymmetryPlanes
+from anisocontact.solver.terms.ties import tie, tied_nodes
 
 
 @dataclass(frozen=True)
@@ -27,19 +32,23 @@ class Parts:
     """Parts of one system of equations.
 
     Attributes:
+        model: Mesh of the bodies.
+        materials: Material of each body.
         contacts: Contacts.
-        bulk: The bodies.
+        bulk: Forces inside the bodies.
         rigid: Rigid bodies of the contacts.
         layout: Where the unknowns are.
         attached: Elastic supports and springs.
         supports: Prescribed displacements.
         loads: Loads on the bodies.
-        constraints: Ties and symmetry planes.
+        planes: Symmetry planes.
         stabilisation: Springs that keep bodies in reach.
         sides: Finds bodies behind their masters.
-        support_scale: Force for a unit of length in the rows of given unknowns, force/length.
+        assembly: All of it as one system of terms.
     """
 
+    model: Model
+    materials: Mapping[str, Material]
     contacts: list[AnyContact]
     bulk: LinearBulk | NonlinearBulk
     rigid: RigidBodies
@@ -47,17 +56,17 @@ class Parts:
     attached: Attachments
     supports: Supports
     loads: Loads
-    constraints: Constraints
+    planes: SymmetryPlanes
     stabilisation: Stabilisation
     sides: SidesKept
-    support_scale: float
+    assembly: Assembly
 
 
 def make_parts(
     model: Model,
     materials: Mapping[str, Material],
     contacts: Sequence[AnyContact],
-    attached: Sequence[ElasticSupport | Spring],
+    specs: Sequence[ElasticSupport | Spring],
     symmetry: Sequence[str],
     stabilised: bool,
 ) -> Parts:
@@ -69,29 +78,49 @@ def make_parts(
     _check(model, materials, contacts)
     linear = all(material.linear for material in materials.values())
     bulk = LinearBulk(model, materials) if linear else NonlinearBulk(model, materials)
-    rigid = RigidBodies(contacts, model.mesh.comm)
+    bodies, rigid = Bodies(bulk), RigidBodies(contacts, model.mesh.comm)
     layout = Layout(model.space, rigid.size)
-    attachments = Attachments(attached, model)
-    supports, loads = Supports(model), Loads(model, materials)
-    constraints = Constraints(model, symmetry, layout.new_vector())
-    scale = bulk.diagonal.sum() / bulk.diagonal.getSize()
-    for contact in contacts:
-        contact.suit_strain(_finite(model, materials, contact))
-        contact.suit(np.array(bulk.diagonal.array_r).reshape(-1, 3))
-    holders = {model.body_of(group) for one in attached for group in one.groups}
+    attached, supports, loads = Attachments(specs, model), Supports(model), Loads(model, materials)
+    like = layout.new_vector()
+    planes = SymmetryPlanes(model, symmetry, like, tied_nodes(model))
+    constraints = Constraints(like, tie(model, like), planes)
+    suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
+    holders = {model.body_of(group) for one in specs for group in one.groups}
+    aid = Stabilisation(model, contacts, bodies.scale, attached, holders, stabilised)
+    assembly = Assembly(
+        layout,
+        bodies,
+        Contacts(contacts),
+        supports,
+        constraints,
+        rigid,
+        holders=[attached],
+        loads=[loads],
+        aids=[aid],
+    )
     return Parts(
+        model=model,
+        materials=dict(materials),
         contacts=list(contacts),
         bulk=bulk,
         rigid=rigid,
         layout=layout,
-        attached=attachments,
+        attached=attached,
         supports=supports,
         loads=loads,
-        constraints=constraints,
-        stabilisation=Stabilisation(model, contacts, scale, attachments, holders, stabilised),
+        planes=planes,
+        stabilisation=aid,
         sides=SidesKept(contacts, model),
-        support_scale=scale,
+        assembly=assembly,
     )
+
+
+def suit(contacts: Sequence[AnyContact], bodies: Bodies, finite: Sequence[bool]) -> None:
+    """Tell contacts how stiff their bodies are, and which of them are at finite strain."""
+    diagonal = np.array(bodies.bulk.diagonal.array_r).reshape(-1, 3)
+    for contact, is_finite in zip(contacts, finite, strict=True):
+        contact.suit_strain(is_finite)
+        contact.suit(diagonal)
 
 
 def _finite(model: Model, materials: Mapping[str, Material], contact: AnyContact) -> bool:

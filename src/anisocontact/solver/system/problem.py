@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, override
 
 import numpy as np
 import numpy.typing as npt
@@ -13,28 +13,30 @@ from anisocontact.base.processes import Together
 from anisocontact.bulk import LinearBulk, Material
 from anisocontact.contact import AnyContact
 from anisocontact.mesh import Model
-from anisocontact.solver.stepping.rotations import Rotations, Turned
-from anisocontact.solver.stepping.steps import Culprit, LostError, Step
 from anisocontact.solver.system.accepted import AcceptedState
-from anisocontact.solver.system.balance import Balance, balance
+from anisocontact.solver.system.assembled import AssembledSystem
+from anisocontact.solver.system.assembly import ForceBalance
 from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.contact_work import ContactWork
-from anisocontact.solver.system.following import Following
-from anisocontact.solver.system.interior import PENDING, Interior
-from anisocontact.solver.system.memory import BEGUN, Memory, persistent_points, restore_points
-from anisocontact.solver.system.outcome import energies, reactions
+from anisocontact.solver.system.culprit import Culprit, LostError
+from anisocontact.solver.system.interior import PENDING, with_interior
+from anisocontact.solver.system.memory import BEGUN, Memory
 from anisocontact.solver.system.parts import make_parts
-from anisocontact.solver.system.persistent import Persistent, under
 from anisocontact.solver.system.reduction import Reduction
-from anisocontact.solver.system.step_begin import begin_step, contact_must_hold
-from anisocontact.solver.system.tangent import Tangent, led_unknowns
+from anisocontact.solver.system.rotations import Rotations, Turned
+from anisocontact.solver.system.step_begin import begin_step, check_steps, contact_must_hold
+from anisocontact.solver.system.tangent import Tangent
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
-from anisocontact.solver.terms.flow import pass_through
+from anisocontact.solver.terms.persistent import Arrays, Persistent, under
+from anisocontact.solver.terms.step import Step
 
 Floats = npt.NDArray[np.float64]
 
+#: Energies that every run reports, in this order.
+ENERGIES = ("elastic", "adhesion", "normal", "friction", "viscous", "stabilisation", "flow")
 
-class Problem(Following):
+
+class Problem(AssembledSystem):
     """Equilibrium `K u - contact - loads = 0` with prescribed displacements.
 
     A prescribed unknown has the row `s (u - g) = 0`, `s` the mean diagonal of K, and its column
@@ -57,10 +59,9 @@ class Problem(Following):
         together: The processes of the run, when one of them fails.
         reduction: Who answers for the bulk; None where every state is one of all unknowns.
         rotations: How far bodies at small strain have turned.
-        force_scale: Norm of the forces at work in the last evaluation: of supports, contacts,
-            loads or supports still to be moved, the largest.
-        round_off: Residual that floating point leaves in the last evaluation, force; never more
-            than a small share of the loads, which a body that flies off would not balance.
+        load_factor: Fraction of the step at which the loads are.
+        dt: Time increment to there.
+        balance: Forces of the last evaluation.
 
     Raises:
         InputError: A body without material, a material without body, or two contacts of one name.
@@ -84,47 +85,34 @@ class Problem(Following):
         stabilised: bool = True,
     ) -> None:
         self._parts = parts = make_parts(model, materials, contacts, attached, symmetry, stabilised)
-        self.model = model
-        self.materials = dict(materials)
+        self.model, self.materials = model, dict(materials)
         self.contacts, self.bulk, self.rigid = parts.contacts, parts.bulk, parts.rigid
         self.layout, self.attached = parts.layout, parts.attached
-        self.supports, self.loads = parts.supports, parts.loads
-        self.constraints, self.stabilisation = parts.constraints, parts.stabilisation
-        self._comm = model.mesh.comm
-        self.together = Together(self._comm)
-        self._tangent = Tangent(parts, model.space)
-        self._bodies = Configuration(parts, model, materials)
+        self.supports, self.loads, self.planes = parts.supports, parts.loads, parts.planes
+        self.stabilisation = self._aid = parts.stabilisation
+        self.assembly = assembly = parts.assembly
+        self.constraints, self.terms_of_contact = assembly.constraints, assembly.contacts
+        self.together = Together(self.comm)
+        self._tangent = Tangent(assembly, model.space, parts.attached.coupling)
+        self._bodies = Configuration(parts)
         self.reduction: Reduction | None = None
+        self._pending: Arrays = {}
         self.rotations = Rotations(model, materials)
-        self.force_scale = 0.0
-        self.round_off = 0.0
-        self._balance = Balance.none(self._owned)
-        self._level = 0.0
-        self._dt = 0.0
+        self.balance = ForceBalance.none(self.layout.owned)
+        self.load_factor = self.dt = 0.0
         self._accepted = AcceptedState(self.layout)
         self._contact_work = ContactWork(parts)
-        self._memory = Memory(parts, self._accepted, self._bodies)
+        self._memory = Memory(assembly.terms, self._accepted, self._bodies)
 
     @property
     def u(self) -> Any:
         """Displacement, a DOLFINx function; holds the accepted state between increments."""
-        if self.reduction is not None:
-            self.reduction.recover()
+        self.recover()
         return self._bodies.u
-
-    @property
-    def level(self) -> float:
-        """Load factor: fraction of the step at which the loads are."""
-        return self._level
-
-    @property
-    def dt(self) -> float:
-        """Time increment."""
-        return self._dt
 
     def dead_load(self) -> Floats:
         """Loads on the unknowns this rank owns where they do not depend on the state, force."""
-        return self.layout.assembled(self.loads.force(self._bodies.nodal))
+        return self.layout.assembled(self.loads.force(self._bodies.nodal).reshape(-1))
 
     @property
     def outside(self) -> Floats:
@@ -139,32 +127,33 @@ class Problem(Following):
     @property
     def comm(self) -> Any:
         """Communicator of the mesh."""
-        return self._comm
+        return self.model.mesh.comm
 
     @property
     def support_scale(self) -> float:
-        """Force for a unit of length in the rows of given unknowns, force/length."""
-        return float(self._parts.support_scale)
+        """Force for a unit of length in the rows of prescribed unknowns, force/length."""
+        return self.assembly.scale
 
     @property
     def bulk_state(self) -> tuple[float, ...] | None:
         """What the tangent without contact depends on; None where it is on every state."""
-        return self.stabilisation.stiffnesses if isinstance(self.bulk, LinearBulk) else None
+        return self.stabilisation.stiffnesses if self.linear else None
 
-    def given(self) -> npt.NDArray[np.int64]:
+    @property
+    def linear(self) -> bool:
+        """Whether all bodies are linear."""
+        return isinstance(self.bulk, LinearBulk)
+
+    def constrained(self) -> npt.NDArray[np.int64]:
         """Unknowns whose row says what they are, prescribed or constrained: local numbers."""
-        led = led_unknowns(self._parts)
-        found = [self.supports.unknowns, self.constraints.followers(), led]
+        of_bodies = self.assembly.prescribed_of_bodies()
+        found = [self.supports.unknowns, self.constraints.followers(), of_bodies]
         return np.unique(np.concatenate(found)).astype(np.int64)
 
     @property
     def holding(self) -> list[str]:
         """Names in `reactions` of what holds the bodies for the whole run."""
-        return [*self.constraints.planes.groups, *self.attached.names]
-
-    @property
-    def _owned(self) -> int:
-        return self.layout.owned
+        return [*self.planes.groups, *self.attached.names]
 
     def new_vector(self) -> Vec:
         """Vector of the unknowns, zero."""
@@ -193,6 +182,18 @@ class Problem(Following):
         begin_step(self._parts, step, start, self._accepted.reaction, again)
         self._tangent.begin(step)
 
+    def check(self, steps: Sequence[Step]) -> None:
+        """Go through all steps without solving.
+
+        Raises:
+            InputError: A step asks for what is not there, or cannot be.
+        """
+        check_steps(self._parts, steps)
+        for step in steps:
+            self.attached.check(step)
+        self.rigid.check(steps)
+        self.check_held(steps)
+
     def check_held(self, steps: Sequence[Step]) -> bool:
         """Find out whether supports or contacts can hold every body in every step.
 
@@ -205,23 +206,19 @@ class Problem(Following):
         Raises:
             InputError: A body is free to move and in no contact.
         """
-        size = len(self.u.x.array)
-        return contact_must_hold(self._parts, self.model, self.materials, steps, size)
+        return contact_must_hold(self._parts, steps)
 
-    def set_level(self, fraction: float, dt: float) -> None:
+    def set_load_factor(self, factor: float, dt: float) -> None:
         """Bring the loads to a fraction of the step.
 
         Args:
-            fraction: Where in the step, 0 to 1.
+            factor: Where in the step, 0 to 1.
             dt: Time increment to there.
         """
         self._bodies.forget()
-        self._level = fraction
-        self._dt = dt
-        self.bulk.set_time(dt)
-        self.rigid.set_level(fraction)
-        self.loads.set_level(fraction)
-        self.attached.set_level(fraction)
+        self.load_factor, self.dt = factor, dt
+        self.supports.set_load_factor(factor)
+        self.assembly.terms.set_load_factor(factor, dt)
         self._stabilise()
 
     def evaluate(self, x: Vec) -> Floats:
@@ -233,11 +230,8 @@ class Problem(Following):
         Returns:
             Residual, force.
         """
-        place = self._bodies.take(x)
-        self._balance = found = balance(self._parts, place, self._level, self._dt)
-        self.force_scale, self.round_off = found.force_scale, found.round_off
-        self.norm_as_they_are = found.norm
-        return found.residual
+        self.balance = self.assembly.balance(self._bodies.take(x))
+        return self.balance.residual
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown.
@@ -250,43 +244,45 @@ class Problem(Following):
             Whether entries were added to its pattern.
         """
         self._evaluate_at(x)
-        return self._tangent.write(out, self._level)
+        return self._tangent.write(out, self.load_factor)
 
+    @property
+    @override
+    def _nodal(self) -> Floats:
+        return self._bodies.nodal
+
+    @override
     def _evaluate_at(self, x: Vec) -> None:
-        """Evaluate a state, unless it is that of the last evaluation."""
         if not self._bodies.is_at(x):
             self.evaluate(x)
 
+    @override
     def improve(self, x: Vec) -> bool:
-        """Better multipliers of contacts, weaker springs of stabilisation; whether any changed.
+        """As of `AssembledSystem`.
 
         Raises:
             NotHeldError: They do not converge.
             LostError: A body flows to where it cannot be.
         """
         self._evaluate_at(x)
-        flows = self.stabilisation.flow.flows
-        wrong = self.behind_a_master(x) if flows else None
+        wrong = self.behind_a_master(x) if self.stabilisation.flow.flows else None
         if wrong is not None:
             raise LostError(wrong)
-        moved = self.stabilisation.improve(self._bodies.nodal, self.force_scale)
-        if moved and (flows or self.stabilisation.untouched()):
-            self._accepted.go_on(x, self._balance.outside)
-            self.pass_through(self._bodies.nodal)
-        if moved and flows:
-            return True
-        return any([contact.improve() for contact in self.contacts]) or moved
+        return super().improve(x)
+
+    @override
+    def _go_on(self, x: Vec) -> None:
+        self._accepted.go_on(x, self.balance.outside)
+        self.pass_through(self._bodies.nodal)
 
     def pass_through(self, nodal: Floats) -> None:
         """Remember a state on the way to the next accepted one, (nodes, 3), length."""
         self._contact_work.pass_through(nodal)
-        pass_through(self.contacts)
+        self.terms_of_contact.pass_through()
 
     def contact_lets_go(self, x: Vec) -> str:
         """Why contact does not hold the free bodies in equilibrium; empty if it does."""
-        if not self.stabilisation.watches:
-            return ""
-        return self.stabilisation.lets_go(self._nodal_at(x))
+        return self.stabilisation.lets_go(self._nodal_at(x)) if self.stabilisation.watches else ""
 
     def behind_a_master(self, x: Vec) -> Culprit | None:
         """A body that is behind its master in equilibrium; None if all are where they may be."""
@@ -304,18 +300,9 @@ class Problem(Following):
         if not self.rotations:
             return {}
         if self.reduction is not None:
-            return self.rotations.reduced(self.reduction, x, self._level == 1.0)
+            return self.rotations.reduced(self.reduction, x, self.load_factor == 1.0)
         self._evaluate_at(x)
         return self.rotations.at(self._bodies.nodal)
-
-    def soften(self) -> bool:
-        """After a solution that failed: softer penalties of augmented contacts; whether any.
-
-        Bodies that flow take a shorter step instead.
-        """
-        if self.stabilisation.flow.flows:
-            return self.stabilisation.flow.soften()
-        return any([contact.soften() for contact in self.contacts])
 
     def flow(self) -> None:
         """Let the bodies flow to the next equilibrium in this attempt, see `Flow`."""
@@ -334,8 +321,8 @@ class Problem(Following):
         self._contact_work.begin(nodal)
         if self.stabilisation.watches:
             load = self.loads.force(nodal)
-            self.attached.add_force(nodal, load.reshape(-1, 3))
-            self.stabilisation.start(nodal, self.layout.assembled(load).reshape(-1, 3))
+            self.attached.add_force(nodal, load)
+            self.stabilisation.start(nodal, self.layout.assembled(load.reshape(-1)).reshape(-1, 3))
 
     def commit(self, x: Vec) -> None:
         """Accept a state: the history of the contacts advances and energies are summed.
@@ -343,14 +330,17 @@ class Problem(Following):
         Args:
             x: All unknowns of a state in equilibrium.
         """
-        work = self.reduction.commit(x) if self.reduction is not None else self._commit_bulk(x)
-        nodal = self._bodies.nodal if self.reduction is None else self.layout.split(x)[0]
-        work += self._contact_work.beyond_the_means(nodal, self._dt, self._accepted.work + work)
-        self._accepted.work += work + self.rigid.commit()
+        if self.reduction is not None:
+            work = self.reduction.commit(x)
+            nodal = self.layout.split(x)[0]
+        else:
+            self._evaluate_at(x)
+            self._accepted.go_on(x, self.balance.outside)
+            self._accepted.take(self.balance.outside, self.balance.load)
+            work, nodal = self._accepted.way_work, self._bodies.nodal
+        work += self._contact_work.beyond_the_means(nodal, self.dt, self._accepted.work + work)
+        self._accepted.work += work + self.assembly.terms.accept(nodal)
         x.copy(self._accepted.x)
-        for contact in self.contacts:
-            contact.commit()
-        self.stabilisation.commit()
         self.rotations.commit()
 
     def complete(self, u: Floats, contact_force: Floats, load: Floats) -> None:
@@ -361,34 +351,51 @@ class Problem(Following):
             contact_force: Forces of contact on them, force.
             load: Loads on them, force.
         """
-        self._accepted.x.array[: self._owned] = u
+        self._accepted.x.array[: self.layout.owned] = u
         place = self._bodies.take(self._accepted.x)
-        outside = self.bulk.force(place.owned).array_r - contact_force
+        inner = self.assembly.bodies.force(place.nodal).reshape(-1)[: self.layout.owned]
+        outside = -(inner + contact_force)
         self._accepted.take(self.constraints.tied(outside), self.constraints.tied(load))
+
+    def reduce_by(self, reduction: Reduction) -> None:
+        """Let something else answer for the bulk from the accepted state on."""
+        self.reduction, self._pending = reduction, {}
+
+    @property
+    def whole(self) -> bool:
+        """Whether the accepted state is one of all unknowns."""
+        return not self._pending and self.reduction is None
+
+    def recover(self) -> None:
+        """Bring the accepted state of all unknowns up to date."""
+        if self.reduction is not None:
+            self.reduction.recover()
+        if self._pending:
+            known, self._pending = self._pending, {}
+            load, contact = (known[name].reshape(-1) for name in ("load", "contact_force"))
+            given = np.repeat(known["in_reach"], 3)
+            given[self.supports.unknowns] = True
+            values = self._accepted.displacement
+            self.complete(with_interior(self.bulk, given, values, load + contact), contact, load)
 
     def roll_back(self) -> None:
         """Return to the accepted state."""
         self._bodies.take(self._accepted.x)
         self._bodies.forget()
-        self.rigid.roll_back()
-        for contact in self.contacts:
-            contact.roll_back()
+        self.assembly.terms.roll_back()
         self._stabilise()
 
     def failed_points(self) -> Floats:
         """Positions at which a law had no answer in the last evaluation, over all ranks, (n, 3)."""
-        local = [contact.failed_points() for contact in self.contacts]
-        everywhere = self._comm.allgather(np.concatenate([np.zeros((0, 3)), *local]))
-        return np.concatenate(everywhere)
+        return np.concatenate(self.comm.allgather(self.terms_of_contact.failed_points()))
 
     def persistent(self) -> Persistent:
         """All that the next increments depend on, of this rank."""
         nodal, common = self._memory.persistent()
-        if self.reduction is not None:
-            nodal |= {f"{PENDING}{name}": v for name, v in self.reduction.pending().items()}
-        points = persistent_points(self.contacts, self.bulk.histories)
+        pending = self._pending if self.reduction is None else self.reduction.pending()
+        nodal |= {f"{PENDING}{name}": v for name, v in pending.items()}
         common |= {"rotations": self.rotations.persistent()} | self._tangent.persistent()
-        return Persistent(nodal, points, common)
+        return Persistent(nodal, self.assembly.terms.histories(), common)
 
     def restore(self, kept: Persistent, steps: Sequence[Step]) -> None:
         """Go on from what `persistent` gave.
@@ -406,9 +413,8 @@ class Problem(Following):
         self._memory.restore(kept)
         self._tangent.restore(kept.common)
         self.rotations.restore(kept.common["rotations"])
-        restore_points(self.contacts, self.bulk.histories, kept.points, self._bodies.nodal)
-        pending = under(PENDING, kept.nodal)
-        self.reduction = Interior(self, pending) if pending else None
+        self.assembly.terms.take_histories(iter(kept.points), self._bodies.nodal)
+        self.reduction, self._pending = None, under(PENDING, kept.nodal)
 
     def inverted_cells(self) -> Floats:
         """Middles of the cells of this rank that the last evaluation turned inside out, (n, 3)."""
@@ -423,11 +429,17 @@ class Problem(Following):
 
         Unknowns on an edge that several groups prescribe count for the first of them.
         """
-        if self.reduction is not None:
-            if not self.constraints.planes:
-                return self.reduction.reactions()
-            self.reduction.recover()  # forces of the planes need all displacements on them
-        return reactions(self._parts, self._accepted.reaction, self._bodies.nodal)
+        if self.reduction is not None and not self.planes:
+            sums = self.reduction.reactions()
+        else:
+            self.recover()  # forces of the planes need all displacements on them
+            across, rest = self.planes.forces(self._accepted.reaction)
+            sums = self.supports.reactions(rest)
+            for name, force in across.items():
+                sums[name] = sums.get(name, 0.0) + force
+        for name, force in self.attached.reactions(self._bodies.nodal).items():
+            sums[name] = sums.get(name, 0.0) + force
+        return sums
 
     def mean_displacement(self, group: str, weights: Floats) -> Floats:
         """Mean displacement of a facet group in the accepted state, (3,), length.
@@ -438,7 +450,8 @@ class Problem(Following):
         """
         if self.reduction is not None:
             return self.reduction.mean(group, weights)
-        return np.asarray(self._comm.allreduce(weights @ self._bodies.nodal))
+        self.recover()
+        return np.asarray(self.comm.allreduce(weights @ self._bodies.nodal))
 
     def energies(self) -> dict[str, float]:
         """Energies of the accepted state, force times length.
@@ -451,20 +464,17 @@ class Problem(Following):
             "springs" and elastic supports and of the "transfer" of two half passes, and "residual",
             what is left of "external" less all others: first order in the size of the increments.
         """
-        if self.reduction is not None:
-            elastic = self.reduction.elastic()
+        if self.reduction is None:
+            self.recover()
+            elastic = self.assembly.bodies.energy(self._bodies.nodal)
         else:
-            elastic = self._bodies.elastic(self._accepted.x)
-        return energies(self._parts, elastic, self._accepted.work, self._bodies.nodal)
+            elastic = self.reduction.elastic()
+        stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": elastic}
+        stored |= self.assembly.acting.energies(self._bodies.nodal)
+        work = self._accepted.work
+        return {"external": work} | stored | {"residual": work - sum(stored.values())}
 
     def stiffness_energy(self) -> float:
         """Energy of all nodes held but one, `sum of K_ii u_i^2`: the scale of what is rounded."""
         owned = self._accepted.displacement
-        return float(self._comm.allreduce(float(self.bulk.diagonal.array_r @ owned**2)))
-
-    def _commit_bulk(self, x: Vec) -> float:
-        self._evaluate_at(x)
-        self._accepted.go_on(x, self._balance.outside)
-        self._accepted.take(self._balance.outside, self._balance.load)
-        self._bodies.commit()
-        return self._accepted.way_work + self.attached.commit(self._bodies.nodal)
+        return float(self.comm.allreduce(float(self.bulk.diagonal.array_r @ owned**2)))

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import Vec
-from anisocontact.solver.system.persistent import Arrays
+from anisocontact.solver.terms.persistent import Arrays
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]

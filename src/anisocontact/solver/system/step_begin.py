@@ -1,17 +1,16 @@
-"""A step begins: the parts of a problem take over its supports and loads."""
+"""A step begins: the terms of a problem take it over; and all steps are gone through beforehand."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.bulk import Material
-from anisocontact.mesh import Model
-from anisocontact.solver.stepping.steps import Step
 from anisocontact.solver.system.parts import Parts
+from anisocontact.solver.system.swallowed import check_swallowed
 from anisocontact.solver.terms.loads import Loads
+from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.supports import Supports
 
 Floats = npt.NDArray[np.float64]
@@ -30,57 +29,60 @@ def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again:
     Raises:
         InputError: See `Supports.begin` and `DeadLoads.begin`.
     """
-    supports, planes = parts.supports, parts.constraints.planes
+    supports, planes = parts.supports, parts.planes
     before = supports.unknowns
     supports.begin(step, start)
     gone = np.setdiff1d(before, supports.unknowns)
     released = np.zeros(len(start))
     _, of_supports = planes.forces(reaction)
     released[gone] = of_supports[gone]
-    parts.loads.begin(step, released)
-    parts.rigid.begin(step)
-    parts.attached.begin(step)
+    parts.assembly.terms.begin(step, released)
     planes.begin(supports.unknowns, supports.end, step.name)
     held = [*supports.held(), *planes.held()]
-    load = _at_the_end(parts.loads, start) if parts.attached else None
-    parts.stabilisation.begin(held, step.name, load, now=not again)
+    load = parts.loads.at_end(start.reshape(-1, 3)) if parts.attached else None
+    parts.stabilisation.find_free(held, step.name, load, now=not again)
 
 
-def contact_must_hold(
-    parts: Parts,
-    model: Model,
-    materials: Mapping[str, Material],
-    steps: Sequence[Step],
-    size: int,
-) -> bool:
+def _rehearsed(parts: Parts, steps: Sequence[Step]) -> Iterator[tuple[Step, Supports, Loads]]:
+    """Supports and loads of every step, begun without solving."""
+    model = parts.model
+    supports, loads = Supports(model), Loads(model, parts.materials)
+    nothing = np.zeros(model.space.tabulate_dof_coordinates().size)
+    for step in steps:
+        supports.begin(step, nothing)
+        loads.begin(step, nothing)
+        yield step, supports, loads
+
+
+def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
+    """Go through the supports and loads of all steps without solving.
+
+    Raises:
+        InputError: See `Supports.begin`, `DeadLoads.begin`, `SymmetryPlanes.begin` and
+            `check_swallowed`.
+    """
+    planes, turned = parts.planes, False
+    for step, supports, loads in _rehearsed(parts, steps):
+        # Where a turn ends is not known before it has been.
+        turned = turned or bool(step.rotation)
+        if not turned:
+            planes.check(supports.unknowns, supports.end, step.name)
+        held = [*supports.held(), *planes.held()]
+        check_swallowed(parts.layout, step, loads.given(step), held)
+
+
+def contact_must_hold(parts: Parts, steps: Sequence[Step]) -> bool:
     """Whether contact alone has to hold a body without springs in one of the steps.
-
-    Args:
-        parts: Parts of the problem.
-        model: Mesh of the bodies.
-        materials: Material of each body.
-        steps: The steps.
-        size: Number of displacements of this rank's local nodes.
 
     Raises:
         InputError: A body is free to move and in no contact.
     """
-    supports, loads, nothing = Supports(model), Loads(model, materials), np.zeros(size)
-    load: Floats | None = None
     found = False
-    for step in steps:
-        supports.begin(step, nothing)
-        held = [*supports.held(), *parts.constraints.planes.held()]
-        if parts.attached:
-            loads.begin(step, nothing)
-            load = _at_the_end(loads, nothing)
-        parts.stabilisation.begin(held, step.name, load, now=False)
+    for step, supports, loads in _rehearsed(parts, steps):
+        held = [*supports.held(), *parts.planes.held()]
+        rest = np.zeros_like(parts.model.space.tabulate_dof_coordinates())
+        load = loads.at_end(rest) if parts.attached else None
+        parts.stabilisation.find_free(held, step.name, load, now=False)
         found = found or parts.stabilisation.contact_alone
     parts.stabilisation.clear()
     return found
-
-
-def _at_the_end(loads: Loads, u: Floats) -> Floats:
-    """Forces on the local nodes at the end of a step, at the displacement `u`, (nodes, 3)."""
-    loads.set_level(1.0)
-    return loads.force(u.reshape(-1, 3)).reshape(-1, 3)

@@ -4,21 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Protocol
+from typing import override
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.base.registry import Parameter
 from anisocontact.contact import facet_quadrature
 from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
-from anisocontact.solver.stepping.steps import AXES, Step
 from anisocontact.solver.terms.loads import mean_shares
+from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.pressure import outward
+from anisocontact.solver.terms.step import AXES, Step
+from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
 
@@ -26,7 +27,7 @@ Floats = npt.NDArray[np.float64]
 MOST_NODES = 2000
 
 
-class Attached(Protocol):
+class Attached(Term):
     """Something elastic that holds a body.
 
     Attributes:
@@ -37,55 +38,13 @@ class Attached(Protocol):
     name: str
     nodes: npt.NDArray[np.int32]
 
-    def begin(self, step: Step) -> None:
-        """Take over a step."""
-        ...
-
-    def set_level(self, fraction: float) -> None:
-        """Go to a fraction of the step."""
-        ...
-
-    def add_force(self, u: Floats, out: Floats) -> None:
-        """Add the forces on the bodies at the displacement `u`, both (local nodes, 3)."""
-        ...
-
-    def add_tangent(self, matrix: Mat) -> None:
-        """Add the part of `-d force / d u` that lies in the pattern of the bodies."""
-        ...
-
-    def couplings(self) -> list[Couplings]:
-        """The other part of `-d force / d u`; see `FacetContact.couplings`."""
-        ...
-
-    def blocks(self) -> list[Couplings]:
-        """All of `-d force / d u` as couplings."""
-        ...
-
-    def energy(self, u: Floats) -> float:
-        """Stored energy of the accepted state `u`, over all ranks, force times length."""
-        ...
-
     def reaction(self, u: Floats) -> Floats:
         """Force on the body in the accepted state `u`, over all ranks, (3,)."""
-        ...
+        raise NotImplementedError
 
     def way(self) -> float:
-        """How far it can lead what it holds from the accepted state on, length."""
-        ...
-
-    def commit(self, u: Floats) -> float:
-        """Accept a state; the work of what moves its far end since the last one."""
-        ...
-
-
-class Anchored(Attached, Protocol):
-    """Something whose far end the steps can move.
-
-    Attributes:
-        accepted: Anchor and force in the accepted state, (2, 3), length and force.
-    """
-
-    accepted: Floats
+        """How far it can carry what it holds from the accepted state on, length."""
+        return 0.0
 
 
 @dataclass(frozen=True)
@@ -138,7 +97,7 @@ class ElasticSupport:
         Raises:
             InputError: The group is unknown.
         """
-        return _Bed(self, model)
+        return _SupportTerm(self, model)
 
 
 @dataclass(frozen=True)
@@ -184,7 +143,7 @@ class Spring:
         """Facet groups that are held."""
         return [self.group] if self.to is None else [self.group, self.to]
 
-    def on(self, model: Model) -> Anchored:
+    def on(self, model: Model) -> Attached:
         """The spring on a model.
 
         Args:
@@ -196,10 +155,10 @@ class Spring:
         Raises:
             InputError: A group is unknown.
         """
-        return _Spring(self, model)
+        return _SpringTerm(self, model)
 
 
-class _Bed:
+class _SupportTerm(Attached):
     """An elastic support on a model."""
 
     def __init__(self, spec: ElasticSupport, model: Model) -> None:
@@ -211,49 +170,35 @@ class _Bed:
         along = n[:, :, None] * n[:, None, :]
         stiffness = spec.normal * along + spec.tangential * (np.eye(3) - along)
         self._stiffness: Floats = stiffness
-        self._blocks = self._quadrature.facet_matrices(stiffness)
-        self.nodes = np.unique(self._quadrature.nodes)
+        nodes = self._quadrature.nodes
+        self._blocks = (nodes, nodes, self._quadrature.facet_matrices(stiffness))
+        self.nodes = np.unique(nodes)
 
-    def begin(self, step: Step) -> None:
-        pass
-
-    def set_level(self, fraction: float) -> None:
-        pass
-
+    @override
     def add_force(self, u: Floats, out: Floats) -> None:
         self._quadrature.to_nodes(self._traction(u), out)
 
-    def add_tangent(self, matrix: Mat) -> None:
-        nodes = self._quadrature.nodes
-        matrix.setValuesBlockedLocalRCV(nodes, nodes, self._blocks, PETSc.InsertMode.ADD_VALUES)
-
-    def couplings(self) -> list[Couplings]:
-        return []
-
+    @override
     def blocks(self) -> list[Couplings]:
-        return [(self._quadrature.nodes, self._quadrature.nodes, self._blocks)]
+        return [self._blocks]
 
-    def energy(self, u: Floats) -> float:
+    @override
+    def energies(self, u: Floats) -> dict[str, float]:
         moved = self._quadrature.at_points(u)
         density = -0.5 * np.einsum("ni,ni->n", self._traction(u), moved)
-        return float(self._comm.allreduce(self._quadrature.areas @ density))
+        return {"springs": float(self._comm.allreduce(self._quadrature.areas @ density))}
 
+    @override
     def reaction(self, u: Floats) -> Floats:
         local = self._quadrature.areas @ self._traction(u)
         return np.asarray(self._comm.allreduce(local))
-
-    def way(self) -> float:
-        return 0.0
-
-    def commit(self, u: Floats) -> float:
-        return 0.0
 
     def _traction(self, u: Floats) -> Floats:
         moved = self._quadrature.at_points(u)
         return np.asarray(-np.einsum("nij,nj->ni", self._stiffness, moved))
 
 
-class _Spring:
+class _SpringTerm(Attached):
     """A spring on a model; its anchor is moved by the steps."""
 
     def __init__(self, spec: Spring, model: Model) -> None:
@@ -271,49 +216,60 @@ class _Spring:
         self._weights = weights[self.nodes]
         self._stiffness = np.asarray(spec.stiffness, dtype=float)
         self._start, self._end, self._anchor = np.zeros((3, 3))
-        self.accepted: Floats = np.zeros((2, 3))
+        #: Anchor and force in the accepted state, (2, 3), length and force.
+        self._accepted: Floats = np.zeros((2, 3))
 
-    def begin(self, step: Step) -> None:
+    @override
+    def begin(self, step: Step, released: Floats) -> None:
         self._start = self._end.copy()
         values: Mapping[str, float] = step.anchor.get(self.name, {})
         for axis, value in values.items():
             self._end[AXES.index(axis)] = value
 
-    def set_level(self, fraction: float) -> None:
-        self._anchor = (1.0 - fraction) * self._start + fraction * self._end
+    @override
+    def set_load_factor(self, factor: float, dt: float) -> None:
+        self._anchor = (1.0 - factor) * self._start + factor * self._end
 
+    @override
     def add_force(self, u: Floats, out: Floats) -> None:
         out[self.nodes] += self._weights[:, None] * self._force(u, self._anchor)
 
-    def add_tangent(self, matrix: Mat) -> None:
-        pass
-
+    @override
     def couplings(self) -> list[Couplings]:
         pairs = np.einsum("a,ij,b->aibj", self._weights, np.diag(self._stiffness), self._weights)
         size = 3 * len(self.nodes)
         nodes = self.nodes[None]
         return [(nodes, nodes, pairs.reshape(1, size, size))]
 
-    def blocks(self) -> list[Couplings]:
-        return self.couplings()
+    @override
+    def energies(self, u: Floats) -> dict[str, float]:
+        anchor, _ = self._accepted
+        return {"springs": -0.5 * float(self._force(u, anchor) @ self._stretch(u, anchor))}
 
-    def energy(self, u: Floats) -> float:
-        anchor, _ = self.accepted
-        return -0.5 * float(self._force(u, anchor) @ self._stretch(u, anchor))
-
+    @override
     def reaction(self, u: Floats) -> Floats:
-        return self._force(u, self.accepted[0])
+        return self._force(u, self._accepted[0])
 
+    @override
     def way(self) -> float:
-        before, force = self.accepted
+        before, force = self._accepted
         stiff = self._stiffness > 0.0
         stretch = force[stiff] / self._stiffness[stiff]
         return float(np.linalg.norm(self._anchor - before) + np.linalg.norm(stretch))
 
-    def commit(self, u: Floats) -> float:
-        before, force = self.accepted
-        self.accepted = np.stack([self._anchor, self._force(u, self._anchor)])
-        return float(0.5 * (force + self.accepted[1]) @ (self._anchor - before))
+    @override
+    def accept(self, u: Floats) -> float:
+        before, force = self._accepted
+        self._accepted = np.stack([self._anchor, self._force(u, self._anchor)])
+        return float(0.5 * (force + self._accepted[1]) @ (self._anchor - before))
+
+    @override
+    def persistent(self) -> Arrays:
+        return {f"spring.{self.name}": self._accepted.copy()}
+
+    @override
+    def restore(self, kept: Arrays) -> None:
+        self._accepted = kept[f"spring.{self.name}"].copy()
 
     def _force(self, u: Floats, anchor: Floats) -> Floats:
         return np.asarray(-self._stiffness * self._stretch(u, anchor))

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
 from anisocontact.base.fenicsx import Mat, Vec
-from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.symmetry import SymmetryPlanes
-from anisocontact.solver.terms.ties import tie, tied_nodes
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -22,25 +18,20 @@ class Constraints:
     """Works the constraints into the equations, one after the other.
 
     Args:
-        model: Mesh with named facets.
-        symmetry: Flat facet groups whose nodes stay in their plane.
         like: A vector of the unknowns; those of the mesh come first.
-
-    Attributes:
-        planes: The symmetry planes.
-
-    Raises:
-        InputError: See `SymmetryPlanes`.
+        ties: Ties of middle nodes, if there are any.
+        planes: Symmetry planes, if there are any.
     """
 
-    def __init__(self, model: Model, symmetry: Sequence[str], like: Vec) -> None:
-        self._like = like
-        self._ties = tie(model, like)
-        self.planes = SymmetryPlanes(model, symmetry, like, tied_nodes(model))
+    def __init__(
+        self, like: Vec, ties: Constraint | None = None, planes: SymmetryPlanes | None = None
+    ) -> None:
+        self._like, self._ties, self._planes = like, ties, planes
 
-    def __bool__(self) -> bool:
-        """Whether there are any."""
-        return bool(self._all())
+    @property
+    def on_planes(self) -> Ints:
+        """Unknowns of this rank that follow from others on symmetry planes, local numbers."""
+        return np.zeros(0, dtype=np.int64) if self._planes is None else self._planes.slaves
 
     def tied(self, force: Floats) -> Floats:
         """Forces on the mesh, those of tied nodes handed to the corners they follow."""
@@ -99,7 +90,7 @@ class Constraints:
         return columns
 
     def _all(self) -> list[Constraint]:
-        found = (self._ties, self.planes.constraint if self.planes else None)
+        found = (self._ties, self._planes.constraint if self._planes else None)
         return [constraint for constraint in found if constraint is not None]
 
     def _handed(self, constraint: Constraint, force: Floats) -> Floats:

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.rigid import COMPONENTS, RigidBody
 from anisocontact.rigid.body import component_number
-from anisocontact.solver.stepping.steps import Step
+from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.turn import Turn
 
 Floats = npt.NDArray[np.float64]

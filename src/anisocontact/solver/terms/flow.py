@@ -13,16 +13,16 @@ accepted is equilibrium without viscosity.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from typing import Any, override
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import PETSc
-from anisocontact.contact import AnyContact, NotHeldError
+from anisocontact.contact import NotHeldError
 from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
+from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -41,14 +41,7 @@ SLOW = 0.1
 MOST_STEPS = 60
 
 
-def pass_through(contacts: Sequence[AnyContact]) -> None:
-    """Let contacts remember a state that the bodies flow through, for the work of friction."""
-    for contact in contacts:
-        for part in contact.parts:
-            part.pass_through()
-
-
-class Flow:
+class Flow(Term):
     """Viscous flow of all bodies from the accepted state to an equilibrium.
 
     Args:
@@ -93,14 +86,13 @@ class Flow:
         self._from = u.copy()
         self.stiffness = self._last = FIRST * self._scale
 
-    def force(self, u: Floats) -> Floats:
-        """Viscous force on the local nodes, (nodes, 3)."""
-        force = np.zeros_like(u)
+    @override
+    def add_force(self, u: Floats, out: Floats) -> None:
         if self.stiffness:
-            force[self._nodes] = -self.stiffness * (u - self._from)[self._nodes]
-        return force
+            out[self._nodes] -= self.stiffness * (u - self._from)[self._nodes]
 
-    def couplings(self) -> list[Couplings]:
+    @override
+    def blocks(self) -> list[Couplings]:
         """What the viscous force changes with the displacement, for one more correction."""
         self._corrections += 1
         if not self.stiffness:

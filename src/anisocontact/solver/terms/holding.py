@@ -7,13 +7,14 @@ the loads would stretch by more than the size of the body leaves that motion to 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy.linalg
 
 from anisocontact.solver.terms.free_modes import FREE, Body
+from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
 
@@ -21,17 +22,7 @@ Floats = npt.NDArray[np.float64]
 NOTHING = 1e-12
 
 
-class Elastic(Protocol):
-    """What holds bodies elastically; see `Attachments`."""
-
-    def add_force(self, u: Floats, out: Floats) -> None:
-        """Add the forces on the bodies at the displacement `u`, both (local nodes, 3)."""
-        ...
-
-
-def stiffness(
-    elastic: Elastic, bodies: Sequence[Body], shape: tuple[int, ...], comm: Any
-) -> Floats:
+def stiffness(elastic: Term, bodies: Sequence[Body], shape: tuple[int, ...], comm: Any) -> Floats:
     """Stiffness that springs and elastic supports have in the rigid motions of bodies.
 
     Args:
@@ -44,14 +35,12 @@ def stiffness(
         `-d force / d motion`, six rows and columns for each body, force/length.
     """
     matrix = np.zeros((6 * len(bodies), 6 * len(bodies)))
-    rest = np.zeros(shape)
-    elastic.add_force(np.zeros(shape), rest)
+    rest = elastic.force(np.zeros(shape))
     for i, body in enumerate(bodies):
         for k, field in enumerate(body.fields):
-            u, force = np.zeros(shape), np.zeros(shape)
+            u = np.zeros(shape)
             u[body.local] = field
-            elastic.add_force(u, force)
-            matrix[:, 6 * i + k] = -work(bodies, force - rest)
+            matrix[:, 6 * i + k] = -work(bodies, elastic.force(u) - rest)
     return np.asarray(comm.allreduce(matrix))
 
 

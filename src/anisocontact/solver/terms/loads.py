@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
+from typing import override
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.fenicsx import Mat, body_shares
+from anisocontact.base.fenicsx import body_shares
 from anisocontact.bulk import Material
 from anisocontact.contact import facet_quadrature
 from anisocontact.mesh import Model
-from anisocontact.solver.stepping.steps import AXES, Step
-from anisocontact.solver.system.layout import Layout
-from anisocontact.solver.terms.pressure import Pressures
-from anisocontact.solver.terms.supports import Supports
-from anisocontact.solver.terms.swallowed import Given, check_swallowed
-from anisocontact.solver.terms.symmetry import SymmetryPlanes
+from anisocontact.solver.terms.pressure import Given, Pressures
+from anisocontact.solver.terms.step import AXES, Step
+from anisocontact.solver.terms.term import Term, TermGroup
 
 Floats = npt.NDArray[np.float64]
 
 
-class DeadLoads:
+class DeadLoads(Term):
     """Forces that do not depend on the displacement, and what released supports still carry.
 
     A load of a kind on a group or body is `share_a f` at node a: the integrals of the basis
@@ -35,17 +33,10 @@ class DeadLoads:
         self._end: dict[tuple[str, str], Floats] = {}
         index_map = model.space.dofmap.index_map
         self._released: Floats = np.zeros(3 * (index_map.size_local + index_map.num_ghosts))
+        self._now = self._released.reshape(-1, 3)
 
+    @override
     def begin(self, step: Step, released: Floats) -> None:
-        """Take over the loads of a step.
-
-        Args:
-            step: The step.
-            released: Forces on the local unknowns that fade out along the step.
-
-        Raises:
-            InputError: An unknown facet group or body.
-        """
         self._released = released
         self._start = {key: value.copy() for key, value in self._end.items()}
         for kind, share in _SHARES.items():
@@ -58,14 +49,18 @@ class DeadLoads:
                 for axis, value in values.items():
                     end[AXES.index(axis)] = value
 
-    def at(self, fraction: float) -> Floats:
-        """Forces on the local unknowns at a fraction of the step."""
-        force = (1.0 - fraction) * self._released
+    @override
+    def set_load_factor(self, factor: float, dt: float) -> None:
+        force = (1.0 - factor) * self._released
         nodal = force.reshape(-1, 3)
         for key, end in self._end.items():
             start = self._start.get(key, np.zeros(3))
-            nodal += self._shares[key][:, None] * ((1.0 - fraction) * start + fraction * end)
-        return force
+            nodal += self._shares[key][:, None] * ((1.0 - factor) * start + factor * end)
+        self._now = nodal
+
+    @override
+    def add_force(self, u: Floats, out: Floats) -> None:
+        out += self._now
 
     def given(self, step: Step) -> Iterator[Given]:
         """What a step that has begun gives other than zero, by components."""
@@ -106,7 +101,7 @@ _SHARES: dict[str, Callable[[Model, str, str], Floats]] = {
 }
 
 
-class Loads:
+class Loads(TermGroup):
     """All loads of a problem.
 
     Args:
@@ -115,59 +110,15 @@ class Loads:
     """
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
-        self._dead = DeadLoads(model)
-        self._pressures = Pressures(model, materials)
-        self._constant: Floats = np.zeros(0)
-
-    def begin(self, step: Step, released: Floats) -> None:
-        """Take over the loads of a step; see `DeadLoads.begin`."""
-        self._dead.begin(step, released)
-        self._pressures.begin(step)
+        self._dead, self._pressures = DeadLoads(model), Pressures(model, materials)
+        super().__init__([self._dead, self._pressures])
 
     def given(self, step: Step) -> Iterator[Given]:
         """What a step that has begun gives other than zero."""
         yield from self._dead.given(step)
         yield from self._pressures.given(step)
 
-    def set_level(self, fraction: float) -> None:
-        """Go to a fraction of the step."""
-        self._constant = self._dead.at(fraction)
-        self._pressures.set_level(fraction)
-
-    def force(self, u: Floats) -> Floats:
-        """Forces on the local unknowns, (3 nodes,), at the displacement `u`, (nodes, 3)."""
-        force = self._constant.copy()
-        self._pressures.add_force(u, force.reshape(-1, 3))
-        return force
-
-    def add_tangent(self, matrix: Mat) -> None:
-        """Add `-d force / d u` of the last `force` to the matrix of the system."""
-        self._pressures.add_tangent(matrix)
-
-
-def check_steps(
-    model: Model,
-    materials: Mapping[str, Material],
-    steps: Sequence[Step],
-    planes: SymmetryPlanes | None = None,
-) -> None:
-    """Go through the loads of all steps without solving.
-
-    Raises:
-        InputError: See `Supports.begin`, `DeadLoads.begin`, `SymmetryPlanes.begin` and
-            `check_swallowed`.
-    """
-    layout = Layout(model.space, 0)
-    supports, loads = Supports(model), Loads(model, materials)
-    index_map = model.space.dofmap.index_map
-    nothing = np.zeros(3 * (index_map.size_local + index_map.num_ghosts))
-    turned = False
-    for step in steps:
-        supports.begin(step, nothing)
-        loads.begin(step, nothing)
-        # Where a turn ends is not known before it has been.
-        turned = turned or bool(step.rotation)
-        if planes is not None and not turned:
-            planes.check(supports.unknowns, supports.end, step.name)
-        held = [*supports.held(), *(planes.held() if planes is not None else [])]
-        check_swallowed(layout, step, loads.given(step), held)
+    def at_end(self, u: Floats) -> Floats:
+        """Forces at the end of the step that has begun, at the displacement `u`, (nodes, 3)."""
+        self.set_load_factor(1.0, 0.0)
+        return self.force(u)

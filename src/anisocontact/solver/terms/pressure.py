@@ -3,22 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import override
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.fenicsx import Mat, PETSc, facet_sides, geometry
+from anisocontact.base.fenicsx import facet_sides, geometry
 from anisocontact.bulk import Material
 from anisocontact.contact import FacetQuadrature, facet_quadrature
 from anisocontact.contact.quadrature import Surfaced
+from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
-from anisocontact.solver.stepping.steps import Step
-from anisocontact.solver.terms.swallowed import Given
+from anisocontact.solver.terms.step import Step
+from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
 
 
-class Pressures:
+class Pressures(Term):
     """Forces `-p n` on the area of now, n the outward normal of now.
 
     The force at node a is `-integral of N_a p (t_1 x t_2)` over the coordinates of the facet, with
@@ -38,12 +41,8 @@ class Pressures:
         self._end: dict[str, float] = {}
         self._now: dict[str, float] = {}
 
-    def begin(self, step: Step) -> None:
-        """Take over the pressures of a step.
-
-        Raises:
-            InputError: An unknown facet group.
-        """
+    @override
+    def begin(self, step: Step, released: Floats) -> None:
         self._start = dict(self._end)
         for group, value in step.pressure.items():
             field = f"step {step.name!r}.pressure"
@@ -62,22 +61,39 @@ class Pressures:
                 self._surfaces[group].add_force(1.0, rest, force)
                 yield Given("pressure", group, "", force)
 
-    def set_level(self, fraction: float) -> None:
-        """Go to a fraction of the step."""
+    @override
+    def set_load_factor(self, factor: float, dt: float) -> None:
         self._now = {
-            group: (1.0 - fraction) * self._start.get(group, 0.0) + fraction * end
+            group: (1.0 - factor) * self._start.get(group, 0.0) + factor * end
             for group, end in self._end.items()
         }
 
+    @override
     def add_force(self, u: Floats, out: Floats) -> None:
-        """Add the forces at the displacement `u` to the local nodes, both (nodes, 3)."""
         for group, value in self._now.items():
             self._surfaces[group].add_force(value, u, out)
 
-    def add_tangent(self, matrix: Mat) -> None:
-        """Add `-d force / d u` of the last `add_force` to the matrix of the system."""
-        for group, value in self._now.items():
-            self._surfaces[group].add_tangent(value, matrix)
+    @override
+    def blocks(self) -> list[Couplings]:
+        surfaces = ((self._surfaces[group], value) for group, value in self._now.items())
+        return [one.block(value) for one, value in surfaces if not one.fixed]
+
+
+@dataclass(frozen=True)
+class Given:
+    """A load that a step gives.
+
+    Attributes:
+        kind: "traction", "force", "pressure" or "body_force".
+        name: Facet group or body.
+        axis: Axis it is along; empty for a pressure.
+        force: Forces on the local nodes, (nodes, 3).
+    """
+
+    kind: str
+    name: str
+    axis: str
+    force: Floats
 
 
 class _Surface:
@@ -90,22 +106,19 @@ class _Surface:
         self._sign = _sides(model, group, self._quadrature)
         count = len(model.space.tabulate_dof_coordinates())
         self._rest = self._quadrature.moved(np.zeros((count, 3)))
-        self._fixed = fixed
+        self.fixed = fixed
         self._moved: Surfaced = self._rest
 
     def add_force(self, pressure: float, u: Floats, out: Floats) -> None:
-        if not self._fixed:
+        if not self.fixed:
             self._moved = self._quadrature.moved(u)
         push = -pressure * self._sign[:, None, None] * self._moved.vector_areas
         self._quadrature.to_nodes(push.reshape(-1, 3), out, np.ones(self._quadrature.count))
 
-    def add_tangent(self, pressure: float, matrix: Mat) -> None:
-        if self._fixed:
-            return
+    def block(self, pressure: float) -> Couplings:
         change = self._moved.vector_area_matrices()
-        blocks = pressure * self._sign[:, None, None] * change
         nodes = self._quadrature.nodes
-        matrix.setValuesBlockedLocalRCV(nodes, nodes, blocks, PETSc.InsertMode.ADD_VALUES)
+        return nodes, nodes, pressure * self._sign[:, None, None] * change
 
 
 def outward(model: Model, group: str, quadrature: FacetQuadrature) -> Floats:

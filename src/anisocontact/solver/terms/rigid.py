@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Any, override
 
 import numpy as np
 import numpy.typing as npt
@@ -13,9 +13,10 @@ from anisocontact.contact import AnyContact
 from anisocontact.contact.transfer import Couplings
 from anisocontact.rigid import RigidBody
 from anisocontact.rigid.body import Pose
-from anisocontact.solver.stepping.newton import SingularError
-from anisocontact.solver.stepping.steps import Step
 from anisocontact.solver.terms.drive import Drive
+from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.step import Step
+from anisocontact.solver.terms.term import SingularError, Term
 
 Floats = npt.NDArray[np.float64]
 
@@ -29,7 +30,7 @@ _APART = (
 _NAMES = ("along x", "along y", "along z", "about x", "about y", "about z")
 
 
-class RigidBodies:
+class RigidBodies(Term):
     """The rigid bodies of the contacts.
 
     A free body adds six unknowns `(d, l v)`: translation and turn, the turn times a length of the
@@ -65,7 +66,7 @@ class RigidBodies:
         self._scales = {body: self._scale(body) for body in self.bodies}
         zero = np.zeros((len(self.bodies), 6))
         self._outside, self._accepted_outside, self._accepted_load = zero, zero, zero
-        self._level = 0.0
+        self._load_factor = 0.0
 
     @property
     def size(self) -> int:
@@ -84,12 +85,8 @@ class RigidBodies:
             for drive in drives.values():
                 drive.begin(step, np.zeros(6), np.zeros(6))
 
-    def begin(self, step: Step) -> None:
-        """Take over motions and loads of a step from the accepted state.
-
-        Raises:
-            InputError: No such body, or a component that cannot be moved, freed or loaded.
-        """
+    @override
+    def begin(self, step: Step, released: Floats) -> None:
         self._known(step)
         reactions = self._accepted_outside - self._accepted_load
         for body, reaction in zip(self.bodies, reactions, strict=True):
@@ -101,15 +98,15 @@ class RigidBodies:
         turns = [float(np.linalg.norm(end[3:])) for end in ends]
         return max([*turns, *(abs(turn.angle) for turn in step.rotation.values())], default=0.0)
 
-    def set_level(self, fraction: float) -> None:
-        """Motions and loads at a fraction of the step."""
-        self._level = fraction
+    @override
+    def set_load_factor(self, factor: float, dt: float) -> None:
+        self._load_factor = factor
 
     def place(self, unknowns: Floats) -> None:
         """Bring the bodies to their unknowns, (size,), and to what is prescribed."""
         for body in self.bodies:
             if not body.free:
-                body.place(self._drives[body].values(self._level))
+                body.place(self._drives[body].values(self._load_factor))
         for body, values in zip(self.free, unknowns.reshape(-1, 6), strict=True):
             body.place(values / self._scales[body])
 
@@ -118,10 +115,10 @@ class RigidBodies:
         parts = [body.accepted.values * self._scales[body] for body in self.free]
         return np.concatenate([np.zeros(0), *parts])
 
-    def prescribed(self) -> Floats:
+    def values(self) -> Floats:
         """Unknowns with the values that are prescribed at this level, zero for others, (size,)."""
         parts = [
-            np.where(self._drives[b].held, self._drives[b].values(self._level), 0.0)
+            np.where(self._drives[b].held, self._drives[b].values(self._load_factor), 0.0)
             * self._scales[b]
             for b in self.free
         ]
@@ -134,13 +131,13 @@ class RigidBodies:
         for i, body in enumerate(self.free):
             drive, scale = self._drives[body], self._scales[body]
             outside = self._outside[self.bodies.index(body)]
-            row = (outside - drive.load(self._level)) / scale
-            off = unknowns[6 * i : 6 * i + 6] - drive.values(self._level) * scale
+            row = (outside - drive.load(self._load_factor)) / scale
+            off = unknowns[6 * i : 6 * i + 6] - drive.values(self._load_factor) * scale
             rows[6 * i : 6 * i + 6] = np.where(drive.held, support_scale * off, row)
         return rows
 
-    def lag(self) -> Floats:
-        """`ContactRecord.add_lag` of the free bodies as the rows have it, (size,), force."""
+    def multiplier_residual(self) -> Floats:
+        """`Contacts.multiplier_residual` of the free bodies as the rows have it, (size,), force."""
         rows = np.zeros(self.size)
         for i, body in enumerate(self.free):
             local = sum((c.lag_wrench(body.position) for c in self.contacts[body]), np.zeros(6))
@@ -150,7 +147,7 @@ class RigidBodies:
 
     def loads(self) -> Floats:
         """Loads of the free bodies as the rows have them, (size,), force."""
-        parts = [self._drives[b].load(self._level) / self._scales[b] for b in self.free]
+        parts = [self._drives[b].load(self._load_factor) / self._scales[b] for b in self.free]
         return np.concatenate([np.zeros(0), *parts])
 
     def spring_forces(self) -> Floats:
@@ -162,11 +159,11 @@ class RigidBodies:
         parts = [b.springs * b.trial.values / self._scales[b] for b in self.free]
         return np.concatenate([np.zeros(0), *parts])
 
-    def held(self) -> npt.NDArray[np.bool_]:
+    def prescribed(self) -> npt.NDArray[np.bool_]:
         """Which of the unknowns are prescribed, (size,)."""
         return np.concatenate([np.zeros(0, dtype=bool), *(self._drives[b].held for b in self.free)])
 
-    def couplings(self, first: int) -> list[Couplings]:
+    def body_couplings(self, first: int) -> list[Couplings]:
         """Blocks of the tangent in rows or columns of free bodies, of the contacts of this rank.
 
         Args:
@@ -193,12 +190,8 @@ class RigidBodies:
             self._check_support(body, np.concatenate(stiff))
         return found
 
-    def commit(self) -> float:
-        """Accept the poses of the trial.
-
-        Returns:
-            Work that supports and loads did on the bodies, over the mean of both ends.
-        """
+    @override
+    def accept(self, u: Floats) -> float:
         before = np.array([body.accepted.values for body in self.bodies]).reshape(-1, 6)
         now = np.array([body.trial.values for body in self.bodies]).reshape(-1, 6)
         work = float(np.sum(0.5 * (self._accepted_outside + self._outside) * (now - before)))
@@ -206,17 +199,17 @@ class RigidBodies:
             body.commit()
         self._accepted_outside = self._outside
         self._accepted_load = np.array(
-            [self._drives[body].load(self._level) for body in self.bodies]
+            [self._drives[body].load(self._load_factor) for body in self.bodies]
         ).reshape(-1, 6)
         return work
 
+    @override
     def roll_back(self) -> None:
-        """Return to the accepted poses."""
         for body in self.bodies:
             body.trial = body.accepted
 
-    def persistent(self) -> dict[str, Floats]:
-        """All that the next increments depend on, the same on every rank."""
+    @override
+    def persistent(self) -> Arrays:
         poses = [body.accepted for body in self.bodies]
         return {
             "rigid.values": np.array([pose.values for pose in poses]).reshape(-1, 6),
@@ -225,8 +218,8 @@ class RigidBodies:
             "rigid.load": self._accepted_load.copy(),
         }
 
-    def restore(self, kept: Mapping[str, Floats]) -> None:
-        """Go on from what `persistent` gave."""
+    @override
+    def restore(self, kept: Arrays) -> None:
         pairs = zip(self.bodies, kept["rigid.values"], kept["rigid.rotation"], strict=True)
         for body, values, rotation in pairs:
             body.accepted = body.trial = Pose(
@@ -235,9 +228,11 @@ class RigidBodies:
         self._accepted_outside = kept["rigid.outside"].copy()
         self._accepted_load = kept["rigid.load"].copy()
 
-    def energy(self) -> float:
-        """Energy of all springs in the accepted state, force times length."""
-        return sum(float(0.5 * b.springs @ b.accepted.values**2) for b in self.bodies)
+    @override
+    def energies(self, u: Floats) -> dict[str, float]:
+        sprung = [body for body in self.bodies if body.springs.any()]
+        stored = sum(float(0.5 * b.springs @ b.accepted.values**2) for b in sprung)
+        return {"springs": stored} if sprung else {}
 
     def support(self, body: RigidBody) -> Floats:
         """Force and moment of what prescribes the accepted motion of a body, (6,)."""

@@ -12,13 +12,13 @@ the first attempt goes without, and those with springs follow where it fails.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NoReturn
+from typing import NoReturn, override
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import Mat, PETSc
+from anisocontact.base.fenicsx import PETSc
 from anisocontact.contact import AnyContact, NotHeldError, facet_size
 from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
@@ -29,6 +29,8 @@ from anisocontact.solver.terms.free_modes import Body, Held, bodies, free_modes,
 from anisocontact.solver.terms.holding import NOTHING as NO_STIFFNESS
 from anisocontact.solver.terms.holding import stiffness, unheld, work
 from anisocontact.solver.terms.joined import joined
+from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -48,7 +50,7 @@ MOST = 60
 FAR, LOST = 2.0, 100.0
 
 
-class Stabilisation:
+class Stabilisation(Term):
     """Springs on all bodies that a step leaves without support.
 
     Args:
@@ -137,7 +139,7 @@ class Stabilisation:
         """Whether contact alone has to hold a body that has no springs."""
         return any(not free.sprung for free in self._loose)
 
-    def begin(
+    def find_free(
         self, held: Sequence[Held], step: str, load: Floats | None = None, now: bool = True
     ) -> None:
         """Find out what a step leaves free.
@@ -214,26 +216,20 @@ class Stabilisation:
         """
         self._where = where
 
-    def force(self, u: Floats) -> Floats:
-        """Force of the springs on the local nodes, (nodes, 3)."""
-        force = self.flow.force(u)
+    @override
+    def add_force(self, u: Floats, out: Floats) -> None:
+        self.flow.add_force(u, out)
         for free in self._free:
             nodes = free.nodes
-            force[nodes] -= free.stiffness * (u[nodes] - self._anchor[nodes])
-        return force
+            out[nodes] -= free.stiffness * (u[nodes] - self._anchor[nodes])
 
-    def couplings(self) -> list[Couplings]:
-        """What the force of the springs changes with the displacement."""
-        found = self.flow.couplings()
+    @override
+    def blocks(self) -> list[Couplings]:
+        found = self.flow.blocks()
         for free in self._free:
             nodes = free.nodes.astype(PETSc.IntType)[:, None]
             found.append((nodes, nodes, np.tile(free.stiffness * np.eye(3), (len(nodes), 1, 1))))
         return found
-
-    def add_tangent(self, matrix: Mat) -> None:
-        """Add what the force of the springs changes with the displacement."""
-        for rows, columns, blocks in self.couplings():
-            matrix.setValuesBlockedLocalRCV(rows, columns, blocks, PETSc.InsertMode.ADD_VALUES)
 
     def improve(self, u: Floats, at_work: float) -> bool:
         """Let the springs go on from an equilibrium.
@@ -353,8 +349,8 @@ class Stabilisation:
         """Whether a free body is touched by nothing in the trial."""
         return not all([free.touched() for free in self._free])
 
-    def commit(self) -> None:
-        """Count what springs and flow took up on the way to the accepted state."""
+    @override
+    def accept(self, u: Floats) -> float:
         self.energy += self._spent
         self.released += self.flow.spent
         self._spent = 0.0
@@ -363,6 +359,20 @@ class Stabilisation:
             steps = self.flow.steps
             self.notes.append(f"equilibrium was lost: {steps} steps of viscous flow to the next")
             self.flow.stop()
+        return 0.0
+
+    @override
+    def energies(self, u: Floats) -> dict[str, float]:
+        return {"stabilisation": self.energy, "flow": self.released}
+
+    @override
+    def persistent(self) -> Arrays:
+        return {"stabilisation": np.array([self.energy, self.released, self.careful])}
+
+    @override
+    def restore(self, kept: Arrays) -> None:
+        energy, released, careful = kept["stabilisation"].tolist()
+        self.energy, self.released, self.careful = energy, released, bool(careful)
 
     def _add(
         self, body: Body, left: Floats, motions: Floats, springs: Floats, step: str, now: bool

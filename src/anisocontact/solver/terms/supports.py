@@ -6,9 +6,9 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import MPI, fem
+from anisocontact.base.fenicsx import MPI, Vec, fem
 from anisocontact.mesh import Model
-from anisocontact.solver.stepping.steps import AXES, Step
+from anisocontact.solver.terms.step import AXES, Step
 from anisocontact.solver.terms.turn import Turn
 
 Floats = npt.NDArray[np.float64]
@@ -46,6 +46,8 @@ class Supports:
         self.unknowns: Ints = np.zeros(0, dtype=np.int64)
         self.start: Floats = np.zeros(0)
         self.end: Floats = np.zeros(0)
+        #: Their values now, length.
+        self.values: Floats = np.zeros(0)
 
     def begin(self, step: Step, u: Floats) -> None:
         """Take over the supports of a step.
@@ -71,7 +73,8 @@ class Supports:
             taken[unknowns] = value
         self._owner = owner
         self.unknowns = np.flatnonzero(~np.isnan(taken))
-        self.start, self.end = u[self.unknowns], taken[self.unknowns]
+        self.start = self.values = u[self.unknowns]
+        self.end = taken[self.unknowns]
         self._turned = [
             (goal, held, self._positions(held // 3, u))
             for key, held in owner.items()
@@ -88,14 +91,18 @@ class Supports:
         """Local unknowns that each support holds on this rank: none of them twice."""
         return self._owner
 
-    def at(self, fraction: float) -> Floats:
-        """Prescribed values at a fraction of the step."""
-        values = (1.0 - fraction) * self.start + fraction * self.end
+    def set_load_factor(self, factor: float) -> None:
+        """Go to a fraction of the step."""
+        values = (1.0 - factor) * self.start + factor * self.end
         for turn, held, start in self._turned:
             place = np.searchsorted(self.unknowns, held)
-            moved = turn.path(start, fraction) - start
+            moved = turn.path(start, factor) - start
             values[place] = self.start[place] + moved[np.arange(len(held)), held % 3]
-        return values
+        self.values = values
+
+    def violation(self, x: Vec) -> Floats:
+        """How far the prescribed unknowns are from their values, length."""
+        return np.asarray(x.array_r[self.unknowns] - self.values)
 
     def _take_over(self, step: Step) -> None:
         for key, goal in self._goals.items():

@@ -10,14 +10,14 @@ import numpy.typing as npt
 import scipy.sparse
 
 from anisocontact.base.fenicsx import Vec
-from anisocontact.solver.stepping.steps import Step
 from anisocontact.solver.strategies.condensed.parts import Condensation, connected
 from anisocontact.solver.strategies.condensed.patterns import Probe, State
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.strategies.condensed.system import ContactSystem
-from anisocontact.solver.system.persistent import Arrays
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.system.reduction import Kept
+from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.step import Step
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -60,7 +60,7 @@ class Condensed:
         self._held: dict[tuple[str, int], int] = {}
         self._means: dict[str, tuple[Probe, Floats]] = {}
         self._whole: tuple[State, Floats] | None = None
-        problem.reduction = self
+        problem.reduce_by(self)
         if kept:
             self._restore(kept)
 
@@ -115,7 +115,7 @@ class Condensed:
             self._stale = True
 
     def prepare(self) -> ContactSystem:
-        """The system of the contact unknowns at the level of the problem.
+        """The system of the contact unknowns at the load factor of the problem.
 
         What has been condensed is used again as long as the same unknowns are prescribed and no
         body has moved beyond what was allowed for.
@@ -130,8 +130,8 @@ class Condensed:
         problem.stabilise_at(self._reach.nodes)
         self._trial_load = problem.dead_load()
         supports = np.zeros(self._stiffness.shape[0])
-        supports[problem.supports.unknowns] = problem.supports.at(problem.level)
-        self._system.set_level(supports, self._trial_load, problem.dt)
+        supports[problem.supports.unknowns] = problem.supports.values
+        self._system.set_load_factor(supports, self._trial_load)
         if problem.stabilisation.flow.flows:
             problem.stabilisation.flow.start(self._nodal(), self._reach.nodes)
         return self._system
@@ -140,7 +140,7 @@ class Condensed:
         """Whether unknowns are prescribed and in reach as when the bodies were condensed."""
         fixed, _ = self._fixed()
         same = np.array_equal(system.bulk.prescribed, np.flatnonzero(fixed))
-        same = same and np.array_equal(system.led, self._problem.rigid.held())
+        same = same and np.array_equal(system.prescribed, self._problem.rigid.prescribed())
         return same and self._reach.valid(self._nodal())
 
     def _fixed(self) -> tuple[Flags, scipy.sparse.csr_array | None]:
@@ -170,13 +170,13 @@ class Condensed:
         Returns:
             Work from outside since the last one, force times length.
         """
-        system, problem = self.system, self._problem
+        system = self.system
         before, after = self._state, self._trial(x)
         assert before is not None
         work = sum(starmap(system.patterns.work, pairwise([before, *system.way, after])))
         self._state, self._load, self._forces = after, self._trial_load, system.raw_forces
         self._stale = True
-        return work + problem.attached.commit(self._nodes_of(x))
+        return float(work)
 
     def _trial(self, x: Vec) -> State:
         """The state of the contact unknowns of a vector of all unknowns."""
@@ -231,8 +231,6 @@ class Condensed:
         for (group, axis), unknowns in self._problem.supports.owners.items():
             total = outside[self._held[group, axis]] - load[unknowns].sum()
             sums.setdefault(group, np.zeros(3))[axis] = total
-        for name, force in self._problem.attached.reactions(self._nodal()).items():
-            sums[name] = sums.get(name, 0.0) + force
         return sums
 
     def elastic(self) -> float:
@@ -300,7 +298,7 @@ class Condensed:
         system = self._eliminate(u)
         # in terms of the new unknowns: forces on what is no longer prescribed become loads
         outside = self._problem.outside
-        system.set_level(u.reshape(-1), outside, 0.0)
+        system.set_load_factor(u.reshape(-1), outside)
         system.forces = system.handed(self._stiffness @ u.reshape(-1) - outside)
         self._state = system.state(u.reshape(-1)[system.bulk.contact])
 
@@ -333,7 +331,7 @@ class Condensed:
 
     def _reusable(self) -> Condensation | None:
         """The condensation so far where parts of it may be good still; planes change the bulk."""
-        planes = self._problem.constraints.planes
+        planes = self._problem.planes
         if not planes or self._bulk is None:
             return self._bulk
         self._bulk.close()

@@ -15,7 +15,7 @@ import scipy.linalg
 import scipy.sparse
 
 from anisocontact.contact.transfer import Couplings
-from anisocontact.solver.system.persistent import Arrays
+from anisocontact.solver.terms.persistent import Arrays
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]

@@ -9,7 +9,7 @@ import numpy.typing as npt
 import scipy.sparse
 
 from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.solver.stepping.newton import SingularError
+from anisocontact.solver.terms.term import SingularError
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]

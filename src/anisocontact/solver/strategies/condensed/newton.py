@@ -8,10 +8,11 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import PETSc, Vec
-from anisocontact.solver.stepping.newton import Newton, NewtonResult, OptionValue, SingularError
 from anisocontact.solver.strategies.condensed.condensed import Condensed
 from anisocontact.solver.strategies.condensed.system import ContactSystem
-from anisocontact.solver.system.persistent import Arrays
+from anisocontact.solver.strategies.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.term import SingularError
 
 #: How often an increment may begin anew because a slave point has left the reach.
 _MOST_GROWTHS = 6

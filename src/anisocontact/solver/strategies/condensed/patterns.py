@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.solver.strategies.condensed.parts import Condensation
-from anisocontact.solver.system.persistent import Arrays
+from anisocontact.solver.terms.persistent import Arrays
 
 Floats = npt.NDArray[np.float64]
 

@@ -10,9 +10,9 @@ import numpy.typing as npt
 
 from anisocontact.contact import AnyContact
 from anisocontact.mesh import Model
-from anisocontact.solver.stepping.steps import AXES, Step
-from anisocontact.solver.system.persistent import Arrays
 from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.step import AXES, Step
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]

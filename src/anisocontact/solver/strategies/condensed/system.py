@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from typing import Any, override
 
 import numpy as np
 import numpy.typing as npt
 import scipy.sparse
 
-from anisocontact.base.fenicsx import Mat, PETSc, Vec
-from anisocontact.contact import AnyContact
-from anisocontact.contact.transfer import Couplings
-from anisocontact.solver.stepping.newton import TOLERANCE
+from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.condensed.dense import ContactTangent, KeptFactor
 from anisocontact.solver.strategies.condensed.parts import Condensation
 from anisocontact.solver.strategies.condensed.patterns import Patterns, State
-from anisocontact.solver.system.balance import LOAD_SHARE, ROUND_OFF
-from anisocontact.solver.system.following import Following
+from anisocontact.solver.strategies.newton import TOLERANCE
+from anisocontact.solver.system.assembled import AssembledSystem
+from anisocontact.solver.system.assembly import ForceBalance, Magnitudes, closed
 from anisocontact.solver.system.problem import Problem
 
 Floats = npt.NDArray[np.float64]
@@ -34,7 +31,7 @@ _FINE, _FINEST = 1e-5, 1e-13
 _TINY = float(np.finfo(np.float64).tiny)
 
 
-class ContactSystem(Following):
+class ContactSystem(AssembledSystem):
     """Residual `S u_c - g - contact forces` and its tangent; a `System` for Newton.
 
     Args:
@@ -49,12 +46,12 @@ class ContactSystem(Following):
         patterns: Loads and supports, condensed.
         places: Numbers of the unknowns of Newton's method: contact unknowns, then those of free
             rigid bodies that nothing prescribes.
-        led: Which unknowns of free rigid bodies are prescribed.
+        prescribed: Which unknowns of free rigid bodies are prescribed.
         raw_forces: Forces of contacts and of what bodies are attached to, on all nodes, (n,).
         forces: The same with those of constrained unknowns handed on.
-        way: States that bodies that flow or fall have gone through since the last `set_level`.
-        force_scale: Norm of the forces at work in the last evaluation: loads, contacts or supports.
-        round_off: Residual that floating point leaves in the last evaluation, force.
+        way: States that bodies that flow or fall have gone through since the last
+            `set_load_factor`.
+        balance: Forces of the last evaluation, of the unknowns of Newton's method.
         tolerance: Residual over the forces at work at which Newton stops.
         outgrown: Whether a slave point of the last evaluation met a facet out of reach.
         solver: Solves for Newton corrections.
@@ -68,13 +65,14 @@ class ContactSystem(Following):
         nodal: Floats,
         gathering: scipy.sparse.csr_array | None = None,
     ) -> None:
-        self.bulk, self.contacts, self._in_reach = bulk, problem.contacts, in_reach
-        self._attached, self._rigid = problem.attached, problem.rigid
-        self._stabilisation, self._pass_through = problem.stabilisation, problem.pass_through
+        self.bulk, self._in_reach = bulk, in_reach
+        self._assembly, self._pass_through = problem.assembly, problem.pass_through
+        self.terms_of_contact, self._rigid = problem.terms_of_contact, problem.rigid
+        self._stabilisation = self._aid = problem.stabilisation
         self._gathering = gathering
-        self._nodal, self._v = nodal, nodal.reshape(-1).copy()
-        self.led = self._rigid.held()
-        loose = np.flatnonzero(~self.led)
+        self._nodal_now, self._v = nodal, nodal.reshape(-1).copy()
+        self.prescribed = self._rigid.prescribed()
+        loose = np.flatnonzero(~self.prescribed)
         self.places = np.concatenate([bulk.contact, nodal.size + loose])
         self._values = np.zeros(self._rigid.size)
         self.patterns = Patterns(bulk)
@@ -85,12 +83,12 @@ class ContactSystem(Following):
             [np.zeros(0), *(np.diagonal(block) for _, block in bulk.blocks)]
         )
         self.solver = KeptFactor(self._tangent)
-        self.force_scale = self.round_off = 0.0
+        self.balance = ForceBalance.none(len(self.places))
         self.tolerance = TOLERANCE
         self.outgrown = False
         self.way: list[State] = []
         self._before = np.inf
-        self._dt, self._load_norm = 0.0, 0.0
+        self._load_norm = 0.0
         self._a, self._b, self._g = np.zeros(0), np.zeros(0), np.zeros(len(bulk.contact))
         self._evaluated: Floats | None = None
         self._residual: Floats = np.zeros(0)
@@ -106,8 +104,8 @@ class ContactSystem(Following):
             spread = scipy.sparse.block_diag(whole, format="csr")[self.places].T.tocsr()
         return ContactTangent(self.bulk.blocks, number, len(self.places), spread)
 
-    def set_level(self, supports: Floats, load: Floats, dt: float) -> None:
-        """Take the displacements that are prescribed, (n,), loads, (n,), and time increment."""
+    def set_load_factor(self, supports: Floats, load: Floats) -> None:
+        """Take the displacements that are prescribed and the loads at a load factor, (n,)."""
         load = self.handed(load)
         free = load.copy()
         free[self.bulk.prescribed] = 0.0
@@ -116,9 +114,9 @@ class ContactSystem(Following):
         self._b = self.patterns.loads(free)
         self._g = self.patterns.load(self._a, self._b)
         self._load_norm = float(np.hypot(np.linalg.norm(load), np.linalg.norm(self._rigid.loads())))
-        self._dt, self._before = dt, np.inf
+        self._before = np.inf
         self._v[self.bulk.prescribed] = supports
-        self._values = self._rigid.prescribed()
+        self._values = self._rigid.values()
         self._evaluated, self.way = None, []
 
     def handed(self, forces: Floats) -> Floats:
@@ -162,70 +160,72 @@ class ContactSystem(Following):
         if self._evaluated is not None and np.array_equal(self._evaluated, u):
             return self._residual.copy()
         self._evaluated = u
-        failed = self._respond(u)
+        self._respond(u)
         own = u[: len(self.bulk.contact)]
-        forces = self.forces + self.handed(self._stabilisation.force(self._nodal).reshape(-1))
+        aids = self._assembly.aids.force(self._nodal_now)
+        forces = self.forces + self.handed(aids.reshape(-1))
         residual = self.bulk.schur_times(own) - self._g - forces[self.bulk.contact]
-        of_bodies = self._rigid.residual(self._values, 1.0)[~self.led]
-        residual = np.concatenate([residual, of_bodies])
-        self._measure(own)
-        if failed or self.outgrown:
-            residual[:] = np.nan
-        self.norm_as_they_are = float(np.linalg.norm(residual))
-        if self.follows:
-            lag = np.zeros((len(self._v) // 3, 3))
-            for contact in self.contacts:
-                contact.add_lag(lag)
-            residual[: len(own)] -= self.handed(lag.reshape(-1))[self.bulk.contact]
-            residual[len(own) :] -= self._rigid.lag()[~self.led]
-        self._residual = residual
-        return residual.copy()
+        of_bodies = self._rigid.residual(self._values, 1.0)[~self.prescribed]
+        self.balance = closed(
+            np.concatenate([residual, of_bodies]),
+            self._magnitudes(own),
+            MPI.COMM_SELF,
+            failed=self._assembly.reactions.failed or self.outgrown,
+            correction=self._multiplier_residual() if self.follows else None,
+        )
+        return self.balance.residual.copy()
 
-    def _respond(self, u: Floats) -> bool:
-        """Forces on the nodes at the unknowns `u`; whether a law had no answer."""
-        nodal = self._nodal = self.all_unknowns(u)[: len(self._v)].reshape(-1, 3)
+    def _respond(self, u: Floats) -> None:
+        """Forces on the nodes at the unknowns `u`."""
+        nodal = self._nodal_now = self.all_unknowns(u)[: len(self._v)].reshape(-1, 3)
         self._rigid.place(self._values)
-        forces, failed = np.zeros_like(nodal), False
-        for contact in self.contacts:
-            failed |= bool(contact.update(nodal, self._dt).failed.any())
-            contact.add_force(forces)
-        self.outgrown = not self._in_reach[used(self.contacts, forces)].all()
-        self._attached.add_force(nodal, forces)
+        forces = self._assembly.reactions.force(nodal)
+        needed = [np.flatnonzero(forces.any(axis=1)), self.terms_of_contact.feet()]
+        self.outgrown = not self._in_reach[np.concatenate(needed)].all()
         self.raw_forces = forces.reshape(-1)
         self.forces = self.handed(self.raw_forces)
-        return failed
+
+    def _multiplier_residual(self) -> Floats:
+        """`Contacts.multiplier_residual` of the unknowns of Newton's method, force."""
+        on_nodes = self.terms_of_contact.multiplier_residual(self._nodal_now)
+        on_nodes = self.handed(on_nodes.reshape(-1))[self.bulk.contact]
+        return np.append(on_nodes, self._rigid.multiplier_residual()[~self.prescribed])
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Take the tangent at x; `out` multiplies with it, and has no pattern that could grow."""
         self.evaluate(x)
-        blocks = [part for c in self.contacts for part in couplings(c)]
-        blocks += self._rigid.couplings(len(self._v) // 3) + self._attached.blocks()
-        blocks += self._stabilisation.couplings()
-        self._tangent.take(blocks)
+        couplings = self._rigid.body_couplings(len(self._v) // 3)
+        couplings += [*self._assembly.acting.blocks(), *self._assembly.acting.couplings()]
+        self._tangent.take(couplings)
         out.assemble()
         return False
 
-    def improve(self, x: Vec) -> bool:
-        """Better multipliers of the contacts from equilibrium; see `Problem.improve`."""
+    @property
+    @override
+    def _nodal(self) -> Floats:
+        return self._nodal_now
+
+    @override
+    def _evaluate_at(self, x: Vec) -> None:
         self.evaluate(x)
-        stabilisation = self._stabilisation
-        changed = stabilisation.improve(self._nodal, self.force_scale)
-        flows = stabilisation.flow.flows
-        if changed and (flows or stabilisation.untouched()):
-            self.way.append(self.state(x.array_r))
-            self._pass_through(self._nodal)
-        if not (changed and flows):
-            changed = any([contact.improve() for contact in self.contacts]) or changed
+
+    @override
+    def improve(self, x: Vec) -> bool:
+        changed = super().improve(x)
         if changed:
             self._evaluated = None
         return changed
 
+    @override
+    def _go_on(self, x: Vec) -> None:
+        self.way.append(self.state(x.array_r))
+        self._pass_through(self._nodal_now)
+
+    @override
     def soften(self) -> bool:
-        """Softer penalties after a solution that failed; see `Problem.soften`."""
         self._evaluated = None
-        if self._stabilisation.flow.flows:
-            return not self.outgrown and self._stabilisation.flow.soften()
-        return any([contact.soften() for contact in self.contacts])
+        flows = self._stabilisation.flow.flows
+        return not (flows and self.outgrown) and super().soften()
 
     def mult(self, _: Mat, x: Vec, y: Vec) -> None:
         """Product with the tangent, for PETSc."""
@@ -242,34 +242,18 @@ class ContactSystem(Following):
         if self.follows:
             # forces that take violations away are large beside those that are out of balance
             size = max(float(np.linalg.norm(b.array_r)), _TINY)
-            rtol = max(_FINE * min(self.norm_as_they_are / size, 1.0), _FINEST)
+            rtol = max(_FINE * min(self.balance.norm / size, 1.0), _FINEST)
         found = self.solver.solve(b.array_r, min(rtol, 0.1))
         if found is None:
             pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
             found = np.zeros(len(self.places))
         x.array[:] = found
 
-    def _measure(self, u: Floats) -> None:
-        """Forces at work and what rounding makes of them, as of `Problem.evaluate`."""
+    def _magnitudes(self, u: Floats) -> Magnitudes:
+        """Norms of the forces at work; of the supports from samples."""
         outside = self.patterns.outside(self.state(u))[self._samples]
         supports = float(np.sqrt(np.mean(outside**2)))
         springs = float(np.linalg.norm(self._rigid.spring_forces()))
         forces = float(np.linalg.norm(self.forces))
-        self.force_scale = max(self._load_norm, forces, supports, springs)
-        levers = [contact.lever() for contact in self.contacts]
-        stiff = float(np.linalg.norm(self._stiff * u)) + float(np.linalg.norm(levers))
-        self.round_off = ROUND_OFF * stiff
-        if self._load_norm > 0.0:
-            self.round_off = min(self.round_off, LOAD_SHARE * self._load_norm)
-
-
-def couplings(contact: AnyContact) -> list[Couplings]:
-    """Tangent of a contact as blocks of nodes."""
-    return [blocks for half in contact.passes for blocks in half.couplings()]
-
-
-def used(contacts: Sequence[AnyContact], forces: Floats) -> npt.NDArray[np.int64]:
-    """Nodes whose displacement the trial depends on: below slave points, or under forces."""
-    found = [half.feet() for c in contacts for half in c.passes]
-    loaded = np.flatnonzero(forces.reshape(-1, 3).any(axis=1))
-    return np.concatenate([loaded, *found])
+        stiff = float(np.linalg.norm(self._stiff * u)) + self._assembly.acting.lever()
+        return Magnitudes(self._load_norm, [forces, supports, springs], stiff)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
-from anisocontact.solver.stepping.newton import Newton, NewtonResult, OptionValue
-from anisocontact.solver.stepping.steps import Step
 from anisocontact.solver.strategies.iterative.patch import Patch
 from anisocontact.solver.strategies.iterative.twolevel import TwoLevel
+from anisocontact.solver.strategies.newton import Newton, NewtonResult, OptionValue
 from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.step import Step
 
 DEFAULTS: dict[str, OptionValue] = {
     "ksp_type": "fgmres",

@@ -9,9 +9,9 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import PETSc
-from anisocontact.solver.stepping.steps import Step
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.step import Step
 
 Flags = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int64]

@@ -21,7 +21,7 @@ class Split:
         patch: Nodes of the mesh that stay, of those this rank owns, (owned,).
 
     Attributes:
-        given: Unknowns that have a row of their own, local numbers; see `Problem.given`.
+        given: Unknowns that have a row of their own, local numbers; see `Problem.constrained`.
         interior: Unknowns of the other nodes, an index set.
         patch: Unknowns of the patch and of rigid bodies, an index set.
         given_inside: Unknowns among `given` that are of the interior, global numbers in it.
@@ -36,7 +36,7 @@ class Split:
         extra = np.arange(len(patch), (self.last - self.first) // 3)
         self.interior = self._set(inner, comm)
         self.patch = self._set(np.concatenate([np.flatnonzero(patch), extra]), comm)
-        self.given = problem.given()
+        self.given = problem.constrained()
         self.places: Floats = problem.model.space.tabulate_dof_coordinates()[inner]
         before = 3 * int(comm.exscan(len(inner)) or 0)
         number = np.full(self.last - self.first, -1, dtype=np.int64)

@@ -92,7 +92,7 @@ class TwoLevel:
         """Whether the interpolation has to be made anew; the same on all ranks."""
         if self._split is None:
             return True
-        other = not np.array_equal(self._split.given, self._problem.given())
+        other = not np.array_equal(self._split.given, self._problem.constrained())
         worn = self._worn and bulk_changed
         return bool(self._problem.comm.allreduce(other)) or worn or self._patch.outgrown()
 

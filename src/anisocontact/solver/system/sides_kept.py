@@ -15,7 +15,7 @@ import numpy.typing as npt
 from anisocontact.contact import AnyContact, Contact, FacetContact
 from anisocontact.contact.whereabouts import CRUSHED
 from anisocontact.mesh import Model
-from anisocontact.solver.stepping.steps import Culprit
+from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.terms.free_modes import Body, bodies
 
 Floats = npt.NDArray[np.float64]

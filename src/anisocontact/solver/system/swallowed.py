@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.solver.stepping.steps import Step
 from anisocontact.solver.system.layout import Layout
+from anisocontact.solver.terms.pressure import Given
+from anisocontact.solver.terms.step import Step
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -19,23 +19,6 @@ Ints = npt.NDArray[np.int64]
 NOTHING = 1e-20
 #: Square of the part of a direction that those held before leave, below which it is one of them.
 SAME = 1e-12
-
-
-@dataclass(frozen=True)
-class Given:
-    """A load that a step gives.
-
-    Attributes:
-        kind: "traction", "force", "pressure" or "body_force".
-        name: Facet group or body.
-        axis: Axis it is along; empty for a pressure.
-        force: Forces on the local nodes, (nodes, 3).
-    """
-
-    kind: str
-    name: str
-    axis: str
-    force: Floats
 
 
 def check_swallowed(

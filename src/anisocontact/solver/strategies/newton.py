@@ -11,8 +11,9 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec, check_memory
 from anisocontact.contact import NotHeldError
-from anisocontact.solver.stepping.steps import Culprit, LostError
-from anisocontact.solver.system.persistent import Arrays
+from anisocontact.solver.system.culprit import Culprit, LostError
+from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.term import SingularError
 
 OptionValue = str | int | float | bool | None
 
@@ -41,20 +42,18 @@ IDLE, IDLE_OVER = 0.5, 5
 CYCLE, SAME = 5, 1e-9
 
 
-class SingularError(RuntimeError):
-    """The tangent has no inverse, and the system of equations knows why."""
-
-
 class System(Protocol):
-    """What Newton asks of a system of equations; see `Problem`.
+    """What Newton asks of a system of equations; see `Problem`."""
 
-    Attributes:
-        force_scale: Norm of the forces at work in the last evaluation.
-        round_off: Residual that floating point leaves in the last evaluation, force.
-    """
+    @property
+    def force_scale(self) -> float:
+        """Norm of the forces at work in the last evaluation."""
+        ...
 
-    force_scale: float
-    round_off: float
+    @property
+    def round_off(self) -> float:
+        """Residual that floating point leaves in the last evaluation, force."""
+        ...
 
     @property
     def comm(self) -> Any:

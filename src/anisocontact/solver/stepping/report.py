@@ -1,0 +1,144 @@
+"""What a run reports."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.solver.system.culprit import Culprit
+from anisocontact.solver.system.imbalance import Imbalance
+from anisocontact.solver.system.rotations import Turned
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Progress:
+    """A Newton iteration.
+
+    Attributes:
+        step: Name of the step.
+        increment: Number of the increment in the step, from 1.
+        iteration: Number of the iteration, from 0 (the start).
+        residual: Residual over the forces at work, or over those whose rounding is a hundred
+            millionth of them where next to none are.
+        contacts: Number of "open", "stick" and "slip" points of each contact, by name.
+    """
+
+    step: str
+    increment: int
+    iteration: int
+    residual: float
+    contacts: dict[str, dict[str, int]]
+
+
+@dataclass(frozen=True)
+class Accepted:
+    """An increment, or a part of one, that converged.
+
+    Attributes:
+        step: Name of the step.
+        step_index: Number of the step, from 0.
+        increment: Number of the increment in the step, from 1.
+        done: Share of that increment that is done: below 1 where it was cut into parts.
+        time: Time that is reached.
+        iterations: Newton iterations, with those of attempts that failed.
+        residuals: Residual (out-of-balance force) over the forces at work, of the start and after
+            each iteration of the attempt that converged.
+        contacts: Number of "open", "stick" and "slip" points of each contact, by name.
+        resultants: Force and moment about the origin on each slave, by name of the contact.
+        reactions: Force of each support on the body, by facet group.
+        energies: See `Problem.energies`.
+        ran_off: Slave points that left the end of their master in it, by name of the contact, each
+            (k, 3), length; contacts without any are left out.
+        turned: How far each body at small strain has turned, by name.
+        imbalance: What is left open in the balance of energy.
+    """
+
+    step: str
+    step_index: int
+    increment: int
+    done: float
+    time: float
+    iterations: int
+    residuals: list[float]
+    contacts: dict[str, dict[str, int]]
+    resultants: dict[str, tuple[Floats, Floats]]
+    reactions: dict[str, Floats]
+    energies: dict[str, float]
+    ran_off: dict[str, Floats]
+    turned: dict[str, Turned]
+    imbalance: Imbalance
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A cutback: an increment, or a part of one, that failed and is tried again in smaller parts.
+
+    Attributes:
+        step: Name of the step.
+        increment: Number of the increment in the step, from 1.
+        time: Last accepted time.
+        size: Share of the increment that was tried.
+        next_size: Share that is tried next.
+        reason: Why it failed.
+        iterations: Newton iterations that were spent on it.
+        count: How many places caused it, over all ranks.
+        culprits: The first of them.
+    """
+
+    step: str
+    increment: int
+    time: float
+    size: float
+    next_size: float
+    reason: str
+    iterations: int
+    count: int
+    culprits: tuple[Culprit, ...]
+
+    def __str__(self) -> str:
+        """One line."""
+        return (
+            f"{self.step} {self.increment}  cut from {self.size:.3g} to {self.next_size:.3g} of "
+            f"the increment after {self.iterations} iterations: {self.reason}"
+        )
+
+
+class StoppedError(RuntimeError):
+    """The run stopped before its end; what converged is kept.
+
+    Args:
+        step: Name of the step.
+        increment: Number of the increment that failed.
+        reason: Why, in a few words.
+        culprits: The first places that caused it.
+        points: Positions of all slave points at which the law had no answer, (n, 3), length.
+        tried: What was tried, in a few words.
+    """
+
+    def __init__(
+        self,
+        step: str,
+        increment: int,
+        reason: str,
+        culprits: Sequence[Culprit] = (),
+        points: Floats | None = None,
+        tried: str = "",
+    ) -> None:
+        self.points: Floats = np.zeros((0, 3)) if points is None else points
+        where = ""
+        if len(self.points):
+            first = ", ".join(f"{v:.6g}" for v in self.points[0])
+            where = f"; {len(self.points)} slave points failed, the first at ({first})"
+        elif culprits and culprits[0].why not in reason:
+            where = f"; {culprits[0]}"
+        tried = f"; {tried}" if tried else ""
+        super().__init__(f"step {step!r}, increment {increment}: {reason}{where}{tried}")
+        self.step = step
+        self.increment = increment
+        self.reason = reason
+        self.culprits = tuple(culprits)

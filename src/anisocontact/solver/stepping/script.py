@@ -1,0 +1,237 @@
+"""Contact for a problem that the user has written in UFL."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, override
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import Mat, Vec
+from anisocontact.contact import AnyContact, warn_of
+from anisocontact.solver.strategies.newton import Newton, OptionValue
+from anisocontact.solver.system.assembled import AssembledSystem
+from anisocontact.solver.system.assembly import Assembly, ForceBalance, TrialState
+from anisocontact.solver.system.layout import Layout
+from anisocontact.solver.system.parts import suit
+from anisocontact.solver.system.sides_kept import SidesKept
+from anisocontact.solver.system.tangent import Tangent
+from anisocontact.solver.terms.bodies import Bodies
+from anisocontact.solver.terms.constraints import Constraints
+from anisocontact.solver.terms.contacts import Contacts
+from anisocontact.solver.terms.form import Dirichlet, FormBulk
+from anisocontact.solver.terms.loose import Part, loose_motions, parts
+from anisocontact.solver.terms.rigid import RigidBodies
+
+Floats = npt.NDArray[np.float64]
+
+#: Gap over the facet size up to which a point counts as touching: rounding of a mesh.
+NEAR = 1e-6
+
+
+class ContactProblem(AssembledSystem):
+    """Residual form of the user plus contact, solved by PETSc SNES.
+
+    What `dolfinx.fem.petsc.NonlinearProblem` is without contact: the residual is
+    `F(u; v) - integral of t . (v_slave - v_master)`. A prescribed unknown has the row
+    `s (u - g) = 0`, s the mean diagonal of the tangent.
+
+    Args:
+        F: Residual form, linear in its test function, of the function `u`.
+        u: The displacement, a DOLFINx function of a vector Lagrange space.
+        bcs: Dirichlet conditions; their values may change between solutions.
+        contacts: Contacts on a `Model.of` the space of `u`. A rigid body that carries a surface is
+            where `RigidBody.move` has brought it. Where J depends on `u` tractions act on the area
+            of now unless a contact was told otherwise.
+        J: Derivative of F; made by UFL if left out.
+        petsc_options_prefix: Prefix of the options in the PETSc database.
+        petsc_options: PETSc options without prefix.
+
+    Attributes:
+        newton: The solver; its `snes` is to be asked or set as usual.
+        balance: Forces of the last evaluation.
+
+    Raises:
+        InputError: A contact lives on another space than `u`, or its rigid body is free.
+
+    See `examples/dolfinx_script/rubber_pad.py` for a whole script.
+    """
+
+    def __init__(
+        self,
+        F: Any,
+        u: Any,
+        *,
+        bcs: Sequence[Any] = (),
+        contacts: Sequence[AnyContact] = (),
+        J: Any = None,
+        petsc_options_prefix: str = "anisocontact_",
+        petsc_options: Mapping[str, OptionValue] | None = None,
+    ) -> None:
+        space = u.function_space
+        self._bodies = _checked(contacts, space)
+        warn_of(contacts)
+        self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
+        self._sides = SidesKept(contacts)
+        form = FormBulk(F, u, J)
+        bodies, layout = Bodies(form), Layout(space, 0)
+        suit(contacts, bodies, [form.finite] * len(contacts))
+        self._assembly = Assembly(
+            layout,
+            bodies,
+            Contacts(contacts),
+            Dirichlet(self.bcs),
+            Constraints(layout.new_vector()),
+            RigidBodies([], space.mesh.comm),
+        )
+        self.terms_of_contact = self._assembly.contacts
+        self.balance = ForceBalance.none(layout.owned)
+        self._tangent = Tangent(self._assembly, space)
+        self._parts = parts(space)
+        self.newton = Newton(self, petsc_options_prefix, petsc_options or {}, lambda *_: None)
+
+    def solve(self, dt: float = 1.0) -> int:
+        """Bring `u` into equilibrium and accept the history of the contacts.
+
+        Args:
+            dt: Time increment > 0, for laws that have a time.
+
+        Returns:
+            Number of Newton iterations.
+
+        Raises:
+            RuntimeError: No convergence, or a body is behind its master; `u` and the history are as
+                before.
+            InputError: The time increment is not positive, or nothing holds a part of the mesh: no
+                stiffness of the form, no condition and no contact that touches.
+        """
+        if not 0.0 < dt < np.inf:
+            raise InputError(f"{dt!r} given, must be > 0", "dt")
+        terms = self._assembly.terms
+        terms.set_load_factor(1.0, dt)
+        before = self.u.x.array.copy()
+        x = self.new_vector()
+        x.array[:] = before[: x.getLocalSize()]
+        self._check_held(x)
+        result = self.newton.solve(x)
+        reason = result.reason
+        if not reason:
+            self.evaluate(x)
+            found = self._sides.objection(self._nodal)
+            reason = f"contact {found.contact!r}: {found.why}" if found else ""
+        if reason:
+            self.u.x.array[:] = before
+            terms.roll_back()
+            raise RuntimeError(reason)
+        terms.accept(self._nodal)
+        for body in self._bodies:
+            body.commit()
+        return result.iterations
+
+    def close(self) -> None:
+        """Give back the objects of PETSc."""
+        self.newton.close()
+
+    @property
+    def comm(self) -> Any:
+        """Communicator of the mesh."""
+        return self.u.function_space.mesh.comm
+
+    def new_vector(self) -> Vec:
+        """Vector of the unknowns, zero."""
+        return self._assembly.layout.new_vector()
+
+    def new_tangent(self) -> Mat:
+        """Matrix for `tangent`."""
+        return self._tangent.new_matrix()
+
+    def evaluate(self, x: Vec) -> Floats:
+        """Residual of the unknowns this rank owns.
+
+        Args:
+            x: Displacements, length.
+
+        Returns:
+            Residual, force; NaN everywhere where a law has no answer.
+        """
+        self.u.x.array[: x.getLocalSize()] = x.array_r
+        self.u.x.scatter_forward()
+        self.balance = self._assembly.balance(TrialState(x, self._nodal, np.zeros(0)))
+        return self.balance.residual
+
+    def tangent(self, x: Vec, out: Mat) -> bool:
+        """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown.
+
+        Args:
+            x: Displacements.
+            out: The matrix.
+
+        Returns:
+            Whether entries were added to its pattern.
+        """
+        self._evaluate_at(x)
+        return self._tangent.write(out)
+
+    @property
+    @override
+    def _nodal(self) -> Floats:
+        return np.asarray(self.u.x.array.reshape(-1, 3))
+
+    @override
+    def _evaluate_at(self, x: Vec) -> None:
+        if not np.array_equal(self.u.x.array[: x.getLocalSize()], x.array_r):
+            self.evaluate(x)
+
+    def _check_held(self, x: Vec) -> None:
+        """Refuse a part of the mesh that can move as a rigid body."""
+        if not self._untouched():
+            return
+        self.evaluate(x)  # rigid bodies may have been moved since
+        free = self._untouched()
+        self._assembly.terms.roll_back()
+        if not free:
+            return
+        bodies, rows = self._assembly.bodies, self._assembly.conditions.unknowns
+        stiffness = bodies.bulk.stiffness
+        bodies.add_tangent(stiffness)
+        for part in free:
+            motions = loose_motions(part, stiffness, bodies.scale, rows, self.comm)
+            if motions:
+                at = ", ".join(f"{v:.4g}" for v in part.middle)
+                raise InputError(
+                    f"nothing holds the body around ({at}): {motions}; no condition does, and no "
+                    "contact touches it: let it touch at the start, or lead it there with "
+                    "conditions",
+                    "contacts" if self.contacts else "bcs",
+                )
+
+    def _any(self, here: npt.NDArray[np.bool_]) -> bool:
+        return bool(self.comm.allreduce(int(here.any())))
+
+    def _untouched(self) -> list[Part]:
+        """Parts of the mesh that no contact which touches somewhere acts on, now."""
+        nodes = [np.zeros(0, dtype=np.int32)]
+        passes: list[Any] = [one for contact in self.contacts for one in contact.parts]
+        for one in passes:
+            now = one.current.response
+            near = one.located(now.state) & (now.gap <= NEAR * one.facet_size)
+            if self._any(near):
+                nodes.append(one.couplable())
+        touched = np.concatenate(nodes)
+        return [part for part in self._parts if not self._any(np.isin(part.nodes, touched))]
+
+
+def _checked(contacts: Sequence[AnyContact], space: Any) -> list[Any]:
+    """Rigid bodies of contacts that a script can have."""
+    for contact in contacts:
+        if contact.space != space:
+            raise InputError(f"contact {contact.name!r} lives on another space than u", "contacts")
+    found: list[Any] = [contact.body for contact in contacts if contact.body is not None]
+    for body in found:
+        if body.free:
+            raise InputError(
+                f"rigid body {body.name!r} is free; a script can only move it", "contacts"
+            )
+    return found

@@ -1,0 +1,119 @@
+"""The bodies themselves: what their stress does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Protocol, override
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.fenicsx import Mat, Vec
+from anisocontact.bulk import BodyHistory
+from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.term import Term
+
+Floats = npt.NDArray[np.float64]
+
+
+class Bulk(Protocol):
+    """Internal forces of bodies; see `LinearBulk` and `NonlinearBulk`.
+
+    Attributes:
+        rest_length: Length whose strain is round-off where nothing moves.
+        stores: Whether `energy` is that of all bodies.
+        stiffness: Matrix with the pattern of the bodies.
+        diagonal: Diagonal of the tangent at rest, force/length.
+    """
+
+    rest_length: float
+    stores: bool
+    stiffness: Mat
+    diagonal: Vec
+
+    @property
+    def histories(self) -> Mapping[str, BodyHistory]:
+        """What bodies whose material has a history have gone through, by body name."""
+        ...
+
+    def force(self, u: Vec) -> Vec:
+        """Internal force at the displacement of the nodes this rank owns."""
+        ...
+
+    def energy(self, u: Vec) -> float:
+        """Elastic energy over all ranks."""
+        ...
+
+    def set_time(self, dt: float) -> None:
+        """Take over the time increment of the next states."""
+        ...
+
+    def commit(self, u: Vec) -> None:
+        """Accept a state: histories advance."""
+        ...
+
+    def tangent(self, out: Mat) -> None:
+        """Write the tangent of the last `force` into a matrix that may have more unknowns."""
+        ...
+
+
+class Bodies(Term):
+    """Forces that stress in the bodies exerts on the nodes, complete where this rank owns them.
+
+    In sums of terms it comes first: its tangent is written, those of others are added.
+
+    Args:
+        bulk: Internal forces.
+
+    Attributes:
+        scale: Mean diagonal of the tangent at rest, force/length.
+    """
+
+    def __init__(self, bulk: Bulk) -> None:
+        self.bulk = bulk
+        self.scale = float(bulk.diagonal.sum() / bulk.diagonal.getSize())
+        self._u = bulk.stiffness.createVecRight()
+
+    @override
+    def add_force(self, u: Floats, out: Floats) -> None:
+        owned = self._owned(u).getLocalSize() // 3
+        out[:owned] -= self.bulk.force(self._u).array_r.reshape(-1, 3)
+
+    @override
+    def set_load_factor(self, factor: float, dt: float) -> None:
+        self.bulk.set_time(dt)
+
+    @override
+    def add_tangent(self, matrix: Mat) -> None:
+        self.bulk.tangent(matrix)
+
+    def energy(self, u: Floats) -> float:
+        """Elastic energy over all ranks, force times length."""
+        return self.bulk.energy(self._owned(u))
+
+    @override
+    def energies(self, u: Floats) -> dict[str, float]:
+        return {"elastic": self.energy(u)}
+
+    @override
+    def accept(self, u: Floats) -> float:
+        self.bulk.commit(self._owned(u))
+        return 0.0
+
+    @override
+    def histories(self) -> list[Arrays]:
+        return [history.persistent() for history in self.bulk.histories.values()]
+
+    @override
+    def take_histories(self, kept: Iterator[Arrays], u: Floats) -> None:
+        for history in self.bulk.histories.values():
+            history.restore(next(kept))
+
+    def stiff(self, u: Floats) -> Floats:
+        """Forces of nodes that move alone, `K_ii u_i`, of those this rank owns: see `round_off`."""
+        moved = np.abs(self._owned(u).array_r) + self.bulk.rest_length
+        return np.asarray(self.bulk.diagonal.array_r * moved)
+
+    def _owned(self, u: Floats) -> Vec:
+        self._u.array[:] = u.reshape(-1)[: self._u.getLocalSize()]
+        return self._u

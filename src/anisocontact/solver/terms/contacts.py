@@ -1,0 +1,154 @@
+"""The contacts of a problem as one term, and their multipliers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any, override
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact import AnyContact
+from anisocontact.contact.transfer import Couplings
+from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.term import Term
+
+Floats = npt.NDArray[np.float64]
+
+
+class Contacts(Term):
+    """All contacts: tractions at slave points, histories, multipliers of augmented ones.
+
+    Args:
+        contacts: The contacts.
+
+    Attributes:
+        passes: Passes over slave points against facets.
+    """
+
+    def __init__(self, contacts: Sequence[AnyContact]) -> None:
+        self._all: list[Any] = list(contacts)
+        self.passes: list[Any] = [p for c in self._all if c.meshed for p in c.passes]
+        self._smooth: list[Any] = [p for c in self._all if not c.meshed for p in c.passes]
+        self._dt = 1.0
+        self._failed = False
+
+    @override
+    def set_load_factor(self, factor: float, dt: float) -> None:
+        self._dt = dt
+
+    @override
+    def add_force(self, u: Floats, out: Floats) -> None:
+        self._failed = False
+        for contact in self._all:
+            self._failed |= bool(contact.update(u, self._dt).failed.any())
+            contact.add_force(out)
+
+    @property
+    @override
+    def failed(self) -> bool:
+        return self._failed
+
+    @override
+    def lever(self) -> float:
+        return float(np.linalg.norm([contact.lever() for contact in self._all]))
+
+    @override
+    def blocks(self) -> list[Couplings]:
+        return [found for one in self._smooth for found in one.couplings()]
+
+    @override
+    def couplings(self) -> list[Couplings]:
+        return [found for one in self.passes for found in one.couplings()]
+
+    @override
+    def accept(self, u: Floats) -> float:
+        for contact in self._all:
+            contact.commit()
+        return 0.0
+
+    @override
+    def roll_back(self) -> None:
+        for contact in self._all:
+            contact.roll_back()
+
+    @override
+    def energies(self, u: Floats) -> dict[str, float]:
+        found = dict.fromkeys(("adhesion", "normal", "friction", "viscous"), 0.0)
+        for contact in self._all:
+            for name, value in contact.energies().items():
+                found[name] = found.get(name, 0.0) + value
+        return found
+
+    @override
+    def histories(self) -> list[Arrays]:
+        return [part.persistent() for contact in self._all for part in contact.parts]
+
+    @override
+    def take_histories(self, kept: Iterator[Arrays], u: Floats) -> None:
+        for contact in self._all:
+            for part in contact.parts:
+                part.restore(next(kept), u)
+            contact.rejoin()
+
+    def pass_through(self) -> None:
+        """Remember a state that the bodies flow through, for the work of friction."""
+        for contact in self._all:
+            for part in contact.parts:
+                part.pass_through()
+
+    def feet(self) -> npt.NDArray[np.int64]:
+        """Local nodes of the master facets that are below slave points in the trial."""
+        found = [half.feet() for half in self.passes]
+        return np.concatenate([np.zeros(0, dtype=np.int64), *found])
+
+    def failed_points(self) -> Floats:
+        """Positions of this rank at which a law had no answer, (n, 3), length."""
+        found = [contact.failed_points() for contact in self._all]
+        return np.concatenate([np.zeros((0, 3)), *found])
+
+    def improve(self) -> bool:
+        """Better multipliers from equilibrium; whether any changed.
+
+        Raises:
+            NotHeldError: They do not converge.
+        """
+        return any([contact.improve() for contact in self._all])
+
+    def soften(self) -> bool:
+        """After a solution that failed: softer penalties; whether any changed."""
+        return any([contact.soften() for contact in self._all])
+
+    @property
+    def follows(self) -> bool:
+        """Whether multipliers follow every correction of Newton's method."""
+        return any(contact.follows for contact in self._all)
+
+    def held(self) -> bool:
+        """Whether multipliers that follow are what the last evaluation answers to them."""
+        return all([contact.held() for contact in self._all])
+
+    def take_share(self, share: float) -> None:
+        """Let multipliers that follow take only a share of the next correction."""
+        for contact in self._all:
+            contact.take_share(share)
+
+    def multiplier_residual(self, u: Floats) -> Floats:
+        """Forces of the condensed residual of multipliers that follow, (nodes, 3).
+
+        A correction takes them beyond the forces of the trial.
+        """
+        out = np.zeros(u.shape)
+        for contact in self._all:
+            contact.add_lag(out)
+        return out
+
+    @property
+    def ways(self) -> frozenset[str]:
+        """Ways to the multipliers that a contact has, see `ContactRecord.ways`."""
+        return frozenset(way for contact in self._all for way in contact.ways)
+
+    def take_way(self, name: str) -> None:
+        """Find multipliers in another way in this attempt, see `ContactRecord.take_way`."""
+        for contact in self._all:
+            contact.take_way(name)

@@ -1,0 +1,99 @@
+"""Bodies and conditions of a script: a form in UFL, Dirichlet conditions of DOLFINx."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.fenicsx import (
+    Mat,
+    Vec,
+    assemble_force,
+    assemble_into,
+    compiled,
+    create_force,
+    create_stiffness,
+    prescribe,
+    prescribed_rows,
+    ufl,
+)
+from anisocontact.bulk import BodyHistory
+
+Floats = npt.NDArray[np.float64]
+
+
+class FormBulk:
+    """Internal forces by a residual form of the user's; see `Bulk`.
+
+    Args:
+        F: Residual form, linear in its test function, of the function `u`.
+        u: The displacement; forces are those at its values.
+        J: Derivative of F; made by UFL if left out.
+
+    Attributes:
+        finite: Whether J depends on `u`.
+    """
+
+    rest_length = 0.0
+    stores = False
+    #: What a form remembers is the user's.
+    histories: Mapping[str, BodyHistory] = MappingProxyType({})
+
+    def __init__(self, F: Any, u: Any, J: Any = None) -> None:
+        space = u.function_space
+        tangent = ufl.derivative(F, u, ufl.TrialFunction(space)) if J is None else J
+        self._residual = compiled(F, space.mesh.comm)
+        self._tangent = compiled(tangent, space.mesh.comm)
+        self.finite = u in ufl.algorithms.expand_derivatives(tangent).coefficients()
+        self.stiffness = create_stiffness(self._tangent)
+        self.diagonal = self.stiffness.getDiagonal()
+        self._force = create_force(self._residual)
+
+    def force(self, u: Vec) -> Vec:
+        """Internal force at the values of the function."""
+        assemble_force(self._residual, self._force)
+        return self._force
+
+    def energy(self, u: Vec) -> float:
+        """Unknown: a form has none."""
+        return 0.0
+
+    def set_time(self, dt: float) -> None:
+        """Nothing: the form has its own time."""
+
+    def commit(self, u: Vec) -> None:
+        """Nothing: what the form remembers is the user's."""
+
+    def tangent(self, out: Mat) -> None:
+        """Write the derivative at the values of the function."""
+        out.zeroEntries()
+        assemble_into(out, self._tangent)
+        out.assemble()
+
+
+class Dirichlet:
+    """Dirichlet conditions as the system takes them; see `Prescribed`.
+
+    Args:
+        bcs: The conditions; their values may change.
+    """
+
+    def __init__(self, bcs: Sequence[Any]) -> None:
+        self._bcs = bcs
+
+    @property
+    def unknowns(self) -> npt.NDArray[np.int64]:
+        """Unknowns this rank owns that are prescribed, local numbers."""
+        return prescribed_rows(self._bcs).astype(np.int64)
+
+    def violation(self, x: Vec) -> Floats:
+        """How far these are from what is prescribed, length."""
+        off = x.duplicate()
+        prescribe(off, self._bcs, x)
+        found = np.array(off.array_r[self.unknowns])
+        off.destroy()
+        return found
