@@ -187,229 +187,149 @@ def von_mises(stress: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
 
 
-def _axis(law: str, number: int) -> OutputQuantity:
+type _Row = tuple[str, str, str, Callable[[Any], Any]]
+
+
+def _rows(at: str, *rows: _Row) -> list[OutputQuantity]:
+    """Rows of the same sort: name, unit, meaning, and how it is made."""
+    return [
+        OutputQuantity(name, at, unit, doc, values, name in _PICTURED)
+        for name, unit, doc, values in rows
+    ]
+
+
+def _axis(law: str, number: int) -> _Row:
     """The row of an axis of a law."""
-    return OutputQuantity(
+    return (
         f"direction_{law}_{number}",
-        POINT,
         "1",
         f"unit vector of an axis of {law}, zero where the point is open",
         lambda p: getattr(p.last, f"directions_{law}")[:, number - 1],
-        always=True,
     )
 
 
+#: What the report is made of.
+_PICTURED = {
+    *("displacement", "body", "contact", "pass", "area", "pressure", "status", "normal"),
+    *("traction_principal", "direction_adhesion_1", "direction_adhesion_2"),
+    *("direction_friction_1", "direction_friction_2"),
+}
 #: All of the project, in the order in which files have them.
-_ROWS = (
-    OutputQuantity(
-        "displacement", NODE, "length", "displacement", lambda b: b.displacement, always=True
-    ),
-    OutputQuantity(
-        "stress",
-        NODE,
-        "stress",
-        "Cauchy stress, XX, YY, ZZ, XY, YZ, XZ; at a node the mean of its cells",
-        lambda b: b.stress,
-    ),
-    OutputQuantity("von_mises", NODE, "stress", "equivalent stress", lambda b: von_mises(b.stress)),
-    OutputQuantity(
-        "body", CELL, "1", "number of the body in `summary.json`", lambda b: b.numbers, always=True
-    ),
-    OutputQuantity(
-        "contact", POINT, "1", "number of the contact", lambda p: p.numbers, always=True
-    ),
-    OutputQuantity(
-        "pass",
-        POINT,
-        "1",
-        "1 for points on the master of two half passes, which have the same quantities as seen "
-        "from the slave; 0 for all others",
-        lambda p: p.passes,
-        always=True,
-    ),
-    OutputQuantity("area", POINT, "length^2", "slave area", lambda p: p.contact.areas, always=True),
-    OutputQuantity(
-        "gap",
-        POINT,
-        "length",
-        "distance along the normal of the master, negative in contact",
-        lambda p: p.last.gap,
-    ),
-    OutputQuantity("pressure", POINT, "stress", "pressure", lambda p: p.last.pressure, always=True),
-    OutputQuantity("traction", POINT, "stress", "traction on the slave", lambda p: p.last.traction),
-    OutputQuantity(
-        "traction_t",
-        POINT,
-        "stress",
-        "tangential part of the traction",
-        lambda p: p.last.traction_t,
-    ),
-    OutputQuantity(
-        "traction_principal",
-        POINT,
-        "stress",
-        "components of the tangential traction along the two friction axes",
-        lambda p: p.last.traction_principal,
-        always=True,
-    ),
-    OutputQuantity(
-        "elastic_slip",
-        POINT,
-        "length",
-        "elastic part of the relative displacement",
-        lambda p: p.contact.elastic_slip(),
-    ),
-    OutputQuantity(
-        "slip_accumulated",
-        POINT,
-        "length",
-        "length of slip so far",
-        lambda p: p.state["slip_accumulated"],
-    ),
-    OutputQuantity(
-        "status",
-        POINT,
-        "1",
-        "0 open, 1 stick, 2 slip",
-        lambda p: p.last.status.astype(np.int32),
-        always=True,
-    ),
-    OutputQuantity(
-        "dissipation",
-        POINT,
-        "stress length",
-        "energy dissipated by friction so far, per area",
-        lambda p: p.state["dissipation"],
-    ),
-    OutputQuantity(
-        "normal", POINT, "1", "normal of the master", lambda p: p.last.normal, always=True
-    ),
-    *(_axis(law, number) for law in ("adhesion", "friction") for number in (1, 2)),
-    OutputQuantity(
-        "contact", PATCH, "1", "number of the contact", lambda p: p.numbers, always=True
-    ),
-    OutputQuantity(
-        "direction_friction_1",
-        PATCH,
-        "1",
-        "first axis of friction, zero where there is none",
-        lambda p: p.directions,
-    ),
-    OutputQuantity("force", CONTACT, "force", "resultant on the slave", lambda c: c.resultant[0]),
-    OutputQuantity(
-        "moment", CONTACT, "force length", "its moment about the origin", lambda c: c.resultant[1]
-    ),
-    OutputQuantity(
-        "max_pressure",
-        CONTACT,
-        "stress",
-        "largest pressure of a slave point",
-        lambda c: c.contact.extreme(c.last.pressure),
-    ),
-    OutputQuantity(
-        "max_penetration",
-        CONTACT,
-        "length",
-        "largest penetration of a slave point",
-        lambda c: c.contact.extreme(-c.last.gap),
-    ),
-    OutputQuantity(
-        "max_elastic_slip",
-        CONTACT,
-        "length",
-        "largest elastic slip of a slave point",
-        lambda c: c.contact.extreme(np.linalg.norm(c.contact.elastic_slip(), axis=1)),
-    ),
-    OutputQuantity(
-        "max_turn",
-        CONTACT,
-        "radian",
-        "the largest angle by which normal, axes of adhesion or slave turned at a point in "
-        "contact along the last part of an increment",
-        lambda c: c.contact.extreme(c.state["turn"]),
-    ),
-    OutputQuantity("area", CONTACT, "length^2", "slave area that touches", lambda c: c.means[0]),
-    OutputQuantity(
-        "elastic_slip",
-        CONTACT,
-        "length",
-        "mean over that area of the elastic part of the relative displacement, a vector",
-        lambda c: c.means[1],
-    ),
-    OutputQuantity(
-        "slip",
-        CONTACT,
-        "length",
-        "mean over that area of the accumulated length of slip",
-        lambda c: c.means[2],
-    ),
-    OutputQuantity(
-        "least_gap", CONTACT, "length", "smallest gap of the points", lambda c: c.least_gap()
-    ),
-    OutputQuantity(
-        "points",
-        CONTACT,
-        "1",
-        "number of `open`, `stick` and `slip` points",
-        lambda c: c.contact.counts(),
-    ),
-    OutputQuantity(
-        "approach",
-        CONTACT,
-        "length",
-        "how far the bodies have moved towards each other, by the facet groups that are led or "
-        "loaded",
-        lambda c: c.approach(),
-    ),
-    OutputQuantity(
-        "position",
-        RIGID,
-        "length",
-        "reference point of now",
-        lambda b: b.body.reference + b.pose.translation,
-    ),
-    OutputQuantity(
-        "translation",
-        RIGID,
-        "length",
-        "how far the reference point has moved",
-        lambda b: b.pose.translation,
-    ),
-    OutputQuantity(
-        "rotation",
-        RIGID,
-        "radian",
-        "rotation vector of the orientation, angle at most π",
-        lambda b: b.rotation,
-    ),
-    OutputQuantity(
-        "turn",
-        RIGID,
-        "radian",
-        "sum of the rotations about the axes of space, as the steps prescribe it",
-        lambda b: b.pose.turn,
-    ),
-    OutputQuantity("force", RIGID, "force", "of the contacts on the body", lambda b: b.force[:3]),
-    OutputQuantity(
-        "moment",
-        RIGID,
-        "force length",
-        "of the contacts on the body, about its reference point of now",
-        lambda b: b.force[3:],
-    ),
-    OutputQuantity(
-        "support_force",
-        RIGID,
-        "force",
-        "what holds the prescribed components",
-        lambda b: b.support[:3],
-    ),
-    OutputQuantity(
-        "support_moment",
-        RIGID,
-        "force length",
-        "what holds the prescribed rotations",
-        lambda b: b.support[3:],
-    ),
-)
-_TABLE = {(q.at, q.name): q for q in _ROWS}
+_TABLE = {
+    (q.at, q.name): q
+    for q in (
+        *_rows(
+            NODE,
+            ("displacement", "length", "displacement", lambda b: b.displacement),
+            (
+                "stress",
+                "stress",
+                "Cauchy stress, XX, YY, ZZ, XY, YZ, XZ; at a node the mean of its cells",
+                lambda b: b.stress,
+            ),
+            ("von_mises", "stress", "equivalent stress", lambda b: von_mises(b.stress)),
+        ),
+        *_rows(CELL, ("body", "1", "number of the body in `summary.json`", lambda b: b.numbers)),
+        *_rows(
+            POINT,
+            ("contact", "1", "number of the contact", lambda p: p.numbers),
+            (
+                "pass",
+                "1",
+                "1 for points on the master of two half passes, which have the same quantities as "
+                "seen from the slave; 0 for all others",
+                lambda p: p.passes,
+            ),
+            ("area", "length^2", "slave area", lambda p: p.contact.areas),
+            ("gap", "length", "signed gap, negative in contact", lambda p: p.last.gap),
+            ("pressure", "stress", "pressure", lambda p: p.last.pressure),
+            ("traction", "stress", "traction on the slave", lambda p: p.last.traction),
+            ("traction_t", "stress", "its tangential part", lambda p: p.last.traction_t),
+            (
+                "traction_principal",
+                "stress",
+                "components of the tangential traction along the two friction axes",
+                lambda p: p.last.traction_principal,
+            ),
+            ("elastic_slip", "length", "elastic slip", lambda p: p.contact.elastic_slip()),
+            (
+                "slip_accumulated",
+                "length",
+                "length of slip so far",
+                lambda p: p.state["slip_accumulated"],
+            ),
+            ("status", "1", "0 open, 1 stick, 2 slip", lambda p: p.last.status.astype(np.int32)),
+            (
+                "dissipation",
+                "stress length",
+                "energy dissipated by friction so far, per area",
+                lambda p: p.state["dissipation"],
+            ),
+            ("normal", "1", "normal of the master", lambda p: p.last.normal),
+            *(_axis(law, number) for law in ("adhesion", "friction") for number in (1, 2)),
+        ),
+        *_rows(
+            PATCH,
+            ("contact", "1", "number of the contact", lambda p: p.numbers),
+            (
+                "direction_friction_1",
+                "1",
+                "first axis of friction, zero where there is none",
+                lambda p: p.directions,
+            ),
+        ),
+        *_rows(
+            CONTACT,
+            ("force", "force", "resultant on the slave", lambda c: c.resultant[0]),
+            ("moment", "force length", "its moment about the origin", lambda c: c.resultant[1]),
+            ("max_pressure", "stress", "largest", lambda c: c.contact.extreme(c.last.pressure)),
+            ("max_penetration", "length", "largest", lambda c: c.contact.extreme(-c.last.gap)),
+            (
+                "max_elastic_slip",
+                "length",
+                "largest",
+                lambda c: c.contact.extreme(np.linalg.norm(c.contact.elastic_slip(), axis=1)),
+            ),
+            (
+                "max_turn",
+                "radian",
+                "the largest angle by which normal, axes of adhesion or slave turned at a point in "
+                "contact along the last part of an increment",
+                lambda c: c.contact.extreme(c.state["turn"]),
+            ),
+            ("area", "length^2", "slave area that touches", lambda c: c.means[0]),
+            ("elastic_slip", "length", "its mean over that area, a vector", lambda c: c.means[1]),
+            ("slip", "length", "mean over it of the length of slip so far", lambda c: c.means[2]),
+            ("least_gap", "length", "smallest gap of the points", lambda c: c.least_gap()),
+            ("points", "1", "number of points by status", lambda c: c.contact.counts()),
+            (
+                "approach",
+                "length",
+                "how far the bodies have moved towards each other, by the facet groups that are "
+                "led or loaded",
+                lambda c: c.approach(),
+            ),
+        ),
+        *_rows(
+            RIGID,
+            (
+                "position",
+                "length",
+                "reference point of now",
+                lambda b: b.body.reference + b.pose.translation,
+            ),
+            ("translation", "length", "how far it has moved", lambda b: b.pose.translation),
+            ("rotation", "radian", "rotation vector, angle at most π", lambda b: b.rotation),
+            (
+                "turn",
+                "radian",
+                "sum of the rotations about the axes of space, as the steps prescribe it",
+                lambda b: b.pose.turn,
+            ),
+            ("force", "force", "of the contacts on the body", lambda b: b.force[:3]),
+            ("moment", "force length", "the same, about `position`", lambda b: b.force[3:]),
+            ("support_force", "force", "what holds the body", lambda b: b.support[:3]),
+            ("support_moment", "force length", "the same", lambda b: b.support[3:]),
+        ),
+    )
+}
