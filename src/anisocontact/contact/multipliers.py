@@ -30,6 +30,8 @@ Floats = npt.NDArray[np.float64]
 
 #: Change of the multipliers over the tractions, both as norms over the area, that is good enough.
 SHARE = 1e-5
+#: What the gap of a point that is apart is multiplied with at the start of an increment.
+FAR = 1e8
 #: Sliding rule whose history is another force than the one that acts: no fixed point of a step.
 _EXPLICIT = "explicit"
 
@@ -192,7 +194,9 @@ class Multipliers:
     def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
         """What the trials of the next increment start from.
 
-        A point nearer than the tolerance counts as touching: friction acts from the start.
+        A point nearer than the tolerance counts as touching: friction acts from the start. One that
+        is apart comes to lie at no gap, so that nothing of the increment is left for friction: it
+        counts as far away, or the part that is left were that of the gap's rounding.
 
         Args:
             state: Committed state.
@@ -202,6 +206,7 @@ class Multipliers:
         start["multiplier"] = state["pressure"]
         touching = located & (state["status"] == OPEN) & (state["gap"] <= self._limit)
         start["gap"][touching] = np.minimum(state["gap"][touching], 0.0)
+        start["gap"][(state["status"] == OPEN) & ~touching] *= FAR
         if self.tangential:
             start["status"][touching] = STICK
         return start

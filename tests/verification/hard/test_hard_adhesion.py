@@ -172,6 +172,32 @@ def test_points_that_stick_turn_with_the_layer_behind_them(to_the_end, bodies, m
         assert run.accepted[-1].iterations <= 25
 
 
+def test_points_that_come_to_lie_carry_no_friction_yet(to_the_end):
+    """A block that is dragged opens behind and closes again when it is dragged another way.
+
+    Requirement: a point whose gap closes in an increment is held at no gap by its multiplier, so
+    that nothing of the increment is left for friction, whatever the gap is rounded to: no cut, and
+    the pace of Newton's method (514 corrections and a cut before, 49 now). Source: the part of an
+    increment after the gap has closed, of a penalty without limit.
+    """
+    axes = 'directions = { kind = "constant", vector = [1, 0, 0], angle_deg = 30 }'
+    text = (
+        (
+            f"{RIGID}adhesion = {{ stiffness = [1e6, 1e5], {axes} }}\n"
+            f'friction = {{ coefficients = [0.8, 0.1], {axes} }}\nmethod = "augmented"\n'
+            '[[step]]\nname = "press"\nincrements = 1\n'
+            'displacement = { "block.top" = { x = 0, y = 0, z = -0.02 } }\n'
+            '[[step]]\nname = "drag"\nincrements = 3\ndisplacement = { "block.top" = { x = 0.1 } }\n'
+            '[[step]]\nname = "turn"\nincrements = 3\ndisplacement = { "block.top" = { y = -0.1 } }\n'
+        )
+        .replace("size = [1, 1, 0.6]", "size = [1, 1, 0.5]")
+        .replace("E = 10\n", "E = 100\n")
+    )
+    run = to_the_end(text)
+    assert not run.cuts
+    assert max(a.iterations for a in run.accepted) <= 25
+
+
 def test_failure_names_stiff_adhesion(to_the_end):
     """Where a run stops all the same, here with two iterations, the message names the adhesion."""
     from anisocontact.solver.stepping.report import StoppedError
