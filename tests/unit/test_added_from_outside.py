@@ -229,3 +229,33 @@ def test_quantities_that_there_are_not_are_refused(tmp_path):
     check = 'from anisocontact.cli import main\nmain(["check", "case.toml"])'
     done = run(tmp_path, "An output quantity", check)
     assert "output.quantities[0]: 'mobilized' given; did you mean \"mobilised\"?" in done.stderr
+
+
+SOLVE = """
+from anisocontact.cli import main
+from anisocontact.cli.info import facts
+
+assert main(["run", "case.toml", "-o", "out"]) == 0
+assert main(["run", "direct.toml", "-o", "direct"]) == 0
+names = [entry["name"] for entry in facts()["registries"]["strategies"]]
+assert names == ["auto", "direct", "condensed", "iterative", "petsc-lu"]
+"""
+
+
+def test_strategy_of_the_page_solves(tmp_path):
+    """Requirement: a class and a decorator make a strategy that a case file can ask for.
+
+    Source: the strategy `direct`. Tolerance: that of Newton's method.
+    """
+    case, _, _ = (ROOT / "tests/unit/small_block.toml").read_text().rpartition("[[step]]")
+    case += "[output]\npictures = false\n"
+    for name, strategy in (("case", "petsc-lu"), ("direct", "direct")):
+        text = f'{case}\n[solver]\nstrategy = "{strategy}"\n'
+        (tmp_path / f"{name}.toml").write_text(text)
+    done = run(tmp_path, "A strategy", SOLVE)
+    assert done.returncode == 0, done.stderr
+    found, known = (Results(tmp_path / folder) for folder in ("out", "direct"))
+    assert found.summary["strategy"] == "petsc-lu"
+    np.testing.assert_allclose(
+        found.history["contacts.0.force.z"], known.history["contacts.0.force.z"], rtol=1e-7
+    )

@@ -101,7 +101,9 @@ def test_schema_names_every_registered_entry_and_parameter():
             if entry in registry.evolution_forms():
                 assert entry.name in schema["$defs"]["Contact"]["properties"]["evolution"]["enum"]
                 continue
-            if entry.kind == "shape":
+            if entry.kind == "strategy":
+                assert entry.name in schema["$defs"]["Solver"]["properties"]["strategy"]["enum"]
+            elif entry.kind == "shape":
                 assert entry.name in schema["$defs"]["Mesh"]["properties"]
             else:
                 assert entry.name in constants

@@ -7,9 +7,12 @@ from typing import Any
 import pytest
 
 from anisocontact.solver import Problem, Solver, Step, StoppedError
-from anisocontact.solver.strategies import strategy
+from anisocontact.solver.strategies import costs, direct
+from anisocontact.solver.strategies.choice import Choice, choose
 from anisocontact.solver.strategies.costs import factor_bytes
-from anisocontact.solver.strategies.iterative import IterativeNewton
+from anisocontact.solver.strategies.iterative import strategy
+from anisocontact.solver.strategies.iterative.newton import IterativeNewton
+from anisocontact.solver.strategies.strategy import Task
 
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
 RUBBER = {"model": "neo-hookean", "E": 1000.0, "nu": 0.3}
@@ -35,14 +38,14 @@ def _problem(**material: Any) -> Problem:
     return Problem(model, {"block": make_material(**given)}, [contact])
 
 
-def _choice(problem: Problem, **options: Any) -> strategy.Choice:
-    return strategy.choose("auto", problem, [PRESS], "none_", options)
+def _choice(problem: Problem, **options: Any) -> Choice:
+    return choose("auto", Task(problem, [PRESS], "none_", options))
 
 
 def test_auto_takes_it_beyond_a_number_of_unknowns(monkeypatch: pytest.MonkeyPatch) -> None:
     problem = _problem(**RUBBER)
     assert _choice(problem).name == "direct"
-    monkeypatch.setattr(strategy, "MOST_FACTORISED", 100)
+    monkeypatch.setattr(direct, "MOST_FACTORISED", 100)
     choice = _choice(problem)
     assert choice.name == "iterative"
     assert choice.reason == (
@@ -55,21 +58,21 @@ def test_auto_takes_it_where_a_factor_does_not_fit(monkeypatch: pytest.MonkeyPat
     """A factor of 525 unknowns needs 1.5 MB."""
     assert 1e6 < factor_bytes(525) < 2e6
     problem = _problem(**RUBBER)
-    monkeypatch.setattr(strategy, "free_memory", lambda: 2e6)
+    monkeypatch.setattr(costs, "free_memory", lambda: 2e6)
     assert _choice(problem).name == "iterative"
-    monkeypatch.setattr(strategy, "free_memory", lambda: 4e6)
+    monkeypatch.setattr(costs, "free_memory", lambda: 4e6)
     assert _choice(problem).name == "direct"
 
 
 def test_auto_leaves_the_choice_to_options(monkeypatch: pytest.MonkeyPatch) -> None:
     """A linear solver that the user asks for is one of the whole system."""
-    monkeypatch.setattr(strategy, "MOST_FACTORISED", 100)
+    monkeypatch.setattr(direct, "MOST_FACTORISED", 100)
     assert _choice(_problem(**RUBBER), pc_type="cholesky").name == "direct"
 
 
 def test_auto_stays_where_most_would_be_kept(monkeypatch: pytest.MonkeyPatch) -> None:
     """75 of 525 unknowns can be touched."""
-    monkeypatch.setattr(strategy, "MOST_FACTORISED", 100)
+    monkeypatch.setattr(direct, "MOST_FACTORISED", 100)
     monkeypatch.setattr(strategy, "MOST_KEPT", 0.14)
     assert _choice(_problem(**RUBBER)).name == "direct"
 

@@ -23,7 +23,7 @@ from pydantic import (
 from anisocontact.base import registry
 from anisocontact.base.limits import Limits
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.base.strategies import AUTO, STRATEGIES
+from anisocontact.base.strategies import AUTO, strategies
 from anisocontact.case.bodies import Mesh, mesh_type
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
 from anisocontact.case.python_section import PythonSection
@@ -112,15 +112,7 @@ def _option(given: object, inner: ValidatorFunctionWrapHandler) -> Any:
 class Solver(Section):
     """How it is solved."""
 
-    strategy: Annotated[
-        str,
-        _word(
-            "one factorisation of the whole system in every Newton iteration (direct), one of the "
-            "linear bodies for the whole run and iterations on the contact (condensed), Krylov "
-            "iterations on the whole system (iterative), or what suits the case (auto)",
-            *STRATEGIES,
-        ),
-    ] = AUTO
+    strategy: str = AUTO
     options: dict[str, Annotated[str | int | float | bool, WrapValidator(_option)]] = Field(
         default_factory=dict,
         description="PETSc options without the prefix `anisocontact_`, such as `snes_max_it = 50`",
@@ -284,6 +276,7 @@ class Registries:
     materials: tuple[Entry, ...]
     shapes: tuple[Entry, ...] = ()
     output_quantities: tuple[Entry, ...] = ()
+    strategies: tuple[Entry, ...] = ()
 
     @classmethod
     def current(cls) -> Registries:
@@ -294,7 +287,11 @@ class Registries:
             for q in quantities()
         )
         return replace(
-            cls.of_points(), materials=materials, shapes=shapes, output_quantities=written
+            cls.of_points(),
+            materials=materials,
+            shapes=shapes,
+            output_quantities=written,
+            strategies=strategies(),
         )
 
     @property
@@ -361,7 +358,16 @@ def case_type(known: Registries) -> type[Case]:
             Field(default_factory=list, description="pairs in contact"),
         ),
         output=(_output(known.arrays), Output()),
+        solver=(_solver(known.strategies), Solver()),
     )
+
+
+def _solver(ways: tuple[Entry, ...]) -> type[Solver]:
+    """The table `[solver]`, whose strategies are the registered ones."""
+    text = "; ".join(f"{way.doc} ({way.name})" for way in ways)
+    names = (way.name for way in ways)
+    field: dict[str, Any] = {"strategy": (Annotated[str, _word(text, *names)], AUTO)}
+    return create_model("Solver", __base__=Solver, __doc__=Solver.__doc__, **field)
 
 
 def _output(names: list[str]) -> type[Output]:

@@ -12,7 +12,7 @@ from anisocontact.solver.stepping.culprits import find_culprits
 from anisocontact.solver.stepping.turned import TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.strategies.newton import NewtonResult
-from anisocontact.solver.strategies.strategy import AnyNewton
+from anisocontact.solver.strategies.strategy import IncrementSolver
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
 
@@ -85,7 +85,7 @@ class Attempts:
     """
 
     def __init__(
-        self, problem: Problem, newton: AnyNewton, watch: StatusWatch, turns: TurnWatch
+        self, problem: Problem, newton: IncrementSolver, watch: StatusWatch, turns: TurnWatch
     ) -> None:
         self._turns = turns
         self._problem = problem

@@ -15,7 +15,7 @@ from dataclasses import replace
 from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import AnyContact
 from anisocontact.solver.strategies.newton import NewtonResult
-from anisocontact.solver.strategies.strategy import AnyNewton
+from anisocontact.solver.strategies.strategy import IncrementSolver
 from anisocontact.solver.system.problem import Problem
 
 #: Stiffness of adhesion over that of the bodies beyond which an attempt with a layer is made.
@@ -36,7 +36,7 @@ class Continuation:
         newton: Its solver.
     """
 
-    def __init__(self, problem: Problem, newton: AnyNewton) -> None:
+    def __init__(self, problem: Problem, newton: IncrementSolver) -> None:
         self._problem = problem
         self._newton = newton
 

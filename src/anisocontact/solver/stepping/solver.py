@@ -10,7 +10,7 @@ import numpy as np
 
 from anisocontact.base.fenicsx import Vec
 from anisocontact.base.limits import Limits
-from anisocontact.base.strategies import AUTO, CONDENSED
+from anisocontact.base.strategies import AUTO
 from anisocontact.contact import warn_of
 from anisocontact.solver.stepping.alarms import Alarms
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
@@ -22,8 +22,9 @@ from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
+from anisocontact.solver.strategies.choice import choose
 from anisocontact.solver.strategies.newton import NewtonResult, OptionValue
-from anisocontact.solver.strategies.strategy import AnyNewton, choose, make_newton
+from anisocontact.solver.strategies.strategy import IncrementSolver, Task
 from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays, Persistent, under
@@ -103,10 +104,9 @@ class Solver:
         problem.check(self.steps)
         self.cautions = led_turns(problem.model, problem.materials, self.steps)
         self.place = self._beginning(0, 0.0)
-        self._prefix = options_prefix
-        self._options = dict(options or {})
-        self.choice = choose(strategy, problem, self.steps, self._prefix, self._options)
-        self._newton: AnyNewton | None = None
+        self._task = Task(problem, self.steps, options_prefix, dict(options or {}))
+        self.choice = choose(strategy, self._task)
+        self._newton: IncrementSolver | None = None
         self._kept: Arrays = {}
         self._on_iteration: Callable[[Progress], None] | None = None
         self._on_cut: Callable[[Cut], None] | None = None
@@ -140,16 +140,10 @@ class Solver:
         note = on_note or (lambda _: None)
         warn = on_warning or (lambda text: note(f"warning: {text}"))
         self._energy.begin()
-        self._newton = newton = make_newton(
-            self.choice,
-            self.problem,
-            self.steps,
-            self._prefix,
-            self._options,
-            self._report,
-            note,
-            self._kept,
-        )
+        strategy = self.choice.strategy
+        if not (strategy.reduces and self._kept):
+            self.problem.recover()
+        self._newton = newton = strategy.solver(self._task, self._report, note, self._kept)
         attempts, alarms = Attempts(self.problem, newton, self._watch, self._turns), Alarms()
         try:
             while self.place.step < len(self.steps):
@@ -193,7 +187,7 @@ class Solver:
         self._energy.restore(kept.common["energy_watch"])
         self._kept = kept.strategy and kept.strategy | under(PENDING, kept.nodal)
         # without its interior it is no state to extrapolate from
-        whole = self.problem.whole or (self.choice.name == CONDENSED and self._kept)
+        whole = self.problem.whole or (self.choice.strategy.reduces and self._kept)
         if "before" in kept.nodal and whole:
             before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
         self.place = Place(step, time, Pace(self.limits, **numbers), begun, before)

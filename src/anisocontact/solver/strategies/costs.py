@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import resource
+from collections.abc import Iterator
 from pathlib import Path
 
 #: Bytes for each entry of the dense matrix: S twice in double precision (MUMPS assembles it once
@@ -15,6 +16,8 @@ _ENTRY = 1.25 * 8
 #: dissection [George 1973]: of all unknowns, and with those that can be touched left to the end.
 #: MUMPS, a block of 24 x 24 x 12 hexahedra (22,500 unknowns, 1,875 at the end): 35.3 and 44.1.
 _WHOLE, _BORDER_LAST = 35.0, 44.0
+#: Share of the free memory that dense matrices or a factor may take.
+MEMORY_SHARE = 0.5
 
 
 def factor_bytes(unknowns: int) -> float:
@@ -47,6 +50,18 @@ def memory_needed(unknowns: int, count: int) -> float:
 def free_memory() -> float:
     """Memory that this process may still take, bytes; no limit where nothing says one."""
     return min(_of_machine(), _of_process(), _of_group())
+
+
+def too_large(what: str, needed: float) -> Iterator[str]:
+    """Why something would not fit into memory, in a line; nothing where it does.
+
+    Args:
+        what: What it is.
+        needed: Memory that it takes, bytes.
+    """
+    free = free_memory()
+    if needed > MEMORY_SHARE * free:
+        yield f"{what} needs {needed / 1e9:.1f} GB, {free / 1e9:.1f} GB are free"
 
 
 def _n43(unknowns: int) -> float:

@@ -1,0 +1,46 @@
+"""Krylov iterations on the whole system with two levels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from anisocontact.base.strategies import ITERATIVE, strategy_entry
+from anisocontact.solver.strategies.iterative.newton import IterativeNewton
+from anisocontact.solver.strategies.iterative.patch import Patch
+from anisocontact.solver.strategies.strategy import Task
+from anisocontact.solver.terms.persistent import Arrays
+
+#: Share of the unknowns that may stay on the coarse level, if nobody asks for it.
+MOST_KEPT = 0.25
+
+
+class IterativeStrategy:
+    """Newton's method with FGMRES; memory grows with the unknowns alone."""
+
+    entry = strategy_entry(ITERATIVE)
+    merit = "Krylov iterations are faster"
+    reduces = False
+
+    def obstacles(self, task: Task) -> Iterator[str]:
+        """None."""
+        yield from ()
+
+    def costs(self, task: Task) -> Iterator[str]:
+        """Why it is not taken by itself."""
+        yield from task.asked_solver()
+        problem = task.problem
+        kept = Patch(problem, task.steps).select()
+        count = int(problem.comm.allreduce(int(kept.sum())))
+        if 3 * count > MOST_KEPT * problem.unknowns:
+            yield f"{3 * count} of {problem.unknowns} unknowns would stay on the coarse level"
+
+    def solver(
+        self,
+        task: Task,
+        on_iteration: Callable[[int, float], None],
+        note: Callable[[str], None],
+        kept: Arrays,
+    ) -> IterativeNewton:
+        """Newton's method with two levels."""
+        problem, steps, options = task.problem, task.steps, task.options
+        return IterativeNewton(problem, steps, task.prefix, options, on_iteration, note)
