@@ -181,18 +181,22 @@ def test_points_that_come_to_lie_carry_no_friction_yet(to_the_end):
     increment after the gap has closed, of a penalty without limit.
     """
     axes = 'directions = { kind = "constant", vector = [1, 0, 0], angle_deg = 30 }'
-    text = (
-        (
-            f"{RIGID}adhesion = {{ stiffness = [1e6, 1e5], {axes} }}\n"
-            f'friction = {{ coefficients = [0.8, 0.1], {axes} }}\nmethod = "augmented"\n'
-            '[[step]]\nname = "press"\nincrements = 1\n'
-            'displacement = { "block.top" = { x = 0, y = 0, z = -0.02 } }\n'
-            '[[step]]\nname = "drag"\nincrements = 3\ndisplacement = { "block.top" = { x = 0.1 } }\n'
-            '[[step]]\nname = "turn"\nincrements = 3\ndisplacement = { "block.top" = { y = -0.1 } }\n'
-        )
-        .replace("size = [1, 1, 0.6]", "size = [1, 1, 0.5]")
-        .replace("E = 10\n", "E = 100\n")
+    laws = (
+        f"adhesion = {{ stiffness = [1e6, 1e5], {axes} }}\n"
+        f'friction = {{ coefficients = [0.8, 0.1], {axes} }}\nmethod = "augmented"\n'
     )
+    moves = (
+        ("press", 1, "x = 0, y = 0, z = -0.02"),
+        ("drag", 3, "x = 0.1"),
+        ("turn", 3, "y = -0.1"),
+    )
+    steps = "".join(
+        f'[[step]]\nname = "{name}"\nincrements = {count}\n'
+        f'displacement = {{ "block.top" = {{ {to} }} }}\n'
+        for name, count, to in moves
+    )
+    block = RIGID.replace("size = [1, 1, 0.6]", "size = [1, 1, 0.5]")
+    text = block.replace("E = 10\n", "E = 100\n") + laws + steps
     run = to_the_end(text)
     assert not run.cuts
     assert max(a.iterations for a in run.accepted) <= 25
