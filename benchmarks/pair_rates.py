@@ -21,7 +21,7 @@ from mpi4py import MPI
 from anisocontact.anisotropy import make_directions
 from anisocontact.base import registry
 from anisocontact.contact.facet_mesh import FacetMesh, SlavePoints, facet_rule
-from anisocontact.interface import STATE, PairLaw, raw_state
+from anisocontact.interface import STATE, ContactLaw, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import TOPOLOGIES, FacetProjections, FacetSurface
 
@@ -41,11 +41,11 @@ def sheet(cells: int, topology: str) -> tuple[np.ndarray, np.ndarray]:
     return np.column_stack((x, y, height)), facets.astype(np.int32)
 
 
-def law(rule: str, mu: float) -> PairLaw:
+def law(rule: str, mu: float) -> ContactLaw:
     """Adhesion and friction with axes apart."""
     first = make_directions("constant", vector=(1.0, 0.2, 0.1), angle=0.3)
     second = make_directions("polar", axis=((-1.0, -1.0, 0.0), (0.0, 0.1, 1.0)))
-    return PairLaw(
+    return ContactLaw(
         NormalLaw(penalty=1e3),
         Adhesion(stiffness=(400.0, 100.0), directions=first),
         Friction(coefficients=(mu, 0.4 * mu), directions=second, sliding_rule=rule, **RULES[rule]),
@@ -58,7 +58,7 @@ class Sheets:
 
     topology: str
     cells: int
-    law: PairLaw
+    law: ContactLaw
 
     def __post_init__(self) -> None:
         x, facets = sheet(self.cells, self.topology)
@@ -83,7 +83,7 @@ class Sheets:
         self.surface = FacetSurface(self.reference, lower, self.topology)
         kind = list(TOPOLOGIES).index(self.topology)
         self.master = (lower, np.full(len(lower), kind, dtype=np.int8), flip)
-        self.core = self.law.pairs()
+        self.core = self.law.pairs().core
         self.hint: FacetProjections | None = None
         self.state = np.zeros(len(self.points.nodes), dtype=STATE)
         self.state["facet"] = -1

@@ -178,7 +178,7 @@ def install_dependencies(project: dict[str, Any]) -> None:
 
 def build_core() -> None:
     """Install the project in editable mode, or compile again what changed of its C++."""
-    sources = [*ROOT.glob("cpp/include/**/*.hpp"), *ROOT.glob("cpp/python/*.?pp")]
+    sources = ROOT.glob("cpp/**/*.?pp")
     project = Stage("project", [ROOT / "pyproject.toml", ROOT / "CMakeLists.txt"])
     core = Stage("core", [project.key, *sorted(sources)])
     if core.is_done():

@@ -1,12 +1,12 @@
 """Changes the core in one place at a time and sees whether the tests notice.
 
 `make mutants`, or `python tools/mutants.py [NAME ...]`. The mutations are in
-`tools/mutations.toml`: a text of a header that occurs once, what stands there instead, the files
-of `cpp/python` that are compiled with it and the tests that have to fail. All runs in a copy of the
-sources in `build/mutants`, without optimisation: the core is compiled once as it is, and for each
-mutation only the files named, which are linked in front of the others, so that the linker takes
-their copies of shared templates. Ends with 1 where a mutation survives, does not compile, or a
-test fails without any.
+`tools/mutations.toml`: a text of a file that occurs once, what stands there instead, the files of
+`cpp/python` and `cpp/src` that are compiled with it and the tests that have to fail. All runs in a
+copy of the sources in `build/mutants`, without optimisation: the core is compiled once as it is,
+and for each mutation only the files named, which are linked in front of the others, so that the
+linker takes their copies of shared templates. Ends with 1 where a mutation survives, does not
+compile, or a test fails without any.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
 LIST = ROOT / "tools" / "mutations.toml"
-HEADERS = Path("cpp/include/anisocontact")
+CPP = Path("cpp")
 #: What the tests need besides the core.
 COPIED = ("cpp", "src", "tests", "tools", "docs", "examples")
 FILES = ("CMakeLists.txt", "LICENSE", "pyproject.toml")
@@ -42,14 +42,14 @@ runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
 
 @dataclass(frozen=True)
 class Mutation:
-    """One change of one header.
+    """One change of one file.
 
     Attributes:
         name: A word for it.
-        file: The header, below `cpp/include/anisocontact`.
+        file: The header or source, below `cpp`.
         before: Text that occurs once in it.
         after: What stands there instead.
-        compiles: Files of `cpp/python`, without suffix, that are compiled anew.
+        compiles: Files of `cpp/python` and `cpp/src`, without suffix, that are compiled anew.
         tests: Arguments of pytest, one list for each call; the first failure ends it.
     """
 
@@ -61,11 +61,11 @@ class Mutation:
     tests: tuple[str, ...]
 
     def places(self, root: Path = ROOT) -> int:
-        """How often the text occurs in the header below a root."""
-        return (root / HEADERS / self.file).read_text().count(self.before)
+        """How often the text occurs in the file below a root."""
+        return (root / CPP / self.file).read_text().count(self.before)
 
     def applied(self, text: str) -> str:
-        """The header with the change."""
+        """The file with the change."""
         return text.replace(self.before, self.after)
 
 
@@ -108,8 +108,8 @@ class Core:
 
     @contextmanager
     def mutated(self, one: Mutation) -> Iterator[None]:
-        """The header changed, for tests that compile it, and linked with what is compiled of it."""
-        header = self.root / HEADERS / one.file
+        """The file changed, for tests that compile it, and linked with what is compiled of it."""
+        header = self.root / CPP / one.file
         text, old = header.read_text(), header.stat()
         header.write_text(one.applied(text))
         try:
@@ -137,7 +137,7 @@ class Core:
         return r.returncode == 0
 
     def _objects(self) -> dict[str, Path]:
-        found = self._build.glob("CMakeFiles/_core.dir/cpp/python/*.cpp.o")
+        found = self._build.glob("CMakeFiles/*.dir/cpp/*/*.cpp.o")
         return {path.name.removesuffix(".cpp.o"): path for path in found}
 
     def _compile(self, name: str) -> Path:

@@ -22,7 +22,7 @@ struct Slots {
   std::vector<std::array<std::int32_t, 2>> facets;   ///< run and facet of each own block
   std::vector<std::array<std::int32_t, 2>> history;  ///< own block and facet of each earlier one
 
-  Slots(const Batch& b, const std::uint8_t* state, const bool* near, std::size_t n)
+  Slots(const Batch& b, const States& states, const bool* near, std::size_t n)
       : order(n), own(n, none), earlier(n, none) {
     for (std::size_t p = 0; p < n; ++p) {
       if (p == 0 || !same_slave(b.slave, p - 1, p)) begin(p);
@@ -30,7 +30,7 @@ struct Slots {
       const std::array<std::int32_t, 2> key{static_cast<std::int32_t>(runs.size()) - 1,
                                             b.hits.facet[p]};
       own[p] = find(facets, first_own_, key);
-      const auto committed = static_cast<std::int32_t>(load(state, p).facet);
+      const auto committed = static_cast<std::int32_t>(states[p].facet);
       if (committed >= 0 && committed != b.hits.facet[p])
         earlier[p] = find(history, first_earlier_, {own[p], committed});
     }

@@ -50,16 +50,16 @@ struct SlideOutput {
   bool *slides, *converged;
 };
 
-template <bool with_tangent, class Rule>
-void slide_one(const Rule& rule, const SlideInput& in, const SlideOutput& out,
+template <bool with_tangent>
+void slide_one(const law::AnyRule& rule, const SlideInput& in, const SlideOutput& out,
                std::size_t i) noexcept {
   const auto p = in.problem(i);
   law::SlideResult<double> r{p.trial, p.trial, {}, true};
   law::SlideTangent t{unit<double, Place::co>(), {}};
   out.slides[i] = law::friction_norm(p.friction, p.trial) > p.pressure;
   if (out.slides[i]) {
-    r = rule.slide(p);
-    if constexpr (with_tangent) t = rule.tangent(p, r);
+    r = law::slide(rule, p);
+    if constexpr (with_tangent) t = law::slide_tangent(rule, p, r);
   }
   for (std::size_t k = 0; k < 2; ++k) {
     out.traction[2 * i + k] = r.traction[k];
@@ -99,13 +99,9 @@ nb::dict slide(const RuleHandle& rule, const Matrices& stiffness, const Matrices
                         d_pressure.data, slides.data, converged.data};
   {
     nb::gil_scoped_release free;
-    std::visit(
-        [&](const auto& r) {
-          kernel::parallel_for(n, threads, [&](std::size_t i) {
-            with_tangent ? slide_one<true>(r, in, out, i) : slide_one<false>(r, in, out, i);
-          });
-        },
-        rule.any);
+    kernel::parallel_for(n, threads, [&](std::size_t i) {
+      with_tangent ? slide_one<true>(rule.any, in, out, i) : slide_one<false>(rule.any, in, out, i);
+    });
   }
   nb::dict d;
   d["traction"] = traction.array;

@@ -11,9 +11,7 @@ NB_MODULE(_core, m) {
   anisocontact::bindings::bind_surface(m);
   anisocontact::bindings::bind_anisotropy(m);
   anisocontact::bindings::bind_law(m);
-  anisocontact::bindings::bind_kernel(m);
-  anisocontact::bindings::bind_framed(m);
+  anisocontact::bindings::bind_interface(m);
   anisocontact::bindings::bind_search(m);
-  anisocontact::bindings::bind_facet_pair(m);
-  anisocontact::bindings::bind_facet_framed(m);
+  anisocontact::bindings::bind_facet_interface(m);
 }

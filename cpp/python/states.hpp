@@ -11,43 +11,34 @@ namespace anisocontact::bindings {
 
 using Codes = nb::ndarray<const std::int8_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
-inline kernel::PointState load(const std::uint8_t* bytes, std::size_t i) {
-  kernel::PointState s;
-  std::memcpy(&s, bytes + i * sizeof(s), sizeof(s));
-  return s;
-}
+/// Rows that begin with the state of a point; a law that is not in the core has its own variables
+/// behind it, which are nobody's business here.
+struct States {
+  const std::uint8_t* data;
+  std::size_t stride;
 
-/// Asks memory for a state that is loaded soon.
-inline void prefetch([[maybe_unused]] const std::uint8_t* bytes, [[maybe_unused]] std::size_t i) {
+  States(const Bytes& rows, std::size_t n) : data(rows.data()), stride(rows.shape(1)) {
+    if (rows.shape(0) != n || stride < sizeof(kernel::PointState))
+      throw std::invalid_argument("state does not belong to these points");
+  }
+
+  kernel::PointState operator[](std::size_t i) const {
+    kernel::PointState s;
+    std::memcpy(&s, data + i * stride, sizeof(s));
+    return s;
+  }
+  /// Asks memory for a state that is loaded soon.
+  void prefetch([[maybe_unused]] std::size_t i) const {
 #if defined(__GNUC__)
-  constexpr std::size_t line = 64, size = sizeof(kernel::PointState);
-  for (std::size_t k = 0; k < size; k += line) __builtin_prefetch(bytes + i * size + k);
+    constexpr std::size_t line = 64;
+    for (std::size_t k = 0; k < sizeof(kernel::PointState); k += line)
+      __builtin_prefetch(data + i * stride + k);
 #endif
-}
+  }
+};
 
 inline void store(std::uint8_t* bytes, std::size_t i, const kernel::PointState& s) {
   std::memcpy(bytes + i * sizeof(s), &s, sizeof(s));
-}
-
-inline void check_states(const Bytes& state, std::size_t n) {
-  if (state.shape(0) != n || state.shape(1) != sizeof(kernel::PointState))
-    throw std::invalid_argument("state does not belong to these points");
-}
-
-/// States before the first step, and which points have no projection.
-inline nb::dict initial_states(const surface::AnySurface& surface, const Points& x) {
-  const std::size_t n = x.shape(0);
-  Array<std::uint8_t> state({n, sizeof(kernel::PointState)});
-  Array<std::int8_t> failure({n});
-  for (std::size_t i = 0; i < n; ++i) {
-    auto f = kernel::Failure::none;
-    store(state.data, i, kernel::initial_state(surface, row3(x.data(), i), f));
-    failure.data[i] = static_cast<std::int8_t>(f);
-  }
-  nb::dict r;
-  r["state"] = state.array;
-  r["failure"] = failure.array;
-  return r;
 }
 
 }  // namespace anisocontact::bindings

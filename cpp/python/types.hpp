@@ -25,6 +25,10 @@ struct FieldHandle {
   anisotropy::AnyField any;
 };
 
+struct LawHandle {
+  kernel::InterfaceLaw law;
+};
+
 /// A field, and whether it lies on the slave.
 inline kernel::Directions directions(const FieldHandle* f, bool on_slave) {
   return {f == nullptr ? std::nullopt : std::optional(f->any),
@@ -51,6 +55,19 @@ inline kernel::InterfaceLaw make_law(const Named& normal, const Named& adhesion,
           directions(friction_directions_second, on_slave[2]),
           law::SlidingRules::make(rule.first, Values(rule.second)),
           kernel::EvolutionForms::make(evolution, Values())};
+}
+
+/// The normal law and the axes of a tangential law that is not in the core; adhesion and friction are
+/// there for their directions.
+inline LawHandle given_law(const Named& normal, const FieldHandle* field, bool on_slave) {
+  const kernel::Directions along = directions(field, on_slave);
+  return {{law::NormalLaws::make(normal.first, Values(normal.second)),
+           law::AnyAdhesion{},
+           along,
+           law::AnyFriction{},
+           along,
+           {},
+           law::AnyRule{}}};
 }
 
 }  // namespace anisocontact::bindings

@@ -120,10 +120,9 @@ def state_layout() -> list[Any]: ...
 
 state_size: int = 264
 
-class Interface:
+class Law:
     def __init__(
         self,
-        surface: Surface,
         normal: tuple[str, Mapping[str, Sequence[float]]],
         adhesion: tuple[str, Mapping[str, Sequence[float]]],
         adhesion_directions: Field | None,
@@ -132,9 +131,26 @@ class Interface:
         friction_directions_second: Field | None,
         rule: tuple[str, Mapping[str, Sequence[float]]],
         evolution: str,
-        on_slave: Sequence[bool] = [False, False, False],
+        on_slave: Sequence[bool],
     ) -> None: ...
+    @staticmethod
+    def given(
+        normal: tuple[str, Mapping[str, Sequence[float]]], directions: Field | None, on_slave: bool
+    ) -> Law: ...
+
+class Interface:
+    def __init__(self, surface: Surface, law: Law) -> None: ...
     def initial_state(self, x: NDArray[numpy.float64]) -> dict[str, NDArray[Any]]: ...
+    def law_input(
+        self,
+        state: NDArray[numpy.uint8],
+        x: NDArray[numpy.float64],
+        dt: float,
+        threads: int,
+        own_reference: NDArray[numpy.float64],
+        own_reference_tangents: NDArray[numpy.float64],
+        own_tangents: NDArray[numpy.float64],
+    ) -> dict[str, NDArray[Any]]: ...
     def update(
         self,
         state: NDArray[numpy.uint8],
@@ -145,41 +161,8 @@ class Interface:
         own_reference: NDArray[numpy.float64],
         own_reference_tangents: NDArray[numpy.float64],
         own_tangents: NDArray[numpy.float64],
+        outputs: NDArray[numpy.float64] | None = None,
     ) -> dict[str, NDArray[Any]]: ...
-
-class FramedInterface:
-    def __init__(
-        self,
-        surface: Surface,
-        normal: tuple[str, Mapping[str, Sequence[float]]],
-        directions: Field | None,
-    ) -> None: ...
-    def kinematics(
-        self,
-        state: NDArray[numpy.uint8],
-        x: NDArray[numpy.float64],
-        dt: float,
-        threads: int,
-        own_reference: NDArray[numpy.float64],
-        own_reference_tangents: NDArray[numpy.float64],
-        own_tangents: NDArray[numpy.float64],
-    ) -> dict[str, NDArray[Any]]: ...
-    def commit(
-        self,
-        state: NDArray[numpy.uint8],
-        x: NDArray[numpy.float64],
-        dt: float,
-        traction: NDArray[numpy.float64],
-        stored: NDArray[numpy.float64],
-        slip: NDArray[numpy.float64],
-        dissipation: NDArray[numpy.float64],
-        energy: NDArray[numpy.float64],
-        status: NDArray[numpy.int8],
-        own_reference: NDArray[numpy.float64],
-        own_reference_tangents: NDArray[numpy.float64],
-        own_tangents: NDArray[numpy.float64],
-    ) -> Any: ...
-    def initial_state(self, x: NDArray[numpy.float64]) -> dict[str, NDArray[Any]]: ...
 
 class FacetSurface:
     def __init__(
@@ -228,20 +211,31 @@ class Smoothing:
     def middles(self, points: NDArray[numpy.float64]) -> NDArray[numpy.float64]: ...
     def derivatives(self, points: NDArray[numpy.float64]) -> Any: ...
 
-class FacetPairs:
-    def __init__(
+class FacetInterface:
+    def __init__(self, law: Law, mirrored: bool) -> None: ...
+    def law_input(
         self,
-        normal: tuple[str, Mapping[str, Sequence[float]]],
-        adhesion: tuple[str, Mapping[str, Sequence[float]]],
-        adhesion_directions: Field | None,
-        friction: tuple[str, Mapping[str, Sequence[float]]],
-        friction_directions: Field | None,
-        friction_directions_second: Field | None,
-        rule: tuple[str, Mapping[str, Sequence[float]]],
-        evolution: str,
-        mirrored: bool = False,
-        on_slave: Sequence[bool] = [False, False, False],
-    ) -> None: ...
+        state: NDArray[numpy.uint8],
+        dt: float,
+        slave_nodes: NDArray[numpy.int32],
+        slave_shape: NDArray[numpy.float64],
+        slave_gradient: NDArray[numpy.float64],
+        weight: NDArray[numpy.float64],
+        current_area: bool,
+        now: NDArray[numpy.float64],
+        reference: NDArray[numpy.float64],
+        connectivity: NDArray[numpy.int32],
+        topology: NDArray[numpy.int8],
+        flip: NDArray[numpy.bool_],
+        facet: NDArray[numpy.int32],
+        xi: NDArray[numpy.float64],
+        feature: NDArray[numpy.int8],
+        edge: NDArray[numpy.float64],
+        near: NDArray[numpy.bool_],
+        tangent: bool,
+        threads: int,
+        outputs: NDArray[numpy.float64] | None = None,
+    ) -> dict[str, NDArray[Any]]: ...
     def update(
         self,
         state: NDArray[numpy.uint8],
@@ -263,6 +257,7 @@ class FacetPairs:
         near: NDArray[numpy.bool_],
         tangent: bool,
         threads: int,
+        outputs: NDArray[numpy.float64] | None = None,
     ) -> dict[str, NDArray[Any]]: ...
     def assemble(
         self,
@@ -285,82 +280,5 @@ class FacetPairs:
         near: NDArray[numpy.bool_],
         tangent: bool,
         threads: int,
-    ) -> dict[str, NDArray[Any]]: ...
-
-class AnsweredPairs:
-    def update(
-        self,
-        state: NDArray[numpy.uint8],
-        dt: float,
-        slave_nodes: NDArray[numpy.int32],
-        slave_shape: NDArray[numpy.float64],
-        slave_gradient: NDArray[numpy.float64],
-        weight: NDArray[numpy.float64],
-        current_area: bool,
-        now: NDArray[numpy.float64],
-        reference: NDArray[numpy.float64],
-        connectivity: NDArray[numpy.int32],
-        topology: NDArray[numpy.int8],
-        flip: NDArray[numpy.bool_],
-        facet: NDArray[numpy.int32],
-        xi: NDArray[numpy.float64],
-        feature: NDArray[numpy.int8],
-        edge: NDArray[numpy.float64],
-        near: NDArray[numpy.bool_],
-        tangent: bool,
-        threads: int,
-    ) -> dict[str, NDArray[Any]]: ...
-    def assemble(
-        self,
-        state: NDArray[numpy.uint8],
-        dt: float,
-        slave_nodes: NDArray[numpy.int32],
-        slave_shape: NDArray[numpy.float64],
-        slave_gradient: NDArray[numpy.float64],
-        weight: NDArray[numpy.float64],
-        current_area: bool,
-        now: NDArray[numpy.float64],
-        reference: NDArray[numpy.float64],
-        connectivity: NDArray[numpy.int32],
-        topology: NDArray[numpy.int8],
-        flip: NDArray[numpy.bool_],
-        facet: NDArray[numpy.int32],
-        xi: NDArray[numpy.float64],
-        feature: NDArray[numpy.int8],
-        edge: NDArray[numpy.float64],
-        near: NDArray[numpy.bool_],
-        tangent: bool,
-        threads: int,
-    ) -> dict[str, NDArray[Any]]: ...
-
-class FramedPairs:
-    def __init__(
-        self,
-        normal: tuple[str, Mapping[str, Sequence[float]]],
-        directions: Field | None,
-        mirrored: bool,
-        on_slave: bool,
-    ) -> None: ...
-    def answered(self, answers: NDArray[numpy.float64]) -> AnsweredPairs: ...
-    def tell(
-        self,
-        state: NDArray[numpy.uint8],
-        dt: float,
-        slave_nodes: NDArray[numpy.int32],
-        slave_shape: NDArray[numpy.float64],
-        slave_gradient: NDArray[numpy.float64],
-        weight: NDArray[numpy.float64],
-        current_area: bool,
-        now: NDArray[numpy.float64],
-        reference: NDArray[numpy.float64],
-        connectivity: NDArray[numpy.int32],
-        topology: NDArray[numpy.int8],
-        flip: NDArray[numpy.bool_],
-        facet: NDArray[numpy.int32],
-        xi: NDArray[numpy.float64],
-        feature: NDArray[numpy.int8],
-        edge: NDArray[numpy.float64],
-        near: NDArray[numpy.bool_],
-        tangent: bool,
-        threads: int,
+        outputs: NDArray[numpy.float64] | None = None,
     ) -> dict[str, NDArray[Any]]: ...

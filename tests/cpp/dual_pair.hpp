@@ -3,6 +3,7 @@
 // written without the derivatives by hand of kernel/facet_pair.hpp, which it is there to check.
 
 #include "anisocontact/kernel/facet_pair.hpp"
+#include "dual_law.hpp"
 
 namespace anisocontact::oracle {
 
@@ -107,7 +108,7 @@ inline anisotropy::Axes<S> carried(const anisotropy::AnyField& field,
 
 /// Kinematics of a point, with the jets that carry directions.
 struct Seen {
-  Kinematics<S> k;
+  Motion<S> k;
   surface::Jet<S> master, own;
   surface::Geometry<S> facet;
   std::array<S, 2> dxi{};

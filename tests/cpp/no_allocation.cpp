@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "anisocontact/kernel/core_law.hpp"
 #include "anisocontact/kernel/point.hpp"
 
 namespace {
@@ -56,8 +57,8 @@ void walk(const kernel::Interface& itf, std::size_t seen[3]) {
     const Vec3<double> foot(u, v, 0.0);
     const auto p = projection::closest_point(itf.surface, foot);
     const auto g = surface::geometry(surface::jet(itf.surface, p.xi[0], p.xi[1]));
-    const auto r =
-        kernel::update<tangent>(itf, state, g.jet.position + gap * g.normal, nullptr, 1.0);
+    const auto r = kernel::update<tangent>(itf, kernel::CoreLaw(itf.law), state,
+                                           g.jet.position + gap * g.normal, nullptr, 1.0);
     if (r.failure != kernel::Failure::none) std::abort();
     state = r.state;
     ++seen[state.status];

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "anisocontact/kernel/core_law.hpp"
 #include "dual_pair.hpp"
 
 namespace anisocontact {
@@ -149,7 +150,7 @@ kernel::PointState history(Random& r) {
 /// comes near the other one.
 void put_axes(Random& r, const kernel::InterfaceLaw& law, const kernel::PairPoint& p,
               kernel::PointState& state) {
-  const auto now = kernel::update_pair<false>(law, state, p, 0.5);
+  const auto now = kernel::update_pair<false>(law, kernel::CoreLaw(law), state, p, 0.5);
   const auto before = surface::tangent_plane(p.before);
   const double angle = r(-0.6, 0.6);
   for (std::size_t k = 0; k < 2; ++k) {
@@ -236,9 +237,9 @@ void compare(Random& r, const law::AnyRule& rule, Feature feature, Tally& tally)
   const auto p = point(r, feature);
   if (state.status != 0 && r.coin()) put_axes(r, law, p, state);
   kernel::PairSlopes by;
-  const auto fast = kernel::update_pair<true>(law, state, p, 0.5, &by);
+  const auto fast = kernel::update_pair<true>(law, kernel::CoreLaw(law), state, p, 0.5, &by);
   const auto slow = oracle::update(law, state, p, 0.5);
-  const auto plain = kernel::update_pair<false>(law, state, p, 0.5);
+  const auto plain = kernel::update_pair<false>(law, kernel::CoreLaw(law), state, p, 0.5);
   if (fast.failure != slow.failure) {
     tally.most = INFINITY;
     return;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "anisocontact/kernel/core_law.hpp"
 #include "anisocontact/kernel/facet_assembly.hpp"
 #include "anisocontact/kernel/point.hpp"
 #include "anisocontact/search/facet_surface.hpp"
@@ -112,7 +113,7 @@ std::size_t meet(const search::FacetSurface& s, const Vec3<double>& x,
     shapes.before = nodal(s.kind(f), state.xi);
   }
   kernel::PairSlopes by;
-  const auto r = kernel::update_pair<true>(l, state, p, 1.0, &by);
+  const auto r = kernel::update_pair<true>(l, kernel::CoreLaw(l), state, p, 1.0, &by);
   const std::size_t size = 3 * 2 * shapes.slave.count, half = size / 2;
   std::vector<double> own(size * size), earlier(size * half), residual(size);
   const bool apart = state.facet >= 0 && state.facet != hit.facet;
@@ -161,8 +162,8 @@ std::size_t analytic(Random& r, const char* shape, const Values& values) {
     own.now.position = own.reference.position = x;
     for (int k = 0; k < 5; ++k) {
       x += r.vector(0.05);
-      const auto a = kernel::update<true>(itf, state, x, &own, 1.0);
-      const auto b = kernel::update<false>(itf, state, x, nullptr, 1.0);
+      const auto a = kernel::update<true>(itf, kernel::CoreLaw(itf.law), state, x, &own, 1.0);
+      const auto b = kernel::update<false>(itf, kernel::CoreLaw(itf.law), state, x, nullptr, 1.0);
       touched += b.state.status != 0 ? 1 : 0;
       state = a.state;
     }

@@ -18,7 +18,7 @@ HEADERS = ROOT / "cpp" / "include" / "anisocontact"
 SOURCES = ROOT / "src" / "anisocontact"
 BINDINGS = ROOT / "cpp" / "python"
 #: Bindings of what a solver calls; the others are functions of scripts and of pictures.
-BOUND = ("kernel", "facet_pair", "facet_framed", "framed", "search")
+BOUND = ("interface", "facet_interface", "search")
 #: Where a run goes through, and where it does not yet, or no more.
 ENTRIES = ("case.build", "solver", "contact", "rigid", "interface")
 BESIDE = ("results", "point", "base.figure_style", "cli")
@@ -41,9 +41,9 @@ def blocks(text: str) -> Iterator[str]:
 
 @cache
 def definitions() -> dict[str, frozenset[str]]:
-    """Words of all definitions of the headers, by their names."""
+    """Words of all definitions of the core, by their names."""
     found: dict[str, set[str]] = {}
-    for file in HEADERS.rglob("*.hpp"):
+    for file in (*HEADERS.rglob("*.hpp"), *(ROOT / "cpp" / "src").glob("*.cpp")):
         for block in blocks(file.read_text()):
             head = re.sub(r"template\s*<[^{;]*?>\s*(?=\w)|requires\b[^{;]*", "", block)
             if match := NAMED.search(head):

@@ -10,7 +10,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.point import PrescribedPath
@@ -24,7 +24,7 @@ LAWS = (
     Adhesion(stiffness=(10, 10)),
     Friction(coefficients=(0.3, 0.3)),
 )
-INTERFACE, PAIR = Interface(PLANE, *LAWS), PairLaw(*LAWS)
+INTERFACE, PAIR = Interface(PLANE, *LAWS), ContactLaw(*LAWS)
 START = INTERFACE.initial_state([[0, 0, 0]])
 KNOTS = [(0, 0, 0), (1, 0, 0)]
 STEEL = make_material("linear-elastic", E=1.0, nu=0.3)
@@ -75,11 +75,11 @@ WRONG = {
     ),
     "laws without a surface": (
         lambda m: Contact(m, "block.bottom", PAIR),
-        "interface: PairLaw given, Interface or PythonInterface needed",
+        "interface: ContactLaw given, Interface needed",
     ),
     "laws with a surface": (
         lambda m: FacetContact(m, "block.bottom", "base.top", law=INTERFACE),
-        "law: Interface given, PairLaw or PythonPairLaw needed",
+        "law: Interface given, ContactLaw needed",
     ),
     "no degree on a plane": (
         lambda m: Contact(m, "block.bottom", INTERFACE, degree=0),

@@ -14,13 +14,13 @@ from anisocontact.base.errors import ModelWarning
 from anisocontact.bulk import make_material
 from anisocontact.cli import main
 from anisocontact.contact import FacetContact, TwoHalfPass, coarse_slaves
-from anisocontact.interface import PairLaw
+from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.results.warnings import at_end
 from anisocontact.solver import Problem, Solver, Step
 
-LAW = PairLaw(NormalLaw(penalty=1e3), Adhesion(stiffness=1e3), Friction(coefficients=0.3))
+LAW = ContactLaw(NormalLaw(penalty=1e3), Adhesion(stiffness=1e3), Friction(coefficients=0.3))
 
 
 def _model(unit: float = 1.0, **more) -> Model:

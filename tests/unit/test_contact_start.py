@@ -11,7 +11,7 @@ import pytest
 from anisocontact.anisotropy import DirectionField, make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.contact import Contact, FacetContact, TwoHalfPass, initial_overlap
-from anisocontact.interface import Augmentation, Interface, PairLaw
+from anisocontact.interface import Augmentation, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver.terms.free_modes import bodies
@@ -72,7 +72,9 @@ def test_adjusted_points_just_touch(kind: str, gap: float) -> None:
             contact = Contact(model, "block.bottom", interface, adjust=adjust)
         else:
             made = FacetContact if kind == "single" else TwoHalfPass
-            contact = made(model, "block.bottom", "base.top", law=PairLaw(*_laws()), adjust=adjust)
+            contact = made(
+                model, "block.bottom", "base.top", law=ContactLaw(*_laws()), adjust=adjust
+            )
         assert initial_overlap(contact, SIZE) is None
         u = np.zeros_like(model.space.tabulate_dof_coordinates())
         assert np.abs(contact.update(u, 1.0).traction).max() < 1e-9
@@ -94,7 +96,7 @@ def test_group_on_the_wrong_side_is_named() -> None:
     model = _blocks(0.0)
     for made in (FacetContact, TwoHalfPass):
         with pytest.raises(InputError, match=r"'(block|base).top' faces the same way"):
-            made(model, "block.top", "base.top", law=PairLaw(*_laws()), reach=2.0)
+            made(model, "block.top", "base.top", law=ContactLaw(*_laws()), reach=2.0)
 
 
 def test_bodies_that_face_each_other_pass() -> None:
@@ -102,7 +104,7 @@ def test_bodies_that_face_each_other_pass() -> None:
     for gap in (0.0, 0.3, -0.01):
         model = _blocks(gap)
         Contact(model, "block.bottom", Interface(_plane(1.0), *_laws()))
-        FacetContact(model, "block.bottom", "base.top", law=PairLaw(*_laws()))
+        FacetContact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
 
 
 @pytest.mark.parametrize("meshed", [False, True])
@@ -117,7 +119,7 @@ def test_singular_directions_in_the_contact_are_found(meshed: bool, which: str) 
     laws = _laws(polar) if which == "directions" else _laws(plain, polar)
     with pytest.raises(InputError, match="no direction at 1 slave points") as error:
         if meshed:
-            FacetContact(model, "block.bottom", "base.top", law=PairLaw(*laws))
+            FacetContact(model, "block.bottom", "base.top", law=ContactLaw(*laws))
         else:
             Contact(model, "block.bottom", Interface(_plane(1.0), *laws))
     assert error.value.field == f"friction.{which}"

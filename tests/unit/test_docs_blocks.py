@@ -96,7 +96,7 @@ import numpy as np
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import Interface, ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import ContactProblem, Problem, Solver, Step

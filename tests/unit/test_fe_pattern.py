@@ -11,7 +11,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.bulk import make_material
 from anisocontact.contact import FacetContact, TwoHalfPass
-from anisocontact.interface import PairLaw
+from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Problem, Solver, Step
@@ -19,7 +19,7 @@ from anisocontact.solver.system.ahead import FARTHEST, SPACING, Ahead
 from anisocontact.solver.system.coupled import MOST_LEFT
 from anisocontact.solver.terms.turn import Turn
 
-LAW = PairLaw(
+LAW = ContactLaw(
     NormalLaw(penalty=2e3), Adhesion(stiffness=(1e3, 1e3)), Friction(coefficients=(0.3, 0.3))
 )
 CLAMP = {"mat.bottom": dict.fromkeys("xyz", 0.0)}

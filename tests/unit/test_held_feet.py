@@ -12,7 +12,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.contact import FacetContact, TwoHalfPass
 from anisocontact.contact.held_feet import BEYOND, facet_of
-from anisocontact.interface import PairLaw
+from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver.stepping.acceptance import held_points_stray
@@ -32,7 +32,7 @@ def _over_a_valley() -> tuple[FacetContact, Any, Any]:
     }
     model = build_box(boxes)
     penalty = 10.0
-    law = PairLaw(
+    law = ContactLaw(
         NormalLaw(penalty=penalty),
         Adhesion(stiffness=(penalty, penalty)),
         Friction(coefficients=(0.3, 0.3)),

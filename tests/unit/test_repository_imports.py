@@ -97,3 +97,25 @@ def test_paths_of_before_name_those_of_today() -> None:
     )
     moved = "anisocontact.errors has moved: import from anisocontact.base.errors"
     assert done.stdout.strip() == moved
+
+
+def test_laws_of_before_are_those_of_today() -> None:
+    """Classes of laws by their names of before, also by the path of before, with a warning."""
+    code = (
+        "import warnings; warnings.simplefilter('ignore', DeprecationWarning)\n"
+        "import numpy as np\n"
+        "from anisocontact.interface import PairLaw, PythonInterface\n"
+        "from anisocontact.python_pair import PythonPairLaw\n"
+        "from anisocontact.laws import Adhesion, Friction, NormalLaw\n"
+        "from anisocontact.surfaces import make_surface\n"
+        "class Law:\n    internal = 2\n"
+        "normal = NormalLaw(penalty=1.0)\n"
+        "plane = make_surface('plane', point=(0, 0, 0), normal=(0, 0, 1))\n"
+        "print(PairLaw(normal, Adhesion(stiffness=1.0), Friction(coefficients=0.3)).evolution)\n"
+        "print(PythonPairLaw(normal, Law(), directions_on='slave').carried[0].on)\n"
+        "print(PythonInterface(plane, normal, Law(), threads=1).dtype['internal'].shape)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=SOURCES.parent
+    )
+    assert done.stdout.split() == ["transport", "slave", "(2,)"]

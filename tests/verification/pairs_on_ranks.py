@@ -22,7 +22,7 @@ from tests.verification.test_fe_self_contact import GAP, hairpin
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact, SelfContact, TwoHalfPass
-from anisocontact.interface import Augmentation, PairLaw, PythonPairLaw
+from anisocontact.interface import Augmentation, ContactLaw, PythonLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.results.checkpoint import (
@@ -45,9 +45,9 @@ GAP_BELOW = 0.01
 type Made = tuple[Problem, list[Step]]
 
 
-def _law(angle: float = 0.5) -> PairLaw:
+def _law(angle: float = 0.5) -> ContactLaw:
     along = make_directions("constant", vector=(1, 0, 0), angle=angle)
-    return PairLaw(
+    return ContactLaw(
         NormalLaw(penalty=20.0),
         Adhesion(stiffness=(8.0, 16.0), directions=along),
         Friction(coefficients=(0.2, 0.4), directions=along),
@@ -94,7 +94,7 @@ def _in_python() -> Made:
     model = _bodies("tetrahedron")
     along = make_directions("constant", vector=(1, 0, 0), angle=0.5)
     own = RadialReturn((8.0, 16.0), (0.2, 0.4))
-    law = PythonPairLaw(NormalLaw(penalty=20.0), own, directions=along)
+    law = ContactLaw(NormalLaw(penalty=20.0), PythonLaw(own, directions=along))
     return _dragged(model, [FacetContact(model, "block.bottom", "mat.top", law=law)])
 
 
@@ -178,7 +178,7 @@ def _under_a_lid() -> Made:
 
 def _folded() -> Made:
     model = hairpin(half=False)
-    law = PairLaw(
+    law = ContactLaw(
         NormalLaw(penalty=2e4),
         Adhesion(stiffness=(1e4, 1e4)),
         Friction(coefficients=(0.2, 0.2)),

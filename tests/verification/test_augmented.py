@@ -10,7 +10,7 @@ import pytest
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact
-from anisocontact.interface import Augmentation, Interface, PairLaw
+from anisocontact.interface import Augmentation, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Accepted, Problem, Solver, Step
@@ -59,7 +59,7 @@ def _run(
             model,
             "block.bottom",
             "base.top",
-            law=PairLaw(*laws),
+            law=ContactLaw(*laws),
             current_area=False,
             augmentation=augmentation,
         )
@@ -204,7 +204,7 @@ def test_patch_over_overlaps() -> None:
         "base": BoxSpec((0, 0, -0.5), (1, 1, 0.5), (3, 3, 1)),
     }
     model = build_box(boxes)
-    law = PairLaw(
+    law = ContactLaw(
         NormalLaw(penalty=1e3),
         Adhesion(stiffness=(1e-3, 1e-3)),
         Friction(coefficients=(1e-6, 1e-6)),

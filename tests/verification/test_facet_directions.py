@@ -14,7 +14,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem
 from anisocontact.contact import FacetContact, facet_directions
-from anisocontact.interface import PairLaw
+from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, build_box, build_mesh, make_shape
 from anisocontact.surfaces import make_surface
@@ -39,7 +39,7 @@ def rings(x: Floats) -> Floats:
 
 def axes(model: Model, directions: Any) -> tuple[Floats, Floats]:
     """First axes and positions of the block's slave points, pressed a little into the plate."""
-    law = PairLaw(
+    law = ContactLaw(
         NormalLaw(penalty=1.0),
         Adhesion(stiffness=(1.0, 1.0)),
         Friction(coefficients=(0.3, 0.1), directions=directions),

@@ -18,7 +18,7 @@ import pytest
 from anisocontact import _core
 from anisocontact.anisotropy import make_directions
 from anisocontact.base import registry
-from anisocontact.interface import STATE, PairLaw, as_state, raw_state
+from anisocontact.interface import STATE, ContactLaw, as_state, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 
 TOPOLOGIES = ("tri3", "tri6", "quad4", "quad8", "quad9")
@@ -80,7 +80,7 @@ def project(topology: str, nodes: np.ndarray, x: np.ndarray) -> np.ndarray:
 class Setting:
     """A slave facet above two master facets; the history was committed on the second."""
 
-    core: _core.FacetPairs
+    core: _core.FacetInterface
     slave: str
     master: str
     now: np.ndarray
@@ -168,7 +168,7 @@ def make(
         **_required(rule),
     )
     adhesion = Adhesion(stiffness=(60.0, 25.0), directions=marks, directions_on=on[0])
-    core = PairLaw(NormalLaw(penalty=100.0), adhesion, friction).pairs()
+    core = ContactLaw(NormalLaw(penalty=100.0), adhesion, friction).pairs().core
     state = np.zeros(1, dtype=STATE)
     state["facet"], state["status"], state["xi"] = 1, 1, (0.31, 0.27)
     state["stored"] = state["traction"] = rng.normal(0, 0.3, 2)

@@ -18,12 +18,12 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import AnyContact, Contact, FacetContact, SelfContact, TwoHalfPass
 from anisocontact.interface import (
+    ContactLaw,
     Interface,
     LawKinematics,
     LawResult,
     LawState,
-    PairLaw,
-    PythonInterface,
+    PythonLaw,
 )
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, Placement, Rotation, build_box, build_mesh
@@ -79,7 +79,7 @@ def _model(cell: str = "hexahedron", order: int = 1, n: int = 4, length: float =
 
 
 def _pair(model: Model, laws: Laws = LAWS, kind: type = FacetContact, **options: Any) -> Problem:
-    law = PairLaw(*laws)
+    law = ContactLaw(*laws)
     contact = kind(model, "block.bottom", "base.top", law=law, current_area=False, **options)
     elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
     return Problem(model, {"block": elastic, "base": elastic}, [contact])
@@ -334,7 +334,7 @@ def test_self_contact() -> None:
 
     def make() -> Problem:
         model = hairpin(half=False)
-        law = PairLaw(*LAWS)
+        law = ContactLaw(*LAWS)
         folded = SelfContact(model, "pin.inner", law=law, apart=0.3, current_area=False)
         return Problem(model, {"pin": ELASTIC}, [folded])
 
@@ -350,7 +350,7 @@ def test_law_in_python() -> None:
     def make() -> Problem:
         model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (3, 3, 2))})
         plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-        interface = PythonInterface(plane, NormalLaw(penalty=1e5), Creeping())
+        interface = Interface(plane, NormalLaw(penalty=1e5), PythonLaw(Creeping()))
         elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
         return Problem(model, {"block": elastic}, [Contact(model, "block.bottom", interface)])
 

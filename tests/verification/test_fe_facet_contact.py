@@ -17,7 +17,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
 from anisocontact.contact import FacetContact, TwoHalfPass
-from anisocontact.interface import PairLaw
+from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver import Problem, Solver, Step
@@ -25,9 +25,9 @@ from anisocontact.solver import Problem, Solver, Step
 CLAMP = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
 
 
-def _law(mu: float = 0.3, stiffness: float = 1e5, ratio: float = 1.0) -> PairLaw:
+def _law(mu: float = 0.3, stiffness: float = 1e5, ratio: float = 1.0) -> ContactLaw:
     marks = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
-    return PairLaw(
+    return ContactLaw(
         NormalLaw(penalty=1e5),
         Adhesion(stiffness=(stiffness, ratio * stiffness), directions=marks),
         Friction(coefficients=(mu, ratio * mu), directions=marks),
@@ -54,7 +54,7 @@ def _blocks(
 
 
 def _problem(
-    model: Model, law: PairLaw, material: str, kind: Any = FacetContact, **options: object
+    model: Model, law: ContactLaw, material: str, kind: Any = FacetContact, **options: object
 ) -> Problem:
     elastic = make_material(material, E=1000.0, nu=0.3)
     options.setdefault("current_area", material != "linear-elastic")

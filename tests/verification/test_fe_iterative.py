@@ -21,7 +21,7 @@ import pytest
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact, TwoHalfPass
-from anisocontact.interface import Augmentation, Interface, PairLaw
+from anisocontact.interface import Augmentation, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh
 from anisocontact.rigid import RigidBody
@@ -70,7 +70,7 @@ def _pair(
         model,
         "block.bottom",
         "base.top",
-        law=PairLaw(*_laws(penalty)),
+        law=ContactLaw(*_laws(penalty)),
         current_area=False,
         **extra,
     )

@@ -114,11 +114,11 @@ def test_bodies_of_both_orders_in_contact(cell, slave):
     Tolerance: 1e-7 of the pressure, Newton.
     """
     from anisocontact.contact import FacetContact
-    from anisocontact.interface import PairLaw
+    from anisocontact.interface import ContactLaw
     from anisocontact.laws import Adhesion, Friction, NormalLaw
     from anisocontact.solver import Step
 
-    law = PairLaw(
+    law = ContactLaw(
         NormalLaw(penalty=1e3), Adhesion(stiffness=(5.0, 5.0)), Friction(coefficients=(0.3, 0.3))
     )
     master = {"one.top": "two.bottom", "two.bottom": "one.top"}[slave]

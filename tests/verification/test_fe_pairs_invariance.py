@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import FacetContact, TwoHalfPass
-from anisocontact.interface import PairLaw
+from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver import Problem, Solver, Step
@@ -22,9 +22,9 @@ STILL = Rotation.identity()
 PATH = [(0.0, 0.0, -0.01), (0.015, 0.0, -0.01), (0.015, 0.01, -0.01)]
 
 
-def _law(move: Rotation, scale: float = 1.0, ratio: float = 0.4) -> PairLaw:
+def _law(move: Rotation, scale: float = 1.0, ratio: float = 0.4) -> ContactLaw:
     marks = make_directions("constant", vector=move.apply([1.0, 0.0, 0.0]), angle=0.5)
-    return PairLaw(
+    return ContactLaw(
         NormalLaw(penalty=2e4 * scale),
         Adhesion(stiffness=(1e4 * scale, 1e4 * ratio * scale), directions=marks),
         Friction(coefficients=(0.3, 0.3 * ratio), directions=marks),
@@ -121,7 +121,7 @@ def _twins(slave: str, master: str, kind: Any) -> np.ndarray:
     )
     marks = make_directions("constant", vector=(2, 1, 0))
     on = "master" if master.startswith("lower") else "slave"
-    law = PairLaw(
+    law = ContactLaw(
         NormalLaw(penalty=2e4),
         Adhesion(stiffness=(1e4, 4e3), directions=marks, directions_on=on),
         Friction(coefficients=(0.3, 0.12), directions=marks, directions_on=on),
@@ -157,7 +157,7 @@ def test_mesh_gives_no_direction(kind: Any) -> None:
     traction of a point does not depend on how a plane is cut into facets.
     """
     model = _turned_base()
-    law = PairLaw(
+    law = ContactLaw(
         NormalLaw(penalty=2e4), Adhesion(stiffness=(1e4, 1e4)), Friction(coefficients=(0.3, 0.3))
     )
     contact = kind(model, "block.bottom", "base.top", law=law, current_area=False)
@@ -257,7 +257,7 @@ def _patch_blocks(cell: str, order: int) -> Model:
 def _patch_errors(model: Model, kind: Any, degree: int | None) -> tuple[float, float]:
     """Largest error of the pressure and of the displacement, of the largest value."""
     penalty, pressure = 4e4, 10.0
-    law = PairLaw(
+    law = ContactLaw(
         NormalLaw(penalty=penalty),
         Adhesion(stiffness=(1e3, 1e3)),
         Friction(coefficients=(0.3, 0.3)),

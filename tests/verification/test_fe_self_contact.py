@@ -10,7 +10,7 @@ import pytest
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact, SelfContact
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
@@ -95,7 +95,7 @@ def test_hairpin_against_its_half(material: str) -> None:
     finite = material != "linear-elastic"
     depth = 0.5 * GAP + 2e-3
     whole = hairpin(half=False)
-    law = PairLaw(NormalLaw(penalty=PENALTY), **LAWS)
+    law = ContactLaw(NormalLaw(penalty=PENALTY), **LAWS)
     folded = SelfContact(whole, "pin.inner", law=law, apart=0.3, current_area=finite)
     forces = _close(whole, folded, material, depth)
     upper = hairpin(half=True)
@@ -112,7 +112,7 @@ def test_hairpin_against_its_half(material: str) -> None:
 def test_what_is_near_from_the_beginning_does_not_meet() -> None:
     """Sides of a gap narrower than `apart` pass through each other; with less they meet."""
     model = hairpin(half=False)
-    law = PairLaw(NormalLaw(penalty=PENALTY), **LAWS)
+    law = ContactLaw(NormalLaw(penalty=PENALTY), **LAWS)
     forces = {
         apart: _close(
             model, SelfContact(model, "pin.inner", law=law, apart=apart), "linear-elastic", 0.205
@@ -125,7 +125,7 @@ def test_what_is_near_from_the_beginning_does_not_meet() -> None:
 def test_mistakes_are_said() -> None:
     """A group against itself needs to say so; the distance has to be positive."""
     model = hairpin(half=False)
-    law = PairLaw(NormalLaw(penalty=PENALTY), **LAWS)
+    law = ContactLaw(NormalLaw(penalty=PENALTY), **LAWS)
     with pytest.raises(InputError, match=r"master: .*share 96 facets"):
         FacetContact(model, "pin.inner", "pin.inner", law=law)
     with pytest.raises(InputError, match=r"apart: -1.0 given, must be > 0"):

@@ -238,12 +238,12 @@ def test_planes_of_bodies_in_contact():
     planes. Tolerance: 1e-7, Newton to 1e-10 in both.
     """
     from anisocontact.contact import FacetContact
-    from anisocontact.interface import PairLaw
+    from anisocontact.interface import ContactLaw
     from anisocontact.laws import Adhesion, Friction, NormalLaw
     from anisocontact.mesh import Body, BoxSpec
     from anisocontact.solver import Step
 
-    law = PairLaw(
+    law = ContactLaw(
         NormalLaw(penalty=1e3),
         Adhesion(stiffness=(500.0, 500.0)),
         Friction(coefficients=(0.3, 0.3)),

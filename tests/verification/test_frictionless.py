@@ -10,7 +10,7 @@ import pytest
 from anisocontact.anisotropy import make_directions
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface
 
@@ -183,11 +183,11 @@ def _contact(kind: str, method: str, model: Any, normal: np.ndarray) -> Any:
 
     laws = NormalLaw(penalty=PENALTY), Adhesion(stiffness=PENALTY), Friction(coefficients=0)
     if kind == "two-half":
-        law = PairLaw(*laws)
+        law = ContactLaw(*laws)
         return TwoHalfPass(model, "block.bottom", "base.top", law=law, current_area=False)
     augmented = None if method == "penalty" else Augmentation(multipliers=method)
     options: dict[str, Any] = {"augmentation": augmented, "current_area": False}
     if kind == "facets":
-        return FacetContact(model, "block.bottom", "base.top", law=PairLaw(*laws), **options)
+        return FacetContact(model, "block.bottom", "base.top", law=ContactLaw(*laws), **options)
     plane = make_surface("plane", point=(0, 0, 0), normal=normal)
     return Contact(model, "block.bottom", Interface(plane, *laws), **options)

@@ -29,7 +29,7 @@ def test_pair_kernel_against_dual_numbers(tmp_path):
     compiler = os.environ.get("CXX", "").split() or [shutil.which("c++") or "g++"]
     program = tmp_path / "pair_tangent"
     command = [*compiler, "-std=c++20", "-O0", f"-I{ROOT / 'cpp/include'}", f"-isystem{eigen}"]
-    source = ROOT / "tests/cpp/pair_tangent.cpp"
-    subprocess.run([*command, str(source), "-o", str(program), "-pthread"], check=True)
+    sources = [str(ROOT / name) for name in ("tests/cpp/pair_tangent.cpp", "cpp/src/laws.cpp")]
+    subprocess.run([*command, *sources, "-o", str(program), "-pthread"], check=True)
     r = subprocess.run([str(program)], capture_output=True, text=True, check=False)
     assert r.returncode == 0, r.stdout

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from anisocontact.anisotropy import make_directions
-from anisocontact.interface import Interface, LawKinematics, LawResult, LawState, PythonInterface
+from anisocontact.interface import Interface, LawKinematics, LawResult, LawState, PythonLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.point import (
     DeadLoad,
@@ -238,7 +238,7 @@ class Coulomb:
 def test_a_law_written_in_python_drives_as_the_built_in_one() -> None:
     """The driver needs no more than `surface`, `initial_state` and `update` of an interface."""
     sphere = make_surface("sphere", centre=(0, 0, 0), radius=1.0)
-    own = PythonInterface(sphere, NormalLaw(penalty=1e5), Coulomb())
+    own = Interface(sphere, NormalLaw(penalty=1e5), PythonLaw(Coulomb()))
     built_in = Interface(
         sphere,
         NormalLaw(penalty=1e5),

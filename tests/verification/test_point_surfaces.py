@@ -82,7 +82,7 @@ def _polar(n: int, mu: tuple[float, float] = (0.3, 0.2)) -> tuple[Interface, His
 
 def _streamline(interface: Interface, to_radius: float) -> np.ndarray:
     """Path of the slip v ~ F e_r under a radial force, from (10, 0) to a radius."""
-    friction, plate = interface.friction, interface.surface
+    friction, plate = interface.tangential.friction, interface.surface
 
     def slip(_: float, x: np.ndarray) -> np.ndarray:
         tensor = friction.tensor(plate, x[None], "spatial")[0, :2, :2]

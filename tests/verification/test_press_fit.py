@@ -14,7 +14,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.base.fenicsx import fem
 from anisocontact.bulk import make_material
 from anisocontact.contact import FacetContact
-from anisocontact.interface import PairLaw
+from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, RingSpec, build_mesh
 from anisocontact.solver import ElasticSupport, Problem, Solver, Step
@@ -60,7 +60,7 @@ class Pushed:
         }
         self.model = build_mesh([Body(name, ring) for name, ring in rings.items()])
         grooves = make_directions("spiral", axis=((0, 0, 0), (0, 0, 1)), pitch=PITCH)
-        law = PairLaw(
+        law = ContactLaw(
             NormalLaw(penalty=PENALTY),
             Adhesion(stiffness=(PENALTY, PENALTY)),
             Friction(coefficients=tuple(MU), directions=grooves),

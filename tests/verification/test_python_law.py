@@ -15,7 +15,7 @@ from anisocontact.interface import (
     LawKinematics,
     LawResult,
     LawState,
-    PythonInterface,
+    PythonLaw,
     SlaveSurface,
 )
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -62,7 +62,7 @@ class Coulomb:
         )
 
 
-def _pair(surface: Surface) -> tuple[PythonInterface, Interface]:
+def _pair(surface: Surface) -> tuple[Interface, Interface]:
     normal = NormalLaw(penalty=1e3)
     built_in = Interface(
         surface,
@@ -70,7 +70,7 @@ def _pair(surface: Surface) -> tuple[PythonInterface, Interface]:
         Adhesion(stiffness=(STIFFNESS, STIFFNESS)),
         Friction(coefficients=(MU, MU)),
     )
-    return PythonInterface(surface, normal, Coulomb()), built_in
+    return Interface(surface, normal, PythonLaw(Coulomb())), built_in
 
 
 def _path(surface: Surface, rng: np.random.Generator) -> list[np.ndarray]:
@@ -166,7 +166,7 @@ def test_wrong_shape_is_said() -> None:
             r = super().update(state, kinematics)
             return LawResult(**{**vars(r), "traction": r.traction[:, :1]})
 
-    itf = PythonInterface(SURFACES["plane"], NormalLaw(penalty=1e3), Wrong())
+    itf = Interface(SURFACES["plane"], NormalLaw(penalty=1e3), PythonLaw(Wrong()))
     x = [[0.0, 0.0, -0.01]]
     with pytest.raises(InputError, match=r"traction: the law returned an array of shape \(1, 1\)"):
         itf.update(itf.initial_state([[0.0, 0.0, 0.1]]), x)

@@ -25,7 +25,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact, SelfContact, TwoHalfPass
-from anisocontact.interface import Augmentation, PairLaw, PythonInterface, PythonPairLaw
+from anisocontact.interface import Augmentation, ContactLaw, Interface, PythonLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.results import checkpoint
@@ -46,12 +46,12 @@ LATER = [
 ]
 
 
-def _python(law: Any = RADIAL, on: str = "master") -> PythonPairLaw:
-    return PythonPairLaw(NORMAL, law, directions=MARKS, directions_on=on)
+def _python(law: Any = RADIAL, on: str = "master") -> ContactLaw:
+    return ContactLaw(NORMAL, PythonLaw(law, directions=MARKS, directions_on=on))
 
 
-def _core() -> PairLaw:
-    return PairLaw(
+def _core() -> ContactLaw:
+    return ContactLaw(
         NORMAL,
         Adhesion(stiffness=STIFFNESS, directions=MARKS),
         Friction(coefficients=COEFFICIENTS, directions=MARKS, sliding_rule="radial"),
@@ -120,7 +120,7 @@ def test_same_as_the_core(kind: Any, on: str) -> None:
     Tolerance 1e-9 relative: both are solved to a residual of 1e-12.
     """
     adhesion, friction = (2e4, 2e4), (0.3, 0.3)
-    core = PairLaw(
+    core = ContactLaw(
         NORMAL,
         Adhesion(stiffness=adhesion),
         Friction(coefficients=friction, sliding_rule="radial"),
@@ -167,7 +167,7 @@ def test_tangent_by_order(law: Any, cell: str, order: int, kind: Any, on: str) -
     From a random state in contact, with history of an increment before it. The skew law has a
     slope by everything that it sees: also the turn of its axes against a facet counts.
     """
-    directed = _python(law, on) if on else PythonPairLaw(NORMAL, law)
+    directed = _python(law, on) if on else ContactLaw(NORMAL, PythonLaw(law))
     problem = _problem(directed, kind, cell=cell, order=order)
     ends = {**HELD, "block.top": {"x": 0.003, "y": 0.002, "z": -0.02}}
     for _ in Solver(problem, [Step("press", 2, ends)]).run():
@@ -280,7 +280,7 @@ from tests.verification.laws_in_python import RadialReturn, Spoiled
 wrong = np.nan if MPI.COMM_WORLD.rank == 0 else 1.0
 own = Spoiled(RadialReturn((8.0, 16.0), (0.2, 0.4)), "traction", lambda v: wrong * v)
 model = pairs._bodies("tetrahedron")
-law = pairs.PythonPairLaw(pairs.NormalLaw(penalty=20.0), own)
+law = pairs.ContactLaw(pairs.NormalLaw(penalty=20.0), pairs.PythonLaw(own))
 pair = pairs.FacetContact(model, "block.bottom", "mat.top", law=law)
 try:
     list(pairs.Solver(*pairs._dragged(model, [pair])).run())
@@ -307,7 +307,7 @@ def test_mistakes_are_said() -> None:
         _python(on="both")
     lines = make_directions("coordinate-lines")
     with pytest.raises(InputError, match="directions: 'coordinate-lines' goes by the coordinates"):
-        PythonPairLaw(NORMAL, RADIAL, directions=lines)
+        ContactLaw(NORMAL, PythonLaw(RADIAL, directions=lines)).check_meshed()
 
 
 @pytest.mark.parametrize("kind", ["meshed", "plane"])
@@ -316,8 +316,8 @@ def test_singular_directions_are_said(kind: str) -> None:
     upright = make_directions("constant", vector=(0, 0, 1))
     model = _blocks()
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    law = PythonPairLaw(NORMAL, RADIAL, directions=upright)
-    own = PythonInterface(plane, NORMAL, RADIAL, directions=upright)
+    law = ContactLaw(NORMAL, PythonLaw(RADIAL, directions=upright))
+    own = Interface(plane, law)
     with pytest.raises(InputError, match="directions: no direction at 16 slave points"):
         if kind == "meshed":
             FacetContact(model, "block.bottom", "base.top", law=law)
@@ -327,12 +327,12 @@ def test_singular_directions_are_said(kind: str) -> None:
 
 def test_self_contact() -> None:
     """A hairpin that closes, its sides held apart by the same law in Python and in the core."""
-    along = PairLaw(
+    along = ContactLaw(
         NormalLaw(penalty=2e4),
         Adhesion(stiffness=(1e4, 1e4)),
         Friction(coefficients=(0.2, 0.2), sliding_rule="radial"),
     )
-    own = PythonPairLaw(NormalLaw(penalty=2e4), RadialReturn((1e4, 1e4), (0.2, 0.2)))
+    own = ContactLaw(NormalLaw(penalty=2e4), PythonLaw(RadialReturn((1e4, 1e4), (0.2, 0.2))))
     depth = 0.5 * GAP + 2e-3
     ends = {
         "pin.upper": {"x": 0.02, "y": 0.0, "z": -depth},

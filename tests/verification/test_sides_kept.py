@@ -14,7 +14,7 @@ from anisocontact.base.fenicsx import Vec
 from anisocontact.base.limits import Limits
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact, TwoHalfPass
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.rigid import RigidBody
@@ -64,9 +64,9 @@ def _contact(
 ) -> Contact | FacetContact | TwoHalfPass:
     laws = _laws(unit, mu)
     if master == "plate":
-        return FacetContact(model, "block.bottom", "base.top", law=PairLaw(*laws))
+        return FacetContact(model, "block.bottom", "base.top", law=ContactLaw(*laws))
     if master == "plate from both sides":
-        return TwoHalfPass(model, "block.bottom", "base.top", law=PairLaw(*laws))
+        return TwoHalfPass(model, "block.bottom", "base.top", law=ContactLaw(*laws))
     if master == "plane":
         surface = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
         return Contact(model, "block.bottom", Interface(surface, *laws))
@@ -232,7 +232,7 @@ def _flat(master: str, law: str, tilt: float) -> tuple[Problem, Rotation]:
     model.mesh.geometry.x[:] = turn.apply(model.mesh.geometry.x)
     contact: Contact | FacetContact
     if master == "plate":
-        contact = FacetContact(model, "block.bottom", "base.top", law=PairLaw(*_laws()))
+        contact = FacetContact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
     else:
         plane = make_surface("plane", point=(0, 0, 0), normal=turn.apply([0.0, 0.0, 1.0]))
         contact = Contact(model, "block.bottom", Interface(plane, *_laws()))

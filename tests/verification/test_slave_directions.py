@@ -14,7 +14,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
 from anisocontact.contact.facet_mesh import FacetMesh, SlavePoints, facet_rule
-from anisocontact.interface import Interface, PairLaw, SlaveSurface, as_state, raw_state
+from anisocontact.interface import ContactLaw, Interface, SlaveSurface, as_state, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface
 
@@ -80,7 +80,7 @@ def test_between_facets(on: str, angle: float, mirrored: bool) -> None:
     nodes = np.array([[0, 1, 2, 3]], dtype=np.int32)
     facets, rule = FacetMesh("quad4", nodes, np.array([True])), facet_rule("quad4", 1)
     points = SlavePoints(facets, rule, reference, True, 1.0, MPI.COMM_SELF)
-    core = PairLaw(*laws(on)).pairs(mirrored)
+    core = ContactLaw(*laws(on)).pairs(mirrored).core
     state, n = None, len(points.nodes)
     from anisocontact.interface import STATE
 
@@ -149,5 +149,5 @@ def test_fields_by_coordinates_need_a_surface() -> None:
     for on in ("master", "slave"):
         friction = Friction(coefficients=MU, directions=lines, directions_on=on)
         with pytest.raises(InputError, match=f"coordinates of a surface, and the {on}") as error:
-            PairLaw(normal, adhesion, friction)
+            ContactLaw(normal, adhesion, friction).check_meshed()
         assert error.value.field == "friction.directions"

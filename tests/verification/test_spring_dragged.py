@@ -12,7 +12,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Cut, ElasticSupport, Problem, Solver, Spring, Step
@@ -66,7 +66,7 @@ def _on_plate(attached: Attached, stacked: bool = False) -> Problem:
         boxes["upper"] = BoxSpec((0.1, 0.1, 0.5), (0.8, 0.8, 0.4), (3, 3, 1))
         pairs.append(("upper.bottom", "block.top"))
     model = build_box(boxes)
-    law = PairLaw(*_laws(MU, PENALTY))
+    law = ContactLaw(*_laws(MU, PENALTY))
     contacts = [FacetContact(model, a, b, law=law, current_area=False) for a, b in pairs]
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
     return Problem(model, dict.fromkeys(boxes, elastic), contacts, attached)

@@ -7,7 +7,7 @@ import pytest
 
 from anisocontact.bulk import make_material
 from anisocontact.contact import TwoHalfPass
-from anisocontact.interface import PairLaw
+from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Problem, Solver, Step
@@ -21,7 +21,7 @@ def _energies(increments: int, across: int) -> dict[str, float]:
             "base": BoxSpec((-0.5, -0.5, -0.5), (2, 2, 0.5), (across, across, 1)),
         }
     )
-    law = PairLaw(
+    law = ContactLaw(
         NormalLaw(penalty=2e4), Adhesion(stiffness=(1e4, 1e4)), Friction(coefficients=(0.3, 0.3))
     )
     contact = TwoHalfPass(model, "block.bottom", "base.top", law=law, current_area=False)

@@ -54,7 +54,9 @@ class MovedModules(MetaPathFinder, Loader):
         text = f"{module.__name__} has moved: import from {new}"
         warnings.warn(text, DeprecationWarning, stacklevel=2)
         of_today = importlib.import_module(new)
-        module.__dict__.update({k: v for k, v in vars(of_today).items() if not k.startswith("__")})
+        names = vars(of_today).items()
+        kept = {k: v for k, v in names if not k.startswith("__") or k == "__getattr__"}
+        module.__dict__.update(kept)
 
 
 class LibrariesOfWheels(MetaPathFinder):

@@ -154,7 +154,7 @@ def _contact(
         text = f'"{contact.master}" given, no such surface; {near(contact.master, list(surfaces))}'
         yield InputError(text, field=f"{place}.master")
     elif master is not None:
-        yield from _laws(contact, place, objects.interface, law_file.interface, master)
+        yield from _laws(contact, place, master)
 
 
 def _method(contact: ContactSection, place: str) -> Iterator[InputError]:
@@ -195,28 +195,25 @@ def _meshed(case: Case, contact: ContactSection, place: str) -> Iterator[InputEr
         yield InputError(text, field=f"{place}.master")
     else:
         yield from _group(case, contact.master, f"{place}.master")
-    yield from _laws(contact, place, objects.pair_law, law_file.pair_law)
+    yield from _laws(contact, place)
 
 
 def _laws(
-    contact: ContactSection,
-    place: str,
-    of_core: Callable[..., Any],
-    in_python: Callable[..., Any],
-    *master: Surface,
+    contact: ContactSection, place: str, master: Surface | None = None
 ) -> Iterator[InputError]:
     """Laws of the core or one in Python, the latter as far as they are known without its file."""
     twice = [key for key in ("adhesion", "friction") if key in contact.model_fields_set]
     if contact.python is None and contact.friction is None:
         text = "missing; yield ellipse and sliding rule (or python, a law of your own)"
         yield InputError(text, field=f"{place}.friction")
-    elif contact.python is None:
-        yield from _tried(of_core, contact, *master, place)[1]
-    elif twice:
+    elif contact.python is not None and twice:
         text = "given with python, which is the whole tangential law"
         yield from (InputError(text, field=f"{place}.{key}") for key in twice)
     else:
-        yield from _tried(in_python, contact, *master, place)[1]
+        law, errors = _tried(law_file.contact_law, contact, place)
+        yield from errors
+        if master is not None and law is not None:
+            yield from _tried(objects.interface, law, master, place)[1]
 
 
 def _group(case: Case, name: str, field: str) -> Iterator[InputError]:

@@ -16,16 +16,12 @@ from anisocontact.contact import (
     TwoHalfPass,
     auto_penalty,
 )
-from anisocontact.interface import Interface
+from anisocontact.interface import ContactLaw, Interface, TangentialLaw
 from anisocontact.interface.augmentation import Augmentation
-from anisocontact.interface.python_law import PythonInterface, TangentialLaw
-from anisocontact.interface.python_pair import MeshedLaw
 from anisocontact.mesh import Model
 from anisocontact.rigid import RigidBody
 
 __all__ = ["contact"]
-
-type AnyInterface = Interface | PythonInterface
 
 
 def contact(
@@ -60,24 +56,18 @@ def contact(
     auto = min(
         auto_penalty(model, group, body) for (_, group), body in zip(sides, bodies, strict=True)
     )
+    of_table = law_file.contact_law(section, place, auto, law)
     if section.meshed:
-        if section.python is None:
-            laws: MeshedLaw = objects.pair_law(section, place, auto)
-        else:
-            laws = law_file.pair_law(section, place, auto, law)
-        made = _meshed(section, model, laws, place)
+        made = _meshed(section, model, of_table, place)
     else:
         master = objects.surface(case.surface[section.master], f"surface.{section.master}")
-        if section.python is None:
-            interface: AnyInterface = objects.interface(section, master, place, auto)
-        else:
-            interface = law_file.interface(section, master, place, auto, law)
+        interface = objects.interface(of_table, master, place)
         made = _rigid(section, model, interface, rigid.get(section.master), place)
     made.physical_adhesion = not _auto_adhesion(section)
     return made
 
 
-def _meshed(section: ContactSection, model: Model, law: MeshedLaw, place: str) -> AnyContact:
+def _meshed(section: ContactSection, model: Model, law: ContactLaw, place: str) -> AnyContact:
     name = f"{section.slave} on {section.master}"
     with objects.within(place):
         if section.self_contact:
@@ -114,7 +104,7 @@ def _meshed(section: ContactSection, model: Model, law: MeshedLaw, place: str) -
 def _rigid(
     section: ContactSection,
     model: Model,
-    interface: AnyInterface,
+    interface: Interface,
     body: RigidBody | None,
     place: str,
 ) -> AnyContact:

@@ -16,22 +16,18 @@ from anisocontact.base.errors import InputError
 from anisocontact.case import objects
 from anisocontact.case.model import ContactSection
 from anisocontact.case.section import near
+from anisocontact.interface import ContactLaw
 from anisocontact.interface.python_law import (
     LawKinematics,
     LawResult,
     LawState,
-    PythonInterface,
+    PythonLaw,
     TangentialLaw,
     where_failed,
 )
-from anisocontact.interface.python_pair import PythonPairLaw
 from anisocontact.laws import SIDES
-from anisocontact.surfaces import Surface
 
-__all__ = ["interface", "law_of", "pair_law"]
-
-#: How the history enters a step: a law of one's own sees it turned to where the point is.
-_EVOLUTION = "transport"
+__all__ = ["contact_law", "law_of"]
 
 
 class _Later:
@@ -46,61 +42,38 @@ class _Later:
         return LawResult(none, none, block, none, block, block, state.internal, at, at)
 
 
-def interface(
-    section: ContactSection,
-    master: Surface,
-    place: str,
-    auto: float = 1.0,
-    law: TangentialLaw | None = None,
-) -> PythonInterface:
-    """The interface of a table with a Python law whose master is a rigid surface.
+def contact_law(
+    section: ContactSection, place: str, auto: float = 1.0, law: TangentialLaw | None = None
+) -> ContactLaw:
+    """The law of a table, of the core or written in Python.
 
     Args:
         section: The table.
-        master: Its surface.
         place: Its path, for messages.
         auto: Stiffness where the table says "auto" [stress/length].
-        law: The law; without one the interface is good for checks alone.
+        law: The law in Python; without one what it stands in is good for checks alone.
 
     Returns:
-        The interface.
+        The law of the contact.
 
     Raises:
         InputError: What the table says does not go together.
     """
+    if section.python is None:
+        return objects.contact_law(section, place, auto, meshed=section.meshed)
     with objects.within(place):
-        _check(section)
-        if section.python.directions_on != SIDES[0]:
-            text = f'"{section.python.directions_on}" given, a rigid master needs "{SIDES[0]}"'
+        given = section.python
+        if given.directions is None and not given.isotropic:
+            raise InputError("missing; needed unless isotropic = true", "python.directions")
+        if given.directions_on != SIDES[0] and not section.meshed:
+            text = f'"{given.directions_on}" given, a rigid master needs "{SIDES[0]}"'
             raise InputError(text, "python.directions_on")
-        return PythonInterface(
-            master,
-            objects.normal_law(section, auto),
-            law or _Later(),
-            directions=objects.directions(section.python.directions, "python.directions"),
-        )
-
-
-def pair_law(
-    section: ContactSection, place: str, auto: float = 1.0, law: TangentialLaw | None = None
-) -> PythonPairLaw:
-    """The laws of a table with a Python law whose master is meshed; arguments as of `interface`."""
-    with objects.within(place):
-        _check(section)
-        return PythonPairLaw(
-            objects.normal_law(section, auto),
-            law or _Later(),
-            directions=objects.directions(section.python.directions, "python.directions"),
-            directions_on=section.python.directions_on,
-        )
-
-
-def _check(section: ContactSection) -> None:
-    if section.evolution != _EVOLUTION:
-        text = f'"{section.evolution}" given, a law of your own has "{_EVOLUTION}" only'
-        raise InputError(text, "evolution")
-    if section.python.directions is None and not section.python.isotropic:
-        raise InputError("missing; needed unless isotropic = true", "python.directions")
+        along = objects.directions(given.directions, "python.directions")
+        own = PythonLaw(law or _Later(), directions=along, directions_on=given.directions_on)
+        made = ContactLaw(objects.normal_law(section, auto), own, evolution=section.evolution)
+        if section.meshed:
+            made.check_meshed()
+        return made
 
 
 def law_of(

@@ -11,7 +11,7 @@ from anisocontact.anisotropy import DirectionField, make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.case.quantity import AUTO
 from anisocontact.case.registered import Registered
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import Surface, make_surface
 
@@ -24,12 +24,12 @@ if TYPE_CHECKING:
 
 __all__ = [
     "body",
+    "contact_law",
     "directions",
     "interface",
     "material",
     "mesh_file",
     "normal_law",
-    "pair_law",
     "placement",
     "rotation",
     "surface",
@@ -125,43 +125,39 @@ def turn(section: Turning) -> Turn:
     return Turn(section.axis, angle_deg=section.angle_deg, point=section.point, move=section.move)
 
 
-def interface(section: Laws, master: Surface, place: str, auto: float = 1.0) -> Interface:
-    """The interface of a `[[contact]]` table.
-
-    Args:
-        section: The table.
-        master: Its surface.
-        place: Its path, for messages.
-        auto: Stiffness where the table says "auto" [stress/length].
-
-    Returns:
-        The interface.
-
-    Raises:
-        InputError: A direction is missing, or a value only the laws can judge is wrong.
-    """
-    with within(place):
-        return Interface(master, *_laws(section, auto), evolution=section.evolution)
-
-
-def pair_law(section: Laws, place: str, auto: float = 1.0) -> PairLaw:
-    """The laws of a `[[contact]]` table whose master is meshed.
+def contact_law(
+    section: Laws, place: str, auto: float = 1.0, *, meshed: bool = False
+) -> ContactLaw:
+    """The law of a `[[contact]]` table.
 
     Args:
         section: The table.
         place: Its path, for messages.
         auto: Stiffness where the table says "auto" [stress/length].
+        meshed: Whether the master is meshed.
 
     Returns:
-        The laws.
+        The law.
 
     Raises:
-        InputError: As of `interface`, or an evolution that meshed masters do not have.
+        InputError: A direction is missing, a value only the laws can judge is wrong, or a meshed
+            master does not have the evolution.
     """
     with within(place):
-        law = PairLaw(*_laws(section, auto), evolution=section.evolution)
-        law.pairs()  # the core judges how the values go together
+        law = ContactLaw(*_laws(section, auto), evolution=section.evolution)
+        if meshed:
+            law.check_meshed()
         return law
+
+
+def interface(law: ContactLaw, master: Surface, place: str) -> Interface:
+    """The interface of the law of a table with a surface.
+
+    Raises:
+        InputError: Directions on the slave with an evolution that has none there.
+    """
+    with within(place):
+        return Interface(master, law)
 
 
 def _laws(section: Laws, auto: float) -> tuple[NormalLaw, Adhesion, Friction]:

@@ -189,7 +189,8 @@ def _automatic(contact: Any) -> Iterator[InputError]:
 
 
 def _interface(case: TraceCase, contact: Any) -> Interface:
-    return objects.interface(contact, objects.surface(case.surface, "surface"), "contact")
+    law = objects.contact_law(contact, "contact")
+    return objects.interface(law, objects.surface(case.surface, "surface"), "contact")
 
 
 def _within(place: str, build: Callable[[], Any]) -> Any:

@@ -23,7 +23,6 @@ from anisocontact.contact.transfer import Couplings
 from anisocontact.contact.whereabouts import Seen, Whereabouts, turned
 from anisocontact.interface import Interface, Response, SlaveSurface, State
 from anisocontact.interface.augmentation import Augmentation
-from anisocontact.interface.python_law import PythonInterface, common
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
 from anisocontact.rigid import MovingInterface, RigidBody
@@ -35,7 +34,7 @@ Floats = npt.NDArray[np.float64]
 _INTERIOR = PROJECTION_STATUS.index("interior")
 
 #: A surface with its laws.
-type Laws = Interface | PythonInterface
+type Laws = Interface
 #: What answers for them.
 type Master = Laws | MovingInterface
 
@@ -91,7 +90,7 @@ class Contact(ContactRecord):
         self,
         model: Model,
         slave: str,
-        interface: Interface | PythonInterface,
+        interface: Interface,
         *,
         degree: int | None = None,
         current_area: bool | None = None,
@@ -278,7 +277,7 @@ class Contact(ContactRecord):
         tangents = self.quadrature.tangents
         slave = self._surface(tangents) if interface.takes_slave() else None
         points = self.quadrature.reference
-        return interface.update(common(state), points, tangent=False, slave=slave).failure
+        return interface.update(state, points, tangent=False, slave=slave).failure
 
     def lever(self) -> float:
         """Forces that would move every point of the trial to the origin, norm over this rank.
@@ -418,6 +417,6 @@ def _checked(model: Model, slave: str, interface: object) -> Ints:
     """Facets of the slave on this rank; refuses arguments that are no slave or no interface."""
     facets = model.boundary(slave, "slave")
     if not hasattr(interface, "surface"):
-        text = f"{type(interface).__name__} given, Interface or PythonInterface needed"
+        text = f"{type(interface).__name__} given, Interface needed"
         raise InputError(text, "interface")
     return facets

@@ -9,13 +9,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact._core import FacetPairs
 from anisocontact.base.errors import InputError
 from anisocontact.contact.record import Snapshot
 from anisocontact.contact.sides import Sides, located
-from anisocontact.interface import Response, State, as_state, raw_state
-from anisocontact.interface.python_law import common
-from anisocontact.interface.python_pair import PythonPairs
+from anisocontact.interface import Response, State
+from anisocontact.interface.contact_law import FacetLaw
 from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
 
 #: Code of the kernel for a point without a facet below it.
@@ -24,9 +22,6 @@ OFF = 3
 NEAR = 1e-6
 
 Floats = npt.NDArray[np.float64]
-
-#: What answers for slave points that meet facets.
-type PairKernel = FacetPairs | PythonPairs
 
 
 @dataclass(frozen=True)
@@ -50,12 +45,11 @@ class Question:
     by_points: bool
 
 
-def ask(sides: Sides, law: PairKernel, q: Question) -> tuple[dict[str, Any], Snapshot]:
+def ask(sides: Sides, law: FacetLaw, q: Question) -> tuple[dict[str, Any], Snapshot]:
     """What a law answers, with forces and blocks, and the points as they are then."""
     slave, master, hit = sides.points, sides.master, q.hit
     touches = hit.gap - q.state["offset"] <= NEAR * slave.size  # as far as rounding goes
     batch = (
-        q.dt,
         slave.nodes,
         slave.shape,
         slave.gradient,
@@ -88,12 +82,11 @@ def ask(sides: Sides, law: PairKernel, q: Question) -> tuple[dict[str, Any], Sna
     return answer, Snapshot(slave.positions(q.now), answer["area"], response)
 
 
-def _answer(comm: Any, law: PairKernel, q: Question, batch: tuple[Any, ...]) -> dict[str, Any]:
-    if isinstance(law, PythonPairs):
-        return _on_all(comm, lambda: law.respond(q.state, q.by_points, *batch))
-    # a law of the core has no use for the own variables of one in Python
-    found = (law.update if q.by_points else law.assemble)(raw_state(common(q.state)), *batch)
-    return found | {"state": as_state(found["state"])}
+def _answer(comm: Any, law: FacetLaw, q: Question, batch: tuple[Any, ...]) -> dict[str, Any]:
+    def evaluate() -> dict[str, Any]:
+        return law.evaluate(q.state, q.by_points, q.dt, *batch)
+
+    return _on_all(comm, evaluate) if law.in_python else evaluate()
 
 
 def _on_all[T](comm: Any, ask: Callable[[], T]) -> T:

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
-from anisocontact.contact.facet_answer import PairKernel, Question, ask
+from anisocontact.contact.facet_answer import Question, ask
 from anisocontact.contact.gathering import gather, gather_named
 from anisocontact.contact.held_feet import HeldFeet, footing, on_held_facets
 from anisocontact.contact.initial import check_start
@@ -28,9 +28,9 @@ from anisocontact.contact.sides import check_sides, initial_state, located, make
 from anisocontact.contact.transfer import Couplings, Transfer
 from anisocontact.contact.transfer_work import transfer_work
 from anisocontact.contact.whereabouts import Seen, Whereabouts, carried
-from anisocontact.interface import PairLaw, Response, State
+from anisocontact.interface import ContactLaw, Response, State
 from anisocontact.interface.augmentation import Augmentation
-from anisocontact.interface.python_pair import MeshedLaw
+from anisocontact.interface.contact_law import FacetLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
 from anisocontact.surfaces.facets import FacetProjections
@@ -83,7 +83,7 @@ class FacetContact(ContactRecord):
         >>> lower = BoxSpec((-1, -1, -1), (3, 3, 1), (2, 2, 1))
         >>> model = build_box({"block": upper, "base": lower})
         >>> adhesion, friction = Adhesion(stiffness=(100, 100)), Friction(coefficients=(0.3, 0.3))
-        >>> law = PairLaw(NormalLaw(penalty=100.0), adhesion, friction)
+        >>> law = ContactLaw(NormalLaw(penalty=100.0), adhesion, friction)
         >>> pair = FacetContact(model, "block.bottom", "base.top", law=law)
         >>> len(pair.areas), round(float(pair.areas.sum()), 12), len(pair.master_facets)
         (4, 1.0, 4)
@@ -95,7 +95,7 @@ class FacetContact(ContactRecord):
         slave: str,
         master: str,
         *,
-        law: MeshedLaw,
+        law: ContactLaw,
         degree: int | None = None,
         reach: float | None = None,
         current_area: bool | None = None,
@@ -109,10 +109,10 @@ class FacetContact(ContactRecord):
     ) -> None:
         check_sides(model, slave, master, apart)
         if not hasattr(law, "pairs"):
-            text = f"{type(law).__name__} given, PairLaw or PythonPairLaw needed"
+            text = f"{type(law).__name__} given, ContactLaw needed"
             raise InputError(text, "law")
         self.master, self.groups = master, (slave, master)
-        self.interface: MeshedLaw = law
+        self.interface: ContactLaw = law
         self._laws = self._stiff_laws = law
         self._area_told = current_area is not None
         self._mirrored = mirrored
@@ -427,7 +427,7 @@ class FacetContact(ContactRecord):
     ) -> npt.NDArray[np.int8]:
         """Why other laws would fail in the reference configuration, codes of `FAILURE`, (n,)."""
         kept = self._law, self._answer
-        self._law = PairLaw(*laws).pairs(self._mirrored)
+        self._law = ContactLaw(*laws).pairs(self._mirrored)
         answer = self._respond(state, self._sides.reference, 1.0, tangent=False).response
         self._law, self._answer = kept
         return answer.failure
@@ -446,7 +446,7 @@ class FacetContact(ContactRecord):
         return self._transfer is not None or self._semismooth is not None
 
     def _ask(
-        self, law: PairKernel, state: State, hit: FacetProjections, dt: float, *, tangent: bool
+        self, law: FacetLaw, state: State, hit: FacetProjections, dt: float, *, tangent: bool
     ) -> Snapshot:
         """What a law answers where the points are; forces and blocks go to `_answer`."""
         question = Question(state, hit, self._now, dt, tangent, self._by_points)
@@ -470,7 +470,7 @@ class FacetContact(ContactRecord):
         if self._semismooth is not None:
             self._stiff = self._with(self._stiff_laws, *self._semismooth.stiff_factors)
 
-    def _with(self, laws: MeshedLaw, normal: float, tangential: float) -> PairKernel:
+    def _with(self, laws: ContactLaw, normal: float, tangential: float) -> FacetLaw:
         stiff = laws if self._multipliers is None else laws.stiffened(normal, tangential)
         return stiff.pairs(self._mirrored)
 

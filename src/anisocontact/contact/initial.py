@@ -10,9 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.contact.record import ContactRecord
-from anisocontact.interface import FAILURE, Interface
-from anisocontact.interface.python_law import PythonInterface
-from anisocontact.interface.python_pair import MeshedLaw
+from anisocontact.interface import FAILURE, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw
 
 if TYPE_CHECKING:  # they ask for the checks here
@@ -126,9 +124,7 @@ def _check_sides(contact: Contact | FacetContact, size: float) -> None:
     )
 
 
-def _fields(law: Interface | MeshedLaw | PythonInterface) -> list[Carried]:
-    if isinstance(law, PythonInterface):
-        return [Carried("directions", law.directions, "master")] if law.directions else []
+def _fields(law: Interface | ContactLaw) -> list[Carried]:
     return [one for one in law.carried if one.field is not None]
 
 

@@ -18,13 +18,11 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.interface import STATUS, VECTOR_FORMS, Interface, Response, State
+from anisocontact.interface import STATUS, VECTOR_FORMS, ContactLaw, Interface, Response, State
 from anisocontact.interface.augmentation import NEWTON, Augmentation
-from anisocontact.interface.python_law import PythonInterface
-from anisocontact.interface.python_pair import PYTHON_LAWS, MeshedLaw
 
 #: Laws whose penalties can be augmented.
-type AugmentedLaw = Interface | MeshedLaw | PythonInterface
+type AugmentedLaw = Interface | ContactLaw
 
 Floats = npt.NDArray[np.float64]
 
@@ -54,16 +52,16 @@ def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
         )
     if not augmentation.tangential:
         return
-    if isinstance(law, PYTHON_LAWS):
+    if law.tangential.in_python:
         raise InputError(
             "a tangential law written in Python is physical: tangential=False needed", "method"
         )
-    if law.adhesion.named[0] != "elastic":
+    if law.tangential.model != "elastic":
         raise InputError(
-            f'"{law.adhesion.named[0]}" given, an augmented contact needs "elastic"',
+            f'"{law.tangential.model}" given, an augmented contact needs "elastic"',
             "adhesion.model",
         )
-    if isinstance(law, Interface) and law.evolution not in VECTOR_FORMS:
+    if law.evolution not in VECTOR_FORMS:
         allowed = " or ".join(f'"{name}"' for name in VECTOR_FORMS)
         raise InputError(
             f'"{law.evolution}" given, an augmented contact needs {allowed}', "evolution"
@@ -77,9 +75,9 @@ def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
 
 def follows(augmentation: Augmentation, law: AugmentedLaw) -> bool:
     """Whether a law lets its multipliers be found together with the displacements."""
-    if not augmentation.tangential or isinstance(law, PYTHON_LAWS):
+    if not augmentation.tangential or law.tangential.in_python:
         return True
-    return law.friction.rule[0] != _EXPLICIT
+    return law.tangential.sliding_rule != _EXPLICIT
 
 
 # Half the squared sum of two unit normals below which they are opposite.

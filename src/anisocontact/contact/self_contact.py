@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.penalty import facet_size
-from anisocontact.interface.python_pair import MeshedLaw
+from anisocontact.interface import ContactLaw
 from anisocontact.mesh import Model
 
 #: Reference distance below which facets do not meet, in facet sizes: more than the search reaches,
@@ -42,7 +42,7 @@ class SelfContact(FacetContact):
         model: Model,
         group: str,
         *,
-        law: MeshedLaw,
+        law: ContactLaw,
         degree: int | None = None,
         apart: float | None = None,
         reach: float | None = None,

@@ -9,8 +9,7 @@ import numpy.typing as npt
 
 from anisocontact.contact.facet_contact import FacetContact
 from anisocontact.contact.record import ContactRecord, Snapshot
-from anisocontact.interface import Response
-from anisocontact.interface.python_pair import MeshedLaw
+from anisocontact.interface import ContactLaw, Response
 from anisocontact.mesh import Model
 
 Floats = npt.NDArray[np.float64]
@@ -51,14 +50,14 @@ class TwoHalfPass(ContactRecord):
         InputError: As of `FacetContact`.
 
     Example:
-        >>> from anisocontact.interface import PairLaw
+        >>> from anisocontact.interface import ContactLaw
         >>> from anisocontact.laws import Adhesion, Friction, NormalLaw
         >>> from anisocontact.mesh import BoxSpec, build_box
         >>> upper = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
         >>> lower = BoxSpec((-1, -1, -1), (3, 3, 1), (2, 2, 1))
         >>> model = build_box({"block": upper, "base": lower})
         >>> adhesion, friction = Adhesion(stiffness=(100, 100)), Friction(coefficients=(0.3, 0.3))
-        >>> law = PairLaw(NormalLaw(penalty=100.0), adhesion, friction)
+        >>> law = ContactLaw(NormalLaw(penalty=100.0), adhesion, friction)
         >>> pair = TwoHalfPass(model, "block.bottom", "base.top", law=law)
         >>> [half.slave for half in pair.passes]
         ['block.bottom', 'base.top']
@@ -70,12 +69,12 @@ class TwoHalfPass(ContactRecord):
         slave: str,
         master: str,
         *,
-        law: MeshedLaw,
+        law: ContactLaw,
         name: str = "",
         **options: Unpack[PassOptions],
     ) -> None:
         self.master, self.groups = master, (slave, master)
-        self.interface: MeshedLaw = law
+        self.interface: ContactLaw = law
         self.passes = tuple(
             FacetContact(
                 model,

@@ -1,17 +1,18 @@
 """Tangential laws written in Python: batched NumPy in, batched NumPy out.
 
 A law gives the tangential force of many points at once in an orthonormal frame of the tangent
-plane. `PythonInterface` does the rest (projection, pressure, transport of the history, tangent in
-space) and can be used wherever an `Interface` can. `PythonPairLaw` is the same for two meshed
-bodies.
+plane. The core does the rest: projection, pressure, transport of the history, tangent in space. A
+`PythonLaw` stands in a `ContactLaw` where adhesion and friction of the core do.
 """
 
 from __future__ import annotations
 
+import math
 import traceback
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -19,19 +20,18 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.anisotropy import DirectionField
 from anisocontact.base.errors import InputError
-from anisocontact.interface.interface import (
-    FAILURE,
-    POINTS_ALONE,
-    STATE,
-    Response,
-    SlaveSurface,
-    State,
-    as_state,
-    raw_state,
-)
 from anisocontact.interface.series import History
-from anisocontact.laws import NormalLaw
-from anisocontact.surfaces import Floats, Surface, default_threads, points
+from anisocontact.interface.states import STATE, State, as_state, raw_state
+from anisocontact.laws import SIDES, Carried, NormalLaw
+from anisocontact.surfaces import Floats
+
+#: How the history enters a step: a law in Python sees it turned to where the point is.
+EVOLUTION = "transport"
+
+#: From the states of points, as rows of bytes, to what a law in Python sees of them.
+type Look = Callable[[npt.NDArray[np.uint8]], dict[str, Any]]
+#: From these rows, and the output of a law in Python, to what the core finds.
+type Update = Callable[[npt.NDArray[np.uint8], Floats | None], dict[str, Any]]
 
 
 @dataclass(frozen=True)
@@ -107,21 +107,30 @@ class TangentialLaw(Protocol):
         ...
 
 
-class PythonInterface:
-    """An interface whose tangential law is written in Python.
+class PythonLaw:
+    """The tangential law of a contact, written in Python.
 
-    The frame of the law has its first axis along the first axis of `directions`, its second
-    along n x e_1. The tangent in space is exact if the law's blocks are.
+    The frame of the law has its first axis along the first axis of `directions`, carried by the
+    body it lies on, its second along n x e_1. The tangent in space is exact if the blocks of the
+    law are.
 
     Args:
-        surface: The master.
-        normal: Law of the pressure.
-        law: The tangential law.
-        directions: First axis of the frame; along the first coordinate line if left out, which
-            does for isotropic laws.
-        threads: Number of threads of the kinematics; all processors if left out.
+        law: The law.
+        directions: First axis of the frame; along the first coordinate line or the first side of
+            the master's facets if left out, which does for isotropic laws.
+        directions_on: Body that carries the directions, "master" or "slave".
+
+    Attributes:
+        in_python: Whether the law is written in Python.
+        dtype: Type of the state of a point: fields of `STATE`, and `internal` (k,).
+        carried: Direction field and the body that carries it.
+
+    Raises:
+        InputError: Another word for the body.
 
     Example:
+        >>> from anisocontact.interface import ContactLaw, Interface
+        >>> from anisocontact.laws import NormalLaw
         >>> from anisocontact.surfaces import make_surface
         >>> class Spring:
         ...     internal = 0
@@ -135,191 +144,113 @@ class PythonInterface:
         ...             d_pressure=np.zeros((n, 2)), d_traction=block, d_elastic=0.0 * block,
         ...             internal=state.internal, dissipation=zero, energy=(t**2).sum(1) / 20.0)
         >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-        >>> itf = PythonInterface(plane, NormalLaw(penalty=1e3), Spring())
+        >>> itf = Interface(plane, ContactLaw(NormalLaw(penalty=1e3), PythonLaw(Spring())))
         >>> r = itf.update(itf.initial_state([[0.0, 0.0, 0.0]]), [[0.1, 0.0, -0.01]])
         >>> r.traction.round(12).tolist()
         [[-1.0, 0.0, 10.0]]
     """
 
+    in_python = True
+    model = sliding_rule = ""
+
     def __init__(
         self,
-        surface: Surface,
-        normal: NormalLaw,
         law: TangentialLaw,
         *,
         directions: DirectionField | None = None,
-        threads: int | None = None,
+        directions_on: str = "master",
     ) -> None:
-        self.surface, self.normal, self.law, self.directions = surface, normal, law, directions
-        self.threads = threads or default_threads()
-        self.core = _core.FramedInterface(
-            surface.core, normal.named, directions.core if directions else None
-        )
+        if directions_on not in SIDES:
+            text = f'{directions_on!r} given, "master" or "slave" needed'
+            raise InputError(text, "directions_on")
+        self.law, self.friction_directions = law, directions
+        self.carried: tuple[Carried, ...] = (Carried("directions", directions, directions_on),)
         self.dtype = state_type(law.internal)
 
-    def stiffened(self, normal: float, _: float = 1.0) -> PythonInterface:
-        """The interface with a normal penalty `normal` times as large."""
-        stiffer = self.normal.stiffened(normal)
-        return PythonInterface(
-            self.surface, stiffer, self.law, directions=self.directions, threads=self.threads
-        )
+    def core(self, normal: NormalLaw, evolution: str) -> _core.Law:
+        """Normal law and axes as the core has them."""
+        (one,) = self.carried
+        field = one.field.core if one.field else None
+        return _core.Law.given(normal.named, field, one.on_slave)
 
-    def penalties(self) -> tuple[float, float]:
-        """Normal penalty, stress/length; the tangential law has none: 1."""
-        return self.normal.named[1]["penalty"][0], 1.0
+    def check_evolution(self, evolution: str) -> None:
+        """Refuse another form of evolution than the one a law sees its history by."""
+        if evolution != EVOLUTION:
+            text = f'"{evolution}" given, a law of your own has "{EVOLUTION}" only'
+            raise InputError(text, "evolution")
 
-    def in_series(self, compliance: float, dt: float) -> tuple[PythonInterface, History]:
-        """The interface with a compliant layer behind its tangential law, see `LawInSeries`."""
+    def named(self) -> dict[str, tuple[str, dict[str, list[float]]]]:
+        """Names of the parts, without values."""
+        name = type(self.law).__name__
+        return {"adhesion": (name, {}), "friction": (name, {})}
+
+    def stiffened(self, _: float) -> PythonLaw:
+        """The law as it is: it has no penalty."""
+        return self
+
+    def in_series(self, compliance: float, dt: float) -> tuple[PythonLaw, History]:
+        """The law with a compliant layer behind it, see `LawInSeries`."""
+        (one,) = self.carried
         law = LawInSeries(self.law, compliance)
-        made = PythonInterface(
-            self.surface, self.normal, law, directions=self.directions, threads=self.threads
-        )
-        return made, History.unchanged()
+        return PythonLaw(law, directions=one.field, directions_on=one.on), History.unchanged()
 
     def slip_stiffness(self, dt: float) -> float:
-        """Stiffness of the tangential law against slip, see `law_stiffness`, stress/length."""
+        """Stiffness of the law against slip, see `law_stiffness`, stress/length."""
         return law_stiffness(self.law, dt)
 
-    def initial_state(self, x: npt.ArrayLike) -> State:
-        """State before the first step: projected, free of force, own variables zero.
+    def penalty(self) -> float:
+        """The law has none: 1."""
+        return 1.0
+
+    def through(self, state: State, dt: float, look: Look, update: Update) -> dict[str, Any]:
+        """What the core finds for a batch, with the law evaluated in between.
 
         Args:
-            x: Slave points, (n, 3) [length].
+            state: Committed state, (n,).
+            dt: Time increment.
+            look: From rows of bytes, the states, to the law input of the core.
+            update: From these rows and the law output to what the core finds.
 
         Returns:
-            The state, (n,), with the fields of `STATE` and `internal` (n, k).
+            As of the core; the state has the law's own variables.
 
         Raises:
-            InputError: A point has no closest point on the surface.
+            InputError: The law failed, or returned arrays that cannot be.
         """
-        x = points(x, 3)
-        r = self.core.initial_state(x)
-        failed = np.flatnonzero(r["failure"])
-        if failed.size:
-            raise InputError(f"{FAILURE[1]} for the point {x[failed[0]].tolist()}", field="x")
-        return with_internal(as_state(r["state"]), np.zeros((len(x), self.law.internal)))
-
-    def takes_slave(self) -> bool:
-        """Whether a surface of the slave would change what is answered: its turn turns the slip."""
-        return True
-
-    def update(
-        self,
-        state: State,
-        x: npt.ArrayLike,
-        dt: float = 1.0,
-        *,
-        tangent: bool = True,
-        slave: SlaveSurface | None = None,
-    ) -> Response:
-        """Tractions at new positions; the committed state is not changed.
-
-        Args:
-            state: Committed state, (n,), from `initial_state` or a `Response`.
-            x: Slave points, (n, 3) [length].
-            dt: Time step [time].
-            tangent: Whether dt/dx is wanted.
-            slave: The slave's surface, whose turn against the master turns the slip.
-
-        Returns:
-            Tractions, tangent and trial state, as of `Interface.update`.
-        """
-        x = points(x, 3)
-        raw = raw_state(common(state))
-        own = (slave or POINTS_ALONE).arrays
-        k = self.core.kinematics(raw, x, dt, self.threads, *own)
-        n = len(x)
-        frame = k["frame"].reshape(n, 3, 3)
-        active = np.flatnonzero((k["pressure"][:, 0] > 0.0) & (k["failure"] == 0))
-        result = self._ask(state, k, active, dt)
-        traction = k["pressure"] * frame[:, 2]
-        traction[active] += np.einsum("ni,nij->nj", result.traction, frame[active, :2])
-        return Response(
-            traction=traction,
-            tangent=self._tangent(k, frame, active, result) if tangent else np.empty((0, 3, 3)),
-            state=self._commit(raw, x, dt, active, result, own),
-            normal=frame[:, 2].copy(),
-            directions_adhesion=_in_contact(frame, active),
-            directions_friction=_in_contact(frame, active),
-            failure=k["failure"],
-            tangent_slave=_by_slave(k["increment_slave"], frame, active, result),
+        if state.dtype != self.dtype:
+            raise InputError("no states of this law given", "state")
+        raw = raw_state(state)
+        seen = look(raw)
+        active = np.flatnonzero(seen["pressure"] > 0.0)
+        at = slice(None) if len(active) == len(state) else active
+        result = evaluate(
+            self.law,
+            LawState(seen["stored"][at], seen["elastic"][at], state["internal"][at]),
+            LawKinematics(
+                seen["increment"][at], seen["pressure"][at], seen["gap"][at], seen["xi"][at], dt
+            ),
         )
-
-    def _ask(
-        self,
-        state: State,
-        k: dict[str, npt.NDArray[np.float64]],
-        active: npt.NDArray[np.intp],
-        dt: float,
-    ) -> LawResult:
-        remembered = LawState(k["stored"][active], k["elastic"][active], state["internal"][active])
-        now = LawKinematics(
-            k["increment"][active],
-            k["pressure"][active, 0],
-            k["gap"][active, 0],
-            k["xi"][active],
-            dt,
-        )
-        return answer(self.law, remembered, now)
-
-    def _tangent(
-        self,
-        k: dict[str, npt.NDArray[np.float64]],
-        frame: Floats,
-        active: npt.NDArray[np.intp],
-        r: LawResult,
-    ) -> Floats:
-        """dt/dx = n (x) dN + N dn + e_a (x) dT_a + T_a de_a."""
-        frame_dx = k["frame_dx"].reshape(len(frame), 3, 3, 3)
-        tangent = np.einsum("ni,nj->nij", frame[:, 2], k["pressure_dx"][:, 0])
-        tangent += k["pressure"][:, :, None] * frame_dx[:, 2]
-        dt_dx = (
-            np.einsum("nab,nbj->naj", r.d_increment, k["increment_dx"][active])
-            + np.einsum("nab,nbj->naj", r.d_traction, k["stored_dx"][active])
-            + np.einsum("nab,nbj->naj", r.d_elastic, k["elastic_dx"][active])
-            + np.einsum("na,nj->naj", r.d_pressure, k["pressure_dx"][active, 0])
-        )
-        tangent[active] += np.einsum("nai,naj->nij", frame[active, :2], dt_dx)
-        tangent[active] += np.einsum("na,naij->nij", r.traction, frame_dx[active, :2])
-        return np.asarray(tangent)
-
-    def _commit(
-        self,
-        raw: npt.NDArray[np.uint8],
-        x: Floats,
-        dt: float,
-        active: npt.NDArray[np.intp],
-        r: LawResult,
-        own: tuple[Floats, Floats, Floats],
-    ) -> State:
-        n = len(x)
-        pairs = {name: np.zeros((n, 2)) for name in ("traction", "stored", "slip")}
-        pairs["traction"][active] = r.traction
-        pairs["stored"][active] = r.traction if r.stored is None else r.stored
-        pairs["slip"][active] = r.slip
-        dissipation, energy = np.zeros(n), np.zeros(n)
-        dissipation[active], energy[active] = r.dissipation, r.energy
-        status = np.zeros(n, dtype=np.int8)
-        status[active] = 1 + np.any(r.slip != 0.0, axis=1)
-        new = self.core.commit(
-            raw,
-            x,
-            dt,
-            pairs["traction"],
-            pairs["stored"],
-            pairs["slip"],
-            dissipation,
-            energy,
-            status,
-            *own,
-        )
-        internal = np.zeros((n, self.law.internal))
-        internal[active] = r.internal
-        return with_internal(as_state(new), internal)
+        found = update(raw, _laid_out(result, len(state), at))
+        whole = as_state(found["state"], self.dtype)
+        whole["internal"][at] = result.internal
+        return found | {"state": whole}
 
 
-def answer(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> LawResult:
-    """What a law answers, checked.
+def _laid_out(r: LawResult, count: int, at: slice | npt.NDArray[np.intp]) -> Floats:
+    """Law outputs as the core reads them, a row for each of `count` points; those not `at` none."""
+    stored = r.traction if r.stored is None else r.stored
+    parts = (r.traction, stored, r.slip, r.d_increment, r.d_traction, r.d_elastic, r.d_pressure)
+    arrays = [np.asarray(a) for a in (*parts, r.dissipation, r.energy)]
+    widths = [math.prod(a.shape[1:]) for a in arrays]
+    rows, end = np.zeros((count, sum(widths))), 0
+    for a, width in zip(arrays, widths, strict=True):
+        rows[at, end : end + width] = a.reshape(len(a), width)
+        end += width
+    return rows
+
+
+def evaluate(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> LawResult:
+    """The output of a law, checked.
 
     Args:
         law: The law.
@@ -327,7 +258,7 @@ def answer(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> La
         kinematics: What happens to them.
 
     Returns:
-        Its answer.
+        Its output.
 
     Raises:
         InputError: The law failed, or an array has another shape or numbers that are not finite.
@@ -369,54 +300,17 @@ def where_failed(error: BaseException) -> str:
 
 
 def state_type(count: int) -> np.dtype[np.void]:
-    """Type of the state of a point: the fields of `STATE`, and `internal` (count,)."""
-    names = STATE.names or ()
-    formats = [*(STATE[name] for name in names), (np.float64, (count,))]
-    return np.dtype({"names": [*names, "internal"], "formats": formats})
-
-
-def common(state: State) -> State:
-    """The fields of `STATE` alone."""
-    if state.dtype == STATE:
-        return state
-    alone = np.zeros(len(state), dtype=STATE)
-    for name in STATE.names or ():
-        alone[name] = state[name]
-    return alone
-
-
-def with_internal(alone: State, internal: Floats) -> State:
-    """States with a law's own variables, (n, k)."""
-    state = np.zeros(len(alone), dtype=state_type(internal.shape[1]))
-    for name in STATE.names or ():
-        state[name] = alone[name]
-    state["internal"] = internal
-    return state
-
-
-def _by_slave(
-    increment: Floats, frame: Floats, active: npt.NDArray[np.intp], r: LawResult
-) -> Floats:
-    """dt/ds_i = e_a (x) dT_a/ds_i by the tangents of the slave, (n, 2, 3, 3); (0, 2, 3, 3) without.
-
-    Args:
-        increment: Derivatives of the slip, (n, 2, 2, 3).
-        frame: Frames, (n, 3, 3).
-        active: Points in contact.
-        r: What the law has answered there.
-    """
-    tangent = np.zeros((len(increment), 2, 3, 3))
-    if len(increment):
-        change = np.einsum("nab,nbij->naij", r.d_increment, increment[active])
-        tangent[active] = np.einsum("nak,naij->nikj", frame[active, :2], change)
-    return tangent
-
-
-def _in_contact(frame: Floats, active: npt.NDArray[np.intp]) -> Floats:
-    """Axes at points in contact, zero elsewhere."""
-    axes = np.zeros((len(frame), 2, 3))
-    axes[active] = frame[active, :2]
-    return axes
+    """Type of the state of a point: the fields of `STATE`, and behind them `internal` (count,)."""
+    own = np.dtype((np.float64, (count,)))
+    fields: Mapping[str, Any] = STATE.fields or {}
+    return np.dtype(
+        {
+            "names": [*fields, "internal"],
+            "formats": [*(kind for kind, *_ in fields.values()), own],
+            "offsets": [*(offset for _, offset, *_ in fields.values()), STATE.itemsize],
+            "itemsize": STATE.itemsize + own.itemsize,
+        }
+    )
 
 
 #: Change of the force of a law in series over the force at which it is found, and the most
@@ -432,12 +326,12 @@ def law_stiffness(law: TangentialLaw, dt: float) -> float:
         dt: Time increment.
 
     Returns:
-        The largest along any direction; 0 where the law has no answer there.
+        The largest along any direction; 0 where the law has no output there.
     """
     none = np.zeros((1, 2))
     state = LawState(none, none, np.zeros((1, law.internal)))
     try:
-        found = answer(law, state, LawKinematics(none, np.ones(1), np.zeros(1), none, dt))
+        found = evaluate(law, state, LawKinematics(none, np.ones(1), np.zeros(1), none, dt))
     except InputError:
         return 0.0
     return float(np.linalg.norm(found.d_increment[0], ord=2))
@@ -460,7 +354,7 @@ class LawInSeries:
         c, force = self._compliance, state.traction
         for _ in range(_MOST):
             moved = replace(kinematics, increment=kinematics.increment + c * force)
-            result = answer(self._law, state, moved)
+            result = evaluate(self._law, state, moved)
             left = np.eye(2) - c * np.asarray(result.d_increment)
             step = np.linalg.solve(left, (result.traction - force)[..., None])[..., 0]
             force = force + step

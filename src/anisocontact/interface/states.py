@@ -120,23 +120,28 @@ class Response:
         return np.asarray(np.einsum("nij,nj->ni", self.directions_friction, self.traction_t))
 
 
-def as_state(raw: npt.NDArray[np.uint8]) -> State:
-    """States from rows of bytes, without a copy.
+def as_state(raw: npt.NDArray[np.uint8], dtype: np.dtype[np.void] = STATE) -> State:
+    """States from rows of bytes, without a copy where they are of `STATE` alone.
 
     Args:
-        raw: Bytes, (n, bytes of a state).
+        raw: Bytes, (n, bytes of a state of `STATE`).
+        dtype: Type that begins with `STATE`; what is behind it is zero.
 
     Returns:
-        The states, (n,) of `STATE`.
+        The states, (n,).
     """
-    return raw.reshape(-1).view(STATE)
+    if dtype == STATE:
+        return raw.reshape(-1).view(STATE)
+    whole = np.zeros(len(raw), dtype=dtype)
+    whole.view(np.uint8).reshape(len(raw), dtype.itemsize)[:, : STATE.itemsize] = raw
+    return whole
 
 
 def raw_state(state: State) -> npt.NDArray[np.uint8]:
     """States as rows of bytes, as the core takes them.
 
     Args:
-        state: States, (n,) of `STATE`.
+        state: States, (n,) of `STATE`, or of a type that begins with it.
 
     Returns:
         Their bytes, (n, bytes of a state).
@@ -144,6 +149,7 @@ def raw_state(state: State) -> npt.NDArray[np.uint8]:
     Raises:
         InputError: It is no array of states.
     """
-    if getattr(state, "dtype", None) != STATE:
+    fields = getattr(getattr(state, "dtype", None), "fields", None) or {}
+    if any(fields.get(name) != place for name, place in (STATE.fields or {}).items()):
         raise InputError("no states given, those that a response has are needed", "state")
-    return np.ascontiguousarray(state).view(np.uint8).reshape(len(state), STATE.itemsize)
+    return np.ascontiguousarray(state).view(np.uint8).reshape(len(state), state.dtype.itemsize)

@@ -25,7 +25,7 @@ from anisocontact.surfaces import Floats, Surface
 
 
 class PointInterface(Protocol):
-    """What the driver asks of an interface: `Interface`, `PythonInterface` or one of your own."""
+    """What the driver asks of an interface: `Interface`, or one of your own."""
 
     @property
     def surface(self) -> Surface:

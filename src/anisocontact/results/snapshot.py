@@ -12,7 +12,6 @@ import numpy.typing as npt
 
 from anisocontact.contact import AnyContact
 from anisocontact.interface import STATUS
-from anisocontact.interface.python_pair import PYTHON_LAWS
 from anisocontact.results.approach import approach
 from anisocontact.results.quantities import CONTACT, RIGID, SlavePoints, numbers
 from anisocontact.rigid import Pose, RigidBody, rotation_vector
@@ -148,14 +147,5 @@ def named_groups(loads: Iterable[Iterable[str]]) -> list[str]:
 def laws(contact: AnyContact) -> dict[str, Any]:
     """Laws of a contact with the numbers they were given, by name."""
     interface = contact.interface
-    if isinstance(interface, PYTHON_LAWS):
-        name, values = interface.normal.named
-        own = {"name": type(interface.law).__name__}
-        return {"normal": {"name": name, **values}, "adhesion": own, "friction": own}
-    named = {
-        "normal": interface.normal.named,
-        "adhesion": interface.adhesion.named,
-        "friction": interface.friction.named,
-        "sliding_rule": interface.friction.rule,
-    }
+    named = {"normal": interface.normal.named, **interface.tangential.named()}
     return {what: {"name": name, **values} for what, (name, values) in named.items()}

@@ -11,7 +11,6 @@ import numpy.typing as npt
 
 from anisocontact.anisotropy import DirectionField
 from anisocontact.contact import AnyContact
-from anisocontact.interface.python_law import PythonInterface
 from anisocontact.results.dataset import DataSet, polygons
 from anisocontact.results.quantities import PATCH, arrays
 
@@ -109,5 +108,5 @@ def _patch(contact: Any, comm: Any) -> tuple[Floats, Floats]:
 
 
 def _friction_directions(contact: Any) -> DirectionField | None:
-    law = contact.interface
-    return law.directions if isinstance(law, PythonInterface) else law.friction.directions
+    found: DirectionField | None = contact.interface.tangential.friction_directions
+    return found

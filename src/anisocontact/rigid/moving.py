@@ -8,7 +8,6 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.interface import Interface, Response, SlaveSurface, State
-from anisocontact.interface.python_law import PythonInterface
 from anisocontact.rigid.body import RigidBody
 from anisocontact.rigid.rotation import skew
 
@@ -28,7 +27,7 @@ class MovingInterface:
         body: The body it moves with.
     """
 
-    def __init__(self, interface: Interface | PythonInterface, body: RigidBody) -> None:
+    def __init__(self, interface: Interface, body: RigidBody) -> None:
         self._interface = interface
         self._body = body
 

@@ -25,7 +25,7 @@ import pytest
 
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, FacetContact, TwoHalfPass
-from anisocontact.interface import Interface, PairLaw
+from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
 from anisocontact.mesh.merge import merge
@@ -107,7 +107,7 @@ def test_elastic_sphere_on_an_elastic_block(
     """
     ball = half_spaces.body("ball", n, upper=True, radius=RADIUS)
     model = Model.from_arrays(merge([ball, half_spaces.body("base", below, upper=False)]))
-    law = PairLaw(**_laws(n, 3.0))
+    law = ContactLaw(**_laws(n, 3.0))
     contact = kind(model, "ball.contact", "base.contact", law=law, current_area=False)
     far = {"ball": -APPROACH, "base": 0.0}
     errors = _errors(half_spaces, model, contact, far, 0.5 * REDUCED)

@@ -32,7 +32,7 @@ import pytest
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import FacetContact
-from anisocontact.interface import PairLaw
+from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
 from anisocontact.mesh.arrays import MeshArrays
@@ -102,7 +102,7 @@ def _run(half_spaces: Any, n: int, legs: list[tuple[float, int]], across: float)
     """Press, then move the far ends along each other by shares of the full shift."""
     bodies = [_body(half_spaces, name, n, radius=RADIUS) for name in ("ball", "base")]
     model = Model.from_arrays(merge(bodies))
-    law = PairLaw(
+    law = ContactLaw(
         NormalLaw(penalty=4.0 * E * n),
         Adhesion(stiffness=(20.0 * E * n, 20.0 * E * n)),
         Friction(

@@ -3,7 +3,8 @@
 
 #include <optional>
 
-#include "anisocontact/kernel/frame_law.hpp"
+#include "anisocontact/kernel/contact_frame.hpp"
+#include "anisocontact/kernel/interface.hpp"
 
 namespace anisocontact::kernel {
 

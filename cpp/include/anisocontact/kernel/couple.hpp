@@ -9,21 +9,21 @@
 // a^ij [(delta x - delta rho) . rho_j + g n . delta rho_j]: the variation of the coordinates of the
 // projection [Konyukhov Schweizerhof 2006, eq. (4)], in the metric at xi^3 = 0.
 
-#include "anisocontact/kernel/footing.hpp"
+#include "anisocontact/kernel/facet_frame.hpp"
 
 namespace anisocontact::kernel {
 
 class Couple {
  public:
-  Couple(const Footing& foot, const Vec3<double>& friction) noexcept
-      : foot_(foot),
-        normal_(foot.facet().normal),
+  Couple(const FacetFrame& frame, const Vec3<double>& friction) noexcept
+      : frame_(frame),
+        normal_(frame.facet().normal),
         friction_(friction),
-        dual_{foot.facet().dual_basis(0), foot.facet().dual_basis(1)},
-        above_(foot.plane.apart.dot(normal_)) {
+        dual_{frame.facet().dual_basis(0), frame.facet().dual_basis(1)},
+        above_(frame.plane.apart.dot(normal_)) {
     for (std::size_t j = 0; j < 2; ++j) {
       upper_[j] = friction.dot(dual_[j]);
-      beside_[j] = foot.interior() ? 0.0 : foot.plane.apart.dot(dual_[j]);
+      beside_[j] = frame.interior() ? 0.0 : frame.plane.apart.dot(dual_[j]);
     }
   }
 
@@ -34,14 +34,14 @@ class Couple {
 
   /// Writes d m_j with the components of T; d xi and nu_a are there already.
   void differentiate(const Flat& force, PairSlopes& d) const noexcept {
-    if (!foot_.interior())
+    if (!frame_.interior())
       for (std::size_t k = 0; k < 2; ++k) {
         d.form(NearForm::bend, k).clear();
         add_bend(1.0, k, d, d.form(NearForm::bend, k));
       }
     for (std::size_t j = 0; j < 2; ++j) {
       lift(j, d);
-      if (foot_.interior())
+      if (frame_.interior())
         inside(j, d);
       else
         beside(j, force, d);
@@ -53,13 +53,13 @@ class Couple {
   void add_bend(double k, std::size_t m, PairSlopes& d, Near& f) const {
     f.by[tangent_input(m)] += k * normal_;
     for (std::size_t l = 0; l < 2; ++l)
-      f.add(k * normal_.dot(foot_.second(m, l)), d.form(NearForm::xi, l));
+      f.add(k * normal_.dot(frame_.second(m, l)), d.form(NearForm::xi, l));
   }
   /// Adds k rho^j . d rho_m.
   void add_stretch(double k, std::size_t j, std::size_t m, PairSlopes& d, Near& f) const {
     f.by[tangent_input(m)] += k * dual_[j];
     for (std::size_t l = 0; l < 2; ++l)
-      f.add(k * dual_[j].dot(foot_.second(m, l)), d.form(NearForm::xi, l));
+      f.add(k * dual_[j].dot(frame_.second(m, l)), d.form(NearForm::xi, l));
   }
 
   /// What d (c T . rho^j) has besides c rho^j . dT, with dc = n_f . d(x - rho) - c^k n_f . d rho_k
@@ -71,26 +71,26 @@ class Couple {
     f.by[index(Input::position)] = -f.by[index(Input::slave)];
     for (std::size_t k = 0; k < 2; ++k) add_stretch(-above_ * upper_[k], j, k, d, f);
     d.direction(1 + j, NearForm::lift, j) = normal_;
-    if (foot_.interior()) return;
+    if (frame_.interior()) return;
     const double out = friction_.dot(normal_);
     for (std::size_t k = 0; k < 2; ++k)
-      f.add(above_ * foot_.facet().a_contra(j, k) * out - upper_[j] * beside_[k],
+      f.add(above_ * frame_.facet().a_contra(j, k) * out - upper_[j] * beside_[k],
             d.form(NearForm::bend, k));
   }
 
   void inside(std::size_t j, PairSlopes& d) const {
     for (std::size_t a = 0; a < 2; ++a) {
-      d.along_friction[1 + j][a] = above_ * foot_.plane.t[a].dot(dual_[j]) * normal_;
-      d.direction(1 + j, NearForm::turn, a) = above_ * upper_[j] * foot_.plane.t[a];
+      d.along_friction[1 + j][a] = above_ * frame_.plane.t[a].dot(dual_[j]) * normal_;
+      d.direction(1 + j, NearForm::turn, a) = above_ * upper_[j] * frame_.plane.t[a];
     }
   }
 
   /// On edges and vertices: dT = t_a (t_a . dT) - n T_a nu_a has a part along n_f, the facet turns
   /// unlike n, and there is d (c^j T).
   void beside(std::size_t j, const Flat& force, PairSlopes& d) const {
-    const Vec3<double>& n = foot_.plane.n;
+    const Vec3<double>& n = frame_.plane.n;
     for (std::size_t a = 0; a < 2; ++a) {
-      const Vec3<double>& t = foot_.plane.t[a];
+      const Vec3<double>& t = frame_.plane.t[a];
       d.along_friction[1 + j][a] = above_ * t.dot(dual_[j]) * normal_ - beside_[j] * t;
       d.direction(1 + j, NearForm::turn, a) =
           force[a] * (beside_[j] * n - above_ * n.dot(dual_[j]) * normal_);
@@ -103,12 +103,12 @@ class Couple {
     f.add(-1.0, d.form(NearForm::xi, j));
     for (std::size_t k = 0; k < 2; ++k) {
       add_stretch(-beside_[k], j, k, d, f);
-      f.add(above_ * foot_.facet().a_contra(j, k), d.form(NearForm::bend, k));
+      f.add(above_ * frame_.facet().a_contra(j, k), d.form(NearForm::bend, k));
     }
     d.direction(1 + j, NearForm::beside, j) = -friction_;
   }
 
-  const Footing& foot_;
+  const FacetFrame& frame_;
   Vec3<double> normal_, friction_;
   std::array<Vec3<double>, 2> dual_;
   double above_;

@@ -6,6 +6,7 @@
 // rho_2, which are linear in its nodes; so do the committed point of the master and the tangents of
 // the slave. The coordinates of the projection follow from these by the implicit function theorem.
 
+#include "anisocontact/kernel/advance.hpp"
 #include "anisocontact/kernel/couple.hpp"
 
 namespace anisocontact::kernel {
@@ -56,17 +57,17 @@ class PairAxes {
   std::optional<ReferencePlane<double>> own_;
 };
 
-/// Writes all derivatives of a point that touches: of what `foot` and `committed` say of the
+/// Writes all derivatives of a point that touches: of what `frame` and `committed` say of the
 /// geometry and `r` of the law.
-inline void put_slopes(const InterfaceLaw& law, Footing& foot, const PairPoint& p,
-                       const Couple& couple, const Dual<1>& pressure, const FrameReaction& r,
+inline void put_slopes(const InterfaceLaw& law, FacetFrame& frame, const PairPoint& p,
+                       const Couple& couple, const Dual<1>& pressure, const Reaction& r,
                        const LawAxes& axes, const CommittedPoint* committed,
                        PairSlopes& d) noexcept {
-  const ContactPlane& plane = foot.plane;
-  foot.follow(p);
-  foot.follow(d);
+  const ContactPlane& plane = frame.plane;
+  frame.follow(p);
+  frame.follow(d);
   put_friction_forms(law, r, axes, plane, committed, d.friction);
-  for (Form& f : d.friction) foot.expand(f, d);
+  for (Form& f : d.friction) frame.expand(f, d);
   d.along_friction[0] = plane.t;
   d.direction(0, NearForm::gap) = pressure.d[0] * plane.n;
   for (std::size_t a = 0; a < 2; ++a)
@@ -76,32 +77,22 @@ inline void put_slopes(const InterfaceLaw& law, Footing& foot, const PairPoint& 
 
 }  // namespace detail
 
-/// What answers in the contact plane: adhesion and friction of the interface.
-struct OwnReaction {
-  template <bool tangent>
-  FrameReaction at(const InterfaceLaw& law, const PointState& state,
-                   const FrameInput& in) const noexcept {
-    return react_in_frame<tangent>(law, state, in);
-  }
-};
-
-/// Pure update of one slave point against a facet; where there are `slopes` to be written, all
-/// derivatives of a point that touches. Those of others are not written.
-template <bool tangent, class React = OwnReaction>
-PairResult update_pair(const InterfaceLaw& law, const PointState& state, const PairPoint& p,
-                       double dt, [[maybe_unused]] PairSlopes* d = nullptr,
-                       const React& react = {}) noexcept {
+/// Pure update of one slave point against a facet; `reacts` is the tangential law of `law`. Where there
+/// are `slopes` to be written, all derivatives of a point that touches. Those of others are not
+/// written.
+template <bool tangent>
+PairResult update_pair(const InterfaceLaw& law, const Law& reacts, const PointState& state,
+                       const PairPoint& p, double dt,
+                       [[maybe_unused]] PairSlopes* slopes = nullptr) noexcept {
   PairResult out;
   out.state = lasting(state);
   if (p.feature == Feature::off) return out;
-  Footing foot(p);
-  const ContactPlane& plane = foot.plane;
+  FacetFrame frame(p);
+  const ContactPlane& plane = frame.plane;
   out.normal = plane.n;
-  out.state.facet = p.facet;
-  out.state.xi = out.state.origin = p.master.xi;
-  const double gap = foot.gap() - state.offset;
-  out.state.gap = gap;
-  const Dual<1> pressure = detail::pressure_of(law, state, gap, dt);
+  const double gap = frame.gap() - state.offset;
+  out.state = opened(state, p.master.xi, gap, p.facet);
+  const Dual<1> pressure = pressure_of(law, state, gap, dt);
   if (!(pressure.v > 0.0)) return out;
   out.traction = pressure.v * plane.n;
   const auto fail = [&](Failure why) {
@@ -111,7 +102,7 @@ PairResult update_pair(const InterfaceLaw& law, const PointState& state, const P
     return out;
   };
   PlaneAxis start;
-  if (!foot.start(p, start)) return fail(Failure::direction);
+  if (!frame.start(p, start)) return fail(Failure::direction);
   detail::PairAxes<tangent> axes_at(p, plane.n, start);
   const LawAxes axes = law_axes(law, axes_at);
   if (!axes.valid()) return fail(Failure::direction);
@@ -121,19 +112,18 @@ PairResult update_pair(const InterfaceLaw& law, const PointState& state, const P
     history.emplace(plane, surface::tangent_plane(p.before), p.master.now.position, state, &p.own,
                     looks_back(law.evolution));
   const CommittedPoint* committed = history ? &*history : nullptr;
-  const FrameInput in = frame_input(law, gap, dt, pressure, committed, axes, plane);
-  const FrameReaction r = react.template at<tangent>(law, state, in);
+  const ContactFrame in = contact_frame(law, gap, dt, pressure, committed, axes, plane);
+  const Reaction r = reacts.evaluate(state, in, tangent);
   if (r.failure != Failure::none) return fail(r.failure);
-  out.state = in_basis(r, state, p.master.xi, plane, foot.facet(), committed,
-                       companions(law, &p.own, axes));
-  out.state.facet = p.facet;
+  advance(law, state, in, r, {plane, frame.facet(), committed, &p.own, moving_axes(law, axes)},
+          out.state);
   const Vec3<double> friction = plane.spatial(r.traction);
-  const Couple couple(foot, friction);
+  const Couple couple(frame, friction);
   out.traction += friction;
   for (std::size_t j = 0; j < 2; ++j) out.couple[j] = couple.on_tangent(j);
   if constexpr (tangent)
     with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
-      detail::put_slopes(law, foot, p, couple, pressure, r, axes, committed, *d);
+      detail::put_slopes(law, frame, p, couple, pressure, r, axes, committed, *slopes);
     });
   return out;
 }

@@ -12,8 +12,8 @@ inline std::array<Flat, 2> in_frame(const ContactPlane& p, const PlaneAxes& a) {
 
 /// Adds the changes of both angles of a field, if they change anything; a share of them, where the
 /// axes of a law follow those of now by a share.
-inline void add_angles(const FrameReaction& r, Slope s, const PlaneAxes& axes,
-                       const ContactPlane& p, double share, std::array<Form, 2>& f) {
+inline void add_angles(const Reaction& r, Slope s, const PlaneAxes& axes, const ContactPlane& p,
+                       double share, std::array<Form, 2>& f) {
   for (std::size_t k = 0; k < 2; ++k)
     if (const Flat& slope = r.slope(s, k); slope != Flat{})
       p.add_angle({share * slope[0], share * slope[1]}, axes.axis[k], axes.side, f);
@@ -25,25 +25,25 @@ inline bool has_halfway_axes(const InterfaceLaw& l, const CommittedPoint* commit
 }
 
 /// The slopes of T_a by the two components of a vector.
-inline Flat slopes_of(const FrameReaction& r, Slope s, std::size_t a) {
+inline Flat slopes_of(const Reaction& r, Slope s, std::size_t a) {
   return {r.slope(s, 0)[a], r.slope(s, 1)[a]};
 }
 
 /// What the law sees of a point. Without a committed point there is no history and no slip.
-inline FrameInput frame_input(const InterfaceLaw& l, double gap, double dt, const Dual<1>& pressure,
-                              const CommittedPoint* committed, const LawAxes& axes,
-                              const ContactPlane& p) {
-  FrameInput in{gap,
-                dt,
-                pressure.v,
-                pressure.d[0],
-                {},
-                {},
-                {},
-                in_frame(p, axes.adhesion),
-                in_frame(p, axes.friction),
-                in_frame(p, axes.second),
-                {}};
+inline ContactFrame contact_frame(const InterfaceLaw& l, double gap, double dt,
+                                  const Dual<1>& pressure, const CommittedPoint* committed,
+                                  const LawAxes& axes, const ContactPlane& p) {
+  ContactFrame in{gap,
+                  dt,
+                  pressure.v,
+                  pressure.d[0],
+                  {},
+                  {},
+                  {},
+                  in_frame(p, axes.adhesion),
+                  in_frame(p, axes.friction),
+                  in_frame(p, axes.second),
+                  {}};
   in.rate_axes =
       has_halfway_axes(l, committed) ? committed->axes_halfway(in.adhesion_axes) : in.adhesion_axes;
   if (committed == nullptr) return in;
@@ -55,7 +55,7 @@ inline FrameInput frame_input(const InterfaceLaw& l, double gap, double dt, cons
 }
 
 /// Writes the forms of t_1 . dT and t_2 . dT for T = T_a t_a.
-inline void put_friction_forms(const InterfaceLaw& l, const FrameReaction& r, const LawAxes& axes,
+inline void put_friction_forms(const InterfaceLaw& l, const Reaction& r, const LawAxes& axes,
                                const ContactPlane& p, const CommittedPoint* committed,
                                std::array<Form, 2>& f) {
   for (std::size_t a = 0; a < 2; ++a) {
@@ -79,9 +79,8 @@ inline void put_friction_forms(const InterfaceLaw& l, const FrameReaction& r, co
 }
 
 /// The forms of t_1 . dt, t_2 . dt and n . dt for t = N n + T_a t_a.
-inline std::array<Form, 3> traction_forms(const std::array<Form, 2>& friction,
-                                          const FrameReaction& r, const FrameInput& in,
-                                          const ContactPlane& p) {
+inline std::array<Form, 3> traction_forms(const std::array<Form, 2>& friction, const Reaction& r,
+                                          const ContactFrame& in, const ContactPlane& p) {
   std::array<Form, 3> f{friction[0], friction[1], {}};
   f[2].clear();
   for (std::size_t a = 0; a < 2; ++a) {
@@ -90,44 +89,6 @@ inline std::array<Form, 3> traction_forms(const std::array<Form, 2>& friction,
   }
   p.add_gap(in.d_pressure, f[2]);
   return f;
-}
-
-/// What moves with a point besides its coordinates: the slave, if it is known, and the axes of
-/// adhesion, if it has directions.
-struct Companions {
-  const Carrier* own;
-  const PlaneAxes* adhesion;
-};
-
-/// The trial state of a reaction, as components in the basis of a surface.
-inline PointState in_basis(const FrameReaction& r, const PointState& old,
-                           const std::array<double, 2>& xi, const ContactPlane& p,
-                           const surface::Geometry<double>& g, const CommittedPoint* committed,
-                           const Companions& with) {
-  PointState s = r.state;
-  for (auto* c : {&s.traction, &s.stored}) *c = g.project_co(p.spatial(*c)).c;
-  for (auto* c : {&s.elastic, &s.slip}) *c = g.project_contra(p.spatial(*c)).c;
-  s.xi = xi;
-  s.origin = origin(old, xi, g.project_contra(p.spatial(r.increment)));
-  const auto keep = [&](const Vec3<double>& v, std::size_t i, KeptPair& kept) {
-    const auto c = g.project_contra(v);
-    kept[2 * i] = c[0];
-    kept[2 * i + 1] = c[1];
-  };
-  for (std::size_t i = 0; i < 2; ++i) {
-    if (with.own != nullptr) keep(with.own->now.d1[i], i, s.slave);
-    if (with.adhesion != nullptr) keep(with.adhesion->axis[i].e, i, s.axes);
-  }
-  if (committed == nullptr || !committed->remembers()) return s;
-  s.spin = committed->halfway() ? committed->spin() : 0.0;
-  s.turn = committed->turn(with.adhesion != nullptr ? in_frame(p, *with.adhesion)
-                                                    : std::array<Flat, 2>{});
-  return s;
-}
-
-/// What moves with a point of an interface.
-inline Companions companions(const InterfaceLaw& l, const Carrier* own, const LawAxes& axes) {
-  return {own, l.adhesion_directions.field ? &axes.adhesion : nullptr};
 }
 
 }  // namespace anisocontact::kernel

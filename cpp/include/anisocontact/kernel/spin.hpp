@@ -3,6 +3,7 @@
 // its linear form. See `relative_spin` of kernel/evolution.hpp for the same in any numbers.
 
 #include "anisocontact/kernel/contact_plane.hpp"
+#include "anisocontact/kernel/half_turn.hpp"
 
 namespace anisocontact::kernel {
 

@@ -10,7 +10,6 @@ import numpy.typing as npt
 
 from anisocontact.contact import AnyContact
 from anisocontact.contact.transfer import Couplings
-from anisocontact.interface.python_pair import PYTHON_LAWS
 from anisocontact.solver.terms.free_modes import Body
 
 Floats = npt.NDArray[np.float64]
@@ -113,7 +112,7 @@ class FreeBody:
 
     def _count(self, *statuses: str) -> int:
         laws = ((c, c.interface) for c in self.contacts)
-        stiff = [c for c, i in laws if not isinstance(i, PYTHON_LAWS) and i.penalties()[1] > 0]
+        stiff = [c for c, i in laws if not i.tangential.in_python and i.penalties()[1] > 0]
         return sum(c.counts()[status] for c in stiff for status in statuses)
 
     def _stiff(self) -> bool:

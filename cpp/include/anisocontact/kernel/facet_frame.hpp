@@ -1,5 +1,5 @@
 #pragma once
-// The facet under a slave point: contact plane, and how the projection follows what moves.
+// The contact frame of a slave point on a facet, and how the projection follows what moves.
 
 #include "anisocontact/kernel/pair_slopes.hpp"
 
@@ -26,9 +26,9 @@ struct PairPoint {
 ///   d xi^i = w^ij [(dx - drho) . rho_j + (x - rho) . drho_j]
 /// Inside a facet w = (a_ij - g h_ij)^-1, along an edge of direction e w = e (x) e / slope, at a
 /// vertex w = 0.
-class Footing {
+class FacetFrame {
  public:
-  explicit Footing(const PairPoint& p) noexcept
+  explicit FacetFrame(const PairPoint& p) noexcept
       : jet_(p.master.now),
         facet_(surface::tangent_plane(jet_)),
         interior_(p.feature == Feature::interior) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a batch answers at its points, and the forces on the nodes that follow.
+// The output of a batch at its points, and the forces on the nodes that follow.
 
 #include <vector>
 
@@ -11,8 +11,8 @@ inline bool touches(const kernel::PairResult& r) {
   return r.state.status != 0 && r.failure == kernel::Failure::none;
 }
 
-/// What a batch answers at the points.
-struct Answer {
+/// The output of a batch at the points.
+struct Output {
   std::size_t ks, km;
   Array<std::uint8_t> state;
   Array<double> traction, normal, adhesion, friction, area, stiffness;
@@ -20,7 +20,7 @@ struct Answer {
   Array<std::int8_t> failure;
   std::vector<std::uint8_t> touching;  ///< of each point, whether it has forces
 
-  Answer(std::size_t n, const Batch& b)
+  Output(std::size_t n, const Batch& b)
       : ks(b.slave.width),
         km(b.mesh.width),
         state({n, sizeof(kernel::PointState)}, unset),
@@ -48,6 +48,19 @@ struct Answer {
     stiffness.data[p] = d != nullptr && touches(r) ? size_of_block(p, *d, s) : 0.0;
     touching[p] = touches(r) ? 1 : 0;
     if (touches(r)) put_on_master(p, r, s.shapes.master);
+  }
+
+  nb::dict result() const {
+    nb::dict d;
+    d["state"] = state.array;
+    d["traction"] = traction.array;
+    d["normal"] = normal.array;
+    d["adhesion_axes"] = adhesion.array;
+    d["friction_axes"] = friction.array;
+    d["failure"] = failure.array;
+    d["area"] = area.array;
+    d["stiffness"] = stiffness.array;
+    return d;
   }
 
   /// Forces on the nodes, point after point.

@@ -1,0 +1,226 @@
+// Batches of slave points against the facets of a mesh: tractions, nodal forces and tangents.
+
+#include <nanobind/stl/optional.h>
+
+#include "anisocontact/kernel/parallel.hpp"
+#include "facet_blocks.hpp"
+#include "facet_output.hpp"
+#include "given_law.hpp"
+#include "rooms.hpp"
+#include "types.hpp"
+
+namespace anisocontact::bindings {
+
+namespace {
+
+using Nodes = nb::ndarray<const std::int32_t, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
+using Indices = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Gradients = nb::ndarray<const double, nb::shape<-1, -1, 2>, nb::c_contig, nb::device::cpu>;
+using Flags = nb::ndarray<const bool, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+
+/// The laws of slave points that meet facets.
+struct FacetInterface {
+  kernel::InterfaceLaw law;
+  bool mirrored;  ///< whether slave and master have swapped their parts
+  std::shared_ptr<Pool> pool = std::make_shared<Pool>();  ///< for blocks
+
+  /// Fields of a mirrored interface are on the other body of the core.
+  FacetInterface(const kernel::InterfaceLaw& l, bool swapped) : law(l), mirrored(swapped) {
+    if (!mirrored) return;
+    for (auto* d :
+         {&law.adhesion_directions, &law.friction_directions, &law.friction_directions_second})
+      if (d->field)
+        d->side = d->side == kernel::Side::slave ? kernel::Side::master : kernel::Side::slave;
+  }
+
+  bool on(kernel::Side side) const {
+    const auto is = [&](const kernel::Directions& d) { return d.field && d.side == side; };
+    return is(law.adhesion_directions) || is(law.friction_directions) ||
+           is(law.friction_directions_second);
+  }
+};
+
+/// Arguments of a batch.
+struct Input {
+  Batch batch;
+  States states;
+  const bool* near;
+  double dt;
+  std::size_t points, nodes, threads;
+  BatchLaw law;
+
+  template <bool tangent>
+  kernel::PairResult update(const FacetInterface& h, std::size_t p, const kernel::PointState& old,
+                            const kernel::PairPoint& point, kernel::PairSlopes* slopes) const {
+    return law.at(p, [&](const kernel::Law& reacts) {
+      return kernel::update_pair<tangent>(h.law, reacts, old, point, dt, slopes);
+    });
+  }
+};
+
+/// A method with the arguments of a batch, which calls `run<tangent>(interface, input)`.
+template <class Run>
+void def_batch(nb::class_<FacetInterface>& c, const char* name, const Run& run) {
+  c.def(
+      name,
+      [run](const FacetInterface& h, const Bytes& state, double dt, const Nodes& slave_nodes,
+            const Table& slave_shape, const Gradients& slave_gradient, const Scalars& weight,
+            bool current_area, const Points& now, const Points& reference,
+            const Nodes& connectivity, const Codes& topology, const Flags& flip,
+            const Indices& facet, const Coordinates& xi, const Codes& feature,
+            const Coordinates& edge, const Flags& near, bool with_tangent, std::size_t threads,
+            const std::optional<Table>& outputs) -> nb::dict {
+        const std::size_t n = facet.shape(0), ks = slave_nodes.shape(1), km = connectivity.shape(1);
+        if (ks > kernel::most_nodes || km > kernel::most_nodes)
+          throw std::invalid_argument("a facet has at most 9 nodes");
+        const Batch b{
+            {now.data(), reference.data(), connectivity.data(), km, topology.data(), flip.data()},
+            {slave_nodes.data(), slave_shape.data(), slave_gradient.data(), weight.data(), ks,
+             current_area},
+            {facet.data(), xi.data(), edge.data(), feature.data()},
+            h.mirrored,
+            h.on(kernel::Side::master),
+            h.on(kernel::Side::slave)};
+        const Input q{b,
+                      States(state, n),
+                      with_tangent ? near.data() : nullptr,
+                      dt,
+                      n,
+                      now.shape(0),
+                      threads,
+                      BatchLaw(h.law, outputs, n, h.mirrored)};
+        return with_tangent ? run.template operator()<true>(h, q)
+                            : run.template operator()<false>(h, q);
+      },
+      nb::arg("state"), nb::arg("dt"), nb::arg("slave_nodes"), nb::arg("slave_shape"),
+      nb::arg("slave_gradient"), nb::arg("weight"), nb::arg("current_area"), nb::arg("now"),
+      nb::arg("reference"), nb::arg("connectivity"), nb::arg("topology"), nb::arg("flip"),
+      nb::arg("facet"), nb::arg("xi"), nb::arg("feature"), nb::arg("edge"), nb::arg("near"),
+      nb::arg("tangent"), nb::arg("threads"), nb::arg("outputs").none() = nb::none());
+}
+
+/// What a law that is not in the core sees at the points.
+nb::dict law_input(const FacetInterface& h, const Input& q) {
+  const LawInputs inputs(q.points);
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_for(q.points, q.threads, [&](std::size_t i) {
+      const kernel::PointState old = q.states[i];
+      Seen s;
+      q.batch.see(old, i, s);
+      kernel::LawInput input;
+      const auto r = kernel::update_pair<false>(h.law, kernel::Recorder(input, h.mirrored), old,
+                                                s.point, q.dt);
+      inputs.put(i, input, r.state);
+    });
+  }
+  return inputs.result();
+}
+
+/// Forces of nodes and blocks of facets that meet.
+template <bool tangent>
+nb::dict assemble(const FacetInterface& h, const Input& q) {
+  const Slots slots(q.batch, q.states, q.near, q.points);
+  Output out(q.points, q.batch);
+  const std::size_t ks = q.batch.slave.width, km = q.batch.mesh.width;
+  const PairBlocks blocks{{slots.facets.size(), ks + km, ks + km, h.pool},
+                          {slots.history.size(), ks + km, km, h.pool}};
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_pieces(slots.runs.size() - 1, q.threads,
+                            [&](std::size_t first, std::size_t last) {
+                              BlockWriter writer(q.batch, slots, blocks);
+                              kernel::PairSlopes by;
+                              Seen s;
+                              for (std::size_t i = slots.runs[first]; i < slots.runs[last]; ++i) {
+                                const std::size_t p = slots.order[i];
+                                q.states.prefetch(slots.order[std::min(i + 2, q.points - 1)]);
+                                const kernel::PointState old = q.states[p];
+                                q.batch.see(old, p, s);
+                                const auto r = q.update<tangent>(h, p, old, s.point, &by);
+                                out.put(p, r, tangent ? &by : nullptr, s);
+                                if constexpr (tangent)
+                                  if (touches(r)) writer.add(p, r, by, s, old.facet);
+                              }
+                            });
+    blocks.own.clear_rest();
+    blocks.earlier.clear_rest();
+  }
+  nb::dict d = out.result();
+  d["force"] = out.forces(q.batch, q.points, q.nodes).array;
+  d["blocks"] = nb::make_tuple(blocks.own.result(), blocks.earlier.result());
+  return d;
+}
+
+/// Residual and tangent of each point by itself: rows of the slave's and the master's nodes, columns
+/// of these and of the facet on which the history was committed.
+template <bool tangent>
+nb::dict update(const FacetInterface& h, const Input& q) {
+  const std::size_t ks = q.batch.slave.width, km = q.batch.mesh.width, n = q.points;
+  const std::size_t rows = 3 * (ks + km), columns = rows + 3 * km;
+  Output out(n, q.batch);
+  Array<double> residual({n, rows}), matrix({tangent ? n : 0, rows, columns});
+  Array<std::int32_t> nodes({n, ks + 2 * km});
+  std::fill_n(residual.data, n * rows, 0.0);
+  std::fill_n(matrix.data, tangent ? n * rows * columns : 0, 0.0);
+  std::fill_n(nodes.data, n * (ks + 2 * km), -1);
+  const auto put = [&](std::size_t p, const kernel::PairResult& r,
+                       [[maybe_unused]] const kernel::PairSlopes& d, const Seen& s,
+                       std::int64_t committed) {
+    std::int32_t* const id = nodes.data + p * (ks + 2 * km);
+    std::copy_n(q.batch.slave.nodes + p * ks, ks, id);
+    if (!touches(r)) return;
+    q.batch.mesh.copy_nodes(s.point.facet, id + ks);
+    if (committed >= 0) q.batch.mesh.copy_nodes(committed, id + ks + km);
+    kernel::add_residual(r, s.shapes, residual.data + p * rows);
+    if constexpr (tangent) {
+      constexpr std::size_t most = 3 * 2 * kernel::most_nodes;
+      std::array<double, most * most> own, earlier;
+      kernel::add_tangent(r, d, s.shapes, {own.data(), true}, {earlier.data(), true});
+      double* to = matrix.data + p * rows * columns;
+      for (std::size_t i = 0; i < rows; ++i) {
+        to = std::copy_n(own.data() + i * rows, rows, to);
+        to = std::copy_n(earlier.data() + i * 3 * km, 3 * km, to);
+      }
+    }
+  };
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_for(n, q.threads, [&](std::size_t p) {
+      const kernel::PointState old = q.states[p];
+      Seen s;
+      q.batch.see(old, p, s);
+      kernel::PairSlopes by;
+      const auto r = q.update<tangent>(h, p, old, s.point, &by);
+      out.put(p, r, tangent ? &by : nullptr, s);
+      put(p, r, by, s, old.facet);
+    });
+  }
+  nb::dict d = out.result();
+  d["nodes"] = nodes.array;
+  d["residual"] = residual.array;
+  d["tangent"] = matrix.array;
+  return d;
+}
+
+}  // namespace
+
+void bind_facet_interface(nb::module_& m) {
+  nb::class_<FacetInterface> c(m, "FacetInterface");
+  c.def(
+      "__init__",
+      [](FacetInterface* self, const LawHandle& law, bool mirrored) {
+        new (self) FacetInterface(law.law, mirrored);
+      },
+      nb::arg("law"), nb::arg("mirrored"));
+  def_batch(c, "law_input",
+            []<bool>(const FacetInterface& h, const Input& q) { return law_input(h, q); });
+  def_batch(c, "update", []<bool tangent>(const FacetInterface& h, const Input& q) {
+    return update<tangent>(h, q);
+  });
+  def_batch(c, "assemble", []<bool tangent>(const FacetInterface& h, const Input& q) {
+    return assemble<tangent>(h, q);
+  });
+}
+
+}  // namespace anisocontact::bindings

@@ -1,0 +1,278 @@
+"""The law of a contact: a normal law and a tangential one, of the core or written in Python."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from anisocontact import _core
+from anisocontact.base import registry
+from anisocontact.base.errors import InputError
+from anisocontact.interface import series
+from anisocontact.interface.python_law import Look, PythonLaw, Update
+from anisocontact.interface.series import History
+from anisocontact.interface.states import STATE, State, as_state, raw_state
+from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw, carried
+
+#: Forms of evolution whose history is turned as vectors: those that meshed masters, directions on
+#: the slave and multipliers can have.
+VECTOR_FORMS = ("transport", "backward-euler")
+
+
+class AdhesionAndFriction:
+    """The tangential law of the core.
+
+    Args:
+        adhesion: Law inside the yield ellipse.
+        friction: Yield ellipse and sliding rule.
+
+    Attributes:
+        in_python: Whether the law is written in Python.
+        dtype: Type of the state of a point.
+        carried: Direction fields and the bodies that carry them.
+        model: Name of the adhesion model.
+        sliding_rule: Name of the rule.
+        friction_directions: Directions of friction, if it has any.
+    """
+
+    in_python = False
+    dtype = STATE
+
+    def __init__(self, adhesion: Adhesion | None, friction: Friction | None) -> None:
+        check_kind("adhesion", adhesion, Adhesion)
+        check_kind("friction", friction, Friction)
+        assert adhesion is not None and friction is not None
+        self.adhesion, self.friction = adhesion, friction
+        self.carried: tuple[Carried, ...] = carried(adhesion, friction)
+        self.model, self.sliding_rule = adhesion.named[0], friction.rule[0]
+        self.friction_directions = friction.directions
+
+    def core(self, normal: NormalLaw, evolution: str) -> _core.Law:
+        """The law as the core has it."""
+        fields = (c.field.core if c.field else None for c in self.carried)
+        adhesion_field, friction_field, second = fields
+        return _made(
+            _core.Law,
+            normal.named,
+            self.adhesion.named,
+            adhesion_field,
+            self.friction.named,
+            friction_field,
+            second,
+            self.friction.rule,
+            evolution,
+            [one.on_slave for one in self.carried],
+        )
+
+    def check_evolution(self, evolution: str) -> None:
+        """Refuse a form of evolution that does not go with adhesion."""
+        if evolution == "total" and self.model != "elastic":
+            text = f"'total' needs the adhesion model 'elastic', {self.model!r} given"
+            raise InputError(text, field="evolution")
+
+    def named(self) -> dict[str, tuple[str, dict[str, list[float]]]]:
+        """Names and values of the parts."""
+        return {
+            "adhesion": self.adhesion.named,
+            "friction": self.friction.named,
+            "sliding_rule": self.friction.rule,
+        }
+
+    def stiffened(self, times: float) -> AdhesionAndFriction:
+        """The law with a stiffness of adhesion `times` as large, if it is a penalty."""
+        adhesion = self.adhesion if times == 1.0 else self.adhesion.stiffened(times)
+        return AdhesionAndFriction(adhesion, self.friction)
+
+    def in_series(self, compliance: float, dt: float) -> tuple[AdhesionAndFriction, History]:
+        """The law with a compliant layer behind adhesion, see `anisocontact.interface.series`."""
+        adhesion, start = series.in_series(self.adhesion, compliance, dt)
+        return AdhesionAndFriction(adhesion, self.friction), start
+
+    def slip_stiffness(self, dt: float) -> float:
+        """Largest stiffness of adhesion against slip in an increment of time, stress/length."""
+        return series.slip_stiffness(self.adhesion, dt)
+
+    def penalty(self) -> float:
+        """Least stiffness of adhesion, stress/length."""
+        return min(self.adhesion.named[1].get("stiffness", [1.0]))
+
+    def through(self, state: State, dt: float, look: Look, update: Update) -> dict[str, Any]:
+        """What the core finds for a batch; arguments as of `PythonLaw.through`."""
+        found = update(raw_state(state), None)
+        return found | {"state": as_state(found["state"])}
+
+
+class ContactLaw:
+    """The law of a contact, on an analytic, a moving or a meshed master.
+
+    Args:
+        normal: Law of the pressure.
+        adhesion: Tangential law inside the yield ellipse; or a `PythonLaw`, which is adhesion and
+            friction in one.
+        friction: Yield ellipse and sliding rule.
+        evolution: Name in `registry.evolution_forms()`: how the history enters the step.
+
+    Attributes:
+        dtype: Type of the state of a point.
+        carried: Direction fields and the bodies that carry them.
+        core: The law of the core.
+
+    Raises:
+        InputError: Parts that do not go together, or one in the place of another.
+
+    Example:
+        >>> adhesion, friction = Adhesion(stiffness=(1e5, 1e5)), Friction(coefficients=(0.3, 0.3))
+        >>> law = ContactLaw(NormalLaw(penalty=1e5), adhesion, friction)
+        >>> law.stiffened(10.0).penalties()
+        (1000000.0, 100000.0)
+    """
+
+    def __init__(
+        self,
+        normal: NormalLaw,
+        adhesion: Adhesion | AdhesionAndFriction | PythonLaw | None,
+        friction: Friction | None = None,
+        *,
+        evolution: str = "transport",
+    ) -> None:
+        check_kind("normal", normal, NormalLaw)
+        registry.entry(registry.evolution_forms(), evolution, "evolution")
+        if isinstance(adhesion, AdhesionAndFriction | PythonLaw):
+            self.tangential = adhesion
+        else:
+            self.tangential = AdhesionAndFriction(adhesion, friction)
+        self.tangential.check_evolution(evolution)
+        self.normal, self.evolution = normal, evolution
+        self.dtype, self.carried = self.tangential.dtype, self.tangential.carried
+        self.core = self.tangential.core(normal, evolution)
+
+    def pairs(self, mirrored: bool = False) -> FacetLaw:
+        """The law for slave points and facets.
+
+        Args:
+            mirrored: Whether slave and master have swapped their parts: the master of the core
+                carries what is the slave's, and angles count about the normal of the core's slave.
+
+        Returns:
+            What is evaluated for them.
+
+        Raises:
+            InputError: As of `check_meshed`.
+        """
+        self.check_meshed()
+        return FacetLaw(self, mirrored)
+
+    def check_meshed(self) -> None:
+        """Check that facets of a mesh can be the master.
+
+        Raises:
+            InputError: A direction field that goes by coordinates of a surface, or a form of
+                evolution that meshed masters do not have.
+        """
+        if self.evolution not in VECTOR_FORMS:
+            allowed = " and ".join(f'"{name}"' for name in VECTOR_FORMS)
+            text = f'"{self.evolution}" given, a meshed master has {allowed} only'
+            raise InputError(text, "evolution")
+        for one in self.carried:
+            one.check_meshed("master")
+            one.check_meshed("slave")
+
+    def stiffened(self, normal: float, tangential: float = 1.0) -> ContactLaw:
+        """The law with other penalties.
+
+        Args:
+            normal: How many times as large the normal penalty is.
+            tangential: How many times as large the stiffness of adhesion is, if it is a penalty.
+
+        Returns:
+            The law; the one given is unchanged.
+        """
+        stiffer = self.tangential.stiffened(tangential)
+        return ContactLaw(self.normal.stiffened(normal), stiffer, evolution=self.evolution)
+
+    def in_series(self, compliance: float, dt: float) -> tuple[ContactLaw, History]:
+        """The law with a compliant layer behind its tangential part.
+
+        Args:
+            compliance: Of the layer, length/stress.
+            dt: Time increment.
+
+        Returns:
+            The law, and what its history starts from.
+        """
+        tangential, start = self.tangential.in_series(compliance, dt)
+        return ContactLaw(self.normal, tangential, evolution=self.evolution), start
+
+    def slip_stiffness(self, dt: float) -> float:
+        """Largest stiffness against slip in an increment of time, stress/length."""
+        return self.tangential.slip_stiffness(dt)
+
+    def penalties(self) -> tuple[float, float]:
+        """Normal penalty and least stiffness of adhesion, stress/length; 1 where it has none."""
+        return self.normal.named[1]["penalty"][0], self.tangential.penalty()
+
+
+class FacetLaw:
+    """A contact law for slave points that meet facets of a mesh.
+
+    Args:
+        law: The law.
+        mirrored: Whether slave and master have swapped their parts.
+
+    Attributes:
+        in_python: Whether its tangential part is written in Python.
+    """
+
+    def __init__(self, law: ContactLaw, mirrored: bool) -> None:
+        self._tangential, self.in_python = law.tangential, law.tangential.in_python
+        self.core = _core.FacetInterface(law.core, mirrored)
+
+    def evaluate(self, state: State, by_points: bool, dt: float, *batch: Any) -> dict[str, Any]:
+        """Forces, blocks and the trial state.
+
+        Args:
+            state: Committed state, (n,).
+            by_points: Whether every point is to have a block, or those of one pair of facets share
+                one.
+            dt: Time increment.
+            batch: The batch as `FacetInterface.update` of the core takes it, after the increment.
+
+        Returns:
+            As of the core; the state has the law's own variables.
+
+        Raises:
+            InputError: A law in Python failed, or returned arrays that cannot be.
+        """
+        update = self.core.update if by_points else self.core.assemble
+        return self._tangential.through(
+            state,
+            dt,
+            lambda raw: self.core.law_input(raw, dt, *batch),
+            lambda raw, outputs: update(raw, dt, *(*batch, outputs)),
+        )
+
+
+def check_kind(name: str, given: object, needed: type) -> None:
+    """Refuse an argument that is something else.
+
+    Raises:
+        InputError: It is.
+    """
+    if not isinstance(given, needed):
+        raise InputError(f"{type(given).__name__} given, {needed.__name__} needed", name)
+
+
+def _made[T](kind: Callable[..., T], *arguments: object) -> T:
+    """An object of the core; what it says of its arguments as a mistake of the user.
+
+    Raises:
+        InputError: The values of a law do not go together.
+    """
+    try:
+        return kind(*arguments)
+    except ValueError as error:
+        name, _, line = str(error).partition(": ")
+        # The values of an adhesion model are judged where it is made, in the core.
+        if any(name in named[1] for named in arguments if isinstance(named, tuple)):
+            raise InputError(line, field=f"adhesion.{name}") from None
+        raise InputError(str(error)) from None
