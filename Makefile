@@ -6,6 +6,7 @@
 IN_VENV := tools/venv-run
 EXAMPLE := milled_block
 N := 12 24 36
+MARKS := not slow
 CPP := $(shell find cpp src tests -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
 
 help: ## list the targets
@@ -32,7 +33,7 @@ lint: setup ## style, types and format of Python and C++
 	@[ -z "$(CPP)" ] || $(IN_VENV) clang-format --dry-run -Werror $(CPP)
 
 test: setup ## lint and all tests but the slow ones
-	@$(call tested)
+	@$(call tested,-m "$(MARKS)")
 
 verify: setup ## lint and all tests
 	@$(call tested,-m "")

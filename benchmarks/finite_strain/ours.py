@@ -36,7 +36,8 @@ def case_text(kind: str, n: int) -> str:
         cells = (m, m, max(1, n // 3))
         bodies += box("base", (-0.5, -0.25, -0.5), (2, 1.5, 0.5), cells, softer)
     surface = "" if pair else PLANE
-    below = coulomb(pair, given.PENALTY, given.FRICTION)
+    # the script's history is of first order in time
+    below = coulomb(pair, given.PENALTY, given.FRICTION, 'evolution = "backward-euler"\n')
     way = press_and_drag(pair, given.DOWN, given.ALONG, given.PRESSES, given.DRAGS)
     return f'{bodies}{surface}{below}{way}\n[solver]\nstrategy = "direct"\n'
 

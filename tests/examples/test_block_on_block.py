@@ -13,7 +13,7 @@ from anisocontact.cli import main
 from anisocontact.results import Results
 
 #: Ten seconds for the run and its pictures.
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.ci, pytest.mark.slow]
 
 CASE = Path(__file__).parents[2] / "examples" / "block_on_block" / "case.toml"
 MU = np.array([0.2, 0.4])  # along the grain and across

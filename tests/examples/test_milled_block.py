@@ -16,7 +16,7 @@ from anisocontact.results import Results
 from anisocontact.solver import Solver, Step
 
 #: Half a minute for the run and its pictures.
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.ci, pytest.mark.slow]
 
 CASE = Path(__file__).parents[2] / "examples" / "milled_block" / "case.toml"
 

@@ -29,6 +29,7 @@ def steady_slip(x: np.ndarray) -> np.ndarray:
     return -np.einsum("nij,ni->nj", axes, MU**2 * e) / np.linalg.norm(MU * e, axis=1)[:, None]
 
 
+@pytest.mark.ci
 @pytest.mark.slow
 def test_force_along_the_way(results: Results) -> None:
     """Drag and lateral force in every written state: each point's pressure times its closed form.

@@ -93,6 +93,7 @@ def test_an_error_on_some_ranks_ends_all(case: Path, where: str) -> None:
 
 
 @pytest.mark.mpi
+@pytest.mark.ci
 @pytest.mark.slow
 def test_a_law_in_python_that_fails_on_one_rank(case: Path) -> None:
     """The run stops with the file and line of the law, on both processes, and says it once."""

@@ -44,6 +44,7 @@ os._exit(first(sys.argv[1:]))
 """
 
 
+@pytest.mark.ci
 @pytest.mark.slow
 def test_every_module_imports_alone() -> None:
     """None needs another one to have been imported before it, as two that import each other do."""

@@ -213,6 +213,7 @@ def test_slides_out_of_reach(monkeypatch: pytest.MonkeyPatch) -> None:
     assert sum("condensing" in note for note in notes) > 4
 
 
+@pytest.mark.ci
 @pytest.mark.slow
 def test_large_increments_leave_the_reach_within_newton(monkeypatch: pytest.MonkeyPatch) -> None:
     """A point that meets a facet out of reach during iterations: the increment begins anew.

@@ -41,6 +41,7 @@ def published(rule):
     return [float(row[column]) for row in rows[head + 2 : head + 2 + len(COUNTS)]]
 
 
+@pytest.mark.ci
 @pytest.mark.slow
 @pytest.mark.parametrize("rule", RULES)
 def test_first_order_in_the_increment(fe, rule):

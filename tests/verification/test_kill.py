@@ -139,6 +139,7 @@ def check(tmp_path: Path, strategy: str, kills: int, increments: int, most: int,
     assert not list(folder.rglob(".*"))
 
 
+@pytest.mark.ci
 @pytest.mark.slow
 @pytest.mark.parametrize("strategy", ["direct", "condensed"])
 def test_a_run_that_is_killed_three_times(tmp_path, strategy):

@@ -98,6 +98,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.mark.mpi
+@pytest.mark.ci
 @pytest.mark.slow
 def test_two_processes(folder: Path) -> None:
     """Forces, displacements and histories of a pair are the same on one and on two processes.

@@ -28,6 +28,7 @@ def eigen():
     return found[0]
 
 
+@pytest.mark.ci
 @pytest.mark.slow
 @pytest.mark.skipif(platform.libc_ver()[0] != "glibc", reason="counts glibc's malloc")
 def test_no_allocation_in_the_hot_path(tmp_path):
