@@ -20,7 +20,8 @@ from mpi4py import MPI
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.base import registry
-from anisocontact.contact.facet_mesh import FacetMesh, SlavePoints, facet_rule
+from anisocontact.contact.facet_mesh import FacetMesh, facet_rule, isoparametric
+from anisocontact.contact.points import SlavePoints
 from anisocontact.interface import STATE, ContactLaw, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import TOPOLOGIES, FacetProjections, FacetSurface
@@ -72,14 +73,10 @@ class Sheets:
         above[:, 2] = 0.02 * np.sin(6.0 * above[:, 0]) * np.cos(5.0 * above[:, 1])
         above[:, 2] -= 2e-2 * self.size
         self.reference = np.concatenate([x, above])
-        self.points = SlavePoints(
-            FacetMesh(self.topology, upper, ~flip),
-            facet_rule(self.topology, DEGREE[self.topology]),
-            self.reference,
-            True,
-            1.0,
-            MPI.COMM_SELF,
-        )
+        facets = FacetMesh(self.topology, upper, ~flip)
+        rule = facet_rule(self.topology, DEGREE[self.topology])
+        quadrature = isoparametric(facets, rule, self.reference)
+        self.points = SlavePoints(quadrature, facets.flip, current_area=True, comm=MPI.COMM_SELF)
         self.surface = FacetSurface(self.reference, lower, self.topology)
         kind = list(TOPOLOGIES).index(self.topology)
         self.master = (lower, np.full(len(lower), kind, dtype=np.int8), flip)

@@ -101,13 +101,15 @@ def make_block(
     from anisocontact.bulk import make_material
     from anisocontact.contact import Contact
     from anisocontact.mesh import BoxSpec, build_box
+    from anisocontact.rigid import MovingSurface
     from anisocontact.solver import Problem
 
     model = build_box({"block": BoxSpec((0.0, 0.0, 0.0), size, cells, cell, order)})
     if move is not None:
         model.mesh.geometry.x[:] = move(model.mesh.geometry.x)
     material = make_material("linear-elastic", E=young, nu=nu)
-    contact = Contact(model, "block.bottom", interface, **of_contact)
+    master = MovingSurface(interface, of_contact.pop("body", None))
+    contact = Contact(model, "block.bottom", master, **of_contact)
     return Block(model, material, contact, Problem(model, {"block": material}, [contact]))
 
 

@@ -9,7 +9,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact, FacetContact
+from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
@@ -75,10 +75,10 @@ WRONG = {
     ),
     "laws without a surface": (
         lambda m: Contact(m, "block.bottom", PAIR),
-        "interface: ContactLaw given, Interface needed",
+        "master: ContactLaw given, a surface, an Interface or a facet group needed",
     ),
     "laws with a surface": (
-        lambda m: FacetContact(m, "block.bottom", "base.top", law=INTERFACE),
+        lambda m: Contact(m, "block.bottom", "base.top", law=INTERFACE),
         "law: Interface given, ContactLaw needed",
     ),
     "no degree on a plane": (
@@ -86,7 +86,7 @@ WRONG = {
         "degree: 0 given, must be >= 1",
     ),
     "no degree on facets": (
-        lambda m: FacetContact(m, "block.bottom", "base.top", law=PAIR, degree=-1),
+        lambda m: Contact(m, "block.bottom", "base.top", law=PAIR, degree=-1),
         "degree: -1 given, must be >= 1",
     ),
     "a facet too far": (

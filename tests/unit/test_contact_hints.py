@@ -13,7 +13,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.base.errors import ModelWarning
 from anisocontact.bulk import make_material
 from anisocontact.cli import main
-from anisocontact.contact import FacetContact, TwoHalfPass, coarse_slaves
+from anisocontact.contact import Contact, coarse_slaves
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
@@ -36,17 +36,17 @@ def _model(unit: float = 1.0, **more) -> Model:
 def test_a_coarse_slave_is_named_with_the_ratio_and_the_cure(unit, more):
     """The pin overlaps the base, and no point of the base meets it: sizes 2 and 0.1."""
     model = _model(unit, **more)
-    contact = FacetContact(model, "base.top", "pin.bottom", law=LAW)
+    contact = Contact(model, "base.top", "pin.bottom", law=LAW)
     (line,) = coarse_slaves([contact])
     assert "contact of base.top with pin.bottom" in line
     assert "20 times as large" in line and "swap slave and master" in line
-    assert not coarse_slaves([FacetContact(model, "pin.bottom", "base.top", law=LAW)])
-    assert not coarse_slaves([TwoHalfPass(model, "base.top", "pin.bottom", law=LAW)])
+    assert not coarse_slaves([Contact(model, "pin.bottom", "base.top", law=LAW)])
+    assert not coarse_slaves([Contact(model, "base.top", "pin.bottom", law=LAW, two_half=True)])
 
 
 def test_a_script_gets_a_warning_of_the_package():
     model = _model()
-    contact = FacetContact(model, "base.top", "pin.bottom", law=LAW)
+    contact = Contact(model, "base.top", "pin.bottom", law=LAW)
     steel = make_material("linear-elastic", E=100.0, nu=0.3)
     problem = Problem(model, {"base": steel, "pin": steel}, [contact])
     held = {group: dict.fromkeys("xyz", 0.0) for group in ("base.bottom", "pin.top")}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,12 +11,16 @@ import pytest
 
 from anisocontact.anisotropy import DirectionField, make_directions
 from anisocontact.base.errors import InputError
-from anisocontact.contact import Contact, FacetContact, TwoHalfPass, initial_overlap
+from anisocontact.contact import Contact, initial_overlap
 from anisocontact.interface import Augmentation, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver.terms.free_modes import bodies
 from anisocontact.surfaces import make_surface
+
+#: Two half passes.
+TWO_HALF = partial(Contact, two_half=True)
+
 
 SIZE = 0.5
 
@@ -66,12 +71,12 @@ def test_adjusted_points_just_touch(kind: str, gap: float) -> None:
     pressures = []
     for lowest, adjust in ((gap, 0.005), (0.0, None)):
         model = _blocks(lowest)
-        contact: Contact | FacetContact | TwoHalfPass
+        contact: Contact
         if kind == "plane":
             interface = Interface(_plane(1.0), *_laws())
             contact = Contact(model, "block.bottom", interface, adjust=adjust)
         else:
-            made = FacetContact if kind == "single" else TwoHalfPass
+            made = Contact if kind == "single" else TWO_HALF
             contact = made(
                 model, "block.bottom", "base.top", law=ContactLaw(*_laws()), adjust=adjust
             )
@@ -94,7 +99,7 @@ def test_surface_that_points_the_wrong_way_is_named() -> None:
 def test_group_on_the_wrong_side_is_named() -> None:
     """The top of the block is named where its bottom meets the base."""
     model = _blocks(0.0)
-    for made in (FacetContact, TwoHalfPass):
+    for made in (Contact, TWO_HALF):
         with pytest.raises(InputError, match=r"'(block|base).top' faces the same way"):
             made(model, "block.top", "base.top", law=ContactLaw(*_laws()), reach=2.0)
 
@@ -104,7 +109,7 @@ def test_bodies_that_face_each_other_pass() -> None:
     for gap in (0.0, 0.3, -0.01):
         model = _blocks(gap)
         Contact(model, "block.bottom", Interface(_plane(1.0), *_laws()))
-        FacetContact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
+        Contact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
 
 
 @pytest.mark.parametrize("meshed", [False, True])
@@ -119,7 +124,7 @@ def test_singular_directions_in_the_contact_are_found(meshed: bool, which: str) 
     laws = _laws(polar) if which == "directions" else _laws(plain, polar)
     with pytest.raises(InputError, match="no direction at 1 slave points") as error:
         if meshed:
-            FacetContact(model, "block.bottom", "base.top", law=ContactLaw(*laws))
+            Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws))
         else:
             Contact(model, "block.bottom", Interface(_plane(1.0), *laws))
     assert error.value.field == f"friction.{which}"

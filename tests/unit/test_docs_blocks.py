@@ -95,7 +95,7 @@ BLOCK = """
 import numpy as np
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact, FacetContact
+from anisocontact.contact import Contact
 from anisocontact.interface import Interface, ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
@@ -157,7 +157,7 @@ AFTER = {
     "own-script": "assert problem.solve() is not None and contact.last.status.max() > 0",
     "own-law": """
 u = np.zeros((len(model.space.tabulate_dof_coordinates()), 3))
-u[on_plane.slave_nodes] = (1e-3, 0.0, -1e-3)
+u[on_plane.couplable()] = (1e-3, 0.0, -1e-3)
 for one in (on_plane, on_base):
     answer = one.update(u, 1.0)
     assert np.allclose(answer.traction, (-2.0 / 1.2, 0.0, 10.0))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import partial
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ import pytest
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.bulk import make_material
-from anisocontact.contact import FacetContact, TwoHalfPass
+from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
@@ -18,6 +19,10 @@ from anisocontact.solver import Problem, Solver, Step
 from anisocontact.solver.system.ahead import FARTHEST, SPACING, Ahead
 from anisocontact.solver.system.coupled import MOST_LEFT
 from anisocontact.solver.terms.turn import Turn
+
+#: Two half passes.
+TWO_HALF = partial(Contact, two_half=True)
+
 
 LAW = ContactLaw(
     NormalLaw(penalty=2e3), Adhesion(stiffness=(1e3, 1e3)), Friction(coefficients=(0.3, 0.3))
@@ -27,7 +32,7 @@ CLAMP = {"mat.bottom": dict.fromkeys("xyz", 0.0)}
 SHORT, LONG = 0.4, 1.5
 
 
-def pair(kind=FacetContact, length=2.0):
+def pair(kind=Contact, length=2.0):
     """A block on a mat of facets that do not match."""
     facets = round(7 * length / 2)
     model = build_box(
@@ -60,7 +65,7 @@ def run(problem, steps, ahead=True):
     return np.array(forces), count
 
 
-@pytest.mark.parametrize("kind", [FacetContact, TwoHalfPass])
+@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
 def test_pressed_and_dragged_it_is_built_once(kind):
     """Requirement: sparsity built once and reused. What is grown into makes the same forces.
 
@@ -104,7 +109,7 @@ def test_where_no_way_is_prescribed_points_are_taken_to_slide_on():
 
 def test_the_way_is_that_of_the_slave_against_the_master():
     """Supports of both bodies count, from where the steps have come to, as far as the window."""
-    contact = FacetContact(pair().model, "block.bottom", "mat.top", law=LAW)
+    contact = Contact(pair().model, "block.bottom", "mat.top", law=LAW)
     steps = pressed(0.3, 4)
     moving = {"mat.bottom": {"x": -0.1}}
     steps[1] = dataclasses.replace(steps[1], displacement=steps[1].displacement | moving)

@@ -10,7 +10,7 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact.contact import FacetContact, TwoHalfPass
+from anisocontact.contact import Contact
 from anisocontact.contact.held_feet import BEYOND, facet_of
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -24,7 +24,7 @@ from anisocontact.solver.stepping.watch import StatusWatch
 SLOPE = 0.2
 
 
-def _over_a_valley() -> tuple[FacetContact, Any, Any]:
+def _over_a_valley() -> tuple[Contact, Any, Any]:
     """A block of a facet above a valley of two, displacements by its place, and the model."""
     boxes = {
         "block": BoxSpec((0.9, 0.4, 0), (0.2, 0.2, 0.2), (1, 1, 1)),
@@ -37,16 +37,16 @@ def _over_a_valley() -> tuple[FacetContact, Any, Any]:
         Adhesion(stiffness=(penalty, penalty)),
         Friction(coefficients=(0.3, 0.3)),
     )
-    contact = FacetContact(
+    contact = Contact(
         model, "block.bottom", "base.top", law=law, degree=1, reach=1.0, current_area=False
     )
     x = model.space.tabulate_dof_coordinates()
-    base = np.unique(contact.master_facets)
+    base = np.unique(contact.passes[0].master.facets)
 
     def moved(by: float, up: float) -> np.ndarray:
         u = np.zeros_like(x)
         u[base, 2] = SLOPE * np.abs(x[base, 0] - 1.0)
-        u[np.unique(contact.slave_facets)] = [by, 0.0, up]
+        u[np.unique(contact.passes[0].slave_points.nodes)] = [by, 0.0, up]
         return u
 
     return contact, moved, model
@@ -112,7 +112,9 @@ def test_two_half_passes_let_go_in_each():
     """Each pass lets go what it holds, and holds it again, as above."""
     single, moved, model = _over_a_valley()
     law: Any = single.interface
-    contact = TwoHalfPass(model, "block.bottom", "base.top", law=law, degree=1, reach=1.0)
+    contact = Contact(
+        model, "block.bottom", "base.top", law=law, degree=1, reach=1.0, two_half=True
+    )
     contact.update(moved(-0.05, -0.02), 1.0)
     contact.hold(np.ones(len(contact.footing()), dtype=bool))
     contact.update(moved(0.05, -0.02), 1.0)

@@ -137,7 +137,7 @@ def test_a_body_that_nothing_holds_is_one_line(meshed):
     """
     import ufl
 
-    from anisocontact.contact import FacetContact
+    from anisocontact.contact import Contact
     from anisocontact.interface import ContactLaw
     from anisocontact.mesh import BoxSpec, build_box
 
@@ -147,7 +147,7 @@ def test_a_body_that_nothing_holds_is_one_line(meshed):
     model = build_box(boxes)
     laws = NormalLaw(penalty=1e3), Adhesion(stiffness=1e3), Friction(coefficients=0.3)
     contact = (
-        FacetContact(model, "pad.bottom", "base.top", law=ContactLaw(*laws))
+        Contact(model, "pad.bottom", "base.top", law=ContactLaw(*laws))
         if meshed
         else Contact(model, "pad.bottom", _interface())
     )

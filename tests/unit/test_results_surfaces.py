@@ -10,7 +10,7 @@ from anisocontact.contact import Contact
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.results.surfaces import POINTS, Surfaces
-from anisocontact.rigid import RigidBody
+from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.surfaces import make_surface
 
 # Surface below the block [0, 1]^2 x [0, 0.5], and the bounds of its patch.
@@ -34,7 +34,7 @@ def patch(fe, shape, body=None, **friction):
         Adhesion(stiffness=(1.0, 1.0)),
         Friction(**({"coefficients": (0.1, 0.1)} | friction)),
     )
-    contact = Contact(block.model, "block.bottom", law, body=body)
+    contact = Contact(block.model, "block.bottom", MovingSurface(law, body))
     return contact, Surfaces([block.contact, contact], block.model.mesh.comm)
 
 

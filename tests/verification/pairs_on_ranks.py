@@ -21,7 +21,7 @@ from tests.verification.test_fe_self_contact import GAP, hairpin
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact, FacetContact, SelfContact, TwoHalfPass
+from anisocontact.contact import Contact
 from anisocontact.interface import Augmentation, ContactLaw, PythonLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
@@ -32,7 +32,7 @@ from anisocontact.results.checkpoint import (
     own_arrays,
 )
 from anisocontact.results.files import Disk
-from anisocontact.rigid import RigidBody
+from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Problem, Solver, Step
 
 #: Accepted increments before a run is stopped.
@@ -86,7 +86,7 @@ def _dragged(model: Any, contacts: list[Any], material: str = "neo-hookean") -> 
 
 def _single() -> Made:
     model = _bodies("tetrahedron")
-    return _dragged(model, [FacetContact(model, "block.bottom", "mat.top", law=_law())])
+    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law())])
 
 
 def _in_python() -> Made:
@@ -95,23 +95,23 @@ def _in_python() -> Made:
     along = make_directions("constant", vector=(1, 0, 0), angle=0.5)
     own = RadialReturn((8.0, 16.0), (0.2, 0.4))
     law = ContactLaw(NormalLaw(penalty=20.0), PythonLaw(own, directions=along))
-    return _dragged(model, [FacetContact(model, "block.bottom", "mat.top", law=law)])
+    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=law)])
 
 
 def _second_order() -> Made:
     model = _bodies("hexahedron", 2)
-    return _dragged(model, [FacetContact(model, "block.bottom", "mat.top", law=_law())])
+    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law())])
 
 
 def _two_half() -> Made:
     model = _bodies()
-    return _dragged(model, [TwoHalfPass(model, "block.bottom", "mat.top", law=_law())])
+    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law(), two_half=True)])
 
 
 def _matching() -> Made:
     """All edges of the block lie on edges of the mat, until it is dragged."""
     model = _bodies(cells=((2, 4), (6, 10)))
-    return _dragged(model, [TwoHalfPass(model, "block.bottom", "mat.top", law=_law())])
+    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law(), two_half=True)])
 
 
 def _far() -> Made:
@@ -122,7 +122,7 @@ def _far() -> Made:
             "mat": BoxSpec((-6, -1.5, -1), (12, 3, 1), (12, 3, 1)),
         }
     )
-    pair = TwoHalfPass(model, "block.bottom", "mat.top", law=_law(), reach=0.4)
+    pair = Contact(model, "block.bottom", "mat.top", law=_law(), reach=0.4, two_half=True)
     problem, steps = _dragged(model, [pair])
     along = steps[0].displacement | {"block.top": {"x": 6.0, "y": 0.2, "z": -0.2}}
     return problem, [steps[0], Step("drag", 5, along)]
@@ -131,7 +131,7 @@ def _far() -> Made:
 def _augmented(multipliers: str = "uzawa") -> Made:
     model = _bodies(gap=0.0)
     exact = Augmentation(tangential=False, multipliers=multipliers)
-    pair = FacetContact(model, "block.bottom", "mat.top", law=_law(), augmentation=exact)
+    pair = Contact(model, "block.bottom", "mat.top", law=_law(), augmentation=exact)
     return _dragged(model, [pair], "linear-elastic")
 
 
@@ -164,8 +164,8 @@ def _under_a_lid() -> Made:
         penalty=20.0,
         angle=0.3,
     )
-    pair = FacetContact(model, "block.bottom", "mat.top", law=_law(), current_area=False)
-    top = Contact(model, "block.top", plane, body=lid)
+    pair = Contact(model, "block.bottom", "mat.top", law=_law(), current_area=False)
+    top = Contact(model, "block.top", MovingSurface(plane, lid))
     problem, _ = _dragged(model, [pair, top], "linear-elastic")
     held = {"mat.bottom": dict.fromkeys("xyz", 0.0)}
     free = {"lid": dict.fromkeys(("x", "y", "rz"))}
@@ -183,7 +183,7 @@ def _folded() -> Made:
         Adhesion(stiffness=(1e4, 1e4)),
         Friction(coefficients=(0.2, 0.2)),
     )
-    contact = SelfContact(model, "pin.inner", law=law, apart=0.3)
+    contact = Contact(model, "pin.inner", "pin.inner", self_contact=True, law=law, apart=0.3)
     problem = Problem(model, {"pin": make_material("neo-hookean", E=1000.0, nu=0.3)}, [contact])
     depth = 0.5 * GAP + 2e-3
     ends = {
@@ -214,15 +214,15 @@ def _facets(problem: Problem) -> np.ndarray:
     model = problem.model
     own = [
         int(np.sum(model.facets(name) < model.mesh.topology.index_map(2).size_local))
-        for name in ([pair.slave] if isinstance(pair, Contact) else [pair.slave, pair.master])
+        for name in pair.groups
     ]
     return np.array(problem.comm.allgather(own))
 
 
 def _had(problem: Problem) -> np.ndarray:
     """Facets of the master that every rank has, of every pass, (ranks, passes)."""
-    passes = [half for pair in problem.contacts if pair.parts for half in pair.parts]
-    own = [len(half.had_facets) for half in passes if isinstance(half, FacetContact)]
+    passes = [half for pair in problem.contacts if pair.meshed for half in pair.passes]
+    own = [len(half.master.numbers) for half in passes]
     return np.array(problem.comm.allgather(own))
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact, FacetContact
+from anisocontact.contact import Contact
 from anisocontact.interface import Augmentation, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
@@ -53,9 +53,9 @@ def _run(
         Friction(coefficients=coefficients, directions=marks),
     )
     augmentation = Augmentation(tangential=adhesion is None, multipliers=multipliers)
-    contact: Contact | FacetContact
+    contact: Contact | Contact
     if meshed:
-        contact = FacetContact(
+        contact = Contact(
             model,
             "block.bottom",
             "base.top",
@@ -209,7 +209,7 @@ def test_patch_over_overlaps() -> None:
         Adhesion(stiffness=(1e-3, 1e-3)),
         Friction(coefficients=(1e-6, 1e-6)),
     )
-    contact = FacetContact(
+    contact = Contact(
         model,
         "block.bottom",
         "base.top",

@@ -13,7 +13,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem
-from anisocontact.contact import FacetContact, facet_directions
+from anisocontact.contact import Contact, facet_directions
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, build_box, build_mesh, make_shape
@@ -44,7 +44,7 @@ def axes(model: Model, directions: Any) -> tuple[Floats, Floats]:
         Adhesion(stiffness=(1.0, 1.0)),
         Friction(coefficients=(0.3, 0.1), directions=directions),
     )
-    contact = FacetContact(model, "block.bottom", "plate.top", law=law, degree=4)
+    contact = Contact(model, "block.bottom", "plate.top", law=law, degree=4)
     down = np.zeros_like(model.space.tabulate_dof_coordinates())
     down[fem.locate_dofs_topological(model.space, 3, model.cells("block")), 2] = -1e-3
     response = contact.update(down, 1.0)

@@ -8,6 +8,7 @@ solution answers to it. Source: `direct`, an independent way to solve the same e
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,7 +17,7 @@ from tests.verification.test_fe_self_contact import hairpin
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
-from anisocontact.contact import AnyContact, Contact, FacetContact, SelfContact, TwoHalfPass
+from anisocontact.contact import Contact
 from anisocontact.interface import (
     ContactLaw,
     Interface,
@@ -27,11 +28,15 @@ from anisocontact.interface import (
 )
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, Placement, Rotation, build_box, build_mesh
-from anisocontact.rigid import RigidBody
+from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, ElasticSupport, Problem, Solver, Spring, Step
 from anisocontact.solver.stepping import attempts
 from anisocontact.solver.strategies.condensed import reach
 from anisocontact.surfaces import make_surface
+
+#: Two half passes.
+TWO_HALF = partial(Contact, two_half=True)
+
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
 type Laws = tuple[NormalLaw, Adhesion, Friction]
@@ -78,7 +83,7 @@ def _model(cell: str = "hexahedron", order: int = 1, n: int = 4, length: float =
     return build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (n, n, 2), **shape), "base": base})
 
 
-def _pair(model: Model, laws: Laws = LAWS, kind: type = FacetContact, **options: Any) -> Problem:
+def _pair(model: Model, laws: Laws = LAWS, kind: type = Contact, **options: Any) -> Problem:
     law = ContactLaw(*laws)
     contact = kind(model, "block.bottom", "base.top", law=law, current_area=False, **options)
     elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
@@ -90,7 +95,7 @@ def _on_surface(surface: str = "plane", **parameters: Any) -> Problem:
     parameters = parameters or {"point": (0, 0, 0), "normal": (0, 0, 1)}
     interface = Interface(make_surface(surface, **parameters), *LAWS)
     elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
-    contacts: list[AnyContact] = [Contact(model, "block.bottom", interface)]
+    contacts: list[Contact] = [Contact(model, "block.bottom", interface)]
     return Problem(model, {"block": elastic}, contacts)
 
 
@@ -153,7 +158,7 @@ def test_block_on_surface(surface: dict[str, Any]) -> None:
     _same(lambda: _on_surface(**surface), steps)
 
 
-@pytest.mark.parametrize("kind", [FacetContact, TwoHalfPass])
+@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
 def test_block_on_block(kind: type) -> None:
     """Meshed bodies, each condensed by itself."""
     notes = _same(lambda: _pair(_model(), kind=kind), [PRESS, DRAG])
@@ -316,7 +321,7 @@ def test_free_rigid_body() -> None:
         ball = RigidBody("ball", (0.4, 0.7, -0.9), free=True, springs=springs)
         adhesion = Adhesion(stiffness=(4e3, 1e3), directions=MARKS)
         interface = Interface(surface, NormalLaw(penalty=1e4), adhesion, LAWS[2])
-        contact = Contact(model, "block.bottom", interface, body=ball)
+        contact = Contact(model, "block.bottom", MovingSurface(interface, ball))
         return Problem(model, {"block": ELASTIC}, [contact])
 
     clamp = {"block.top": dict.fromkeys("xyz", 0.0)}
@@ -336,7 +341,8 @@ def test_self_contact() -> None:
     def make() -> Problem:
         model = hairpin(half=False)
         law = ContactLaw(*LAWS)
-        folded = SelfContact(model, "pin.inner", law=law, apart=0.3, current_area=False)
+        group = "pin.inner"
+        folded = Contact(model, group, group, law, self_contact=True, apart=0.3, current_area=False)
         return Problem(model, {"pin": ELASTIC}, [folded])
 
     ends = {f"pin.{end}": {"x": 0.0, "y": 0.0, "z": z} for end, z in (("upper", -1), ("lower", 1))}

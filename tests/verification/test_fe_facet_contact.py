@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,11 +17,15 @@ from tests.conftest import difference_errors
 from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
-from anisocontact.contact import FacetContact, TwoHalfPass
+from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver import Problem, Solver, Step
+
+#: Two half passes.
+TWO_HALF = partial(Contact, two_half=True)
+
 
 CLAMP = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
 
@@ -54,7 +59,7 @@ def _blocks(
 
 
 def _problem(
-    model: Model, law: ContactLaw, material: str, kind: Any = FacetContact, **options: object
+    model: Model, law: ContactLaw, material: str, kind: Any = Contact, **options: object
 ) -> Problem:
     elastic = make_material(material, E=1000.0, nu=0.3)
     options.setdefault("current_area", material != "linear-elastic")
@@ -96,7 +101,7 @@ def test_against_calculix() -> None:
     [("hexahedron", 1), ("hexahedron", 2), ("tetrahedron", 1), ("tetrahedron", 2)],
 )
 @pytest.mark.parametrize("mu", [0.3, 30.0])
-@pytest.mark.parametrize("kind", [FacetContact, TwoHalfPass])
+@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
 def test_tangent_of_the_system_by_order(
     cell: str, order: int, material: str, mu: float, kind: Any
 ) -> None:
@@ -230,6 +235,6 @@ def test_mistakes_are_said() -> None:
     """Overlapping groups and groups that do not exist: one line with the field."""
     model = _blocks(2)
     with pytest.raises(InputError, match=r"master: .*share 4 facets"):
-        FacetContact(model, "block.bottom", "block.bottom", law=_law())
+        Contact(model, "block.bottom", "block.bottom", law=_law())
     with pytest.raises(InputError, match=r"master: .*did you mean 'base.top'"):
-        FacetContact(model, "block.bottom", "base.topp", law=_law())
+        Contact(model, "block.bottom", "base.topp", law=_law())

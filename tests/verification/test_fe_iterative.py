@@ -12,6 +12,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +21,17 @@ import pytest
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact, FacetContact, TwoHalfPass
+from anisocontact.contact import Contact
 from anisocontact.interface import Augmentation, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh
-from anisocontact.rigid import RigidBody
+from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, Problem, Solver, Spring, Step
 from anisocontact.surfaces import make_surface
+
+#: Two half passes.
+TWO_HALF = partial(Contact, two_half=True)
+
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
 CLAMP = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
@@ -48,13 +53,13 @@ def _on_plane(
 ) -> Problem:
     model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (n, n, n // 2))})
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    contact = Contact(model, "block.bottom", Interface(plane, *_laws(penalty)), body=body)
+    contact = Contact(model, "block.bottom", MovingSurface(Interface(plane, *_laws(penalty)), body))
     return Problem(model, {"block": make_material(**ELASTIC)}, [contact], **options)
 
 
 def _pair(
     n: int = 4,
-    kind: type = FacetContact,
+    kind: type = Contact,
     shape: dict[str, Any] | None = None,
     material: dict[str, Any] | None = None,
     penalty: float = 1e5,
@@ -116,7 +121,7 @@ def test_block_on_plane() -> None:
     _same(_on_plane, [Step("press", 2, top), DRAG])
 
 
-@pytest.mark.parametrize("kind", [FacetContact, TwoHalfPass])
+@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
 def test_block_on_block(kind: type) -> None:
     """Meshed bodies that slide on each other."""
     _same(lambda: _pair(kind=kind), [PRESS, DRAG])

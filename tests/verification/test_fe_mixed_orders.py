@@ -113,7 +113,7 @@ def test_bodies_of_both_orders_in_contact(cell, slave):
     Requirement: uniform pressure, and forces in balance. Source: patch test; matching facets.
     Tolerance: 1e-7 of the pressure, Newton.
     """
-    from anisocontact.contact import FacetContact
+    from anisocontact.contact import Contact
     from anisocontact.interface import ContactLaw
     from anisocontact.laws import Adhesion, Friction, NormalLaw
     from anisocontact.solver import Step
@@ -124,7 +124,7 @@ def test_bodies_of_both_orders_in_contact(cell, slave):
     master = {"one.top": "two.bottom", "two.bottom": "one.top"}[slave]
     bodies = [block("one", 1, cell), block("two", 2, cell, z=0.5)]
     made = problem(
-        bodies, [lambda m: FacetContact(m, slave, master, law=law)], material="linear-elastic"
+        bodies, [lambda m: Contact(m, slave, master, law=law)], material="linear-elastic"
     )
     sides = {
         f"{name}.{side}": {axis: 0.0}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -11,13 +12,17 @@ from scipy.spatial.transform import Rotation
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
-from anisocontact.contact import FacetContact, TwoHalfPass
+from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver import Problem, Solver, Step
 
-KINDS = [FacetContact, TwoHalfPass]
+#: Two half passes.
+TWO_HALF = partial(Contact, two_half=True)
+
+
+KINDS = [Contact, TWO_HALF]
 STILL = Rotation.identity()
 PATH = [(0.0, 0.0, -0.01), (0.015, 0.0, -0.01), (0.015, 0.01, -0.01)]
 
@@ -144,8 +149,8 @@ def test_swap() -> None:
     Source: both passes enter alike; only the order of sums changes.
     """
     ends = ("upper.bottom", "lower.top")
-    assert _far(_twins(*ends, TwoHalfPass), _twins(*reversed(ends), TwoHalfPass)) < 1e-9
-    assert _far(_twins(*ends, FacetContact), _twins(*reversed(ends), FacetContact)) > 1e-6
+    assert _far(_twins(*ends, TWO_HALF), _twins(*reversed(ends), TWO_HALF)) < 1e-9
+    assert _far(_twins(*ends, Contact), _twins(*reversed(ends), Contact)) > 1e-6
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -169,8 +174,8 @@ def test_mesh_gives_no_direction(kind: Any) -> None:
         Step("drag", 6, {"block.top": {"x": 0.3}}),
     ]
     force = _forces(problem, steps)[-1]
-    assert force[0] == pytest.approx(-0.3 * force[2], rel=1e-9 if kind is FacetContact else 0.04)
-    tolerance = 1e-9 if kind is FacetContact else HALF_PASS_LATERAL
+    assert force[0] == pytest.approx(-0.3 * force[2], rel=1e-9 if kind is Contact else 0.04)
+    tolerance = 1e-9 if kind is Contact else HALF_PASS_LATERAL
     assert abs(force[1]) < tolerance * abs(force[0])
 
 
@@ -199,17 +204,17 @@ def _turned_base() -> Model:
 #: the tolerance of Newton, 1e-12 of the forces, times the condition of the system; those of a
 #: single pass are what was measured, docs/verification/meshed-contact.md.
 PATCH = {
-    ("hexahedron", 1, TwoHalfPass, 0): (1e-8, 1e-8),
-    ("hexahedron", 1, TwoHalfPass, 5): (1e-8, 1e-8),
-    ("hexahedron", 2, TwoHalfPass, 0): (1e-8, 1e-8),
-    ("tetrahedron", 1, TwoHalfPass, 0): (1e-8, 1e-8),
-    ("tetrahedron", 2, TwoHalfPass, 0): (1e-8, 1e-8),
-    ("hexahedron", 1, FacetContact, 0): (1.3e-2, 3.0e-3),
-    ("hexahedron", 1, FacetContact, 20): (5.0e-4, 6.0e-5),
-    ("hexahedron", 2, FacetContact, 0): (8.2e-2, 1.4e-2),
-    ("tetrahedron", 1, FacetContact, 0): (2.1e-2, 1.6e-3),
-    ("tetrahedron", 1, FacetContact, 20): (1.6e-3, 1.0e-4),
-    ("tetrahedron", 2, FacetContact, 0): (7.8e-2, 8.6e-3),
+    ("hexahedron", 1, TWO_HALF, 0): (1e-8, 1e-8),
+    ("hexahedron", 1, TWO_HALF, 5): (1e-8, 1e-8),
+    ("hexahedron", 2, TWO_HALF, 0): (1e-8, 1e-8),
+    ("tetrahedron", 1, TWO_HALF, 0): (1e-8, 1e-8),
+    ("tetrahedron", 2, TWO_HALF, 0): (1e-8, 1e-8),
+    ("hexahedron", 1, Contact, 0): (1.3e-2, 3.0e-3),
+    ("hexahedron", 1, Contact, 20): (5.0e-4, 6.0e-5),
+    ("hexahedron", 2, Contact, 0): (8.2e-2, 1.4e-2),
+    ("tetrahedron", 1, Contact, 0): (2.1e-2, 1.6e-3),
+    ("tetrahedron", 1, Contact, 20): (1.6e-3, 1.0e-4),
+    ("tetrahedron", 2, Contact, 0): (7.8e-2, 8.6e-3),
 }
 
 
@@ -241,7 +246,7 @@ def test_patch_of_distorted_facets(cell: str, order: int) -> None:
     x = model.mesh.geometry.x
     inner = (np.abs(x[:, 2]) < 1e-9) & np.all(np.abs(x[:, :2] - 0.5) < 0.499, axis=1)
     x[inner, :2] += np.random.default_rng(3).uniform(-0.05, 0.05, (inner.sum(), 2))
-    assert max(_patch_errors(model, TwoHalfPass, None)) < (5e-3 if cell == "hexahedron" else 1e-8)
+    assert max(_patch_errors(model, TWO_HALF, None)) < (5e-3 if cell == "hexahedron" else 1e-8)
 
 
 def _patch_blocks(cell: str, order: int) -> Model:

@@ -9,7 +9,7 @@ import pytest
 
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact, FacetContact, SelfContact
+from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
@@ -70,6 +70,11 @@ def hairpin(half: bool) -> Model:
     return Model.from_arrays(MeshArrays("hexahedron", 1, points, cells, bodies, facets, 1))
 
 
+def folding(model: Model, law: ContactLaw, **options: Any) -> Contact:
+    """Contact of the inner side of the pin with itself."""
+    return Contact(model, "pin.inner", "pin.inner", law, self_contact=True, **options)
+
+
 def _close(model: Model, contact: Any, material: str, depth: float) -> list[np.ndarray]:
     """Force on the upper end after each increment of the ends moving together by twice `depth`."""
     problem = Problem(model, {"pin": make_material(material, E=1000.0, nu=0.3)}, [contact])
@@ -96,7 +101,7 @@ def test_hairpin_against_its_half(material: str) -> None:
     depth = 0.5 * GAP + 2e-3
     whole = hairpin(half=False)
     law = ContactLaw(NormalLaw(penalty=PENALTY), **LAWS)
-    folded = SelfContact(whole, "pin.inner", law=law, apart=0.3, current_area=finite)
+    folded = folding(whole, law, apart=0.3, current_area=finite)
     forces = _close(whole, folded, material, depth)
     upper = hairpin(half=True)
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
@@ -114,9 +119,7 @@ def test_what_is_near_from_the_beginning_does_not_meet() -> None:
     model = hairpin(half=False)
     law = ContactLaw(NormalLaw(penalty=PENALTY), **LAWS)
     forces = {
-        apart: _close(
-            model, SelfContact(model, "pin.inner", law=law, apart=apart), "linear-elastic", 0.205
-        )
+        apart: _close(model, folding(model, law, apart=apart), "linear-elastic", 0.205)
         for apart in (0.3, 0.5)
     }
     assert abs(forces[0.3][-1][2]) > 10.0 * abs(forces[0.5][-1][2])
@@ -127,6 +130,6 @@ def test_mistakes_are_said() -> None:
     model = hairpin(half=False)
     law = ContactLaw(NormalLaw(penalty=PENALTY), **LAWS)
     with pytest.raises(InputError, match=r"master: .*share 96 facets"):
-        FacetContact(model, "pin.inner", "pin.inner", law=law)
+        Contact(model, "pin.inner", "pin.inner", law=law)
     with pytest.raises(InputError, match=r"apart: -1.0 given, must be > 0"):
-        SelfContact(model, "pin.inner", law=law, apart=-1.0)
+        folding(model, law, apart=-1.0)

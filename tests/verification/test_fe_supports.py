@@ -237,7 +237,7 @@ def test_planes_of_bodies_in_contact():
     Requirement: planes work with the couplings of meshed contact. Source: the same problem without
     planes. Tolerance: 1e-7, Newton to 1e-10 in both.
     """
-    from anisocontact.contact import FacetContact
+    from anisocontact.contact import Contact
     from anisocontact.interface import ContactLaw
     from anisocontact.laws import Adhesion, Friction, NormalLaw
     from anisocontact.mesh import Body, BoxSpec
@@ -254,7 +254,7 @@ def test_planes_of_bodies_in_contact():
     ]
 
     def touching(model):
-        return FacetContact(model, "upper.bottom", "lower.top", law=law)
+        return Contact(model, "upper.bottom", "lower.top", law=law)
 
     sides = ["upper.left", "lower.left", "upper.front", "lower.front"]
     axes = {group: {"x" if "left" in group else "y": 0.0} for group in sides}

@@ -178,16 +178,18 @@ def _pressed(
 
 
 def _contact(kind: str, method: str, model: Any, normal: np.ndarray) -> Any:
-    from anisocontact.contact import Contact, FacetContact, TwoHalfPass
+    from anisocontact.contact import Contact
     from anisocontact.interface import Augmentation
 
     laws = NormalLaw(penalty=PENALTY), Adhesion(stiffness=PENALTY), Friction(coefficients=0)
     if kind == "two-half":
         law = ContactLaw(*laws)
-        return TwoHalfPass(model, "block.bottom", "base.top", law=law, current_area=False)
+        return Contact(
+            model, "block.bottom", "base.top", law=law, current_area=False, two_half=True
+        )
     augmented = None if method == "penalty" else Augmentation(multipliers=method)
     options: dict[str, Any] = {"augmentation": augmented, "current_area": False}
     if kind == "facets":
-        return FacetContact(model, "block.bottom", "base.top", law=ContactLaw(*laws), **options)
+        return Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws), **options)
     plane = make_surface("plane", point=(0, 0, 0), normal=normal)
     return Contact(model, "block.bottom", Interface(plane, *laws), **options)

@@ -13,7 +13,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.anisotropy import make_directions
 from anisocontact.base.fenicsx import fem
 from anisocontact.bulk import make_material
-from anisocontact.contact import FacetContact
+from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, RingSpec, build_mesh
@@ -65,9 +65,7 @@ class Pushed:
             Adhesion(stiffness=(PENALTY, PENALTY)),
             Friction(coefficients=tuple(MU), directions=grooves),
         )
-        self.contact = FacetContact(
-            self.model, "hub.inner", "shaft.outer", law=law, current_area=False
-        )
+        self.contact = Contact(self.model, "hub.inner", "shaft.outer", law=law, current_area=False)
         materials = {
             name: make_material("linear-elastic", E=e, nu=nu)
             for name, (e, nu) in (("shaft", SHAFT), ("hub", HUB))

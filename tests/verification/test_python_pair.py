@@ -9,6 +9,7 @@ from __future__ import annotations
 import shutil
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,13 +25,17 @@ from tests.verification.test_fe_self_contact import GAP, hairpin
 from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact, FacetContact, SelfContact, TwoHalfPass
+from anisocontact.contact import Contact
 from anisocontact.interface import Augmentation, ContactLaw, Interface, PythonLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.results import checkpoint
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.surfaces import make_surface
+
+#: Two half passes.
+TWO_HALF = partial(Contact, two_half=True)
+
 
 type Ends = dict[str, dict[str, float]]
 
@@ -65,9 +70,7 @@ def _blocks(cell: str = "hexahedron", order: int = 1) -> Model:
     return build_box({"block": upper, "base": lower})
 
 
-def _problem(
-    law: Any, kind: Any = FacetContact, material: str = "neo-hookean", **given: Any
-) -> Problem:
+def _problem(law: Any, kind: Any = Contact, material: str = "neo-hookean", **given: Any) -> Problem:
     shape = {name: given.pop(name) for name in ("cell", "order") if name in given}
     model = _blocks(**shape)
     elastic = make_material(material, E=1000.0, nu=0.3)
@@ -113,7 +116,7 @@ def _same(
 
 
 @pytest.mark.parametrize("on", ["master", "slave"])
-@pytest.mark.parametrize("kind", [FacetContact, TwoHalfPass])
+@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
 def test_same_as_the_core(kind: Any, on: str) -> None:
     """Forces, energies and displacements of a pair that sticks and slips, isotropic friction.
 
@@ -155,10 +158,10 @@ def test_newton_takes_as_many_iterations() -> None:
 @pytest.mark.parametrize(
     ("cell", "order", "kind", "on"),
     [
-        ("hexahedron", 1, FacetContact, "master"),
-        ("tetrahedron", 2, FacetContact, "slave"),
-        ("hexahedron", 2, TwoHalfPass, "master"),
-        ("hexahedron", 1, FacetContact, ""),
+        ("hexahedron", 1, Contact, "master"),
+        ("tetrahedron", 2, Contact, "slave"),
+        ("hexahedron", 2, TWO_HALF, "master"),
+        ("hexahedron", 1, Contact, ""),
     ],
 )
 def test_tangent_by_order(law: Any, cell: str, order: int, kind: Any, on: str) -> None:
@@ -186,7 +189,7 @@ def test_tangent_by_order(law: Any, cell: str, order: int, kind: Any, on: str) -
     assert 3.5 < errors[0] / errors[1] < 4.5 or errors[0] < 1e-7
 
 
-@pytest.mark.parametrize("kind", [FacetContact, TwoHalfPass])
+@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
 def test_forces_and_moments_balance(kind: Any) -> None:
     """Contact does nothing to both bodies together: 1e-13 of the sizes of the nodal forces.
 
@@ -281,7 +284,7 @@ wrong = np.nan if MPI.COMM_WORLD.rank == 0 else 1.0
 own = Spoiled(RadialReturn((8.0, 16.0), (0.2, 0.4)), "traction", lambda v: wrong * v)
 model = pairs._bodies("tetrahedron")
 law = pairs.ContactLaw(pairs.NormalLaw(penalty=20.0), pairs.PythonLaw(own))
-pair = pairs.FacetContact(model, "block.bottom", "mat.top", law=law)
+pair = pairs.Contact(model, "block.bottom", "mat.top", law=law)
 try:
     list(pairs.Solver(*pairs._dragged(model, [pair])).run())
 except InputError as error:
@@ -320,7 +323,7 @@ def test_singular_directions_are_said(kind: str) -> None:
     own = Interface(plane, law)
     with pytest.raises(InputError, match="directions: no direction at 16 slave points"):
         if kind == "meshed":
-            FacetContact(model, "block.bottom", "base.top", law=law)
+            Contact(model, "block.bottom", "base.top", law=law)
         else:
             Contact(model, "block.bottom", own)
 
@@ -341,7 +344,7 @@ def test_self_contact() -> None:
     found = []
     for law in (along, own):
         model = hairpin(half=False)
-        contact = SelfContact(model, "pin.inner", law=law, apart=0.3)
+        contact = Contact(model, "pin.inner", "pin.inner", self_contact=True, law=law, apart=0.3)
         problem = Problem(model, {"pin": make_material("neo-hookean", E=1000.0, nu=0.3)}, [contact])
         for _ in Solver(problem, [Step("close", 2, ends)], options={"snes_rtol": 1e-11}).run():
             pass

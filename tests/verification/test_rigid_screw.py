@@ -26,7 +26,7 @@ def pushed(free, travel=0.02, increments=10):
     from anisocontact.interface import Interface
     from anisocontact.laws import Adhesion, Friction, NormalLaw
     from anisocontact.mesh import Body, RingSpec, build_mesh
-    from anisocontact.rigid import RigidBody
+    from anisocontact.rigid import MovingSurface, RigidBody
     from anisocontact.solver import Problem, Solver, Step
     from anisocontact.surfaces import make_surface
 
@@ -42,7 +42,7 @@ def pushed(free, travel=0.02, increments=10):
         ),
     )
     rod = RigidBody("rod", (0.0, 0.0, 0.3), free=free)
-    contact = Contact(model, "ring.inner", interface, body=rod)
+    contact = Contact(model, "ring.inner", MovingSurface(interface, rod))
     material = make_material("linear-elastic", E=1000.0, nu=0.3)
     problem = Problem(model, {"ring": material}, [contact])
     held = {"ring.outer": dict.fromkeys("xyz", 0.0)}

@@ -13,11 +13,11 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.base.fenicsx import Vec
 from anisocontact.base.limits import Limits
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact, FacetContact, TwoHalfPass
+from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
-from anisocontact.rigid import RigidBody
+from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import ContactProblem, Problem, Solver, Step, StoppedError
 from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.surfaces import make_surface
@@ -59,14 +59,12 @@ def _problem(
     return Problem(model, dict.fromkeys(boxes, rubber), [contact])
 
 
-def _contact(
-    model: Model, master: str, unit: float, mu: tuple[float, float]
-) -> Contact | FacetContact | TwoHalfPass:
+def _contact(model: Model, master: str, unit: float, mu: tuple[float, float]) -> Contact:
     laws = _laws(unit, mu)
     if master == "plate":
-        return FacetContact(model, "block.bottom", "base.top", law=ContactLaw(*laws))
+        return Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws))
     if master == "plate from both sides":
-        return TwoHalfPass(model, "block.bottom", "base.top", law=ContactLaw(*laws))
+        return Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws), two_half=True)
     if master == "plane":
         surface = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
         return Contact(model, "block.bottom", Interface(surface, *laws))
@@ -74,7 +72,7 @@ def _contact(
     roll = make_surface("cylinder", point=centre, axis=(0, 1, 0), radius=0.4 * unit)
     body = RigidBody("roll", centre) if master == "rigid roll" else None
     law = Interface(roll, *_laws(unit)[:2], Friction(coefficients=0.3))
-    return Contact(model, "block.bottom", law, body=body)
+    return Contact(model, "block.bottom", MovingSurface(law, body))
 
 
 def _state(problem: Problem, move: Move) -> Vec:
@@ -230,9 +228,9 @@ def _flat(master: str, law: str, tilt: float) -> tuple[Problem, Rotation]:
         boxes["base"] = BoxSpec((-0.7, -0.7, -0.5), (2.4, 2.4, 0.5), (5, 5, 1))
     model = build_box(boxes)
     model.mesh.geometry.x[:] = turn.apply(model.mesh.geometry.x)
-    contact: Contact | FacetContact
+    contact: Contact | Contact
     if master == "plate":
-        contact = FacetContact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
+        contact = Contact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
     else:
         plane = make_surface("plane", point=(0, 0, 0), normal=turn.apply([0.0, 0.0, 1.0]))
         contact = Contact(model, "block.bottom", Interface(plane, *_laws()))

@@ -13,7 +13,8 @@ import pytest
 from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
-from anisocontact.contact.facet_mesh import FacetMesh, SlavePoints, facet_rule
+from anisocontact.contact.facet_mesh import FacetMesh, facet_rule, isoparametric
+from anisocontact.contact.points import SlavePoints
 from anisocontact.interface import ContactLaw, Interface, SlaveSurface, as_state, raw_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import make_surface
@@ -79,7 +80,8 @@ def test_between_facets(on: str, angle: float, mirrored: bool) -> None:
     reference[:, 2] = 0.0
     nodes = np.array([[0, 1, 2, 3]], dtype=np.int32)
     facets, rule = FacetMesh("quad4", nodes, np.array([True])), facet_rule("quad4", 1)
-    points = SlavePoints(facets, rule, reference, True, 1.0, MPI.COMM_SELF)
+    quadrature = isoparametric(facets, rule, reference)
+    points = SlavePoints(quadrature, facets.flip, current_area=True, comm=MPI.COMM_SELF)
     core = ContactLaw(*laws(on)).pairs(mirrored).core
     state, n = None, len(points.nodes)
     from anisocontact.interface import STATE

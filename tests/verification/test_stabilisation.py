@@ -12,7 +12,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact, FacetContact
+from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, build_box
@@ -108,7 +108,7 @@ def test_block_falls_on_a_body() -> None:
             "base": BoxSpec((-0.5, -0.5, -0.5), (2, 2, 0.5), (5, 5, 1)),
         }
     )
-    contact = FacetContact(
+    contact = Contact(
         model, "block.bottom", "base.top", law=ContactLaw(*_laws()), current_area=False
     )
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
@@ -138,7 +138,7 @@ def _under_a_ram(stabilised: bool = True) -> Problem:
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
     below = Contact(model, "block.bottom", Interface(plane, *_laws()))
     law = ContactLaw(*_laws())
-    above = FacetContact(model, "block.top", "ram.bottom", law=law, current_area=False)
+    above = Contact(model, "block.top", "ram.bottom", law=law, current_area=False)
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
     materials = {"block": elastic, "ram": elastic}
     return Problem(model, materials, [below, above], stabilised=stabilised)
@@ -313,7 +313,7 @@ def test_bodies_that_only_touch_each_other_are_refused_before_the_run() -> None:
             "base": BoxSpec((0, 0, -1), (1, 1, 1), (2, 2, 1)),
         }
     )
-    contact = FacetContact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
+    contact = Contact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
     problem = Problem(model, {"block": elastic, "base": elastic}, [contact])
     step = Step("press", 1, {"base.bottom": {"z": 0.0}}, {"block.top": {"z": -1.0}})

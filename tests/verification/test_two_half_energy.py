@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from anisocontact.bulk import make_material
-from anisocontact.contact import TwoHalfPass
+from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
@@ -24,7 +24,7 @@ def _energies(increments: int, across: int) -> dict[str, float]:
     law = ContactLaw(
         NormalLaw(penalty=2e4), Adhesion(stiffness=(1e4, 1e4)), Friction(coefficients=(0.3, 0.3))
     )
-    contact = TwoHalfPass(model, "block.bottom", "base.top", law=law, current_area=False)
+    contact = Contact(model, "block.bottom", "base.top", law=law, current_area=False, two_half=True)
     elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
     problem = Problem(model, {"block": elastic, "base": elastic}, [contact])
     clamp = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}

@@ -8,20 +8,16 @@ from anisocontact.bulk import Material
 from anisocontact.case import law_file, objects
 from anisocontact.case.model import AUGMENTED, Case, ContactSection
 from anisocontact.case.quantity import AUTO
-from anisocontact.contact import (
-    AnyContact,
-    Contact,
-    FacetContact,
-    SelfContact,
-    TwoHalfPass,
-    auto_penalty,
-)
-from anisocontact.interface import ContactLaw, Interface, TangentialLaw
+from anisocontact.contact import Contact, auto_penalty
+from anisocontact.interface import ContactLaw, TangentialLaw
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model
-from anisocontact.rigid import RigidBody
+from anisocontact.rigid import MovingSurface, RigidBody
 
 __all__ = ["contact"]
+
+#: What a slave meets.
+type AnyMaster = str | MovingSurface
 
 
 def contact(
@@ -31,8 +27,8 @@ def contact(
     materials: Mapping[str, Material],
     rigid: Mapping[str, RigidBody],
     place: str,
-    law: TangentialLaw | None = None,
-) -> AnyContact:
+    given: TangentialLaw | None = None,
+) -> Contact:
     """The contact of a table.
 
     Args:
@@ -42,7 +38,7 @@ def contact(
         materials: Material of each body.
         rigid: Rigid body that carries a surface, by name of the surface.
         place: Path of the table, for messages.
-        law: The Python law that the table names, if it does.
+        given: The Python law that the table names, if it does.
 
     Returns:
         The contact, before the first step.
@@ -56,68 +52,35 @@ def contact(
     auto = min(
         auto_penalty(model, group, body) for (_, group), body in zip(sides, bodies, strict=True)
     )
-    of_table = law_file.contact_law(section, place, auto, law)
+    law = law_file.contact_law(section, place, auto, given)
     if section.meshed:
-        made = _meshed(section, model, of_table, place)
+        made = _made(section, model, section.master, law, place)
     else:
-        master = objects.surface(case.surface[section.master], f"surface.{section.master}")
-        interface = objects.interface(of_table, master, place)
-        made = _rigid(section, model, interface, rigid.get(section.master), place)
+        surface = objects.surface(case.surface[section.master], f"surface.{section.master}")
+        interface = objects.interface(law, surface, place)
+        moving = MovingSurface(interface, rigid.get(section.master))
+        made = _made(section, model, moving, None, place)
     made.physical_adhesion = not _auto_adhesion(section)
     return made
 
 
-def _meshed(section: ContactSection, model: Model, law: ContactLaw, place: str) -> AnyContact:
-    name = f"{section.slave} on {section.master}"
-    with objects.within(place):
-        if section.self_contact:
-            return SelfContact(
-                model,
-                section.slave,
-                law=law,
-                degree=section.degree,
-                apart=section.apart,
-                name=f"{section.slave} on itself",
-            )
-        if section.half_passes:
-            return TwoHalfPass(
-                model,
-                section.slave,
-                section.master,
-                law=law,
-                degree=section.degree,
-                adjust=_adjust(section),
-                name=name,
-            )
-        return FacetContact(
-            model,
-            section.slave,
-            section.master,
-            law=law,
-            degree=section.degree,
-            augmentation=_augmentation(section),
-            adjust=_adjust(section),
-            name=name,
-        )
-
-
-def _rigid(
-    section: ContactSection,
-    model: Model,
-    interface: Interface,
-    body: RigidBody | None,
-    place: str,
-) -> AnyContact:
+def _made(
+    section: ContactSection, model: Model, master: AnyMaster, law: ContactLaw | None, place: str
+) -> Contact:
+    on = "itself" if section.self_contact else section.master
     with objects.within(place):
         return Contact(
             model,
             section.slave,
-            interface,
+            master,
+            law,
             degree=section.degree,
             augmentation=_augmentation(section),
-            adjust=_adjust(section),
-            name=f"{section.slave} on {section.master}",
-            body=body,
+            adjust=section.adjust_gap if section.adjust else None,
+            two_half=section.half_passes,
+            self_contact=section.self_contact,
+            apart=section.apart,
+            name=f"{section.slave} on {on}",
         )
 
 
@@ -132,7 +95,3 @@ def _augmentation(section: ContactSection) -> Augmentation | None:
 def _auto_adhesion(section: ContactSection) -> bool:
     """Whether the stiffness of adhesion is one that the run chooses."""
     return section.python is None and bool(section.adhesion.parameters().get("stiffness") == AUTO)
-
-
-def _adjust(section: ContactSection) -> float | None:
-    return section.adjust_gap if section.adjust else None

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.contact.history import Snapshot
 from anisocontact.contact.quadrature import FacetQuadrature, Surfaced
-from anisocontact.contact.record import Snapshot
 from anisocontact.interface import SlaveSurface
 from anisocontact.rigid import RigidBody, motion_derivative, skew
 

@@ -1,55 +1,51 @@
-"""Slave facets against the master of an interface: forces, tangent and history."""
+"""Contact of a body: slave points, what they meet, and the laws there, in one pass or two."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.contact.adjust import adjusted
-from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
-from anisocontact.contact.initial import check_start
-from anisocontact.contact.layer import Layer
-from anisocontact.contact.multipliers import Frames
-from anisocontact.contact.penalty import facet_size
-from anisocontact.contact.quadrature import Surfaced, chosen_degree, facet_quadrature
-from anisocontact.contact.record import ContactRecord, Snapshot
-from anisocontact.contact.semismooth import Base, Semismooth
+from anisocontact.contact.history import Snapshot
+from anisocontact.contact.making import Before, Options, SurfaceMaster, given_master, passes_of
+from anisocontact.contact.one_pass import Pass
+from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.transfer import Couplings
-from anisocontact.contact.whereabouts import Seen, Whereabouts, turned
-from anisocontact.interface import Interface, Response, SlaveSurface, State
+from anisocontact.interface import STATUS, ContactLaw, Response, State
 from anisocontact.interface.augmentation import Augmentation
-from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
-from anisocontact.rigid import MovingInterface, RigidBody
-from anisocontact.surfaces import PROJECTION_STATUS
+from anisocontact.rigid import RigidBody
 
-Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
-
-_INTERIOR = PROJECTION_STATUS.index("interior")
-
-#: A surface with its laws.
-type Laws = Interface
-#: What answers for them.
-type Master = Laws | MovingInterface
+Ints = npt.NDArray[np.int32]
+Mask = npt.NDArray[np.bool_]
 
 
-class Contact(ContactRecord):
-    """Contact of a facet group with the master surface of an interface.
+class Contact:
+    """Contact of a facet group with an analytic surface, one on a rigid body, or other facets.
 
-    The residual gets `-integral of t . delta u` over the slave area, the tangent
-    `-integral of delta u . (dt/dx) . du` and, where the area is that of now, its change; `t` is the
-    traction on the slave at `x = X + u`. The history advances with `commit` only.
+    At every integration point of the slave `t = N n + T`, from the closest point of the master. The
+    residual gets `-integral of t . (delta u_slave - delta u_master)` over the slave area, the
+    tangent its derivative: by projection, normal, metric, directions and, where the area is that of
+    now, its change. The history advances with `commit` only.
+
+    With `two_half` both groups are slave and master for half of the work, so that neither is
+    preferred; with `self_contact` a group folds onto itself, each side of the fold with half of the
+    weight. Forces then act on the master by integrals over the overlaps of the facets. What two
+    half passes report is seen from the slave: a point of the second pass counts at its foot on the
+    slave, with the reaction that acts there. Of self-contact resultants are sums of what the points
+    get as slaves, on both sides: what is left is small.
 
     Args:
-        model: Mesh with the facet group.
-        slave: Facet group "body.group".
-        interface: Surface and laws, also laws written in Python.
+        model: Mesh with the facet groups.
+        slave: Facet group "body.group" that carries the integration points.
+        master: A surface, one on a rigid body (`MovingSurface`), a surface that has its laws
+            (`Interface`), or the facet group "body.group" that is met.
+        law: Laws, also written in Python (`ContactLaw`); directions are given in the
+            reference configuration and carried by the body that is named, the master if none is.
         degree: Degree of the quadrature on the facets, >= 1; if not given twice the order of the
             displacement, with an augmentation the order.
         current_area: Whether tractions act on the area of now or of the reference; where it is not
@@ -57,84 +53,189 @@ class Contact(ContactRecord):
         augmentation: How exactly the contact is to hold; by its penalties alone if not given.
         adjust: Gaps up to this one are closed and overlaps taken out before the first step, see
             `adjusted`, length; nothing if not given.
+        reach: Distance within which facets are searched, length; twice the size of the slave's
+            facets if not given.
+        two_half: Whether there are two half passes.
+        self_contact: Whether the slave is its own master.
+        apart: Facets nearer to each other than this in the reference configuration, and neighbours,
+            do not meet, length; in self-contact three facet sizes if not given.
+        overlaps: Whether forces on facets of a single pass are integrated over the overlaps too
+            (see `Transfer`), or act at the feet of the slave points.
         name: Name in output; the slave if not given.
-        body: Rigid body that carries the surface and its directions; the surface rests if not
-            given.
 
     Attributes:
-        state: Committed history, one record for each point.
-        facet_size: Length of a slave facet: square root of the mean area.
-        last: Response of the accepted increment.
+        slave: As given.
+        name: Name in output.
+        space: Vector space of the displacement.
+        passes: The passes over slave points: one, or two.
+        physical_adhesion: Whether the stiffness of adhesion is physical, so that elastic slip is
+            none of its faults.
+        facet_of_point: Number of each point's facet in the group it lies on, (n,).
 
     Raises:
-        InputError: No such facet group, one without facets or with facets inside the body, a degree
-            below 1, laws without a surface, or a contact that cannot be meant, see `check_start`.
+        InputError: No such facet group, one without facets or with facets inside the body, or the
+            same for both; a degree below 1, laws that are missing or given twice, options that do
+            not go together, or a contact that cannot be meant, see `check_start`.
 
     Example:
+        >>> from anisocontact.interface import ContactLaw
+        >>> from anisocontact.laws import Adhesion, Friction, NormalLaw
         >>> from anisocontact.mesh import BoxSpec, build_box
         >>> from anisocontact.surfaces import make_surface
-        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
-        >>> interface = Interface(
-        ...     make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)),
-        ...     NormalLaw(penalty=100.0),
-        ...     Adhesion(stiffness=(100.0, 100.0)),
-        ...     Friction(coefficients=(0.3, 0.3)),
-        ... )
-        >>> contact = Contact(model, "block.bottom", interface)
-        >>> response = contact.update(np.tile([0.0, 0.0, -0.01], (8, 1)), 1.0)
-        >>> response.pressure.round(12).tolist()  # at the four points of the facet
+        >>> upper = BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))
+        >>> lower = BoxSpec((-1, -1, -1), (3, 3, 1), (2, 2, 1))
+        >>> model = build_box({"block": upper, "base": lower})
+        >>> adhesion, friction = Adhesion(stiffness=(100, 100)), Friction(coefficients=(0.3, 0.3))
+        >>> law = ContactLaw(NormalLaw(penalty=100.0), adhesion, friction)
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> on_plane = Contact(model, "block.bottom", plane, law)
+        >>> down = np.tile([0.0, 0.0, -0.01], (len(model.space.tabulate_dof_coordinates()), 1))
+        >>> on_plane.update(down, 1.0).pressure.round(12).tolist()  # at four points
         [1.0, 1.0, 1.0, 1.0]
+        >>> pair = Contact(model, "block.bottom", "base.top", law)
+        >>> len(pair.areas), round(float(pair.areas.sum()), 12)
+        (4, 1.0)
+        >>> both = Contact(model, "block.bottom", "base.top", law, two_half=True)
+        >>> [half.slave for half in both.passes]
+        ['block.bottom', 'base.top']
     """
 
     def __init__(
         self,
         model: Model,
         slave: str,
-        interface: Interface,
+        master: str | SurfaceMaster | None = None,
+        law: ContactLaw | None = None,
         *,
         degree: int | None = None,
         current_area: bool | None = None,
         augmentation: Augmentation | None = None,
         adjust: float | None = None,
+        reach: float | None = None,
+        two_half: bool = False,
+        self_contact: bool = False,
+        apart: float | None = None,
+        overlaps: bool = False,
         name: str = "",
-        body: RigidBody | None = None,
+        **before: Unpack[Before],
     ) -> None:
-        facets = _checked(model, slave, interface)
-        degree = chosen_degree(degree, model.order, augmentation is not None)
-        self.interface: Laws = interface
-        self._laws = self._stiff_laws = interface
-        self.body = body
-        self._master: Master = interface if body is None else MovingInterface(interface, body)
-        self._stiff = self._master
-        self.groups = (slave,)
-        self._area_told = current_area is not None
-        self.current_area = current_area is None or current_area
-        self.quadrature = facet_quadrature(model.space, facets, degree)
-        self._moved: Surfaced | None = None
-        self._base: Base | None = None
-        self._dt = 1.0
-        points = self.quadrature.reference
-        self._facets, self.facet_size = facets, facet_size(model, slave)
-        self._sees_slave = interface.takes_slave()
-        self._slave = self._surface(self.quadrature.tangents)
-        state = adjusted(interface.initial_state(points), adjust)
-        start = self._respond(state, points, 1.0)
-        facets_here, per_facet = self.quadrature.weights.shape
-        super().__init__(
-            model.space,
-            slave,
-            name or slave,
-            state,
-            Snapshot(points, self.quadrature.areas, start),
-            np.repeat(np.arange(facets_here), per_facet),
+        master = given_master(master, before)
+        options = Options(
+            degree=degree,
+            current_area=current_area,
+            augmentation=augmentation,
+            adjust=adjust,
+            reach=reach,
+            two_half=two_half,
+            self_contact=self_contact,
+            apart=apart,
+            overlaps=overlaps,
         )
-        check_start(self, self.facet_size)
-        self._augment(augmentation, self.facet_size, interface)
+        self._compose(passes_of(model, slave, master, law, options), name)
 
-    def suit_strain(self, finite: bool) -> None:
-        """As of `ContactRecord`."""
-        if not self._area_told:
-            self.current_area = finite
+    def _compose(self, passes: tuple[Pass, ...], name: str) -> None:
+        """Be made of passes; the first says what the contact is of."""
+        first = passes[0]
+        self.passes, self.slave, self.name = passes, first.slave, name or first.slave
+        self.space = first.space
+        self.physical_adhesion = True
+        self._trial: Snapshot | None = None
+        self.facet_of_point = np.concatenate([half.facet_of_point for half in passes])
+        self._comm = first.space.mesh.comm
+        self._accept()
+
+    @property
+    def interface(self) -> Any:
+        """The laws, with their surface if it has one."""
+        return self.passes[0].interface
+
+    @property
+    def groups(self) -> tuple[str, ...]:
+        """Facet group of the slave, and of the master if it is one."""
+        return self.passes[0].groups
+
+    @property
+    def master(self) -> str:
+        """Facet group of the master, "" for a surface."""
+        return "".join(self.groups[1:])
+
+    @property
+    def meshed(self) -> bool:
+        """Whether the master is facets of a mesh."""
+        return len(self.groups) > 1
+
+    @property
+    def of_two_groups(self) -> bool:
+        """Whether facets of one group meet those of another one."""
+        return len(set(self.groups)) > 1
+
+    @property
+    def body(self) -> RigidBody | None:
+        """Rigid body that carries the master, if one does."""
+        return self.passes[0].body
+
+    @property
+    def quadrature(self) -> FacetQuadrature:
+        """Quadrature of the slave, of the first pass."""
+        return self.passes[0].slave_points.quadrature
+
+    @property
+    def current_area(self) -> bool:
+        """Whether tractions act on the area of now."""
+        return self.passes[0].slave_points.current_area
+
+    @property
+    def facet_size(self) -> float:
+        """Length of a slave facet: square root of the mean area."""
+        return self.passes[0].facet_size
+
+    @property
+    def master_size(self) -> float:
+        """Length of a facet of the master; 0 for a surface."""
+        return self.passes[0].master.size
+
+    @property
+    def body_stiffness(self) -> float:
+        """As of `Pass`."""
+        return self.passes[0].body_stiffness
+
+    @property
+    def ran_off(self) -> Floats:
+        """Slave points that left the end of the master in the accepted increment, (k, 3)."""
+        # points of a second pass come from under an end of the slave whenever it moves
+        return self.passes[0].ran_off
+
+    @property
+    def points(self) -> Floats:
+        """Slave points where they are after the accepted increment, (n, 3), length."""
+        return self._accepted.points
+
+    @property
+    def areas(self) -> Floats:
+        """Area of each slave point after the accepted increment, (n,), length^2."""
+        return self._accepted.areas
+
+    @property
+    def last(self) -> Response:
+        """Response of the accepted increment."""
+        return self._accepted.response
+
+    @property
+    def current(self) -> Snapshot:
+        """The trial, or the accepted increment if there was none since."""
+        return self._trial or self._accepted
+
+    @property
+    def trial(self) -> Response:
+        """Response of the last `update`, or of the accepted increment if there was none since."""
+        return self.current.response
+
+    @property
+    def state(self) -> State:
+        """Committed history, one record for each point."""
+        if len(self.passes) == 1:
+            return self.passes[0].state
+        return np.concatenate([half.state for half in self.passes])
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
@@ -144,279 +245,205 @@ class Contact(ContactRecord):
             dt: Time increment.
 
         Returns:
-            The response; the committed history is unchanged.
+            The response of all passes as seen from the slave; the committed history is unchanged.
         """
-        self._dt = dt
-        way = self.quadrature.at_points(u)
-        x = self.quadrature.reference + way
-        moved = self.quadrature.moved(u) if self.current_area or self._sees_slave else None
-        if moved is not None:
-            self._slave = self._surface(moved.tangents)
-        self._moved = moved if self.current_area else None
-        areas = self.quadrature.areas if self._moved is None else self._moved.areas
-        semismooth = self._semismooth
-        if semismooth is not None:
-            self._follow(semismooth, way, x, dt)
-        response = self._respond(self._start, x, dt)
-        self._trial = Snapshot(x, areas, response)
-        if semismooth is not None:
-            self._trial = self._linearised(semismooth, self._trial, way, dt)
+        for half in self.passes:
+            half.update(u, dt)
+        self._trial = seen_from_slave([half.current for half in self.passes])
         return self._trial.response
 
-    def persistent(self) -> dict[str, npt.NDArray[Any]]:
-        """As of `ContactRecord`, with the positions in the reference configuration."""
-        return super().persistent() | {"reference": self.quadrature.reference.copy()}
+    def commit(self) -> None:
+        """Make the trial the history."""
+        for half in self.passes:
+            half.commit()
+        self._accept()
 
-    def elastic_slip(self) -> Floats:
-        """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
-        slip: Floats = np.einsum("ni,nij->nj", self.state["elastic"], self._tangents(self.state))
-        return slip if self.body is None else self.body.to_space(slip)
+    def roll_back(self) -> None:
+        """Forget the trial."""
+        for half in self.passes:
+            half.roll_back()
+        self._trial = None
 
-    def add_force(self, out: Floats) -> None:
-        """Add the forces of the trial on the slave to the local nodes, (nodes, 3), force."""
-        self.quadrature.to_nodes(self.trial.traction, out, self.current.areas)
-
-    @property
-    def passes(self) -> tuple[Contact, ...]:
-        """The passes over slave points this contact is made of: itself."""
-        return (self,)
-
-    def feet(self) -> Ints:
-        """Local nodes of the master below the points: it has none."""
-        return np.zeros(0, dtype=np.int32)
-
-    @property
-    def slave_nodes(self) -> Ints:
-        """Local nodes of the slave facets."""
-        return np.unique(self.quadrature.nodes).astype(np.int32)
-
-    def couplable(self) -> Ints:
-        """Local nodes that the contact acts on."""
-        return self.slave_nodes
-
-    def add_tangent(self, matrix: Mat) -> None:
-        """Add `-d force / d u` of the trial to the matrix of the system."""
-        ((nodes, _, blocks),) = self.couplings()
-        matrix.setValuesBlockedLocalRCV(nodes, nodes, blocks, PETSc.InsertMode.ADD_VALUES)
-
-    def couplings(self) -> list[Couplings]:
-        """Where `-d force / d u` of the trial has entries in rows of nodes, and the entries.
-
-        Returns:
-            Local nodes of the rows (m, k) and of the columns (m, k) of each facet, and its block,
-            (m, 3 k, 3 k).
-        """
-        blocks = self.quadrature.facet_matrices(-self.trial.tangent, self.current.areas)
-        if self._moved is not None:
-            blocks -= self._moved.area_matrices(self.trial.traction)
-        if self._sees_slave:
-            blocks -= self.quadrature.tangent_matrices(self.trial.tangent_slave, self.current.areas)
-        return [(self.quadrature.nodes, self.quadrature.nodes, blocks)]
-
-    def body_blocks(self) -> BodyBlocks:
-        """Rows and columns of the rigid body in the tangent of the trial.
-
-        Raises:
-            ValueError: The surface is that of no body.
-        """
-        if self.body is None:
-            raise ValueError("the surface is that of no rigid body")
-        return body_blocks(self.quadrature, self._moved, self.body, self.current, self._slave)
-
-    def located(self, state: State) -> npt.NDArray[np.bool_]:
-        """Whether each point of a state has a surface below it, (n,): all have."""
-        return np.ones(len(state), dtype=bool)
-
-    def outward(self) -> Floats:
-        """Outward normals of the slave at its points in the reference configuration, (n, 3)."""
-        return self.quadrature.outward(self.space, self._facets)
-
-    def whereabouts(self, u: Floats) -> Whereabouts:
-        """Where the points of the trial are beside the surface, in its frame.
+    def restore(self, kept: Sequence[Mapping[str, npt.NDArray[Any]]], u: Floats) -> None:
+        """Go on from what `Pass.persistent` gave.
 
         Args:
-            u: Displacement of the local nodes in the trial, (nodes, 3), length.
+            kept: The state of each pass.
+            u: Displacement of the local nodes in that state, (nodes, 3), length.
         """
-        trial, tangents = self.current, self.quadrature.tangents.reshape(-1, 2, 3)
-        moved = self.quadrature.moved(u).tangents.reshape(-1, 2, 3)
-        outward = turned(self.outward(), tangents, moved)
-        before, now, normal = self.points, trial.points, trial.response.normal
-        if self.body is not None:
-            before, now = self.body.to_body(before, accepted=True), self.body.to_body(now)
-            turn = self.body.trial.rotation
-            outward, normal = outward @ turn, normal @ turn
-        everywhere = np.ones(len(now), dtype=bool)
-        return Whereabouts(
-            before=before,
-            now=now,
-            outward=outward,
-            closed=trial.response.status != 0,
-            located=everywhere,
-            had=everywhere,
-            normal=normal,
-            areas=trial.areas,
-            size=self.facet_size,
-            reach=np.inf,
-            look=self._look,
-            comm=self._comm,
-        )
+        for half, its in zip(self.passes, kept, strict=True):
+            half.restore(its, u)
+        self._accept()
 
-    def look(self, x: Floats) -> Seen:
-        """The surface where it is now from points of space, (n, 3), length."""
-        return self._look(x if self.body is None else self.body.to_body(x))
+    def _accept(self) -> None:
+        self._trial = None
+        self._accepted = seen_from_slave([half.accepted for half in self.passes])
 
-    def _look(self, x: Floats, _: object = None) -> Seen:
-        hit = self.interface.surface.project(x)
-        return Seen(hit.status == _INTERIOR, hit.gap, hit.dgap_dx)
+    def suit_strain(self, finite: bool) -> None:
+        """As of `Pass`."""
+        for half in self.passes:
+            half.suit_strain(finite)
 
-    def probe(
-        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
-    ) -> npt.NDArray[np.int8]:
-        """Why other laws would fail in the reference configuration, codes of `FAILURE`, (n,)."""
-        interface = Interface(self.interface.surface, *laws)
-        tangents = self.quadrature.tangents
-        slave = self._surface(tangents) if interface.takes_slave() else None
-        points = self.quadrature.reference
-        return interface.update(state, points, tangent=False, slave=slave).failure
+    def suit(self, diagonal: Floats) -> None:
+        """As of `Pass`."""
+        for half in self.passes:
+            half.suit(diagonal)
+
+    def add_force(self, out: Floats) -> None:
+        """Add the forces of the trial to the local nodes, (nodes, 3), force."""
+        for half in self.passes:
+            half.add_force(out)
+
+    def couplings(self) -> list[Couplings]:
+        """Where `-d force / d u` of the trial has entries, and the entries, see `Pass`."""
+        return [blocks for half in self.passes for blocks in half.couplings()]
+
+    def add_tangent(self, matrix: Mat) -> None:
+        """Add `couplings` of a contact with a surface to the matrix of the system."""
+        for rows, columns, blocks in self.couplings():
+            matrix.setValuesBlockedLocalRCV(rows, columns, blocks, PETSc.InsertMode.ADD_VALUES)
+
+    def couplable(self) -> Ints:
+        """Local nodes that the contact acts on; all ranks together have all of them."""
+        return self.passes[0].master.couplable()
 
     def lever(self) -> float:
-        """Forces that would move every point of the trial to the origin, norm over this rank.
+        """As of `Pass`."""
+        return float(np.hypot.reduce([half.lever() for half in self.passes]))
 
-        The machine's precision times this is the round-off of the contact forces: positions are
-        known to a share of their distance from the origin.
-        """
-        now = self.current
-        stiffness = np.linalg.norm(now.response.tangent, axis=(1, 2)) * now.areas
-        stiffness = self._unstiffened(stiffness, now, self._dt)
-        distance = np.linalg.norm(now.points, axis=1)
-        if self.body is not None:
-            distance += np.linalg.norm(self.body.position)
-        return float(np.linalg.norm(stiffness * distance))
+    @property
+    def retraceable(self) -> bool:
+        """As of `Pass`."""
+        return all(half.retraceable for half in self.passes)
+
+    def improve(self) -> bool:
+        """As of `Pass`."""
+        return any([half.improve() for half in self.passes])
+
+    def soften(self) -> bool:
+        """As of `Pass`."""
+        return any([half.soften() for half in self.passes])
+
+    @property
+    def ways(self) -> tuple[str, ...]:
+        """As of `Pass`."""
+        return self.passes[0].ways
+
+    def take_way(self, name: str) -> None:
+        """As of `Pass`."""
+        for half in self.passes:
+            half.take_way(name)
+
+    @property
+    def follows(self) -> bool:
+        """As of `Pass`."""
+        return any(half.follows for half in self.passes)
+
+    def held(self) -> bool:
+        """As of `Pass`."""
+        return all([half.held() for half in self.passes])
+
+    def take_share(self, share: float) -> None:
+        """As of `Pass`."""
+        for half in self.passes:
+            half.take_share(share)
 
     def add_lag(self, out: Floats) -> None:
-        """As of `ContactRecord`."""
-        if self._base is not None:
-            self.quadrature.to_nodes(self.lag(), out, self.current.areas)
+        """As of `Pass`."""
+        for half in self.passes:
+            half.add_lag(out)
 
-    def lag(self) -> Floats:
-        """Tractions that a Newton step takes beyond those of the trial, (n, 3), stress."""
-        if self._base is None:
-            return np.zeros_like(self.trial.traction)
-        return self._in_space(self._base.lag)
+    def slip_stiffness(self, dt: float) -> float:
+        """As of `Pass`."""
+        return self.passes[0].slip_stiffness(dt)
 
-    def lag_wrench(self, about: Floats) -> Floats:
-        """Force and moment of `lag` about a point on the slave over the points here, (6,)."""
-        now = self.current
-        lag = replace(now.response, traction=self.lag())
-        return replace(now, response=lag).wrench(about)
+    def lay(self, compliance: float, dt: float) -> None:
+        """As of `Pass`."""
+        for half in self.passes:
+            half.lay(compliance, dt)
 
-    def _follow(self, semismooth: Semismooth | Layer, way: Floats, x: Floats, dt: float) -> None:
-        """Let the multipliers follow a step of Newton's method that displaces points by way to x.
+    def take_away(self) -> None:
+        """As of `Pass`."""
+        for half in self.passes:
+            half.take_away()
 
-        The tangent is so stiff that the rounding of positions would be felt in their difference.
+    def footing(self) -> npt.NDArray[np.int64]:
+        """As of `Master`."""
+        return np.concatenate([half.footing() for half in self.passes])
+
+    def hold(self, points: Mask) -> None:
+        """As of `Master`."""
+        ends = np.cumsum([len(half.state) for half in self.passes])
+        for half, its in zip(self.passes, np.split(points, ends[:-1]), strict=True):
+            half.hold(its)
+
+    def strayed(self) -> Floats:
+        """As of `Master`."""
+        return np.concatenate([half.strayed() for half in self.passes])
+
+    def located(self, state: State) -> Mask:
+        """Whether each point of a state has a surface below it, (n,)."""
+        return self.passes[0].located(state)
+
+    def failed_points(self) -> Floats:
+        """Positions of the trial at which the law has no answer, (failed, 3), length."""
+        if self._trial is None:
+            return np.zeros((0, 3))
+        return self._trial.points[self._trial.response.failed]
+
+    def elastic_slip(self) -> Floats:
+        """Elastic part of the displacement of the slave relative to the master, (n, 3), length."""
+        slips = [half.elastic_slip() for half in self.passes]
+        return np.concatenate([*slips[:1], *(-slip for slip in slips[1:])])
+
+    def counts(self) -> dict[str, int]:
+        """Number of open, sticking and slipping points of the trial, over all ranks."""
+        local = np.bincount(self.trial.status, minlength=len(STATUS))
+        total = self._comm.allreduce(local)
+        return {name: int(n) for name, n in zip(STATUS, total, strict=True)}
+
+    def resultant(self, about: npt.ArrayLike = (0.0, 0.0, 0.0)) -> tuple[Floats, Floats]:
+        """Force and moment on the slave after the accepted increment.
+
+        Args:
+            about: Point of the moment, (3,), length.
+
+        Returns:
+            Force (3,) and moment (3,), force and force times length.
         """
-        there = self._displaced(way)
-        if self._base is None or np.array_equal(there, self._base_way):
-            return
-        change = np.einsum("nij,nj->ni", self._base_tangent, there - self._base_way)
-        if self._slave is not None:
-            more = self._slave.tangents @ self._turn() - self._base_slave
-            change += np.einsum("nkij,nkj->ni", self._base_tangent_slave, more)
-        state = self._respond(self._start, x, dt).state
-        self._start = semismooth.advance(
-            self._start,
-            self._base.after(change, semismooth.share),
-            Frames.of(self._tangents(state)),
-            Frames.of(self._tangents(self._start)),
-        )
+        total = self._comm.allreduce(self._accepted.wrench(np.asarray(about)))
+        return total[:3], total[3:]
 
-    def _linearised(
-        self, semismooth: Semismooth | Layer, trial: Snapshot, way: Floats, dt: float
-    ) -> Snapshot:
-        """The trial with the derivative of a Newton step that takes the multipliers along."""
-        step = self._step(trial)
-        state, slip = semismooth.stiff(step)
-        stiff = self._respond(state, trial.points, dt, self._stiff)
-        turn = self._turn()
-        self._base_way = self._displaced(way)
-        self._base_tangent = turn.T @ stiff.tangent @ turn
-        if self._slave is not None:
-            self._base_slave = self._slave.tangents @ turn
-            self._base_tangent_slave = turn.T @ stiff.tangent_slave @ turn
-        lag = np.einsum("nij,nj->ni", self._base_tangent, slip)
-        traction = trial.response.traction @ turn
-        self._base = Base(semismooth.vector(step), traction, lag)
-        response = replace(trial.response, tangent=stiff.tangent, tangent_slave=stiff.tangent_slave)
-        return replace(trial, response=response)
+    def energies(self) -> dict[str, float]:
+        """As of `Pass`, the sum of all passes."""
+        found = [half.energies() for half in self.passes]
+        return {name: sum(one[name] for one in found) for name in found[0]}
 
-    def _displaced(self, way: Floats) -> Floats:
-        """Displacements of points as seen from the surface, (n, 3), length."""
-        if self.body is None:
-            return way
-        pose, arms = self.body.trial, self.quadrature.reference - self.body.reference
-        return np.asarray(
-            arms @ (pose.rotation - np.eye(3)) + (way - pose.translation) @ pose.rotation
-        )
-
-    def _turn(self) -> Floats:
-        """Rotation of the surface since it was drawn, (3, 3)."""
-        return np.eye(3) if self.body is None else self.body.trial.rotation
-
-    def _in_space(self, vectors: Floats) -> Floats:
-        return vectors if self.body is None else self.body.to_space(vectors)
-
-    def _forget_base(self) -> None:
-        self._base = None
-
-    def _stiffness(self, diagonal: Floats) -> float:
-        nodes = self.slave_nodes[self.slave_nodes < len(diagonal)]
-        local = np.array([diagonal[nodes].mean(axis=1).sum(), self.quadrature.areas.sum()])
-        stiffness, area = self._comm.allreduce(local)
-        return float(stiffness / area)
-
-    def _stiffen(self, normal: float, tangential: float) -> None:
-        """Multiply the penalties of the law."""
-        self._master = self._on_body(self._laws, normal, tangential)
-        if self._semismooth is not None:
-            self._stiff = self._on_body(self._stiff_laws, *self._semismooth.stiff_factors)
-
-    def _on_body(self, laws: Laws, normal: float, tangential: float) -> Master:
-        stiff = laws if self._multipliers is None else laws.stiffened(normal, tangential)
-        return stiff if self.body is None else MovingInterface(stiff, self.body)
-
-    def _tangents(self, state: State) -> Floats:
-        """Tangents of the master as given at the coordinates of a state, (n, 2, 3), length."""
-        return self.interface.surface.jet(state["xi"]).d1
-
-    def _place(self, state: State) -> tuple[Floats, Floats]:
-        jet = self.interface.surface.jet(state["xi"])
-        return jet.position, jet.d1
-
-    def _axes(self, answer: Response) -> Floats:
-        own = answer.directions_adhesion
-        return own if self.body is None else own @ self.body.trial.rotation
-
-    def _surface(self, tangents: Floats) -> SlaveSurface | None:
-        """The slave with its tangents, (m, q, 2, 3), where the laws see it."""
-        if not self._sees_slave:
-            return None
-        quadrature = self.quadrature
-        return SlaveSurface(
-            quadrature.reference,
-            quadrature.tangents.reshape(-1, 2, 3),
-            tangents.reshape(-1, 2, 3),
-        )
-
-    def _respond(
-        self, state: State, x: Floats, dt: float, master: Master | None = None
-    ) -> Response:
-        return (master or self._master).update(state, x, dt, slave=self._slave)
+    def extreme(self, values: Floats) -> float:
+        """Largest of one number at each point, over all ranks; 0 without points."""
+        return float(max(self._comm.allgather(float(np.max(values, initial=0.0)))))
 
 
-def _checked(model: Model, slave: str, interface: object) -> Ints:
-    """Facets of the slave on this rank; refuses arguments that are no slave or no interface."""
-    facets = model.boundary(slave, "slave")
-    if not hasattr(interface, "surface"):
-        text = f"{type(interface).__name__} given, Interface needed"
-        raise InputError(text, "interface")
-    return facets
+def seen_from_slave(passes: Sequence[Snapshot]) -> Snapshot:
+    """Points of one pass, or of both as seen from the slave of the first.
+
+    A point of the second pass counts at its foot on that slave, with the reaction that acts there,
+    so that sums over all points are forces and moments of the pair.
+    """
+    a, *rest = passes
+    if not rest:
+        return a
+    (b,) = rest
+    r, s = a.response, b.response
+    feet = b.points - (s.gap + s.state["offset"])[:, None] * s.normal
+    response = Response(
+        traction=np.concatenate([r.traction, -s.traction]),
+        tangent=np.empty((0, 3, 3)),
+        state=np.concatenate([r.state, s.state]),
+        normal=np.concatenate([r.normal, -s.normal]),
+        directions_adhesion=np.concatenate([r.directions_adhesion, s.directions_adhesion]),
+        directions_friction=np.concatenate([r.directions_friction, s.directions_friction]),
+        failure=np.concatenate([r.failure, s.failure]),
+    )
+    areas = np.concatenate([a.areas, b.areas])
+    return Snapshot(np.concatenate([a.points, feet]), areas, response)

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.contact.record import Snapshot
+from anisocontact.contact.history import Snapshot
+from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.sides import Sides, located
+from anisocontact.contact.transfer import Couplings, Transfer
 from anisocontact.interface import Response, State
-from anisocontact.interface.contact_law import FacetLaw
+from anisocontact.interface.contact_law import FacetBatch, FacetLaw
 from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
 
 #: Code of the kernel for a point without a facet below it.
@@ -22,71 +25,229 @@ OFF = 3
 NEAR = 1e-6
 
 Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int32]
+Mask = npt.NDArray[np.bool_]
+
+
+class Forces(Protocol):
+    """Forces on the nodes of the surface and their derivative."""
+
+    def add_force(self, out: Floats) -> None:
+        """Add them, (nodes, 3)."""
+
+    def couplings(self, touching: Mask) -> list[Couplings]:
+        """Where `-d force / d u` has entries, and the entries, of points in contact, (n,)."""
 
 
 @dataclass(frozen=True)
-class Question:
-    """What laws are asked.
+class ByFacets:
+    """Points of one pair of facets share a block.
 
     Attributes:
-        state: History of the points.
-        hit: Where they are on the master.
+        force: On the nodes, (nodes, 3).
+        blocks: Nodes of rows and columns, and the blocks.
+    """
+
+    force: Floats
+    blocks: list[Couplings]
+
+    def add_force(self, out: Floats) -> None:
+        """As of `Forces`."""
+        out += self.force
+
+    def couplings(self, touching: Mask) -> list[Couplings]:
+        """As of `Forces`."""
+        return self.blocks
+
+
+@dataclass(frozen=True)
+class ByPoints:
+    """Every point has a force and a block of its own.
+
+    Attributes:
+        nodes: That the force depends on, (n, c), -1 for none; the first r are those of the rows.
+        residual: Less the force on the nodes of the rows, (n, 3 r).
+        tangent: Its derivative, (n, 3 r, 3 c).
+        own: Number of nodes of a slave facet, which come first.
+        transfer: Who hands forces on the master over; None if they act at the feet of the points.
+        handed: Points whose force on the master it hands over, (n,).
+    """
+
+    nodes: Ints
+    residual: Floats
+    tangent: Floats
+    own: int
+    transfer: Transfer | None
+    handed: Mask
+
+    @property
+    def rows(self) -> Ints:
+        """Nodes of the rows, (n, r)."""
+        return self.nodes[:, : self.residual.shape[1] // 3]
+
+    def add_force(self, out: Floats) -> None:
+        """As of `Forces`."""
+        self.add_rows(-self.residual, out)
+        if self.transfer is not None:
+            self.transfer.add_force(out)
+
+    def add_rows(self, forces: Floats, out: Floats) -> None:
+        """Add forces, (n, 3 r), changed here, but for those that are handed over."""
+        forces[self.handed, 3 * self.own :] = 0.0
+        rows = self.rows
+        there = rows >= 0
+        np.add.at(out, rows[there], forces.reshape(*rows.shape, 3)[there])
+
+    def couplings(self, touching: Mask) -> list[Couplings]:
+        """As of `Forces`."""
+        nodes, tangent, rows, own = self.nodes, self.tangent, self.rows, self.own
+        if self.transfer is None:
+            return [(rows[touching], nodes[touching], tangent[touching])]
+        handed, kept = touching & self.handed, touching & ~self.handed
+        return [
+            (rows[kept], nodes[kept], tangent[kept]),
+            (rows[handed, :own], nodes[handed], tangent[handed, : 3 * own]),
+            *self.transfer.couplings(nodes, self.by_nodes, handed),
+        ]
+
+    @cached_property
+    def by_nodes(self) -> Floats:
+        """Derivative of the force of each point by its nodes, (n, 3, 3 c)."""
+        n, _, columns = self.tangent.shape
+        # rows of the slave's nodes are shares of the force of the point
+        shares = self.tangent[:, : 3 * self.own].reshape(n, self.own, 3, columns)
+        return np.asarray(-shares.sum(axis=1))
+
+
+@dataclass(frozen=True)
+class FacetAnswer[F: Forces]:
+    """What laws answer at slave points that meet facets, see `Answer`.
+
+    Attributes:
+        gathered: The master as this rank has it.
+        snapshot: The points as they are then.
+        stiffness: Size of the derivative of the force of each point, (n,), force/length.
+        forces: Forces on the nodes.
+    """
+
+    gathered: MasterSurface
+    snapshot: Snapshot
+    stiffness: Floats
+    forces: F
+
+    def add_force(self, out: Floats) -> None:
+        """As of `Answer`."""
+        total = self.gathered.zeros(out)
+        self.forces.add_force(total)
+        self.gathered.hand_back(total, out)
+
+    def couplings(self) -> list[Couplings]:
+        """As of `Answer`; points of one slave facet on one facet of the master share a block.
+
+        Returns:
+            Each with nodes of the rows (p, r) and of the columns (p, c), numbered as
+            `CoupledTangent` has them, -1 for none, and p blocks, (p, r, c, 3, 3) or (p, 3 r, 3 c).
+        """
+        named = self.gathered.coupled
+        found = self.forces.couplings(self.snapshot.response.status != 0)
+        return [(named(rows), named(columns), k) for rows, columns, k in found]
+
+    def by_derivative(
+        self: FacetAnswer[ByPoints], other: FacetAnswer[ByPoints], stiffness: Floats
+    ) -> Any:
+        """As of `Answer`."""
+        forces = replace(self.forces, nodes=other.forces.nodes, tangent=other.forces.tangent)
+        return replace(self, forces=forces, stiffness=stiffness)
+
+    def handed_over(self: FacetAnswer[ByPoints], now: Floats) -> Any:
+        """The same with forces on the master where the overlaps have them.
+
+        Args:
+            now: Positions of the nodes, (nodes, 3), length.
+        """
+        transfer, snapshot = self.forces.transfer, self.snapshot
+        if transfer is None:
+            return self
+        handed = transfer.update(now, snapshot.forces, snapshot.response.status != 0)
+        return replace(self, forces=replace(self.forces, handed=handed))
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """Slave points against facets where both are, for the laws.
+
+    Attributes:
+        sides: Both sides.
+        hit: Where the points are on the master.
         now: Positions of the nodes, (nodes, 3), length.
-        dt: Time increment.
-        tangent: Whether derivatives are wanted.
+        transfer: Who hands forces on the master over, if anybody.
         by_points: Whether every point is to have a block, or those of one pair of facets share one.
     """
 
-    state: State
+    sides: Sides
     hit: FacetProjections
     now: Floats
-    dt: float
-    tangent: bool
+    transfer: Transfer | None
     by_points: bool
 
+    def answer(self, law: FacetLaw, state: State, dt: float, tangent: bool) -> FacetAnswer[Any]:
+        """What a law answers from a state.
 
-def ask(sides: Sides, law: FacetLaw, q: Question) -> tuple[dict[str, Any], Snapshot]:
-    """What a law answers, with forces and blocks, and the points as they are then."""
-    slave, master, hit = sides.points, sides.master, q.hit
-    touches = hit.gap - q.state["offset"] <= NEAR * slave.size  # as far as rounding goes
-    batch = (
-        slave.nodes,
-        slave.shape,
-        slave.gradient,
-        slave.weight,
-        slave.current_area,
-        q.now,
-        sides.reference,
-        master.nodes,
-        sides.kinds,
-        master.flip,
-        np.maximum(hit.facet, 0),
-        np.nan_to_num(hit.xi),
-        np.where(located(hit), hit.feature, np.int8(OFF)),
-        hit.edge,
-        touches | (q.state["multiplier"] > 0.0),
-        q.tangent,
-        sides.threads,
-    )
-    answer = _answer(sides.comm, law, q, batch)
-    lost = hit.status == FACET_STATUS.index("failed")
-    response = Response(
-        traction=answer["traction"],
-        tangent=np.empty((0, 3, 3)),
-        state=answer["state"],
-        normal=answer["normal"],
-        directions_adhesion=answer["adhesion_axes"],
-        directions_friction=answer["friction_axes"],
-        failure=np.where(lost, np.int8(1), answer["failure"]),
-    )
-    return answer, Snapshot(slave.positions(q.now), answer["area"], response)
+        Args:
+            law: The law.
+            state: History of the points.
+            dt: Time increment.
+            tangent: Whether derivatives are wanted.
+        """
+        slave, hit = self.sides.points, self.hit
+        found = self._found(law, state, dt, self._batch(state, tangent))
+        lost = hit.status == FACET_STATUS.index("failed")
+        response = Response(
+            traction=found["traction"],
+            tangent=np.empty((0, 3, 3)),
+            state=found["state"],
+            normal=found["normal"],
+            directions_adhesion=found["adhesion_axes"],
+            directions_friction=found["friction_axes"],
+            failure=np.where(lost, np.int8(1), found["failure"]),
+        )
+        snapshot = Snapshot(slave.positions(self.now), found["area"], response)
+        own, gathered = slave.quadrature.nodes.shape[1], self.sides.gathered
+        forces: Forces
+        if self.by_points:
+            none = np.zeros(len(state), dtype=bool)
+            arrays = found["nodes"], found["residual"], found["tangent"]
+            forces = ByPoints(*arrays, own, self.transfer, none)
+        else:
+            forces = ByFacets(found["force"], found["blocks"])
+        return FacetAnswer(gathered, snapshot, found["stiffness"], forces)
 
+    def _batch(self, state: State, tangent: bool) -> FacetBatch:
+        slave, master, hit = self.sides.points, self.sides.master, self.hit
+        touches = hit.gap - state["offset"] <= NEAR * slave.size  # as far as rounding goes
+        return {
+            "slave_nodes": slave.nodes,
+            "slave_shape": slave.shape,
+            "slave_gradient": slave.gradient,
+            "weight": slave.weight,
+            "current_area": slave.current_area,
+            "now": self.now,
+            "reference": self.sides.reference,
+            "connectivity": master.nodes,
+            "topology": self.sides.kinds,
+            "flip": master.flip,
+            "facet": np.maximum(hit.facet, 0),
+            "xi": np.nan_to_num(hit.xi),
+            "feature": np.where(located(hit), hit.feature, np.int8(OFF)),
+            "edge": hit.edge,
+            "near": touches | (state["multiplier"] > 0.0),
+            "tangent": tangent,
+            "threads": self.sides.threads,
+        }
 
-def _answer(comm: Any, law: FacetLaw, q: Question, batch: tuple[Any, ...]) -> dict[str, Any]:
-    def evaluate() -> dict[str, Any]:
-        return law.evaluate(q.state, q.by_points, q.dt, *batch)
-
-    return _on_all(comm, evaluate) if law.in_python else evaluate()
+    def _found(self, law: FacetLaw, state: State, dt: float, batch: FacetBatch) -> dict[str, Any]:
+        evaluate = partial(law.evaluate, state, self.by_points, dt, batch)
+        return _on_all(self.sides.comm, evaluate) if law.in_python else evaluate()
 
 
 def _on_all[T](comm: Any, ask: Callable[[], T]) -> T:

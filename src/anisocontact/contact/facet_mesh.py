@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
 
 from anisocontact.base.fenicsx import basix, facet_sides, scalar_element
+from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.surfaces.facets import FacetSets, FacetSurface, outward_flips
 
 Ints = npt.NDArray[np.int32]
@@ -196,78 +196,24 @@ def facet_rule(topology: str, degree: int) -> FacetRule:
     return FacetRule(points, weights, degree, *shapes.at(points))
 
 
-class SlavePoints:
-    """Quadrature points on slave facets that move with their nodes.
+def isoparametric(facets: FacetMesh, rule: FacetRule, reference: Floats) -> FacetQuadrature:
+    """Quadrature on facets whose shape is that of the displacement's nodes.
 
     Args:
-        facets: The slave facets.
+        facets: The facets.
         rule: Quadrature on the reference facet.
         reference: Positions of the local nodes in the reference configuration, (nodes, 3), length.
-        current_area: Whether the area of a point is that of now or of the reference.
-        share: Share of the area that counts.
-        comm: Communicator of the mesh.
-
-    Attributes:
-        facet: Number of the facet of each point, (n,).
-        nodes: Nodes of the facet of each point, (n, k).
-        shape: Their shape functions at the point, (n, k).
-        gradient: Derivatives of these, (n, k, 2).
-        weight: Weight of each point: its area, or where the area is that of now what the area of
-            the tangents is multiplied by, (n,).
-        outward: Outward normals in the reference configuration, (n, 3).
-        size: Length of a facet: square root of the mean area, over all ranks.
     """
-
-    def __init__(
-        self,
-        facets: FacetMesh,
-        rule: FacetRule,
-        reference: Floats,
-        current_area: bool,
-        share: float,
-        comm: Any,
-    ) -> None:
-        count, q = len(facets.nodes), len(rule.weights)
-        self.facet = np.repeat(np.arange(count), q)
-        self.nodes = np.repeat(facets.nodes, q, axis=0)
-        self.shape = np.tile(rule.shape, (count, 1))
-        self.gradient = np.tile(rule.gradient, (count, 1, 1))
-        first = np.arange(0, self.nodes.size + 1, self.nodes.shape[1])
-        self._interpolation = scipy.sparse.csr_array(
-            (self.shape.ravel(), self.nodes.ravel(), first),
-            shape=(len(self.nodes), int(self.nodes.max(initial=-1)) + 1),
-        )
-        tangents = np.einsum("pkd,pki->pdi", self.gradient, reference[self.nodes])
-        stretch = np.linalg.norm(np.cross(tangents[:, 0], tangents[:, 1]), axis=1)
-        weights = np.tile(rule.weights, count)
-        self._share, self._stretch = share * weights, stretch
-        self.take_area(current_area)
-        sign = np.where(np.repeat(facets.flip, q), -1.0, 1.0)
-        cross = np.cross(tangents[:, 0], tangents[:, 1])
-        self.outward, self._sign = (sign / stretch)[:, None] * cross, sign
-        area, facets_in_all = comm.allreduce(np.array([(weights * stretch).sum(), count]))
-        self.size = float(np.sqrt(area / max(facets_in_all, 1.0)))
-
-    def take_area(self, current: bool) -> None:
-        """Take the area of now, or that of the reference."""
-        self.current_area = current
-        self.weight = self._share if current else self._share * self._stretch
-
-    def areas(self, now: Floats) -> Floats:
-        """Areas of the points, (n,), from the positions of the nodes, (nodes, 3), length^2."""
-        if not self.current_area:
-            return self.weight
-        tangents = np.einsum("pkd,pki->pdi", self.gradient, now[self.nodes])
-        cross = np.cross(tangents[:, 0], tangents[:, 1])
-        return np.asarray(self.weight * np.linalg.norm(cross, axis=1))
-
-    def positions(self, now: Floats) -> Floats:
-        """Positions of the points, (n, 3), from those of the nodes, (nodes, 3), length."""
-        return np.asarray(self._interpolation @ now[: self._interpolation.shape[1]])
-
-    def outward_at(self, now: Floats) -> Floats:
-        """Outward normals, (n, 3), from the positions of the nodes, (nodes, 3), length."""
-        tangents = np.einsum("pkd,pki->pdi", self.gradient, now[self.nodes])
-        cross = self._sign[:, None] * np.cross(tangents[:, 0], tangents[:, 1])
-        with np.errstate(invalid="ignore", divide="ignore"):
-            return np.asarray(cross / np.linalg.norm(cross, axis=1)[:, None])
+    count = len(facets.nodes)
+    corners = reference[facets.nodes]
+    gradient = np.tile(rule.gradient, (count, 1, 1, 1))
+    tangents = gradient.swapaxes(2, 3) @ corners[:, None]
+    stretch = np.linalg.norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]), axis=2)
+    return FacetQuadrature(
+        nodes=facets.nodes,
+        basis=np.tile(rule.shape, (count, 1, 1)),
+        weights=rule.weights * stretch,
+        reference=(rule.shape @ corners).reshape(-1, 3),
+        gradient=gradient,
+        tangents=tangents,
+    )

@@ -3,7 +3,7 @@
 Where two facets meet at an angle the closest point jumps from one to the other, and with it the
 normal. A point whose equilibrium is there hops to and fro from one correction to the next. Held, it
 is projected on its facet as if that went on beyond its sides: there the gap is wrong by how far it
-is outside times the angle, see `ContactRecord.strayed`.
+is outside times the angle, see `Master.strayed`.
 """
 
 from __future__ import annotations

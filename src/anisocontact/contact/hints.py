@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from typing import Any
 
 from anisocontact.base.errors import ModelWarning
+from anisocontact.contact.contact import Contact
 
 __all__ = ["COARSE", "coarse_slaves", "warn_of"]
 
@@ -15,7 +15,7 @@ __all__ = ["COARSE", "coarse_slaves", "warn_of"]
 COARSE, MISSED = 3.0, 1.5
 
 
-def coarse_slaves(contacts: Sequence[Any], ratio: float = COARSE) -> list[str]:
+def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[str]:
     """Contacts whose slave has much larger facets than the master.
 
     A single pass looks from points of the slave: what of the master lies between two of them is
@@ -38,12 +38,12 @@ def coarse_slaves(contacts: Sequence[Any], ratio: float = COARSE) -> list[str]:
                 f"contact of {contact.slave} with {contact.master}: the facets of the slave are "
                 f"{slave / master:.2g} times as large as those of the master ({slave:.3g} and "
                 f"{master:.3g}), and what lies between its points is not met; swap slave and "
-                'master, or take two half passes (pass = "two-half", TwoHalfPass)'
+                'master, or take two half passes (pass = "two-half", Contact(..., two_half=True))'
             )
     return found
 
 
-def warn_of(contacts: Sequence[Any]) -> None:
+def warn_of(contacts: Sequence[Contact]) -> None:
     """Tell a script: a Python warning of the category `ModelWarning` for each line."""
     for line in coarse_slaves(contacts):
         warnings.warn(line, ModelWarning, stacklevel=3)

@@ -9,13 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.contact.record import ContactRecord
 from anisocontact.interface import FAILURE, ContactLaw, Interface
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw
 
 if TYPE_CHECKING:  # they ask for the checks here
     from anisocontact.contact.contact import Contact
-    from anisocontact.contact.facet_contact import FacetContact
+    from anisocontact.contact.one_pass import Pass
 
 Floats = npt.NDArray[np.float64]
 
@@ -43,7 +42,7 @@ class Overlap:
     count: int
 
 
-def initial_overlap(contact: ContactRecord, size: float) -> Overlap | None:
+def initial_overlap(contact: Contact, size: float) -> Overlap | None:
     """Overlap of the accepted state.
 
     Args:
@@ -66,7 +65,7 @@ def initial_overlap(contact: ContactRecord, size: float) -> Overlap | None:
     return Overlap(worst[0], np.array(worst[1]), count) if count else None
 
 
-def check_start(contact: Contact | FacetContact, size: float) -> None:
+def check_start(contact: Pass, size: float) -> None:
     """Refuse what cannot be meant; contacts ask for it when they are made.
 
     Args:
@@ -95,14 +94,14 @@ def check_start(contact: Contact | FacetContact, size: float) -> None:
         )
 
 
-def _check_distances(contact: Contact | FacetContact) -> None:
+def _check_distances(contact: Pass) -> None:
     gaps = contact.state["gap"][contact.located(contact.state)]
     if not all(contact.space.mesh.comm.allgather(bool(np.isfinite(gaps).all()))):
         text = "slave points have no finite distance to it: is it far too large or too small?"
         raise InputError(text, "master")
 
 
-def _check_sides(contact: Contact | FacetContact, size: float) -> None:
+def _check_sides(contact: Pass, size: float) -> None:
     """The nearest points of two bodies that do not overlap have normals that face each other."""
     located = contact.located(contact.state)
     gaps = np.abs(contact.state["gap"])
@@ -128,7 +127,7 @@ def _fields(law: Interface | ContactLaw) -> list[Carried]:
     return [one for one in law.carried if one.field is not None]
 
 
-def _singular(contact: Contact | FacetContact, one: Carried, size: float) -> npt.NDArray[np.bool_]:
+def _singular(contact: Pass, one: Carried, size: float) -> npt.NDArray[np.bool_]:
     """Points at which a field has no direction: asked by pressing every point a little."""
     law = (
         NormalLaw(penalty=1.0),
@@ -143,9 +142,7 @@ def _singular(contact: Contact | FacetContact, one: Carried, size: float) -> npt
 _DIRECTION = next(code for code, text in enumerate(FAILURE) if "direction field" in text)
 
 
-def _refuse(
-    contact: Contact | FacetContact, bad: npt.NDArray[np.bool_], text: str, field: str
-) -> None:
+def _refuse(contact: Pass, bad: npt.NDArray[np.bool_], text: str, field: str) -> None:
     found = np.flatnonzero(bad)
     local: Any = None
     if found.size:

@@ -1,75 +1,79 @@
-"""How the forces of slave points follow the nodes, from a block for each point."""
+"""How the tractions of slave points on facets follow the nodes, from a block for each point."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.facet_mesh import SlavePoints
-from anisocontact.contact.record import Snapshot
+from anisocontact.contact.facet_answer import ByPoints, FacetAnswer
+from anisocontact.contact.points import SlavePoints
 
 Floats = npt.NDArray[np.float64]
 
 
+@dataclass(frozen=True)
+class Nodes:
+    """The nodes of both sides.
+
+    Attributes:
+        now: Their positions, (nodes, 3), length.
+        moved: Their displacements, (nodes, 3), length.
+    """
+
+    now: Floats
+    moved: Floats
+
+
 class PointTangent:
-    """Linear change of the tractions about a trial.
+    """Linear change of the tractions about an answer, see `Linear`.
 
     Args:
         points: The slave points.
-        now: Positions of the nodes at the trial, (nodes, 3), length.
-        moved: Their displacements, (nodes, 3), length.
-        answer: Blocks of the points, "tangent" (n, 3 r, 3 c), and their "nodes", (n, c).
-        trial: The trial.
+        nodes: Gives the nodes as they are now.
+        answer: The answer, given there.
     """
 
     def __init__(
-        self,
-        points: SlavePoints,
-        now: Floats,
-        moved: Floats,
-        answer: dict[str, Any],
-        trial: Snapshot,
+        self, points: SlavePoints, nodes: Callable[[], Nodes], answer: FacetAnswer[ByPoints]
     ) -> None:
-        self._points, self._now, self._moved, self._trial = points, now, moved, trial
-        self._nodes, self._blocks = answer["nodes"], answer["tangent"]
-        n, rows, columns = self._blocks.shape
-        own = points.nodes.shape[1]
-        # rows of the slave's nodes are shares of the force of the point
-        self._force = -self._blocks.reshape(n, rows // 3, 3, columns)[:, :own].sum(axis=1)
+        self._points, self._nodes, self._answer = points, nodes, answer
+        self._then = nodes()
 
-    def at(self, now: Floats) -> bool:
-        """Whether nodes, (nodes, 3), are where they are in the trial."""
-        return np.array_equal(now, self._now)
-
-    def change(self, now: Floats, moved: Floats) -> Floats:
-        """Change of the tractions where the nodes move, (n, 3), stress.
-
-        Args:
-            now: Where they move to, (nodes, 3), length.
-            moved: Their displacements there: the blocks are so stiff that the rounding of
-                positions would be felt in the difference, (nodes, 3), length.
-        """
-        moved = (moved - self._moved)[np.maximum(self._nodes, 0)]
-        moved[self._nodes < 0] = 0.0
-        force = np.einsum("nic,nc->ni", self._force, moved.reshape(len(moved), 3 * moved.shape[1]))
-        grown = self._points.areas(now) - self._points.areas(self._now)
-        force -= grown[:, None] * self._trial.response.traction
-        return np.asarray(force / self._trial.areas[:, None])
+    def change(self) -> Floats | None:
+        """As of `Linear`."""
+        now, then = self._nodes(), self._then
+        if np.array_equal(now.now, then.now):
+            return None
+        named = self._answer.forces.nodes
+        # the blocks are so stiff that the rounding of positions would be felt in the difference
+        moved = (now.moved - then.moved)[np.maximum(named, 0)]
+        moved[named < 0] = 0.0
+        force = np.einsum("nic,nc->ni", self._answer.forces.by_nodes, moved.reshape(len(moved), -1))
+        points, snapshot = self._points, self._answer.snapshot
+        grown = points.areas(points.at(now.now)) - points.areas(points.at(then.now))
+        force -= grown[:, None] * snapshot.response.traction
+        return np.asarray(force / snapshot.areas[:, None])
 
     def slipped(self, slip: Floats) -> Floats:
-        """Change of the tractions where slave points move by `slip`, (n, 3), stress."""
-        return self._force_of(slip) / self._trial.areas[:, None]
+        """As of `Linear`."""
+        force = self._with_slave(self._answer.forces.by_nodes, slip)
+        return force / self._answer.snapshot.areas[:, None]
 
-    def forces(self, slip: Floats) -> Floats:
-        """The forces on the nodes of the rows that belong to it, (n, 3 r)."""
-        n, rows, _ = self._blocks.shape
-        own = self._points.nodes.shape[1]
-        columns = self._blocks[:, :, : 3 * own].reshape(n, rows, own, 3).sum(axis=2)
-        return np.asarray(-np.einsum("nri,ni->nr", columns, slip))
+    def add_force(self, slip: Floats, out: Floats) -> None:
+        """As of `Linear`."""
+        forces, gathered = self._answer.forces, self._answer.gathered
+        total = gathered.zeros(out)
+        forces.add_rows(-self._with_slave(forces.tangent, slip), total)
+        if forces.transfer is not None:
+            areas = self._answer.snapshot.areas[:, None]
+            forces.transfer.add_force(total, areas * self.slipped(slip))
+        gathered.hand_back(total, out)
 
-    def _force_of(self, slip: Floats) -> Floats:
-        n, own = len(slip), self._points.nodes.shape[1]
-        columns = self._force[:, :, : 3 * own].reshape(n, 3, own, 3).sum(axis=2)
-        return np.asarray(np.einsum("nij,nj->ni", columns, slip))
+    def _with_slave(self, blocks: Floats, slip: Floats) -> Floats:
+        """What blocks, (n, r, c), make of the same displacement of all nodes of a slave facet."""
+        own = self._answer.forces.own
+        columns = blocks[:, :, : 3 * own].reshape(*blocks.shape[:2], own, 3).sum(axis=2)
+        return np.asarray(np.einsum("nri,ni->nr", columns, slip))

@@ -62,21 +62,10 @@ class FacetQuadrature:
         entries = (self.basis.reshape(-1), columns.reshape(-1).astype(np.int64), starts)
         return scipy.sparse.csr_array(entries, shape=shape)
 
-    def outward(self, space: Any, facets: Ints) -> Floats:
-        """Outward normals at the points in the reference configuration, (m q, 3).
-
-        Args:
-            space: Space of the nodes.
-            facets: The facets the quadrature was made for.
-        """
-        cells, _ = facet_sides(space.mesh, np.sort(facets))
-        _, nodes, positions = geometry(space.mesh)
-        middle = positions[nodes[cells]].mean(axis=1)
-        m, q, _ = self.basis.shape
-        normal = np.cross(self.tangents[:, :, 0], self.tangents[:, :, 1])
-        away = self.reference.reshape(m, q, 3) - middle[:, None]
-        sign = np.sign(np.einsum("mqi,mqi->mq", normal, away))
-        return np.asarray((sign / _norm(normal))[..., None] * normal).reshape(-1, 3)
+    @cached_property
+    def at_rest(self) -> Surfaced:
+        """The facets in the reference configuration."""
+        return Surfaced(self, self.tangents)
 
     def at_points(self, nodal: Floats) -> Floats:
         """Nodal vectors interpolated to the points: (local nodes, 3) -> (m q, 3)."""
@@ -148,12 +137,13 @@ class Surfaced:
     tangents: Floats
 
     @cached_property
-    def _cross(self) -> Floats:
+    def normals(self) -> Floats:
+        """The normals that the tangents make, as long as their area, (m, q, 3), length^2."""
         return _cross(self.tangents[:, :, 0], self.tangents[:, :, 1])
 
     @cached_property
     def _size(self) -> Floats:
-        return _norm(self._cross)
+        return _norm(self.normals)
 
     @property
     def _weights(self) -> Floats:
@@ -181,7 +171,7 @@ class Surfaced:
     @cached_property
     def area_changes(self) -> Floats:
         """`d area / d x_b` of each point, (m, q, k, 3), length."""
-        unit = self._cross / self._size[..., None]
+        unit = self.normals / self._size[..., None]
         sides = np.stack(
             [_cross(self.tangents[:, :, 1], unit), _cross(unit, self.tangents[:, :, 0])], axis=2
         )
@@ -190,7 +180,7 @@ class Surfaced:
     @property
     def vector_areas(self) -> Floats:
         """Area of each point times the normal that the tangents make, (m, q, 3), length^2."""
-        return np.asarray(self._weights[..., None] * self._cross)
+        return np.asarray(self._weights[..., None] * self.normals)
 
     def vector_area_matrices(self) -> Floats:
         """`sum over the points of basis_a (d vector area / d x_b)` on each facet.

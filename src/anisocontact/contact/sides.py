@@ -14,16 +14,17 @@ from anisocontact.base.fenicsx import facet_keys, facet_sides
 from anisocontact.contact.facet_mesh import (
     FacetMesh,
     FacetRule,
-    SlavePoints,
     facet_mesh,
     facet_rule,
     group_area,
+    isoparametric,
     near_facets,
     node_positions,
 )
+from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.overlap import largest_radius
-from anisocontact.contact.record import Snapshot
+from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.whereabouts import Seen
 from anisocontact.interface import State
 from anisocontact.mesh import Model
@@ -228,10 +229,10 @@ def make_sides(
         model: Mesh with both groups.
         groups: Facet groups of slave and master.
         degree: Degree of the quadrature.
-        reach: See `FacetContact`.
-        apart: See `FacetContact`.
-        current_area: See `FacetContact`.
-        weight: See `FacetContact`.
+        reach: See `Contact`.
+        apart: See `Contact`.
+        current_area: See `Contact`.
+        weight: See `Contact`.
     """
     slave, master = (model.facets(group) for group in groups)
     comm = model.mesh.comm
@@ -239,7 +240,8 @@ def make_sides(
     reference = node_positions(model.space)
     own = facet_mesh(model.space, slave)
     rule = facet_rule(own.topology, degree)
-    points = SlavePoints(own, rule, reference, current_area, weight, comm)
+    quadrature = isoparametric(own, rule, reference)
+    points = SlavePoints(quadrature, own.flip, current_area=current_area, comm=comm, share=weight)
     reach = reach if reach is not None else 2.0 * points.size
     _collect(gathered, own, reference, max(reach, apart or 0.0) + reach, np.zeros(0, np.int64))
     surface = _surface(gathered, reference)

@@ -64,6 +64,9 @@ class Transfer:
 
     Args:
         sides: Slave and master.
+
+    Attributes:
+        handed: Points whose forces on the master the last trial has handed over, (n,).
     """
 
     def __init__(self, sides: Sides) -> None:
@@ -74,6 +77,7 @@ class Transfer:
         self._degree = min(rule.degree // 2, self._shapes.order)
         self._at_points = self._shapes.moments(rule.points, self._degree)
         self._trial: _Trial | None = None
+        self.handed: Mask = np.zeros(len(slave.nodes) * len(rule.weights), dtype=bool)
         self._parts: Overlaps | None = None
 
     def facets(self) -> Ints:
@@ -160,7 +164,8 @@ class Transfer:
             off = np.einsum("mgk,mki->mgi", self._off, now[self._slave.nodes])
             couples = self._couples(points, x, hit, off[parts.owner[points]], forces)
             self._trial = _Trial(points, hit, x, forces, sums, owner, facet, couples)
-        return np.repeat(touching, q)
+        self.handed = np.repeat(touching, q)
+        return self.handed
 
     def _project(
         self, now: Floats, owner: npt.NDArray[np.int64], points: npt.NDArray[np.int64]

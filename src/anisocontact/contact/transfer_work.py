@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.record import Snapshot
+from anisocontact.contact.history import Snapshot
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.transfer import Transfer
 
@@ -15,7 +15,6 @@ Floats = npt.NDArray[np.float64]
 def transfer_work(
     sides: Sides,
     transfer: Transfer,
-    handed: npt.NDArray[np.bool_],
     step: Floats,
     ends: tuple[Snapshot, Snapshot],
 ) -> float:
@@ -28,12 +27,11 @@ def transfer_work(
     Args:
         sides: Both sides; the surface is where the increment ends.
         transfer: Who hands forces over, in the trial of the increment.
-        handed: Points whose forces it hands over, (n,).
         step: Displacement of the nodes in the increment, (nodes, 3), length.
         ends: The points before and after the increment.
     """
-    old, new = (a.areas[:, None] * a.response.traction for a in ends)
-    force = np.where(handed[:, None], 0.5 * (old + new), 0.0)
+    handed = transfer.handed
+    force = np.where(handed[:, None], 0.5 * (ends[0].forces + ends[1].forces), 0.0)
     out = np.zeros_like(step)
     transfer.add_force(out, force)
     after = ends[1].response.state

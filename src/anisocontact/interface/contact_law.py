@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypedDict
+
+import numpy as np
+import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.base import registry
@@ -212,6 +215,28 @@ class ContactLaw:
         return self.normal.named[1]["penalty"][0], self.tangential.penalty()
 
 
+class FacetBatch(TypedDict):
+    """Slave points that meet facets as the core takes them, with its names."""
+
+    slave_nodes: npt.NDArray[np.int32]
+    slave_shape: npt.NDArray[np.float64]
+    slave_gradient: npt.NDArray[np.float64]
+    weight: npt.NDArray[np.float64]
+    current_area: bool
+    now: npt.NDArray[np.float64]
+    reference: npt.NDArray[np.float64]
+    connectivity: npt.NDArray[np.int32]
+    topology: npt.NDArray[np.int8]
+    flip: npt.NDArray[np.bool_]
+    facet: npt.NDArray[np.int32]
+    xi: npt.NDArray[np.float64]
+    feature: npt.NDArray[np.int8]
+    edge: npt.NDArray[np.float64]
+    near: npt.NDArray[np.bool_]
+    tangent: bool
+    threads: int
+
+
 class FacetLaw:
     """A contact law for slave points that meet facets of a mesh.
 
@@ -227,7 +252,9 @@ class FacetLaw:
         self._tangential, self.in_python = law.tangential, law.tangential.in_python
         self.core = _core.FacetInterface(law.core, mirrored)
 
-    def evaluate(self, state: State, by_points: bool, dt: float, *batch: Any) -> dict[str, Any]:
+    def evaluate(
+        self, state: State, by_points: bool, dt: float, batch: FacetBatch
+    ) -> dict[str, Any]:
         """Forces, blocks and the trial state.
 
         Args:
@@ -235,7 +262,7 @@ class FacetLaw:
             by_points: Whether every point is to have a block, or those of one pair of facets share
                 one.
             dt: Time increment.
-            batch: The batch as `FacetInterface.update` of the core takes it, after the increment.
+            batch: The points and facets.
 
         Returns:
             As of the core; the state has the law's own variables.
@@ -247,8 +274,8 @@ class FacetLaw:
         return self._tangential.through(
             state,
             dt,
-            lambda raw: self.core.law_input(raw, dt, *batch),
-            lambda raw, outputs: update(raw, dt, *(*batch, outputs)),
+            lambda raw: self.core.law_input(raw, dt, **batch),
+            lambda raw, outputs: update(raw, dt, **batch, outputs=outputs),
         )
 
 

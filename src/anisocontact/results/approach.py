@@ -8,16 +8,14 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 
 __all__ = ["approach"]
 
 Floats = npt.NDArray[np.float64]
 
 
-def approach(
-    contact: AnyContact, displacements: Mapping[str, Any], rigid: Mapping[str, Any]
-) -> float:
+def approach(contact: Contact, displacements: Mapping[str, Any], rigid: Mapping[str, Any]) -> float:
     """Displacement of the slave's body against the master's, along the force that presses them.
 
     A body moves as far as the facet group of it that is led or loaded and has gone farthest; one

@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import compiled_expression, dolfinx, fem, scalar_element, ufl
 from anisocontact.bulk import cauchy_stress
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.results.dataset import DataSet, vertices
 from anisocontact.results.quantities import CELL, NODE, POINT, SlavePoints, arrays
 from anisocontact.solver import Problem
@@ -127,7 +127,7 @@ class _BodiesNow:
         return self._bodies.numbers
 
 
-def slave_points(contacts: Iterable[AnyContact], chosen: Collection[str] = ()) -> DataSet | None:
+def slave_points(contacts: Iterable[Contact], chosen: Collection[str] = ()) -> DataSet | None:
     """The slave points of this rank of all contacts where they are now; None without a contact.
 
     Args:

@@ -176,7 +176,7 @@ class SlavePoints:
     @property
     def passes(self) -> npt.NDArray[np.int32]:
         """Number of the pass that each point belongs to, (n,)."""
-        counts = [len(part.areas) for part in self.contact.parts]
+        counts = [len(part.areas) for part in self.contact.passes]
         return np.repeat(np.arange(len(counts), dtype=np.int32), counts)
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.interface import STATUS
 from anisocontact.results.approach import approach
 from anisocontact.results.quantities import CONTACT, RIGID, SlavePoints, numbers
@@ -129,7 +129,7 @@ class _ContactNow(SlavePoints):
 
     def least_gap(self) -> float:
         """Smallest gap, negative where points overlap; 0 where no point has a surface below it."""
-        parts = self.contact.parts
+        parts = self.contact.passes
         gaps = [part.state["gap"][part.located(part.state)] for part in parts]
         comm = self.contact.space.mesh.comm
         least = min(comm.allgather(float(np.concatenate(gaps).min(initial=np.inf))))
@@ -144,7 +144,7 @@ def named_groups(loads: Iterable[Iterable[str]]) -> list[str]:
     return list(dict.fromkeys(group for groups in loads for group in groups))
 
 
-def laws(contact: AnyContact) -> dict[str, Any]:
+def laws(contact: Contact) -> dict[str, Any]:
     """Laws of a contact with the numbers they were given, by name."""
     interface = contact.interface
     named = {"normal": interface.normal.named, **interface.tangential.named()}

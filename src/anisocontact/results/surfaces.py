@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.anisotropy import DirectionField
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.results.dataset import DataSet, polygons
 from anisocontact.results.quantities import PATCH, arrays
 
@@ -37,7 +37,7 @@ class Surfaces:
     """
 
     def __init__(
-        self, contacts: Iterable[AnyContact], comm: Any, chosen: Collection[str] = ()
+        self, contacts: Iterable[Contact], comm: Any, chosen: Collection[str] = ()
     ) -> None:
         self._chosen = chosen
         self._first = comm.rank == 0
@@ -79,7 +79,7 @@ class Patch:
     directions: Floats
 
 
-def _moved(number: int, contact: AnyContact, points: Floats, directions: Floats) -> Patch:
+def _moved(number: int, contact: Contact, points: Floats, directions: Floats) -> Patch:
     """A patch where the rigid body is that carries it."""
     if contact.body is not None:
         points = contact.body.out_of_body(points)

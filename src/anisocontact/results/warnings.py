@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from anisocontact.base.limits import FOLLOWED
-from anisocontact.contact import AnyContact, coarse_slaves, initial_overlap
+from anisocontact.contact import Contact, coarse_slaves, initial_overlap
 from anisocontact.contact.hints import MISSED
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
@@ -29,7 +29,7 @@ ROUNDING = 1e-5
 STABILISED = 0.05
 
 
-def at_start(contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]]) -> list[str]:
+def at_start(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> list[str]:
     """Contacts with a slave much coarser than its master, or whose bodies overlap at the start.
 
     Args:
@@ -121,7 +121,7 @@ def of_models(summary: Mapping[str, Any]) -> list[str]:
 
 
 def at_end(
-    contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]], energy: dict[str, float]
+    contacts: Sequence[Contact], shown: Sequence[dict[str, Any]], energy: dict[str, float]
 ) -> list[str]:
     """What is too soft, does not touch, or was held by stabilisation.
 
@@ -163,7 +163,7 @@ def at_end(
     return found
 
 
-def soft(contacts: Sequence[AnyContact], shown: Sequence[dict[str, Any]]) -> list[str]:
+def soft(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> list[str]:
     """Penetrations that are a share of what pressed the bodies: forces are off by as much.
 
     Args:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -10,8 +10,22 @@ import numpy.typing as npt
 from anisocontact.interface import Interface, Response, SlaveSurface, State
 from anisocontact.rigid.body import RigidBody
 from anisocontact.rigid.rotation import skew
+from anisocontact.surfaces import Surface
 
 Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class MovingSurface:
+    """A surface that moves with a rigid body, as the master of a `Contact`.
+
+    Args:
+        surface: The surface where it was drawn, or one with its laws.
+        body: The body; the surface rests if there is none.
+    """
+
+    surface: Surface | Interface
+    body: RigidBody | None
 
 
 class MovingInterface:

@@ -18,19 +18,24 @@ docs/verification/meshed-contact.md.
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 import numpy as np
 import pytest
 
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact, FacetContact, TwoHalfPass
+from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
 from anisocontact.mesh.merge import merge
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.surfaces import make_surface
+
+#: Two half passes.
+TWO_HALF = partial(Contact, two_half=True)
+
 
 RADIUS, E, NU = 40.0, 1000.0, 0.3
 REDUCED = E / (1.0 - NU**2)
@@ -93,7 +98,7 @@ def test_elastic_sphere_on_a_rigid_plane(half_spaces: Any, n: int, tolerance: fl
     assert np.abs(errors).max() < tolerance
 
 
-@pytest.mark.parametrize("kind", [FacetContact, TwoHalfPass])
+@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
 @pytest.mark.parametrize(
     ("n", "below", "tolerance"), [(6, 5, 0.02), pytest.param(12, 9, 0.01, marks=pytest.mark.slow)]
 )

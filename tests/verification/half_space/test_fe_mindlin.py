@@ -31,7 +31,7 @@ import pytest
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
-from anisocontact.contact import FacetContact
+from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Model
@@ -109,7 +109,7 @@ def _run(half_spaces: Any, n: int, legs: list[tuple[float, int]], across: float)
             coefficients=(MU, across), directions=make_directions("constant", vector=(1, 0, 0))
         ),
     )
-    contact = FacetContact(model, "ball.contact", "base.contact", law=law, current_area=False)
+    contact = Contact(model, "ball.contact", "base.contact", law=law, current_area=False)
     problem = Problem(model, {"ball": _steel(), "base": _steel()}, [contact])
     symmetric = {"ball.y": {"y": 0.0}, "base.y": {"y": 0.0}, "base.far": FIXED}
     full = 3.0 * MU * K / 16.0 * 2.0 / 3.0 * E / (1.0 - NU**2) / (0.5 * RADIUS)

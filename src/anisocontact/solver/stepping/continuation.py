@@ -13,7 +13,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from anisocontact.base.fenicsx import Vec
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.solver.strategies.newton import NewtonResult
 from anisocontact.solver.strategies.strategy import IncrementSolver
 from anisocontact.solver.system.problem import Problem
@@ -40,11 +40,11 @@ class Continuation:
         self._problem = problem
         self._newton = newton
 
-    def stiff(self) -> list[AnyContact]:
+    def stiff(self) -> list[Contact]:
         """Contacts whose adhesion is much stiffer than their bodies, the same on all ranks."""
         return [c for c in self._problem.contacts if self.ratio(c) > STIFF]
 
-    def ratio(self, contact: AnyContact) -> float:
+    def ratio(self, contact: Contact) -> float:
         """Stiffness of a contact's adhesion over that of the bodies behind it."""
         return contact.slip_stiffness(self._problem.dt) / contact.body_stiffness
 

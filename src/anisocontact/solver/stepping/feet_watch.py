@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 
 Codes = npt.NDArray[np.int64]
 Flags = npt.NDArray[np.bool_]
@@ -28,7 +28,7 @@ class FeetWatch:
         contacts: The contacts.
     """
 
-    def __init__(self, contacts: Sequence[AnyContact]) -> None:
+    def __init__(self, contacts: Sequence[Contact]) -> None:
         self._contacts = list(contacts)
         self._seen: deque[list[Codes]] = deque(maxlen=MEMORY)
         self._residuals: deque[float] = deque(maxlen=MEMORY)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.laws import Friction
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.free_body import FreeBody
@@ -42,7 +42,7 @@ class _Held:
 
     normal: Floats
     force: float
-    pairs: Sequence[tuple[AnyContact, float]]
+    pairs: Sequence[tuple[Contact, float]]
 
 
 def too_much_load(problem: Problem, fraction: float) -> str:
@@ -103,7 +103,7 @@ def _holding(problem: Problem, free: FreeBody) -> _Held | None:
     return _Held(total / pushed, pushed, [(contact, size / sizes) for contact, size in pairs])
 
 
-def _limit(problem: Problem, contact: AnyContact, along: Floats) -> float:
+def _limit(problem: Problem, contact: Contact, along: Floats) -> float:
     """Friction over pressure along a direction, the mean over the normal force of a contact."""
     friction = getattr(contact.interface, "friction", None)
     if friction is None:  # a law in Python

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, Vec
-from anisocontact.contact import AnyContact, warn_of
+from anisocontact.contact import Contact, warn_of
 from anisocontact.solver.strategies.newton import Newton, OptionValue
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import Assembly, ForceBalance, TrialState
@@ -65,7 +65,7 @@ class ContactProblem(AssembledSystem):
         u: Any,
         *,
         bcs: Sequence[Any] = (),
-        contacts: Sequence[AnyContact] = (),
+        contacts: Sequence[Contact] = (),
         J: Any = None,
         petsc_options_prefix: str = "anisocontact_",
         petsc_options: Mapping[str, OptionValue] | None = None,
@@ -213,17 +213,17 @@ class ContactProblem(AssembledSystem):
     def _untouched(self) -> list[Part]:
         """Parts of the mesh that no contact which touches somewhere acts on, now."""
         nodes = [np.zeros(0, dtype=np.int32)]
-        passes: list[Any] = [one for contact in self.contacts for one in contact.parts]
+        passes: list[Any] = [one for contact in self.contacts for one in contact.passes]
         for one in passes:
             now = one.current.response
             near = one.located(now.state) & (now.gap <= NEAR * one.facet_size)
             if self._any(near):
-                nodes.append(one.couplable())
+                nodes.append(one.master.couplable())
         touched = np.concatenate(nodes)
         return [part for part in self._parts if not self._any(np.isin(part.nodes, touched))]
 
 
-def _checked(contacts: Sequence[AnyContact], space: Any) -> list[Any]:
+def _checked(contacts: Sequence[Contact], space: Any) -> list[Any]:
     """Rigid bodies of contacts that a script can have."""
     for contact in contacts:
         if contact.space != space:

@@ -47,11 +47,10 @@ def largest_turn(problem: Problem) -> Turned:
     """The largest turn of the trial, over all ranks; collective."""
     found = Turned(0.0, "")
     for contact in problem.contacts:
-        for one in contact.parts:
-            trial = one.trial
-            angle = one.extreme(trial.state["turn"][trial.status > 0])
-            if angle > found.angle:
-                found = Turned(angle, contact.name)
+        trial = contact.trial
+        angle = contact.extreme(trial.state["turn"][trial.status > 0])
+        if angle > found.angle:
+            found = Turned(angle, contact.name)
     return found
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.solver.stepping.feet_watch import FeetWatch
 
 Codes = npt.NDArray[np.int8]
@@ -30,7 +30,7 @@ class StatusWatch:
         feet: Remembers what they had below them.
     """
 
-    def __init__(self, contacts: Sequence[AnyContact]) -> None:
+    def __init__(self, contacts: Sequence[Contact]) -> None:
         self._contacts = list(contacts)
         self.feet = FeetWatch(contacts)
         self._seen: deque[list[Codes]] = deque(maxlen=MEMORY)

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import FacetContact
+from anisocontact.contact import Pass
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.terms.step import AXES, Step
 
@@ -34,10 +34,10 @@ class Ahead:
         steps: What will be done.
     """
 
-    def __init__(self, passes: Sequence[FacetContact], steps: Sequence[Step]) -> None:
+    def __init__(self, passes: Sequence[Pass], steps: Sequence[Step]) -> None:
         self._passes, self._steps = list(passes), list(steps)
         self._increments = np.array([step.increments for step in steps], dtype=np.float64)
-        names = {name for one in passes for name in (one.slave, one.master)}
+        names = {name for one in passes for name in one.groups}
         bodies = {name.partition(".")[0] for name in names}
         self._paths = {body: _path(steps, body) for body in bodies}
 
@@ -57,10 +57,10 @@ class Ahead:
             way = way[:, None]
             if len(way) == 1:
                 way, hops = going_on(one)
-            found += one.reachable(way, MARGIN * one.facet_size, hops)
+            found += one.master.reachable(way, MARGIN * one.facet_size, hops)
         return found
 
-    def way(self, one: FacetContact, step: Step | None, level: float) -> tuple[Floats, int]:
+    def way(self, one: Pass, step: Step | None, level: float) -> tuple[Floats, int]:
         """Displacement of the slave against the master at places along the way, (w, 3), length.
 
         Args:
@@ -72,7 +72,7 @@ class Ahead:
             The places, and how many of them an increment goes at most.
         """
         first = next((i for i, known in enumerate(self._steps) if known is step), 0)
-        slave, master = (self._paths[name.partition(".")[0]] for name in (one.slave, one.master))
+        slave, master = (self._paths[name.partition(".")[0]] for name in one.groups)
         path = slave - master
         ends, jumps = path[first:], np.diff(path[first:], axis=0)
         with np.errstate(over="ignore"):
@@ -88,12 +88,12 @@ class Ahead:
         return way, int(hops)
 
 
-def going_on(one: FacetContact) -> tuple[Floats, int]:
+def going_on(one: Pass) -> tuple[Floats, int]:
     """Where slave points get to that slide on as in this increment, (w, n or 1, 3), length.
 
     Also how many of these places an increment goes.
     """
-    slid = one.slid() / one.facet_size
+    slid = one.master.slid(one.state) / one.facet_size
     longest = float(np.linalg.norm(slid, axis=1).max(initial=0.0))
     if not 0.0 < longest < np.inf:
         return np.zeros((1, 1, 3)), 0

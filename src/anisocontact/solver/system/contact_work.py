@@ -136,8 +136,8 @@ class ContactWork:
             contact.add_force(forces)
         local[0] = -float((forces * (end.nodal - start.nodal)).sum())
         for body, way in zip(self._rigid.bodies, end.rigid - start.rigid, strict=True):
-            for contact in self._rigid.contacts[body]:
-                local[1] += float(contact.current.wrench(body.position) @ way)
+            for one in self._rigid.contacts[body]:
+                local[1] += float(one.current.wrench(body.position) @ way)
         return np.asarray(self._comm.allreduce(local))
 
     def _ask(self, place: _Place, dt: float) -> None:
@@ -154,7 +154,7 @@ class ContactWork:
     def _kinks(self) -> bool:
         """Whether enough points begin or end contact or slip, or bodies flow."""
         changed = touching = 0
-        for part in (part for contact in self._contacts for part in contact.parts):
+        for part in (part for contact in self._contacts for part in contact.passes):
             before, now = part.state["status"], part.current.response.state["status"]
             changed += int(np.count_nonzero(before != now))
             touching += int(np.count_nonzero(now != STATUS.index("open")))

@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 from anisocontact.solver.system.assembly import Assembly
 from anisocontact.solver.system.layout import Layout
@@ -49,7 +49,7 @@ class Parts:
 
     model: Model
     materials: Mapping[str, Material]
-    contacts: list[AnyContact]
+    contacts: list[Contact]
     bulk: LinearBulk | NonlinearBulk
     rigid: RigidBodies
     layout: Layout
@@ -65,7 +65,7 @@ class Parts:
 def make_parts(
     model: Model,
     materials: Mapping[str, Material],
-    contacts: Sequence[AnyContact],
+    contacts: Sequence[Contact],
     specs: Sequence[ElasticSupport | Spring],
     symmetry: Sequence[str],
     stabilised: bool,
@@ -115,7 +115,7 @@ def make_parts(
     )
 
 
-def suit(contacts: Sequence[AnyContact], bodies: Bodies, finite: Sequence[bool]) -> None:
+def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) -> None:
     """Tell contacts how stiff their bodies are, and which of them are at finite strain."""
     diagonal = np.array(bodies.bulk.diagonal.array_r).reshape(-1, 3)
     for contact, is_finite in zip(contacts, finite, strict=True):
@@ -123,7 +123,7 @@ def suit(contacts: Sequence[AnyContact], bodies: Bodies, finite: Sequence[bool])
         contact.suit(diagonal)
 
 
-def _finite(model: Model, materials: Mapping[str, Material], contact: AnyContact) -> bool:
+def _finite(model: Model, materials: Mapping[str, Material], contact: Contact) -> bool:
     """Whether one of the bodies of a contact is at finite strain."""
     return not all(materials[model.body_of(group)].linear for group in contact.groups)
 
@@ -131,7 +131,7 @@ def _finite(model: Model, materials: Mapping[str, Material], contact: AnyContact
 def _check(
     model: Model,
     materials: Mapping[str, Material],
-    contacts: Sequence[AnyContact],
+    contacts: Sequence[Contact],
 ) -> None:
     for body in materials:
         model.cells(body, f"material.{body}")

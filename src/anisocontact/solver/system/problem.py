@@ -11,7 +11,7 @@ import numpy.typing as npt
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
 from anisocontact.bulk import LinearBulk, Material
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 from anisocontact.solver.system.accepted import AcceptedState
 from anisocontact.solver.system.assembled import AssembledSystem
@@ -79,7 +79,7 @@ class Problem(AssembledSystem):
         self,
         model: Model,
         materials: Mapping[str, Material],
-        contacts: Sequence[AnyContact] = (),
+        contacts: Sequence[Contact] = (),
         attached: Sequence[ElasticSupport | Spring] = (),
         symmetry: Sequence[str] = (),
         stabilised: bool = True,

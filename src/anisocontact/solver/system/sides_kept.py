@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact, Contact, FacetContact
+from anisocontact.contact import Contact, Pass
 from anisocontact.contact.whereabouts import CRUSHED
 from anisocontact.mesh import Model
 from anisocontact.solver.system.culprit import Culprit
@@ -45,7 +45,7 @@ class _Watched:
         places: Where they were, (n, 3), length.
     """
 
-    one: Contact | FacetContact
+    one: Pass
     name: str
     body: Body | None
     nodes: Ints
@@ -60,7 +60,7 @@ class SidesKept:
         model: Mesh of the bodies; where there is none slave points alone are looked at.
     """
 
-    def __init__(self, contacts: Sequence[AnyContact], model: Model | None = None) -> None:
+    def __init__(self, contacts: Sequence[Contact], model: Model | None = None) -> None:
         groups = [] if model is None else bodies(model)
         self._watched = [
             _alone(one, contact.name)
@@ -136,11 +136,11 @@ class SidesKept:
         return Culprit("behind", position, why, watched.name, point, facet)
 
 
-def _alone(one: Contact | FacetContact, name: str) -> _Watched:
+def _alone(one: Pass, name: str) -> _Watched:
     return _Watched(one, name, None, np.zeros(0, dtype=np.int64), np.zeros((0, 3)))
 
 
-def _watched(model: Model, one: Contact | FacetContact, name: str, groups: list[Body]) -> _Watched:
+def _watched(model: Model, one: Pass, name: str, groups: list[Body]) -> _Watched:
     places = np.asarray(model.space.tabulate_dof_coordinates())
     slave = model.body_of(one.slave)
     body = next(group for group in groups if slave in group.parts)

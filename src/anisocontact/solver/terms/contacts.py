@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any, override
+from typing import override
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.contact.transfer import Couplings
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
@@ -26,10 +26,10 @@ class Contacts(Term):
         passes: Passes over slave points against facets.
     """
 
-    def __init__(self, contacts: Sequence[AnyContact]) -> None:
-        self._all: list[Any] = list(contacts)
-        self.passes: list[Any] = [p for c in self._all if c.meshed for p in c.passes]
-        self._smooth: list[Any] = [p for c in self._all if not c.meshed for p in c.passes]
+    def __init__(self, contacts: Sequence[Contact]) -> None:
+        self._all = list(contacts)
+        self.passes = [p for c in self._all if c.meshed for p in c.passes]
+        self._smooth = [p for c in self._all if not c.meshed for p in c.passes]
         self._dt = 1.0
         self._failed = False
 
@@ -82,24 +82,22 @@ class Contacts(Term):
 
     @override
     def histories(self) -> list[Arrays]:
-        return [part.persistent() for contact in self._all for part in contact.parts]
+        return [part.persistent() for contact in self._all for part in contact.passes]
 
     @override
     def take_histories(self, kept: Iterator[Arrays], u: Floats) -> None:
         for contact in self._all:
-            for part in contact.parts:
-                part.restore(next(kept), u)
-            contact.rejoin()
+            contact.restore([next(kept) for _ in contact.passes], u)
 
     def pass_through(self) -> None:
         """Remember a state that the bodies flow through, for the work of friction."""
         for contact in self._all:
-            for part in contact.parts:
+            for part in contact.passes:
                 part.pass_through()
 
     def feet(self) -> npt.NDArray[np.int64]:
         """Local nodes of the master facets that are below slave points in the trial."""
-        found = [half.feet() for half in self.passes]
+        found = [half.master.feet() for half in self.passes]
         return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
     def failed_points(self) -> Floats:
@@ -145,10 +143,10 @@ class Contacts(Term):
 
     @property
     def ways(self) -> frozenset[str]:
-        """Ways to the multipliers that a contact has, see `ContactRecord.ways`."""
+        """Ways to the multipliers that a contact has, see `Contact.ways`."""
         return frozenset(way for contact in self._all for way in contact.ways)
 
     def take_way(self, name: str) -> None:
-        """Find multipliers in another way in this attempt, see `ContactRecord.take_way`."""
+        """Find multipliers in another way in this attempt, see `Contact.take_way`."""
         for contact in self._all:
             contact.take_way(name)

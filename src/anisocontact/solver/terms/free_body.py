@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.contact.transfer import Couplings
 from anisocontact.solver.terms.free_modes import Body
 
@@ -45,7 +45,7 @@ class FreeBody:
 
     body: Body
     modes: str
-    contacts: Sequence[AnyContact]
+    contacts: Sequence[Contact]
     size: float
     motions: Floats
     left: Floats

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.free_modes import Body, bodies
 
 
-def joined(model: Model, contacts: Sequence[AnyContact]) -> list[Body]:
+def joined(model: Model, contacts: Sequence[Contact]) -> list[Body]:
     """Bodies that only supports and springs can hold, those in contact with each other as one.
 
     Contact between bodies resists what one does to the other, not what they do as one rigid body;

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.contact.transfer import Couplings
 from anisocontact.rigid import RigidBody
 from anisocontact.rigid.body import Pose
@@ -50,8 +50,8 @@ class RigidBodies(Term):
         InputError: Two bodies of one name.
     """
 
-    def __init__(self, contacts: Sequence[AnyContact], comm: Any) -> None:
-        on_bodies: list[Any] = [c for c in contacts if c.body is not None]
+    def __init__(self, contacts: Sequence[Contact], comm: Any) -> None:
+        on_bodies = [p for c in contacts if c.body is not None for p in c.passes]
         self.bodies: list[RigidBody] = list(
             dict.fromkeys(c.body for c in on_bodies if c.body is not None)
         )
@@ -293,5 +293,5 @@ class RigidBodies(Term):
             )
 
     def _touched(self, body: RigidBody) -> bool:
-        local = sum(int(np.count_nonzero(c.trial.status)) for c in self.contacts[body])
+        local = sum(int(np.count_nonzero(c.current.response.status)) for c in self.contacts[body])
         return bool(self._comm.allreduce(local) > 0)

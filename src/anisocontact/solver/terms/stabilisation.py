@@ -19,7 +19,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import PETSc
-from anisocontact.contact import AnyContact, NotHeldError, facet_size
+from anisocontact.contact import Contact, NotHeldError, facet_size
 from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
@@ -73,7 +73,7 @@ class Stabilisation(Term):
     def __init__(
         self,
         model: Model,
-        contacts: Sequence[AnyContact],
+        contacts: Sequence[Contact],
         scale: float,
         attached: Attachments | None = None,
         sprung: Iterable[str] = (),
@@ -411,9 +411,9 @@ class Stabilisation(Term):
         text = f"body {body.name!r} is free to move: {modes}; {why} needs a support"
         raise InputError(text, f"step {step!r}")
 
-    def _of(self, body: Body) -> list[AnyContact]:
+    def _of(self, body: Body) -> list[Contact]:
         """Contacts of a body."""
         return [c for c in self._contacts if set(body.parts) & self._sides(c)]
 
-    def _sides(self, contact: AnyContact) -> set[str]:
+    def _sides(self, contact: Contact) -> set[str]:
         return {self._model.body_of(group) for group in contact.groups}

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import AnyContact
+from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
@@ -37,7 +37,7 @@ class Reach:
     def __init__(
         self,
         model: Model,
-        contacts: Sequence[AnyContact],
+        contacts: Sequence[Contact],
         steps: Sequence[Step],
         others: npt.NDArray[np.int32],
     ) -> None:
@@ -55,10 +55,10 @@ class Reach:
         self.nodes[self._others] = True
         for contact in self._contacts:
             for half in contact.passes:
-                if half.of_two_groups:
+                if contact.of_two_groups:
                     self._select_pass(half, self._reference + u)
                 else:
-                    self.nodes[half.couplable()] = True
+                    self.nodes[half.master.couplable()] = True
 
     def persistent(self) -> Arrays:
         """Where the last selection was made, and what came of it."""
@@ -87,7 +87,7 @@ class Reach:
         for contact in self._contacts:
             searched: tuple[Any, ...] = contact.passes if contact.of_two_groups else ()
             for half in searched:
-                sides = (half.slave_facets, half.master_facets)
+                sides = (half.slave_points.nodes, half.master.facets)
                 if sum(self._moved(side, u) for side in sides) > self._motion(half):
                     return False
         return True
@@ -100,7 +100,7 @@ class Reach:
 
     def _motion(self, half: Any) -> float:
         """Motion of slave and master that is allowed for, length."""
-        bodies = [self._ranges[name.partition(".")[0]] for name in (half.slave, half.master)]
+        bodies = [self._ranges[name.partition(".")[0]] for name in half.groups]
         planned = sum(float(np.linalg.norm(extent)) for extent in bodies)
         return float(self._factor * (planned + _SLACK * half.facet_size))
 
@@ -108,7 +108,7 @@ class Reach:
         from scipy.spatial import cKDTree  # slow to import, and not needed for analytic masters
 
         motion = self._motion(half)
-        facets, points = half.master_facets, half.points
+        facets, points = half.master.facets, half.points
         corners = x[facets]
         low, high = corners.min(axis=1), corners.max(axis=1)
         tree = cKDTree(0.5 * (low + high))
@@ -116,8 +116,8 @@ class Reach:
         nearest, _ = tree.query(points)
         near = half.state["facet"] >= 0
         nearest = np.where(near, np.minimum(nearest, np.abs(half.state["gap"])), nearest)
-        able = np.flatnonzero(nearest <= half.reach + motion + radius)
-        self.nodes[half.slave_facets[able]] = True
+        able = np.flatnonzero(nearest <= half.master.reach + motion + radius)
+        self.nodes[half.slave_points.nodes[able]] = True
         limit = nearest[able] + 2.0 * motion
         lists = tree.query_ball_point(points[able], limit + radius)
         facet = np.concatenate([np.zeros(0, dtype=np.int64), *map(np.asarray, lists)]).astype(int)

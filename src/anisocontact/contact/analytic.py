@@ -1,0 +1,298 @@
+"""A surface given by formulas as a master; it rests or moves with a rigid body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any, Self, override
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
+from anisocontact.contact.history import Snapshot
+from anisocontact.contact.master import Law, Master
+from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.quadrature import Surfaced
+from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.whereabouts import Seen, Whereabouts
+from anisocontact.interface import Interface, SlaveSurface, State
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.rigid import MovingInterface, RigidBody
+from anisocontact.surfaces import PROJECTION_STATUS
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+_INTERIOR = PROJECTION_STATUS.index("interior")
+
+#: A surface with its laws.
+type SurfaceLaw = Interface
+
+
+@dataclass(frozen=True)
+class AnalyticAnswer:
+    """What an interface answers at slave points, see `Answer`.
+
+    Attributes:
+        slave: The points.
+        there: Their facets in the configuration of the answer.
+        turned: The slave's surface, where the laws see it.
+        body: Rigid body that carries the surface, if one does.
+        snapshot: The points as they are then.
+        told: What `stiffness` is where the derivative is that of other laws.
+    """
+
+    slave: SlavePoints
+    there: Surfaced
+    turned: SlaveSurface | None
+    body: RigidBody | None
+    snapshot: Snapshot
+    told: Floats | None = None
+
+    @property
+    def stiffness(self) -> Floats:
+        """As of `Answer`."""
+        if self.told is not None:
+            return self.told
+        sizes = np.linalg.norm(self.snapshot.response.tangent, axis=(1, 2))
+        return np.asarray(sizes * self.snapshot.areas)
+
+    def add_force(self, out: Floats) -> None:
+        """As of `Answer`."""
+        self.slave.quadrature.to_nodes(self.snapshot.response.traction, out, self.snapshot.areas)
+
+    def couplings(self) -> list[Couplings]:
+        """As of `Answer`: a block for each facet, (m, 3 k, 3 k)."""
+        quadrature, now, areas = (
+            self.slave.quadrature,
+            self.snapshot.response,
+            self.snapshot.areas,
+        )
+        blocks = quadrature.facet_matrices(-now.tangent, areas)
+        if self.slave.current_area:
+            blocks -= self.there.area_matrices(now.traction)
+        if self.turned is not None:
+            blocks -= quadrature.tangent_matrices(now.tangent_slave, areas)
+        return [(quadrature.nodes, quadrature.nodes, blocks)]
+
+    def by_derivative(self, other: AnalyticAnswer, stiffness: Floats) -> Self:
+        """As of `Answer`."""
+        stiff = other.snapshot.response
+        response = replace(
+            self.snapshot.response, tangent=stiff.tangent, tangent_slave=stiff.tangent_slave
+        )
+        return replace(self, snapshot=replace(self.snapshot, response=response), told=stiffness)
+
+    def body_blocks(self) -> BodyBlocks:
+        """Rows and columns of the rigid body in the tangent.
+
+        Raises:
+            ValueError: The surface is that of no body.
+        """
+        if self.body is None:
+            raise ValueError("the surface is that of no rigid body")
+        moved = self.there if self.slave.current_area else None
+        return body_blocks(self.slave.quadrature, moved, self.body, self.snapshot, self.turned)
+
+
+class AnalyticMaster(Master):
+    """A surface with laws, for the slave points of one pass, see `Master`.
+
+    Args:
+        interface: Surface and laws.
+        body: Rigid body that carries the surface and its directions; it rests if None.
+        slave: The points.
+        comm: Communicator of the mesh.
+
+    Raises:
+        InputError: A point has no closest point on the surface, or directions do not go together.
+    """
+
+    def __init__(
+        self, interface: SurfaceLaw, body: RigidBody | None, slave: SlavePoints, comm: Any
+    ) -> None:
+        self.interface, self.body, self._slave, self._comm = interface, body, slave, comm
+        self._sees_slave = interface.takes_slave()
+        self._way = np.zeros_like(slave.quadrature.reference)
+        self._there = slave.quadrature.at_rest
+        self.take(interface, interface)
+
+    @override
+    def initial_state(self) -> State:
+        return self.interface.initial_state(self._slave.quadrature.reference)
+
+    @override
+    def take(self, laws: Law, derivative: Law) -> None:
+        on = self._on_body
+        self._laws, self._derivative = on(laws), on(derivative)
+
+    def _on_body(self, laws: Any) -> Any:
+        return laws if self.body is None else MovingInterface(laws, self.body)
+
+    @override
+    def place(self, u: Floats, *histories: State) -> bool:
+        self._way = self._slave.quadrature.at_points(u)
+        if self._slave.current_area or self._sees_slave:
+            self._there = self._slave.quadrature.moved(u)
+        return False
+
+    @override
+    def answer(
+        self,
+        state: State,
+        dt: float,
+        *,
+        tangent: bool = True,
+        derivative: bool = False,
+        separate: bool = False,
+    ) -> AnalyticAnswer:
+        slave, turned = self._slave, self._turned(self._there)
+        x = slave.quadrature.reference + self._way
+        laws = self._derivative if derivative else self._laws
+        response = laws.update(state, x, dt, slave=turned)
+        snapshot = Snapshot(x, slave.areas(self._there), response)
+        return AnalyticAnswer(slave, self._there, turned, self.body, snapshot)
+
+    @override
+    def linear(self, answer: AnalyticAnswer) -> AnalyticLinear:
+        return AnalyticLinear(self, answer)
+
+    @override
+    def here(self, state: State, dt: float) -> State:
+        return self.answer(state, dt).snapshot.response.state
+
+    @override
+    def at(self, state: State) -> tuple[Floats, Floats]:
+        jet = self.interface.surface.jet(state["xi"])
+        return jet.position, jet.d1
+
+    @override
+    def into_frame(self, vectors: Floats) -> Floats:
+        return vectors if self.body is None else np.asarray(vectors @ self.body.trial.rotation)
+
+    @override
+    def out_of_frame(self, vectors: Floats) -> Floats:
+        return vectors if self.body is None else self.body.to_space(vectors)
+
+    def displaced(self) -> Floats:
+        """Displacements of the points as seen from the surface, (n, 3), length."""
+        if self.body is None:
+            return self._way
+        pose, arms = self.body.trial, self._slave.quadrature.reference - self.body.reference
+        return np.asarray(
+            arms @ (pose.rotation - np.eye(3)) + (self._way - pose.translation) @ pose.rotation
+        )
+
+    def slave_tangents(self) -> Floats | None:
+        """Tangents of the slave in the frame of the surface, (n, 2, 3); None where none is seen."""
+        turned = self._turned(self._there)
+        return None if turned is None else self.into_frame(turned.tangents)
+
+    @override
+    def stiffness(self, diagonal: Floats) -> float:
+        nodes = self.couplable()
+        nodes = nodes[nodes < len(diagonal)]
+        local = np.array([diagonal[nodes].mean(axis=1).sum(), self._slave.quadrature.areas.sum()])
+        stiffness, area = self._comm.allreduce(local)
+        return float(stiffness / area)
+
+    @override
+    def couplable(self) -> Ints:
+        return np.unique(self._slave.quadrature.nodes).astype(np.int32)
+
+    @override
+    def look(self, x: Floats) -> Seen:
+        return self._look(x if self.body is None else self.body.to_body(x))
+
+    def _look(self, x: Floats, _: object = None) -> Seen:
+        hit = self.interface.surface.project(x)
+        return Seen(hit.status == _INTERIOR, hit.gap, hit.dgap_dx)
+
+    @override
+    def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
+        outward = self._slave.outward_of(self._slave.quadrature.moved(u))
+        places, last = now.points, before.points
+        if self.body is not None:
+            last, places = self.body.to_body(last, accepted=True), self.body.to_body(places)
+        everywhere = np.ones(len(places), dtype=bool)
+        return Whereabouts(
+            before=last,
+            now=places,
+            outward=self.into_frame(outward),
+            closed=now.response.status != 0,
+            located=everywhere,
+            had=everywhere,
+            normal=self.into_frame(now.response.normal),
+            areas=now.areas,
+            size=self._slave.size,
+            reach=np.inf,
+            look=self._look,
+            comm=self._comm,
+        )
+
+    @override
+    def probe(
+        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
+    ) -> npt.NDArray[np.int8]:
+        interface = Interface(self.interface.surface, *laws)
+        at_rest = self._slave.quadrature.at_rest
+        slave = self._turned(at_rest) if interface.takes_slave() else None
+        x = self._slave.quadrature.reference
+        return interface.update(state, x, tangent=False, slave=slave).failure
+
+    @override
+    def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+        return kept | {"reference": self._slave.quadrature.reference.copy()}
+
+    def _turned(self, there: Surfaced) -> SlaveSurface | None:
+        """The slave in some configuration, where the laws see it."""
+        if not self._sees_slave:
+            return None
+        quadrature = self._slave.quadrature
+        return SlaveSurface(
+            quadrature.reference,
+            quadrature.tangents.reshape(-1, 2, 3),
+            there.tangents.reshape(-1, 2, 3),
+        )
+
+
+class AnalyticLinear:
+    """Linear change of the tractions about an answer, see `Linear`.
+
+    The tangent is so stiff that the rounding of positions would be felt in their difference:
+    displacements are taken.
+
+    Args:
+        master: The master, where the answer was given.
+        answer: The answer.
+    """
+
+    def __init__(self, master: AnalyticMaster, answer: AnalyticAnswer) -> None:
+        self._master, self._areas, self._to_nodes = (
+            master,
+            answer.snapshot.areas,
+            answer.slave.quadrature.to_nodes,
+        )
+        response = answer.snapshot.response
+        turn = np.eye(3) if master.body is None else master.body.trial.rotation
+        self._way, self._slave = master.displaced(), master.slave_tangents()
+        self._tangent = turn.T @ response.tangent @ turn
+        self._by_slave = turn.T @ response.tangent_slave @ turn
+
+    def change(self) -> Floats | None:
+        """As of `Linear`."""
+        way, slave = self._master.displaced(), self._master.slave_tangents()
+        if np.array_equal(way, self._way):
+            return None
+        change = np.einsum("nij,nj->ni", self._tangent, way - self._way)
+        if slave is not None and self._slave is not None:
+            change += np.einsum("nkij,nkj->ni", self._by_slave, slave - self._slave)
+        return np.asarray(change)
+
+    def slipped(self, slip: Floats) -> Floats:
+        """As of `Linear`."""
+        return np.asarray(np.einsum("nij,nj->ni", self._tangent, slip))
+
+    def add_force(self, slip: Floats, out: Floats) -> None:
+        """As of `Linear`."""
+        self._to_nodes(self._master.out_of_frame(self.slipped(slip)), out, self._areas)

@@ -1,0 +1,309 @@
+"""Facets of a mesh as a master: large sliding, both sides deforming."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any, override
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.facet_answer import ByPoints, Evaluation, FacetAnswer
+from anisocontact.contact.gathering import gather, gather_named
+from anisocontact.contact.held_feet import HeldFeet, footing, on_held_facets
+from anisocontact.contact.history import Snapshot
+from anisocontact.contact.master import Master
+from anisocontact.contact.point_tangent import Nodes, PointTangent
+from anisocontact.contact.reachable import NodePairs, reachable, slid
+from anisocontact.contact.sides import Sides, initial_state, located
+from anisocontact.contact.transfer import Transfer
+from anisocontact.contact.transfer_work import transfer_work
+from anisocontact.contact.whereabouts import Seen, Whereabouts, carried
+from anisocontact.interface import ContactLaw, State
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.surfaces.facets import FacetProjections
+
+Mask = npt.NDArray[np.bool_]
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+
+class FacetMaster(Master):
+    """The closest facets below the slave points of one pass, where both are now, see `Master`.
+
+    Args:
+        sides: Slave points and facets.
+        law: Laws of the interface.
+        group: Facet group of the master.
+        size: Length of its facets.
+        mirrored: Whether angles of directions count about the normal of the slave, not of the
+            master: the other way round.
+        overlaps: Whether forces on the master are integrated over the overlaps of the facets (see
+            `Transfer`) or act at the feet of the slave points.
+
+    Attributes:
+        sides: As given, with the facets that this rank has now.
+    """
+
+    # projections start from the last ones, and could come back to another facet
+    retraceable = False
+
+    def __init__(
+        self,
+        sides: Sides,
+        law: ContactLaw,
+        *,
+        group: str,
+        size: float,
+        mirrored: bool,
+        overlaps: bool,
+    ) -> None:
+        self.groups, self.size, self.reach = (group,), size, sides.reach
+        self.sides, self._mirrored, self._dtype = sides, mirrored, law.dtype
+        self._gathered, self._comm = sides.gathered, sides.comm
+        self._transfer = Transfer(sides) if overlaps else None
+        self._transferred = 0.0
+        self._count = len(sides.points.facet)
+        self._nodes = Nodes(sides.reference, np.zeros_like(sides.reference))
+        self._hint: FacetProjections = sides.project(sides.reference)
+        self._accepted = (self._gathered.local(sides.reference), self._hint)
+        self.take(law, law)
+        self.begin()
+        if self._transfer is not None:
+            self._transfer.place(sides.reference)
+
+    @property
+    def facets(self) -> Ints:
+        """Nodes of the facets that this rank has, (m, k)."""
+        return self.sides.master.nodes
+
+    @property
+    def numbers(self) -> npt.NDArray[np.int64]:
+        """Their numbers in the whole group."""
+        return self._gathered.numbers
+
+    @override
+    def initial_state(self) -> State:
+        return initial_state(self._hint, self._dtype)
+
+    @override
+    def take(self, laws: ContactLaw, derivative: ContactLaw) -> None:
+        self._law = laws.pairs(self._mirrored)
+        self._derivative = self._law if derivative is laws else derivative.pairs(self._mirrored)
+
+    @override
+    def place(self, u: Floats, *histories: State) -> bool:
+        anew = self._gather(u, histories)
+        moved = np.array(self._gathered.everywhere(u))
+        self._nodes = Nodes(self.sides.reference + moved, moved)
+        self._hint = self._project(self._hint)
+        return anew
+
+    def _gather(self, u: Floats, histories: tuple[State, ...]) -> bool:
+        """Have all facets of the master that the points can reach; whether there are others."""
+        if not self._gathered.distributed:
+            return False
+        now = self._gathered.local(self.sides.reference) + u
+        anew = self.sides.outrun(now)
+        if anew:
+            hints = (self._hint, self._accepted[1], *self._held.hints)
+            self.sides = gather(self.sides, now, histories, hints, self._transfer)
+        return anew
+
+    def _project(self, before: FacetProjections) -> FacetProjections:
+        now, held = self._nodes.now, self._held.points
+        hit = self.sides.project(now, before)
+        if held.any():
+            hit = on_held_facets(self.sides, now, hit, before.facet, held)
+        return hit
+
+    @override
+    def answer(
+        self,
+        state: State,
+        dt: float,
+        *,
+        tangent: bool = True,
+        derivative: bool = False,
+        separate: bool = False,
+    ) -> FacetAnswer[Any]:
+        separate = separate or self._transfer is not None
+        asked = Evaluation(self.sides, self._hint, self._nodes.now, self._transfer, separate)
+        return asked.answer(self._derivative if derivative else self._law, state, dt, tangent)
+
+    @override
+    def settled(self, answer: FacetAnswer[Any]) -> FacetAnswer[Any]:
+        return answer if self._transfer is None else answer.handed_over(self._nodes.now)
+
+    @override
+    def linear(self, answer: FacetAnswer[ByPoints]) -> PointTangent:
+        return PointTangent(self.sides.points, lambda: self._nodes, answer)
+
+    @override
+    def here(self, state: State, dt: float) -> State:
+        there = state.copy()
+        there["facet"] = np.where(located(self._hint), self._hint.facet, -1)
+        there["xi"] = np.nan_to_num(self._hint.xi)
+        return there
+
+    @override
+    def at(self, state: State) -> tuple[Floats, Floats]:
+        return self.sides.place(state)
+
+    @override
+    def located(self, state: State) -> Mask:
+        return np.asarray(state["facet"] >= 0)
+
+    @override
+    def stiffness(self, diagonal: Floats) -> float:
+        return self.sides.stiffness(diagonal)
+
+    @override
+    def couplable(self) -> Ints:
+        return np.union1d(self.sides.slave.nodes, self._gathered.own.nodes).astype(np.int32)
+
+    @override
+    def feet(self) -> Ints:
+        return np.unique(self.sides.master.nodes[self._hint.facet[located(self._hint)]])
+
+    @override
+    def look(self, x: Floats) -> Seen:
+        return self.sides.look(x)
+
+    @override
+    def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
+        sides = self.sides
+        there = sides.reference + self._gathered.everywhere(u)
+        then = self._gathered.everywhere(self._accepted[0])
+        nodes = np.unique(sides.master.nodes)
+        return Whereabouts(
+            before=carried(before.points, then[nodes], there[nodes]),
+            now=now.points,
+            outward=sides.points.outward_of(sides.points.at(there)),
+            closed=now.response.status != 0,
+            located=self.located(now.response.state),
+            had=self.located(state),
+            normal=now.response.normal,
+            areas=now.areas,
+            size=sides.points.size,
+            reach=self.reach,
+            look=sides.look,
+            comm=self._comm,
+        )
+
+    @override
+    def probe(
+        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
+    ) -> npt.NDArray[np.int8]:
+        asked = Evaluation(self.sides, self._hint, self._nodes.now, None, False)
+        law = ContactLaw(*laws).pairs(self._mirrored)
+        return asked.answer(law, state, 1.0, False).snapshot.response.failure
+
+    @override
+    def reachable(self, way: Floats, margin: float, hops: int) -> list[NodePairs]:
+        alone = self._transfer is None
+        return reachable(self.sides, self._nodes.now, way, margin, hops, alone)
+
+    @override
+    def slid(self, state: State) -> Floats:
+        return slid(self.sides, state, self._hint)
+
+    @override
+    def footing(self, count: int) -> npt.NDArray[np.int64]:
+        return footing(self._hint, self._gathered.globally(self._hint.facet))
+
+    @override
+    def hold(self, points: Mask) -> None:
+        self._held.points |= points
+
+    @override
+    def strayed(self, count: int) -> Floats:
+        held = self._held.points
+        wrong = np.zeros(len(held))
+        if held.any():
+            closest = self.sides.project(self._nodes.now, self._hint)
+            both = held & located(closest) & located(self._hint)
+            wrong[both] = np.abs(closest.gap - self._hint.gap)[both]
+        return wrong
+
+    @override
+    def let_go(self) -> bool:
+        any_let_go = self._held.points.any() and self._held.let_go(
+            self._hint, self.sides.project(self._nodes.now, self._hint)
+        )
+        return self._anywhere(bool(any_let_go))
+
+    @override
+    def hold_again(self) -> bool:
+        before = self._held.again()
+        if before is not None:
+            self._hint = before
+        return self._anywhere(before is not None)
+
+    def _anywhere(self, here: bool) -> bool:
+        return bool(self._comm.allreduce(int(here)))
+
+    @override
+    def begin(self) -> None:
+        self._held = HeldFeet(self._count)
+
+    @override
+    def commit(self, before: Snapshot, state: State, now: Snapshot | None) -> Floats:
+        left = np.zeros((0, 3))
+        if now is not None:
+            left = np.concatenate(self._comm.allgather(self.sides.lost(state, now)))
+            if self._transfer is not None:
+                step = self._nodes.now - self._gathered.everywhere(self._accepted[0])
+                work = transfer_work(self.sides, self._transfer, step, (before, now))
+                self._transferred += self._comm.allreduce(work)
+                self._transfer.place(self._nodes.now)
+        self._accepted = (self._gathered.local(self._nodes.now), self._hint)
+        return left
+
+    @override
+    def roll_back(self, tried: bool) -> None:
+        if tried:
+            place, self._hint = self._accepted
+            self._go_to(self._gathered.everywhere(place))
+        if self._transfer is not None:
+            self._transfer.roll_back()
+
+    def _go_to(self, now: Floats) -> None:
+        """Bring the surface to positions of the nodes, (nodes, 3), length."""
+        self._nodes = Nodes(now, now - self.sides.reference)
+        self.sides.surface.update(now)
+
+    @override
+    def energies(self) -> dict[str, float]:
+        return {} if self._transfer is None else {"transfer": self._transferred}
+
+    @override
+    def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+        hint = self._accepted[1]
+        kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
+        for facets in (kept["state"]["facet"], kept["projection.facet"]):
+            facets[:] = self._gathered.globally(facets)
+        return kept | {
+            "reference": self.sides.points.positions(self.sides.reference),
+            "transferred": np.full(self._count, self._transferred),
+        }
+
+    @override
+    def restore(
+        self, kept: Mapping[str, npt.NDArray[Any]], u: Floats
+    ) -> Mapping[str, npt.NDArray[Any]]:
+        kept = {name: values.copy() for name, values in kept.items()}
+        named = kept["state"]["facet"], kept["projection.facet"]
+        now = self._gathered.local(self.sides.reference) + u
+        self.sides = gather_named(self.sides, now, named, self._transfer)
+        ends = [v.max(initial=0.0) for v in (kept["transferred"], -kept["transferred"])]
+        most, least = np.max(self._comm.allgather(ends), axis=0)
+        self._transferred = float(most - least)
+        names = [f.name for f in fields(FacetProjections)]
+        self._hint = FacetProjections(*(np.array(kept[f"projection.{n}"]) for n in names))
+        self._go_to(self.sides.reference + self._gathered.everywhere(u))
+        self._accepted = (self._gathered.local(self._nodes.now), self._hint)
+        if self._transfer is not None:
+            self._transfer.place(self._nodes.now)
+        return kept

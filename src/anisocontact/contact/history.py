@@ -1,0 +1,88 @@
+"""Slave points at one state, and what slip has come to on the way there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.interface import STATUS, Response, State
+
+Floats = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Slave points at one state.
+
+    Attributes:
+        points: Where they are, (n, 3), length.
+        areas: Area of each, (n,), length^2.
+        response: What the interface answers.
+    """
+
+    points: Floats
+    areas: Floats
+    response: Response
+
+    @property
+    def forces(self) -> Floats:
+        """Force on the slave at each point, (n, 3)."""
+        return self.areas[:, None] * self.response.traction
+
+    def wrench(self, about: Floats, traction: Floats | None = None) -> Floats:
+        """Force and moment about a point on the slave over the points of this rank, (6,).
+
+        Args:
+            about: Point of the moment, (3,), length.
+            traction: On the slave, (n, 3), stress; that of the response if not given.
+        """
+        forces = self.forces if traction is None else self.areas[:, None] * traction
+        moments = np.cross(self.points - about, forces)
+        return np.concatenate([forces.sum(axis=0), moments.sum(axis=0)])
+
+
+@dataclass(frozen=True)
+class Slid:
+    """What slip has come to at slave points since the start.
+
+    Attributes:
+        way: Length of the sliding path, (n,), length.
+        work: What friction has dissipated, (n,), energy/area.
+        touching: Where there is contact, (n,).
+    """
+
+    way: Floats
+    work: Floats
+    touching: npt.NDArray[np.bool_]
+
+    @classmethod
+    def of(cls, state: State) -> Slid:
+        """That of a state."""
+        touching = state["status"] != STATUS.index("open")
+        return cls(state["slip_accumulated"].copy(), state["dissipation"].copy(), touching)
+
+
+def dissipated(state: State, way: Sequence[Slid], end: State) -> Floats:
+    """What friction has dissipated since the start, with the way there taken piece by piece, (n,).
+
+    The law takes the slip from the accepted state at once, `D = -T . s` with the force of the end.
+    Along a way on which the force has changed the sum of the means is right to second order; while
+    a point has not slipped its force at yield is taken for that of the next state.
+
+    Args:
+        state: The accepted state.
+        way: What slip had come to on the way.
+        end: The state where the way ends.
+    """
+    before, total = Slid.of(state), state["dissipation"].copy()
+    slid, force = np.zeros_like(total), np.zeros_like(total)
+    for now in (*way, Slid.of(end)):
+        length, work = now.way - before.way, now.work - before.work
+        at_yield = np.divide(work, length, out=force.copy(), where=length > 0.0)
+        first = np.where(slid > 0.0, force, at_yield)
+        total += np.where(now.touching, 0.5 * (first + at_yield) * (length - slid), 0.0)
+        slid, force = length, at_yield
+    return np.asarray(total)

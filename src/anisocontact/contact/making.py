@@ -1,0 +1,205 @@
+"""Passes over slave points from what a contact is given."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, replace
+from typing import Any, TypedDict
+
+from anisocontact.base.errors import InputError
+from anisocontact.contact.analytic import AnalyticMaster, SurfaceLaw
+from anisocontact.contact.facet_master import FacetMaster
+from anisocontact.contact.facet_mesh import facet_mesh
+from anisocontact.contact.one_pass import Pass
+from anisocontact.contact.penalty import facet_size
+from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.quadrature import chosen_degree, facet_quadrature
+from anisocontact.contact.sides import check_sides, make_sides
+from anisocontact.interface import ContactLaw, Interface
+from anisocontact.interface.augmentation import Augmentation
+from anisocontact.mesh import Model
+from anisocontact.rigid import MovingSurface, RigidBody
+from anisocontact.surfaces import Surface
+
+#: Reference distance below which facets of self-contact do not meet, in facet sizes: more than the
+#: search reaches, so that nothing touches at the start.
+APART = 3.0
+
+#: A surface, or one that has its laws, which may move.
+type SurfaceMaster = Surface | SurfaceLaw | MovingSurface
+
+
+@dataclass(frozen=True)
+class Options:
+    """Arguments of `Contact` that have a default."""
+
+    degree: int | None = None
+    current_area: bool | None = None
+    augmentation: Augmentation | None = None
+    adjust: float | None = None
+    reach: float | None = None
+    two_half: bool = False
+    self_contact: bool = False
+    apart: float | None = None
+    overlaps: bool = False
+
+    def chosen_degree(self, model: Model) -> int:
+        """Degree of the quadrature."""
+        return chosen_degree(self.degree, model.order, self.augmentation is not None)
+
+    @property
+    def of_pass(self) -> dict[str, Any]:
+        """What a pass takes."""
+        return {
+            "augmentation": self.augmentation,
+            "adjust": self.adjust,
+            "area_told": self.current_area is not None,
+        }
+
+
+class Before(TypedDict, total=False):
+    """Arguments of `Contact` of before, for one more version."""
+
+    interface: SurfaceLaw
+    body: RigidBody | None
+
+
+def given_master(master: str | SurfaceMaster | None, before: Before) -> str | SurfaceMaster | None:
+    """The master, also from arguments of before.
+
+    Raises:
+        TypeError: There are other arguments.
+    """
+    if unknown := sorted(set(before) - set(Before.__annotations__)):
+        raise TypeError(f"Contact() got an unexpected keyword argument {unknown[0]!r}")
+    if not before:
+        return master
+    text = "interface, body: take master=interface or master=MovingSurface(interface, body)"
+    warnings.warn(text, DeprecationWarning, stacklevel=3)
+    surface: Any = before.get("interface", master)
+    return MovingSurface(surface, before.get("body"))
+
+
+def passes_of(
+    model: Model,
+    slave: str,
+    master: str | SurfaceMaster | None,
+    law: ContactLaw | None,
+    options: Options,
+) -> tuple[Pass, ...]:
+    """The passes of a contact, see `Contact`."""
+    if not isinstance(master, str):
+        return (_on_surface(model, slave, master, law, options),)
+    laws = _laws(law)
+    both_sides = options.two_half or options.self_contact
+    if both_sides and options.augmentation is not None:
+        raise InputError("given, but both sides are slaves: they need penalties", "augmentation")
+    if options.self_contact:
+        return (_folded(model, slave, master, laws, options),)
+    if not options.two_half:
+        return (facet_pass(model, slave, master, laws, options),)
+    return tuple(
+        facet_pass(model, *sides, laws, options, weight=0.5, mirrored=mirrored, overlaps=True)
+        for sides, mirrored in (((slave, master), False), ((master, slave), True))
+    )
+
+
+def _on_surface(
+    model: Model, slave: str, master: Any, law: ContactLaw | None, options: Options
+) -> Pass:
+    facets = model.boundary(slave, "slave")
+    for name in ("reach", "two_half", "self_contact", "apart", "overlaps"):
+        if getattr(options, name):
+            raise InputError("given, but the master is a surface", name)
+    moving = isinstance(master, MovingSurface)
+    body, surface = (master.body, master.surface) if moving else (None, master)
+    interface = _with_laws(surface, law)
+    quadrature = facet_quadrature(model.space, facets, options.chosen_degree(model))
+    comm = model.mesh.comm
+    current = options.current_area is not False
+    flip = facet_mesh(model.space, facets).flip
+    points = SlavePoints(quadrature, flip, current_area=current, comm=comm)
+    found = AnalyticMaster(interface, body, points, comm)
+    return Pass(model.space, slave, points, found, interface, **options.of_pass)
+
+
+def _laws(law: object) -> ContactLaw:
+    """Laws without a surface."""
+    if not isinstance(law, ContactLaw):
+        given = "nothing" if law is None else type(law).__name__
+        raise InputError(f"{given} given, ContactLaw needed", "law")
+    return law
+
+
+def _with_laws(surface: Any, law: ContactLaw | None) -> SurfaceLaw:
+    """A surface with laws, one of which has to bring them."""
+    if isinstance(surface, Surface):
+        return Interface(surface, _laws(law))
+    if not isinstance(surface, Interface):
+        text = f"{type(surface).__name__} given, a surface, an Interface or a facet group needed"
+        raise InputError(text, "master")
+    if law is not None:
+        raise InputError("given, but the master has laws", "law")
+    return surface
+
+
+def _folded(model: Model, slave: str, master: str, law: ContactLaw, options: Options) -> Pass:
+    """Self-contact, a group against itself: every facet is slave and master.
+
+    What is near in the reference configuration does not count: neighbours, and the other side of a
+    thin wall.
+    """
+    if master != slave:
+        text = f"{master!r} given, {slave!r} needed: the slave is its own master"
+        raise InputError(text, "master")
+    model.facets(slave, "slave")
+    size = facet_size(model, slave) if model.count_facets(slave) else 0.0
+    apart = APART * size if options.apart is None else options.apart
+    reach = min(2.0 * size, apart) if options.reach is None else options.reach
+    options = replace(options, apart=apart, reach=reach)
+    return facet_pass(model, slave, slave, law, options, weight=0.5, overlaps=True)
+
+
+def facet_pass(
+    model: Model,
+    slave: str,
+    master: str,
+    law: ContactLaw,
+    options: Options,
+    *,
+    weight: float = 1.0,
+    mirrored: bool = False,
+    overlaps: bool = False,
+) -> Pass:
+    """A pass against facets.
+
+    Args:
+        model: Mesh with both groups.
+        slave: Facet group of the slave.
+        master: Facet group of the master.
+        law: Laws.
+        options: As of `Contact`.
+        weight: Share of the work of this pass: 0.5 for each of two half passes.
+        mirrored: Whether angles of directions count about the normal of the slave, not of the
+            master: the other way round.
+        overlaps: Whether forces on the master are integrated over overlaps whatever was asked for.
+    """
+    check_sides(model, slave, master, options.apart)
+    sides = make_sides(
+        model,
+        (slave, master),
+        options.chosen_degree(model),
+        options.reach,
+        options.apart,
+        options.current_area is not False,
+        weight,
+    )
+    found = FacetMaster(
+        sides,
+        law,
+        group=master,
+        size=facet_size(model, master),
+        mirrored=mirrored,
+        overlaps=overlaps or options.overlaps,
+    )
+    return Pass(model.space, slave, sides.points, found, law, **options.of_pass)

@@ -1,0 +1,282 @@
+"""What a pass over slave points is composed of, as its parts see each other."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Protocol, Self
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.history import Snapshot
+from anisocontact.contact.reachable import NodePairs
+from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.whereabouts import Seen, Whereabouts
+from anisocontact.interface import Response, State
+from anisocontact.interface.series import History
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.rigid import RigidBody
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int32]
+Mask = npt.NDArray[np.bool_]
+
+
+class Law(Protocol):
+    """Laws of an interface, with a surface or without one."""
+
+    normal: NormalLaw
+
+    def penalties(self) -> tuple[float, float]:
+        """Normal penalty and least tangential stiffness, stress/length."""
+
+    def slip_stiffness(self, dt: float) -> float:
+        """Largest stiffness against slip in an increment of time, stress/length."""
+
+    def stiffened(self, normal: float, tangential: float = 1.0) -> Self:
+        """The laws with other penalties."""
+
+    def in_series(self, compliance: float, dt: float) -> tuple[Self, History]:
+        """The laws with a compliant layer behind adhesion."""
+
+
+class Answer(Protocol):
+    """What laws answer at slave points at one state, as forces on nodes and their derivative."""
+
+    @property
+    def snapshot(self) -> Snapshot:
+        """The points."""
+
+    @property
+    def stiffness(self) -> Floats:
+        """Size of the derivative of the force of each point, (n,), force/length."""
+
+    def add_force(self, out: Floats) -> None:
+        """Add the forces on both bodies to the local nodes, (nodes, 3), force."""
+
+    def couplings(self) -> list[Couplings]:
+        """Where `-d force / d u` has entries, and the entries."""
+
+    def by_derivative(self, other: Any, stiffness: Floats) -> Self:
+        """The same with the derivative of another one.
+
+        Args:
+            other: The other.
+            stiffness: Of the laws themselves, as of `stiffness`.
+        """
+
+
+class Linear(Protocol):
+    """Linear change of the tractions about a trial, in the frame of the master."""
+
+    def change(self) -> Floats | None:
+        """Where the nodes have moved since, (n, 3), stress; None where they have not."""
+
+    def slipped(self, slip: Floats) -> Floats:
+        """Where slave points move by `slip`, (n, 3), stress."""
+
+    def add_force(self, slip: Floats, out: Floats) -> None:
+        """Add the forces on the nodes that belong to `slip`, (nodes, 3), force."""
+
+
+class Master(Protocol):
+    """What slave points meet, with the laws that are asked there: analytic, moving or meshed.
+
+    It calculates in a frame of its own, that of the surface as it was drawn.
+
+    Attributes:
+        groups: Facet group of it, if it is one.
+        body: Rigid body that carries it, if one does.
+        size: Length of its facets, 0 if it has none.
+        reach: Distance within which it is searched, length.
+        retraceable: Whether it answers at any state from the accepted one as if nothing was before.
+    """
+
+    groups: tuple[str, ...] = ()
+    body: RigidBody | None = None
+    size: float = 0.0
+    reach: float = np.inf
+    retraceable: bool = True
+
+    def initial_state(self) -> State:
+        """State of the points before the first step, free of force."""
+
+    def take(self, laws: Any, derivative: Any) -> None:
+        """Let other laws answer, and others where `answer` is asked for the derivative."""
+
+    def place(self, u: Floats, *histories: State) -> bool:
+        """Go where nodes are displaced by u, (nodes, 3), length; collective.
+
+        Args:
+            u: Displacement of the local nodes.
+            histories: Of the points, in which numbers of facets may have to be others.
+
+        Returns:
+            Whether linear changes of before are to be forgotten.
+        """
+
+    def answer(
+        self,
+        state: State,
+        dt: float,
+        *,
+        tangent: bool = True,
+        derivative: bool = False,
+        separate: bool = False,
+    ) -> Any:
+        """What the laws answer where the nodes are; nothing is changed.
+
+        Args:
+            state: State to start from.
+            dt: Time increment.
+            tangent: Whether derivatives are needed.
+            derivative: Whether the laws of the derivative are asked.
+            separate: Whether every point has to have a force of its own, for `linear`.
+        """
+
+    def settled(self, answer: Any) -> Any:
+        """An answer that is the trial, with forces on the master where they act."""
+        return answer
+
+    def linear(self, answer: Any) -> Linear:
+        """Linear change about an answer."""
+
+    def here(self, state: State, dt: float) -> State:
+        """A state at the coordinates where the points are."""
+
+    def at(self, state: State) -> tuple[Floats, Floats]:
+        """Its places at the coordinates of a state, (n, 3), and its tangents, (n, 2, 3), length."""
+
+    def located(self, state: State) -> Mask:
+        """Whether each point of a state has a surface below it, (n,)."""
+        return np.ones(len(state), dtype=bool)
+
+    def into_frame(self, vectors: Floats) -> Floats:
+        """Vectors of space in the frame of the master, (..., 3)."""
+        return vectors
+
+    def out_of_frame(self, vectors: Floats) -> Floats:
+        """Vectors of the frame of the master in space, (..., 3)."""
+        return vectors
+
+    def stiffness(self, diagonal: Floats) -> float:
+        """Traction per displacement of a single node, mean over the surface, stress/length.
+
+        Args:
+            diagonal: Diagonal of the stiffness of the bodies, of the nodes this rank owns,
+                (nodes, 3), force/length.
+        """
+
+    def couplable(self) -> Ints:
+        """Local nodes that the contact acts on; all ranks together have all of them."""
+
+    def feet(self) -> Ints:
+        """Local nodes of the master below points of the trial."""
+        return np.zeros(0, dtype=np.int32)
+
+    def reachable(self, way: Floats, margin: float, hops: int) -> list[NodePairs]:
+        """Nodes that couplings can name where the slave goes along a way, see `reachable`.
+
+        Args:
+            way: Displacement against the master at places along the way, of each point or one for
+                all, (w, n or 1, 3), length.
+            margin: How far beside the way a point can be, length.
+            hops: Places along the way that an increment goes.
+        """
+        return []
+
+    def slid(self, state: State) -> Floats:
+        """How far the foot of each point has slid since a state, (n, 3), length."""
+        return np.zeros((len(state), 3))
+
+    def look(self, x: Floats) -> Seen:
+        """The master where it is now from points of space, (n, 3), length."""
+
+    def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
+        """Where points are beside the master, in its frame; collective.
+
+        Args:
+            u: Displacement of the local nodes in the trial, (nodes, 3), length.
+            before: The points in the accepted state.
+            state: Their state.
+            now: The points in the trial.
+        """
+
+    def probe(
+        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
+    ) -> npt.NDArray[np.int8]:
+        """Why other laws would fail in the reference configuration, codes of `FAILURE`, (n,)."""
+
+    def footing(self, count: int) -> npt.NDArray[np.int64]:
+        """The facet, or feature of one, below each point in the trial, a code (n,).
+
+        Facets are numbered in the whole group; a smooth master is one.
+        """
+        return np.zeros(count, dtype=np.int64)
+
+    def hold(self, points: Mask) -> None:
+        """Hold points on the facet that they are on until the trial is kept or forgotten, (n,)."""
+        return
+
+    def strayed(self, count: int) -> Floats:
+        """How wrong the gaps of held points are: against those of the closest points, (n,), length.
+
+        It is zero where a point is above the facet on which it is held.
+        """
+        return np.zeros(count)
+
+    def let_go(self) -> bool:
+        """Let points go that are held beside their closest ones; whether there are any."""
+        return False
+
+    def hold_again(self) -> bool:
+        """Hold what was let go, after a solution that failed; whether there was any."""
+        return False
+
+    def begin(self) -> None:
+        """Take it that trials start from the accepted state."""
+        return
+
+    def commit(self, before: Snapshot, state: State, now: Snapshot | None) -> Floats:
+        """Make the trial the history; collective.
+
+        Args:
+            before: The points in the accepted state.
+            state: Their state.
+            now: The points in the trial, if there was one.
+
+        Returns:
+            Points that have left its end, of all ranks, (k, 3).
+        """
+        return np.zeros((0, 3))
+
+    def roll_back(self, tried: bool) -> None:
+        """Forget the trial, if there was one."""
+        return
+
+    def energies(self) -> dict[str, float]:
+        """Energies beside those of the points, by name."""
+        return {}
+
+    def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+        """What the next increments depend on, an entry for each point.
+
+        Args:
+            kept: What the pass has, with copies of its own.
+        """
+        return kept
+
+    def restore(
+        self, kept: Mapping[str, npt.NDArray[Any]], u: Floats
+    ) -> Mapping[str, npt.NDArray[Any]]:
+        """Go on from what `persistent` gave; the same for the pass.
+
+        Args:
+            kept: The state.
+            u: Displacement of the local nodes in that state, (nodes, 3), length.
+        """
+        return kept
+
+    def axes(self, answer: Response) -> Floats:
+        """Axes of adhesion in the frame of the master, (n, 2, 3)."""
+        return self.into_frame(answer.directions_adhesion)

@@ -1,0 +1,99 @@
+"""Where the law is evaluated: integration points on slave facets that move with their nodes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.quadrature import FacetQuadrature, Surfaced
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+
+class SlavePoints:
+    """Integration points of the slave facets of one pass.
+
+    Args:
+        quadrature: Points on the facets.
+        flip: Whether the normal of the tangents points into the body, of each facet, (m,).
+        current_area: Whether the area of a point is that of now or of the reference.
+        comm: Communicator of the mesh.
+        share: Share of the area that counts.
+
+    Attributes:
+        quadrature: The points, with the share of their area that counts.
+        facet: Number of the facet of each point, (n,).
+        current_area: As given, until `take_area`.
+        size: Length of a facet: square root of the mean area, over all ranks.
+    """
+
+    def __init__(
+        self,
+        quadrature: FacetQuadrature,
+        flip: npt.NDArray[np.bool_],
+        *,
+        current_area: bool,
+        comm: Any,
+        share: float = 1.0,
+    ) -> None:
+        count, each = quadrature.weights.shape
+        self.quadrature = replace(quadrature, weights=share * quadrature.weights)
+        self.facet = np.repeat(np.arange(count), each)
+        self.current_area = current_area
+        self._sign = np.where(np.repeat(flip, each), -1.0, 1.0)
+        area, facets = comm.allreduce(np.array([quadrature.weights.sum(), count]))
+        self.size = float(np.sqrt(area / max(facets, 1.0)))
+
+    def take_area(self, current: bool) -> None:
+        """Take the area of now, or that of the reference."""
+        self.current_area = current
+
+    @cached_property
+    def nodes(self) -> Ints:
+        """Local nodes of the facet of each point, (n, k)."""
+        return np.repeat(self.quadrature.nodes, self.quadrature.basis.shape[1], axis=0)
+
+    @cached_property
+    def shape(self) -> Floats:
+        """Their shape functions at the point, (n, k)."""
+        return np.ascontiguousarray(self.quadrature.basis.reshape(self.nodes.shape))
+
+    @cached_property
+    def gradient(self) -> Floats:
+        """Derivatives of these along the coordinates of the facet, (n, k, 2)."""
+        return np.ascontiguousarray(self.quadrature.gradient.reshape(*self.nodes.shape, 2))
+
+    @property
+    def weight(self) -> Floats:
+        """Area of each point, or where it is that of now what that of the tangents counts, (n,)."""
+        one = self.quadrature
+        return one.of_rule.reshape(-1) if self.current_area else one.areas
+
+    @cached_property
+    def outward(self) -> Floats:
+        """Outward normals in the reference configuration, (n, 3)."""
+        return self.outward_of(self.quadrature.at_rest)
+
+    def positions(self, now: Floats) -> Floats:
+        """Positions of the points, (n, 3), from those of the nodes, (nodes, 3), length."""
+        return self.quadrature.at_points(now)
+
+    def at(self, now: Floats) -> Surfaced:
+        """The facets with their nodes at positions, (nodes, 3), length."""
+        one = self.quadrature
+        return Surfaced(one, one.gradient.swapaxes(2, 3) @ now[one.nodes][:, None])
+
+    def areas(self, there: Surfaced) -> Floats:
+        """Areas of the points, (n,), of facets in some configuration, length^2."""
+        return there.areas if self.current_area else self.quadrature.areas
+
+    def outward_of(self, there: Surfaced) -> Floats:
+        """Outward normals, (n, 3), of facets in some configuration."""
+        cross = self._sign[:, None] * there.normals.reshape(-1, 3)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return np.asarray(cross / np.linalg.norm(cross, axis=1)[:, None])
