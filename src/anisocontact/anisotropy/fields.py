@@ -27,7 +27,7 @@ class DirectionField:
 
     Args:
         name: Name in the registry.
-        core: The field of the core.
+        values: Its parameters as the core takes them.
 
     Example:
         >>> from anisocontact.surfaces import make_surface
@@ -38,9 +38,10 @@ class DirectionField:
         ([0.6, 0.8, 0.0], [True, False])
     """
 
-    def __init__(self, name: str, core: _core.Field) -> None:
+    def __init__(self, name: str, values: dict[str, list[float]]) -> None:
         self.name = name
-        self.core = core
+        self.named = name, values
+        self.core = _core.Field(name, values)
 
     def __repr__(self) -> str:
         return f"DirectionField({self.name!r})"
@@ -82,7 +83,7 @@ def make_directions(name: str, **parameters: object) -> DirectionField:
     e = registry.entry(registry.direction_fields(), name, "kind")
     v = registry.values(e, parameters)
     try:
-        return DirectionField(name, _core.Field(name, v))
+        return DirectionField(name, v)
     except ValueError as error:
         raise InputError(f"direction field {name!r}: {error}") from None
 

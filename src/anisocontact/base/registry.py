@@ -289,6 +289,33 @@ def values(e: Entry, given: Mapping[str, object], prefix: str = "") -> dict[str,
     return result
 
 
+def arguments(e: Entry, numbers: Mapping[str, Sequence[float]]) -> dict[str, Any]:
+    """The way back from `values`: what a user would have given.
+
+    Args:
+        e: The entry.
+        numbers: A list of numbers for every parameter.
+
+    Returns:
+        Values by parameter name; angles in radian.
+
+    Example:
+        >>> ball = entry(surfaces(), "sphere")
+        >>> found = arguments(ball, values(ball, {"centre": (0, 0, 0), "radius": 2}))
+        >>> found["centre"], found["radius"]
+        ([0.0, 0.0, 0.0], 2.0)
+    """
+    return {p.name: _given(p, numbers[p.name]) for p in e.parameters}
+
+
+def _given(p: Parameter, numbers: Sequence[float]) -> Any:
+    if p.kind == "choice":
+        return p.choices[int(numbers[0])]
+    if p.kind == "flag":
+        return bool(numbers[0])
+    return numbers[0] if _SIZES.get(p.kind, p.count) == 1 else list(numbers)
+
+
 #: Angle in radian beyond which degrees must have been meant; rounding of a full turn is none.
 FULL_TURN = 2.0 * math.pi * (1.0 + 1e-12)
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import importlib.util
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.python_file import module_of
 from anisocontact.case import objects
 from anisocontact.case.model import ContactSection
 from anisocontact.case.section import near
@@ -103,7 +100,13 @@ def law_of(
         path = _found(resolve, given.file)
         if not execute:
             return None
-        module = _module(path, given.file)
+        if path.suffix != ".py":
+            raise InputError(f"'{given.file}' given, a Python file needed, '.py'", "file")
+        try:
+            module = module_of(path)
+        except (Exception, SystemExit) as error:
+            text = f"'{given.file}' cannot be run: {where_failed(error)}"
+            raise InputError(text, "file") from None
         kind = getattr(module, given.law, None)
         if not isinstance(kind, type):
             classes = {n: k for n, k in vars(module).items() if isinstance(k, type)}
@@ -124,31 +127,6 @@ def _found(resolve: Callable[[str], Path], given: str) -> Path:
     if not path.is_file():
         raise InputError(f"'{given}' given, no such file", "file")
     return path
-
-
-def _module(path: Path, given: str) -> ModuleType:
-    name = f"_law_of_{path.stem}"
-    spec = importlib.util.spec_from_file_location(name, path)
-    if spec is None or spec.loader is None:
-        raise InputError(f"'{given}' given, a Python file needed, '.py'", "file")
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module  # dataclasses look themselves up there
-    try:
-        with _beside(path):
-            spec.loader.exec_module(module)
-    except (Exception, SystemExit) as error:
-        raise InputError(f"'{given}' cannot be run: {where_failed(error)}", "file") from None
-    return module
-
-
-@contextmanager
-def _beside(path: Path) -> Iterator[None]:
-    """Modules beside the file can be imported by it."""
-    sys.path.insert(0, str(path.resolve().parent))
-    try:
-        yield
-    finally:
-        del sys.path[0]
 
 
 def _check_law(law: Any, name: str) -> None:

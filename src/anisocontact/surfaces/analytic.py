@@ -83,7 +83,7 @@ class Surface:
 
     Args:
         name: Name in the registry.
-        core: The surface of the core.
+        values: Its parameters as the core takes them.
 
     Example:
         >>> ball = make_surface("sphere", centre=(0, 0, 0), radius=2)
@@ -92,9 +92,10 @@ class Surface:
         [1.0]
     """
 
-    def __init__(self, name: str, core: _core.Surface) -> None:
+    def __init__(self, name: str, values: dict[str, list[float]]) -> None:
         self.name = name
-        self.core = core
+        self.named = name, values
+        self.core = _core.Surface(name, values)
 
     def __repr__(self) -> str:
         return f"Surface({self.name!r})"
@@ -210,6 +211,6 @@ def make_surface(name: str, **parameters: object) -> Surface:
     e = registry.entry(registry.surfaces(), name, "shape")
     v = registry.values(e, parameters)
     try:
-        return Surface(name, _core.Surface(name, v))
+        return Surface(name, v)
     except ValueError as error:
         raise InputError(f"surface {name!r}: {error}") from None
