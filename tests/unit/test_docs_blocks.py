@@ -143,6 +143,22 @@ def build_problem():
 problem = build_problem()
 steps = [Step("press", 2, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})]
 """,
+    "no-convergence": BLOCK
+    + """
+from pathlib import Path
+from anisocontact.solver import Limits
+
+ends = make_directions(
+    "tabulated-grid", lower=(-2, -2), upper=(0.8, 2), counts=(2, 2), vectors=[1, 0, 0] * 4,
+    interpolation="bilinear",
+)
+plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1), tangent=(1, 0, 0))
+friction = Friction(coefficients=(0.3, 0.1), directions=ends)
+interface = Interface(plane, NormalLaw(penalty=1e3), Adhesion(stiffness=(100, 100)), friction)
+problem = Problem(model, materials, [Contact(model, "block.bottom", interface)])
+way = {"block.top": {"x": 0.05, "y": 0.0, "z": -0.01}}
+solver = Solver(problem, [Step("drag", 1, way)], limits=Limits(cuts=0))
+""",
     "meshes": "",
     "point-loads": BLOCK + "from anisocontact.point import PrescribedPath, Push\n",
     "direction-fields": BLOCK
@@ -165,6 +181,8 @@ for one in (on_plane, on_base):
 """,
     "rigid-bodies": "assert abs(problem.rigid.contact_force(die)[2] - 100.0) < 1e-6",
     "restart": "assert again.place == solver.place",
+    "no-convergence": "from anisocontact.interface.failed_point import read_failed_point\n"
+    "assert read_failed_point(Path('failed_point.json')).evaluate().failure == point.failure",
     "meshes": "assert model.body_names() == ['wheel', 'plate']",
     "point-loads": "",
     "direction-fields": "assert friction.directions_second is milled",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 __all__ = ["InputError", "MachineError", "ModelWarning", "RunError", "one_line", "printable"]
 
 
@@ -47,11 +49,14 @@ class InputError(ValueError):
 
     Attributes:
         field: the dotted path as given.
+        failed: the slave point at which a law in Python failed, if one did: a `FailedPoint`.
 
     Example:
         >>> str(InputError("given -0.3, must be positive", field="friction.coefficients"))
         'friction.coefficients: given -0.3, must be positive'
     """
+
+    failed: Any = None
 
     def __init__(self, message: str, field: str = "") -> None:
         line = " ".join(message.split())

@@ -209,9 +209,11 @@ def _solve(built: Built, writer: Writer, asked: _Asked, facts: dict[str, Any]) -
     except StoppedError as stop:
         writer.log(f"stopped: {stop}")
         writer.log_culprits(stop.culprits)
+        writer.keep_failed(stop.failed)
         return "stopped", str(stop)
-    except InputError as error:  # a mistake that shows only where a step begins
+    except InputError as error:  # of a law in Python, or a mistake that shows where a step begins
         writer.log(f"stopped: {error}")
+        writer.keep_failed(error.failed)
         return "stopped", str(error)
     except WriteError as error:
         return "stopped", str(error)

@@ -66,6 +66,14 @@ def build_parser() -> argparse.ArgumentParser:
     _case_argument(trace)
     _output_arguments(trace)
 
+    replay = _command(
+        commands,
+        "replay",
+        "evaluate alone a point at which a law failed: state, trial, traction, tangent; "
+        "runs the Python file of a law of your own",
+    )
+    replay.add_argument("file", metavar="FILE.json", help="failed_point.json of a results folder")
+
     schema = _command(commands, "schema", "print the JSON Schema of the case file")
     schema.add_argument("--trace", action="store_true", help="of the case file of `trace`")
 

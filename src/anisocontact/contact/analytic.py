@@ -16,6 +16,7 @@ from anisocontact.contact.quadrature import Surfaced
 from anisocontact.contact.transfer import Couplings
 from anisocontact.contact.whereabouts import Seen, Whereabouts
 from anisocontact.interface import Interface, SlaveSurface, State
+from anisocontact.interface.failed_point import OnSurface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.rigid import MovingInterface, RigidBody
 from anisocontact.surfaces import PROJECTION_STATUS
@@ -123,7 +124,7 @@ class AnalyticMaster(Master):
 
     @override
     def take(self, laws: Law, derivative: Law) -> None:
-        on = self._on_body
+        on, self._given = self._on_body, laws
         self._laws, self._derivative = on(laws), on(derivative)
 
     def _on_body(self, laws: Any) -> Any:
@@ -152,6 +153,23 @@ class AnalyticMaster(Master):
         response = laws.update(state, x, dt, slave=turned)
         snapshot = Snapshot(x, slave.areas(self._there), response)
         return AnalyticAnswer(slave, self._there, turned, self.body, snapshot)
+
+    @override
+    def failed_point(self, i: int, state: State, dt: float, **of_point: Any) -> OnSurface:
+        body, turned = self.body, self._turned(self._there)
+        x = self._slave.quadrature.reference + self._way
+        slave = None
+        if turned is not None:
+            rows = (turned.reference, turned.reference_tangents, self.into_frame(turned.tangents))
+            slave = SlaveSurface(*(row[i : i + 1] for row in rows))
+        return OnSurface(
+            **of_point,
+            position=(x if body is None else body.to_body(x))[i],
+            dt=dt,
+            state=state[i : i + 1].copy(),
+            law=self._given,
+            slave=slave,
+        )
 
     @override
     def linear(self, answer: AnalyticAnswer) -> AnalyticLinear:

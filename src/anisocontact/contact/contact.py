@@ -8,6 +8,7 @@ from typing import Any, Unpack
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.making import Before, Options, SurfaceMaster, given_master, passes_of
@@ -16,6 +17,7 @@ from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.transfer import Couplings
 from anisocontact.interface import STATUS, ContactLaw, Response, State
 from anisocontact.interface.augmentation import Augmentation
+from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.mesh import Model
 from anisocontact.rigid import RigidBody
 
@@ -248,9 +250,18 @@ class Contact:
             The response of all passes as seen from the slave; the committed history is unchanged.
         """
         for half in self.passes:
-            half.update(u, dt)
+            try:
+                half.update(u, dt)
+            except InputError as error:  # a law in Python
+                error.failed = half.unanswered(self.name)
+                raise
         self._trial = seen_from_slave([half.current for half in self.passes])
         return self._trial.response
+
+    def failed_point(self) -> FailedPoint | None:
+        """The first point of this rank at which the laws have failed in the trial, if any has."""
+        found = (half.failed_point(self.name) for half in self.passes)
+        return next((point for point in found if point is not None), None)
 
     def commit(self) -> None:
         """Make the trial the history."""

@@ -200,7 +200,7 @@ class Evaluation:
             tangent: Whether derivatives are wanted.
         """
         slave, hit = self.sides.points, self.hit
-        found = self._found(law, state, dt, self._batch(state, tangent))
+        found = self._found(law, state, dt, self.batch(state, tangent))
         lost = hit.status == FACET_STATUS.index("failed")
         response = Response(
             traction=found["traction"],
@@ -222,7 +222,8 @@ class Evaluation:
             forces = ByFacets(found["force"], found["blocks"])
         return FacetAnswer(gathered, snapshot, found["stiffness"], forces)
 
-    def _batch(self, state: State, tangent: bool) -> FacetBatch:
+    def batch(self, state: State, tangent: bool = True) -> FacetBatch:
+        """Points and facets as the core takes them; arguments as of `answer`."""
         slave, master, hit = self.sides.points, self.sides.master, self.hit
         touches = hit.gap - state["offset"] <= NEAR * slave.size  # as far as rounding goes
         return {

@@ -21,6 +21,7 @@ from anisocontact.contact.transfer import Transfer
 from anisocontact.contact.transfer_work import transfer_work
 from anisocontact.contact.whereabouts import Seen, Whereabouts, carried
 from anisocontact.interface import ContactLaw, State
+from anisocontact.interface.failed_point import OnFacets, one_point
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces.facets import FacetProjections
 
@@ -89,7 +90,7 @@ class FacetMaster(Master):
 
     @override
     def take(self, laws: ContactLaw, derivative: ContactLaw) -> None:
-        self._law = laws.pairs(self._mirrored)
+        self._given, self._law = laws, laws.pairs(self._mirrored)
         self._derivative = self._law if derivative is laws else derivative.pairs(self._mirrored)
 
     @override
@@ -131,6 +132,20 @@ class FacetMaster(Master):
         separate = separate or self._transfer is not None
         asked = Evaluation(self.sides, self._hint, self._nodes.now, self._transfer, separate)
         return asked.answer(self._derivative if derivative else self._law, state, dt, tangent)
+
+    @override
+    def failed_point(self, i: int, state: State, dt: float, **of_point: Any) -> OnFacets:
+        asked = Evaluation(self.sides, self._hint, self._nodes.now, None, True)
+        batch, own = one_point(asked.batch(state), i, state)
+        return OnFacets(
+            **of_point,
+            position=self.sides.points.positions(self._nodes.now)[i],
+            dt=dt,
+            state=own,
+            law=self._given,
+            mirrored=self._mirrored,
+            batch=batch,
+        )
 
     @override
     def settled(self, answer: FacetAnswer[Any]) -> FacetAnswer[Any]:

@@ -134,6 +134,16 @@ class Master(Protocol):
             separate: Whether every point has to have a force of its own, for `linear`.
         """
 
+    def failed_point(self, i: int, state: State, dt: float, **of_point: Any) -> Any:
+        """A point at which the laws fail where the nodes are, whole, see `FailedPoint`.
+
+        Args:
+            i: The point.
+            state: State to start from, of all points.
+            dt: Time increment.
+            **of_point: What else is said of it.
+        """
+
     def settled(self, answer: Any) -> Any:
         """An answer that is the trial, with forces on the master where they act."""
         return answer

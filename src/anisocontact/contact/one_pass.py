@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks
 from anisocontact.contact.history import Slid, Snapshot, dissipated
@@ -21,8 +22,9 @@ from anisocontact.contact.schemes import USUAL, make_multipliers
 from anisocontact.contact.semismooth import RATIO, Base, Semismooth
 from anisocontact.contact.transfer import Couplings
 from anisocontact.contact.whereabouts import Seen, Whereabouts
-from anisocontact.interface import Response, State
+from anisocontact.interface import FAILURE, Response, State
 from anisocontact.interface.augmentation import Augmentation
+from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.rigid import RigidBody
 
@@ -94,6 +96,7 @@ class Pass:
         self._layer: Layer | None = None
         self._way: list[Slid] = []
         self._linear: Linear | None = None
+        self._dt = 1.0
         self._base: Base
         self._slip: Floats
         self.state = self._start = adjusted(master.initial_state(), adjust)
@@ -183,7 +186,7 @@ class Pass:
         Returns:
             The response; the committed history is unchanged.
         """
-        master, follower = self.master, self._follower
+        master, follower, self._dt = self.master, self._follower, dt
         if master.place(u, self.state, self._start, self.last.state):
             self._linear = None
         if follower is None:
@@ -192,6 +195,35 @@ class Pass:
             self._answer = self._linearised(follower, dt)
         self._trial = self._answer.snapshot
         return self._trial.response
+
+    def failed_point(self, contact: str) -> FailedPoint | None:
+        """The first point of this rank at which the laws have failed in the trial, if any has.
+
+        Args:
+            contact: Name of the contact.
+        """
+        failure = self.current.response.failure
+        if not failure.any():
+            return None
+        point = int(np.flatnonzero(failure)[0])
+        said = {"contact": contact, "point": point, "failure": FAILURE[failure[point]]}
+        found: FailedPoint = self.master.failed_point(point, self._start, self._dt, **said)
+        return found
+
+    def unanswered(self, contact: str) -> FailedPoint | None:
+        """The first point of this rank at which a law in Python fails when it is asked alone.
+
+        Args:
+            contact: Name of the contact.
+        """
+        for i in range(len(self._start)):
+            said = {"contact": contact, "point": i, "failure": ""}
+            point: FailedPoint = self.master.failed_point(i, self._start, self._dt, **said)
+            try:
+                point.evaluate()
+            except InputError as error:
+                return replace(point, failure=str(error))
+        return None
 
     def _linearised(self, follower: Semismooth | Layer, dt: float) -> Answer:
         """A trial to which the multipliers have followed, with the derivative of a Newton step."""

@@ -23,6 +23,8 @@ __all__ = [
     "write_text",
 ]
 
+#: A point at which the law failed, for `anisocontact replay`.
+FAILED = "failed_point.json"
 #: Everything a run writes into its folder.
 OWN = (
     "summary.json",
@@ -41,6 +43,7 @@ OWN = (
     "checkpoint.npz",
     "checkpoint",
     "run.log",
+    FAILED,
 )
 #: The file that is locked while a run goes on; a crash leaves it there, unlocked.
 LOCK = ".lock"

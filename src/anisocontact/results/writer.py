@@ -12,11 +12,12 @@ from pathlib import Path
 from typing import Any
 
 from anisocontact import __version__
-from anisocontact.base.errors import printable
+from anisocontact.base.errors import InputError, printable
 from anisocontact.contact import facet_size
+from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.results.checkpoint import keep_checkpoint
 from anisocontact.results.collection import Collection
-from anisocontact.results.files import Disk, clear, clear_drafts, write_text
+from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
 from anisocontact.results.no_energy import told
 from anisocontact.results.paraview import Bodies, slave_points
@@ -101,6 +102,7 @@ class Writer:
         self.folder.mkdir(parents=True, exist_ok=True)
         if resumed:
             clear_drafts(self.folder)
+            (self.folder / FAILED).unlink(missing_ok=True)
         else:
             clear(self.folder)
             write_text(self.folder / "run.log", f"anisocontact {__version__}\n")
@@ -220,6 +222,17 @@ class Writer:
             self.log(f"    {one}")
         if count > len(culprits):
             self.log(f"    and {count - len(culprits)} more")
+
+    def keep_failed(self, point: FailedPoint | None) -> None:
+        """Write a point at which the laws failed, if this rank has one."""
+        if point is None:
+            return
+        try:
+            self._disk.write_each(lambda: point.write(self.folder / FAILED))
+            said = f"the point is kept: anisocontact replay {self.folder / FAILED}"
+        except InputError as error:
+            said = f"{FAILED} is not written: {error}"
+        self._disk.write_each(lambda: self._append(said))
 
     def close(self, status: str, message: str = "") -> None:
         """Write the end of the run and its report.

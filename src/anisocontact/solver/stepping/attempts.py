@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 
 from anisocontact.base.fenicsx import Vec
 from anisocontact.contact.schemes import IN_CYCLES, SOFTER, USUAL
+from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.acceptance import refused
 from anisocontact.solver.stepping.continuation import Continuation
-from anisocontact.solver.stepping.culprits import find_culprits
+from anisocontact.solver.stepping.culprits import failed_point, find_culprits
 from anisocontact.solver.stepping.turned import TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.strategies.newton import NewtonResult
@@ -33,12 +34,14 @@ class Outcome:
         culprits: Places that caused the failure of one of them.
         final: Whether no smaller part can help, see `Refusal`.
         hint: What may be behind the failure, and what to do about it.
+        failed: A point at which the laws failed, on the first rank that has one.
     """
 
     result: NewtonResult
     culprits: tuple[Culprit, ...] = ()
     final: bool = False
     hint: str = ""
+    failed: FailedPoint | None = None
 
 
 @dataclass(frozen=True)
@@ -93,6 +96,7 @@ class Attempts:
         self._watch = watch
         self._share = 1.0
         self._final = False
+        self._failed: FailedPoint | None = None
         self._continuation = Continuation(problem, newton)
 
     def solve(self, first: Vec, last: Vec, small: bool = False, tiny: bool = False) -> Outcome:
@@ -107,7 +111,7 @@ class Attempts:
         Returns:
             Whether one converged, and what kept the others from it.
         """
-        spent = 0
+        spent, self._failed = 0, None
         found: list[Culprit] = []
         seen: set[str] = set()
         ways = self._ways(first, last)
@@ -124,7 +128,8 @@ class Attempts:
             if way is ways[-1] and not self._final and (alternates or tiny):
                 ways += self._last_resorts(way, small)
         result = replace(result, iterations=spent, reason=_reason(result.reason, found))
-        return Outcome(result, tuple(found), self._final, self._continuation.hint())
+        hint = self._continuation.hint()
+        return Outcome(result, tuple(found), self._final, hint, self._failed)
 
     def _ways(self, first: Vec, last: Vec) -> list[_Way]:
         searching, full = _Way(first, full_steps=False), _Way(last)
@@ -170,7 +175,10 @@ class Attempts:
                 self._final = refusal.final
                 return replace(result, reason=refusal.reason), list(refusal.culprits)
             known = list(result.culprits)
-            return result, known or find_culprits(problem, self._watch, self._newton.residual)
+            known = known or find_culprits(problem, self._watch, self._newton.residual)
+            if known and known[0].kind == "law":
+                self._failed = failed_point(problem)
+            return result, known
         except (Exception, KeyboardInterrupt):
             problem.together.met()
             raise

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from anisocontact.contact import facet_size
 from anisocontact.contact.held_feet import facet_of
 from anisocontact.interface import FAILURE, STATUS
+from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
@@ -49,6 +50,18 @@ def find_culprits(problem: Problem, watch: StatusWatch, residual: Floats) -> lis
 
 def _everywhere[T](problem: Problem, local: list[T]) -> list[T]:
     return [one for part in problem.comm.allgather(local) for one in part]
+
+
+def failed_point(problem: Problem) -> FailedPoint | None:
+    """A slave point whose laws failed in the last evaluation, whole; collective.
+
+    Returns:
+        The point, on the first rank that has one; None on the others.
+    """
+    every = (contact.failed_point() for contact in problem.contacts)
+    found = next((point for point in every if point is not None), None)
+    having = problem.comm.allgather(found is not None)
+    return found if any(having) and having.index(True) == problem.comm.rank else None
 
 
 def _of_laws(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.rotations import Turned
@@ -118,7 +119,13 @@ class StoppedError(RuntimeError):
         culprits: The first places that caused it.
         points: Positions of all slave points at which the law had no answer, (n, 3), length.
         tried: What was tried, in a few words.
+
+    Attributes:
+        failed: A point at which the laws failed, whole, on the first rank that has one: its
+            `evaluate` and `tangent_errors` say more, its `write` keeps it in a file.
     """
+
+    failed: FailedPoint | None = None
 
     def __init__(
         self,

@@ -263,7 +263,9 @@ class Solver:
         text = f"{tried} of the increment" if tried else ""
         text = "; ".join(part for part in (text, outcome.hint) if part)
         reason = reason or outcome.result.reason
-        raise StoppedError(step.name, increment, reason, culprits[:NAMED], points, text)
+        stop = StoppedError(step.name, increment, reason, culprits[:NAMED], points, text)
+        stop.failed = outcome.failed
+        raise stop
 
     def _report(self, iteration: int, residual: float) -> None:
         self._watch.note()
