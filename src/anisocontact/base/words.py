@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
-__all__ = ["elsewhere", "meant"]
+__all__ = ["elsewhere", "hint", "meant"]
 
 #: Name here -> words of Abaqus, Ansys, CalculiX, FEniCS and the literature for it, in small letters
 #: and with one underscore between them.
@@ -127,6 +127,22 @@ def meant(word: str, known: Iterable[str]) -> str | None:
             return name
     close = difflib.get_close_matches(word, names, 1)
     return close[0] if close else None
+
+
+def hint(name: str, known: Collection[str], others: str = "there are") -> str:
+    """The end of a message: the known name that one of the user's own is spelt like, else all.
+
+    Args:
+        name: What was written.
+        known: The names there are.
+        others: What is said in front of all of them.
+
+    Example:
+        >>> hint("blok", ["block", "base"]), hint("x", ["block", "base"])
+        ("did you mean 'block'?", 'there are: block, base')
+    """
+    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    return f"did you mean {near[0]!r}?" if near else f"{others}: {', '.join(known) or 'none'}"
 
 
 def elsewhere(word: str) -> str | None:

@@ -163,7 +163,7 @@ class NeoHookeanIncompressible(Isotropic, Hyperelastic):
         return [(distortion, None), volumetric(u, lame + 2.0 / 3.0 * shear, j)]
 
 
-class UserEnergy:
+class UserEnergy(Hyperelastic):
     """A material by the user's own energy.
 
     Args:
@@ -176,27 +176,12 @@ class UserEnergy:
         False
     """
 
-    linear = False
-
     def __init__(self, energy: Callable[[Any], Any], young: float) -> None:
         self._energy = energy
         self.young = young
 
-    def energy(self, u: Any) -> list[Density]:
-        """The energy with the default quadrature.
-
-        Args:
-            u: UFL displacement.
-
-        Returns:
-            One term, UFL.
-        """
-        return [(self._energy(deformation_gradient(u)), None)]
-
-    def piola(self, u: Any) -> Any:
-        """First Piola-Kirchhoff stress, UFL."""
-        gradient = ufl.variable(deformation_gradient(u))
-        return ufl.diff(self._energy(gradient), gradient)
+    def _terms(self, u: Any, gradient: Any) -> list[Density]:
+        return [(self._energy(gradient), None)]
 
 
 class UserStress:

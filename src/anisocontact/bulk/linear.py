@@ -10,7 +10,7 @@ import numpy as np
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec, compiled, create_stiffness, ufl
 from anisocontact.bulk.history import BodyHistory
-from anisocontact.bulk.materials import Material
+from anisocontact.bulk.materials import Material, body_measure
 from anisocontact.mesh import Model
 
 
@@ -96,14 +96,13 @@ class LinearBulk:
 
 def _bilinear_form(model: Model, materials: Mapping[str, Material]) -> Any:
     u, v = ufl.TrialFunction(model.space), ufl.TestFunction(model.space)
-    names = model.body_names()
-    cells = [(i, np.sort(model.cells(name))) for i, name in enumerate(names)]
-    dx = ufl.Measure("dx", domain=model.mesh, subdomain_data=cells)
+    dx = body_measure(model)
     if model.mesh.topology.cell_name() == "hexahedron":
         # full integration; UFL's own estimate counts the bending of the cell's sides, three times
         # the points
         dx = dx(metadata={"quadrature_degree": 2 * model.order})
     law: Mapping[str, Any] = materials
     return sum(
-        ufl.inner(law[name].stress(u), ufl.sym(ufl.grad(v))) * dx(i) for i, name in enumerate(names)
+        ufl.inner(law[name].stress(u), ufl.sym(ufl.grad(v))) * dx(i)
+        for i, name in enumerate(model.body_names())
     )

@@ -4,10 +4,13 @@ from __future__ import annotations
 
 from typing import Any, Protocol
 
+import numpy as np
+
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.mesh import Model
 
 
 class Material(Protocol):
@@ -29,6 +32,13 @@ class Material(Protocol):
 #: A term of an energy per reference volume, UFL, and the degree of its quadrature, None for the
 #: default.
 type Density = tuple[Any, int | None]
+
+
+def body_measure(model: Model) -> Any:
+    """Measure of a form over bodies, numbered in the order of their names."""
+    names = enumerate(model.body_names())
+    cells = [(number, np.sort(model.cells(name))) for number, name in names]
+    return ufl.Measure("dx", domain=model.mesh, subdomain_data=cells)
 
 
 class Isotropic:

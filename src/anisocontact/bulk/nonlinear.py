@@ -20,7 +20,7 @@ from anisocontact.base.fenicsx import (
     ufl,
 )
 from anisocontact.bulk.history import BodyHistory
-from anisocontact.bulk.materials import Density, Material
+from anisocontact.bulk.materials import Density, Material, body_measure
 from anisocontact.mesh import Model
 
 
@@ -132,12 +132,10 @@ def _forms(
     model: Model, laws: Mapping[str, Any], u: Any, v: Any, full: int
 ) -> tuple[Any, Any | None]:
     """Virtual work of the stresses and, where every material has one, the energy."""
-    names = model.body_names()
-    cells = [(i, np.sort(model.cells(name))) for i, name in enumerate(names)]
-    dx = ufl.Measure("dx", domain=model.mesh, subdomain_data=cells)
+    dx = body_measure(model)
     work, energy = 0, 0
     complete = all(law.linear or hasattr(law, "energy") for law in laws.values())
-    for i, name in enumerate(names):
+    for i, name in enumerate(model.body_names()):
         material = laws[name]
         if material.linear:
             half = 0.5 * ufl.inner(material.stress(u), ufl.sym(ufl.grad(u)))

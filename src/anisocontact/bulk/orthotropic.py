@@ -7,7 +7,7 @@ along its axis.
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import abstractmethod
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,7 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.bulk.hyperelastic import deformation_gradient
+from anisocontact.bulk.hyperelastic import Hyperelastic
 from anisocontact.bulk.materials import Density
 
 Floats = npt.NDArray[np.float64]
@@ -93,7 +93,7 @@ def stiffness(moduli: Floats, ratios: Floats, shears: Floats) -> Floats:
     return found
 
 
-class _Directed(ABC):
+class _Directed(Hyperelastic):
     """A linear law between strain and stress along axes of the body."""
 
     entry: Entry
@@ -165,19 +165,11 @@ class _Directed(ABC):
         axes = self._rotation(u)
         return axes * t * axes.T
 
-    def energy(self, u: Any) -> list[Density]:
-        """Half of stress times strain of Green and Lagrange, UFL, with the default quadrature."""
-        return [(self._density(u, deformation_gradient(u)), None)]
-
-    def piola(self, u: Any) -> Any:
-        """First Piola-Kirchhoff stress, the derivative of the energy with respect to F, UFL."""
-        gradient = ufl.variable(deformation_gradient(u))
-        return ufl.diff(self._density(u, gradient), gradient)
-
-    def _density(self, u: Any, gradient: Any) -> Any:
+    def _terms(self, u: Any, gradient: Any) -> list[Density]:
+        """Half of stress times strain of Green and Lagrange."""
         strain = 0.5 * (gradient.T * gradient - ufl.Identity(3))
         stress, listed = self._along_axes(u, strain)
-        return 0.5 * ufl.dot(stress, listed)
+        return [(0.5 * ufl.dot(stress, listed), None)]
 
 
 class Orthotropic(_Directed):

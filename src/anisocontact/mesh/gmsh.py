@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, cell_permutation
+from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays, check_boundary, facet_owners
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.msh import Block, MshFile, read_msh
@@ -117,9 +117,7 @@ def _volumes(msh: MshFile, bodies: Sequence[str] | None) -> list[tuple[str, Bloc
             raise InputError(f"volume group {name!r}: the name of a body has no dot")
     for name in bodies or ():
         if name not in known:
-            near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-            hint = f"did you mean {near[0]!r}?" if near else f"there are: {', '.join(known)}"
-            raise InputError(f"no volume group {name!r}; {hint}")
+            raise InputError(f"no volume group {name!r}; {hint(name, known)}")
     loose = [b for b in msh.blocks if b.dim == 3 and not any((3, g) in msh.names for g in b.groups)]
     if loose and bodies is None:
         count = sum(b.count for b in loose)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
@@ -12,6 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, create_mesh, locate_entities, vector_space
+from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.own_space import check_space, named_facets
 
@@ -237,6 +237,5 @@ def _with_two_cells(mesh: Any, facets: Ints) -> int:
 def _looked_up(known: dict[str, Ints], name: str, kind: str, field: str) -> Ints:
     if name in known:
         return known[name]
-    near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    hint = f"did you mean {near[0]!r}?" if near else f"the mesh has: {', '.join(known) or 'none'}"
-    raise InputError(f"no {kind} {name!r} in the mesh; {hint}", field)
+    there = hint(name, known, "the mesh has")
+    raise InputError(f"no {kind} {name!r} in the mesh; {there}", field)

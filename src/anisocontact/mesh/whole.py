@@ -6,7 +6,6 @@ Abaqus; here they become the arrays of all meshes.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
@@ -15,6 +14,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import cell_nodes, facet_nodes, middle_nodes
+from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.quality import check_cells
@@ -78,9 +78,7 @@ class WholeMesh:
         known = list(dict.fromkeys(name for labels in self.bodies for name in labels if name))
         for name in bodies or ():
             if name not in known:
-                near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-                hint = f"did you mean {near[0]!r}?" if near else f"there are: {', '.join(known)}"
-                raise InputError(f"no body {name!r}; {hint}")
+                raise InputError(f"no body {name!r}; {hint(name, known)}")
         wanted = known if bodies is None else bodies
         kinds: dict[tuple[str, int], list[tuple[Nodes, list[str]]]] = {}
         for (cell, nodes), labels in zip(self.cells, self.bodies, strict=True):
