@@ -98,7 +98,7 @@ def moved(kind: str, parameters: dict[str, Any], q: Any, t: Any) -> dict[str, An
         if p.kind == "axis":
             result[p.name] = np.array([value[0] @ q.T + t, value[1] @ q.T])
         elif p.kind == "vector" or (p.kind == "array" and p.unit == "1"):
-            result[p.name] = np.asarray(value) @ q.T
+            result[p.name] = np.asarray(value) @ q.T + (t if p.unit == "length" else 0.0)
         elif p.kind == "array":
             result[p.name] = np.asarray(value) @ q.T + t
     return result

@@ -1,9 +1,9 @@
-"""The registry of sliding rules is open: a new rule in four places, and everything follows.
+"""The registries of the core are open: a rule, a surface and a field are added as the page says.
 
-Requirement: a toy law that is added as docs/dev/how-to-add.md says (its header, a registry line, a
-page, values for its parameters in the samples of these tests) appears in the bindings, in the
-registry, in `anisocontact info` and in the schema of the case file, and passes the conformance
-suite. The toy is added to a copy of the sources, which is built without optimisation.
+Requirement: what docs/dev/how-to-add.md shows, literally (a header, its name in the registry, a
+sample), and a toy rule with a parameter appear in the bindings, in the registries, in `anisocontact
+info` and in the schema of the case file, and pass the conformance suites. They are added to a copy
+of the sources, which is built without optimisation.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -20,8 +21,42 @@ import pytest
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[2]
-REGISTRY = "cpp/include/anisocontact/law/registry.hpp"
+HEADERS = "cpp/include/anisocontact"
+REGISTRY = f"{HEADERS}/law/registry.hpp"
+PAGE = (ROOT / "docs/dev/how-to-add.md").read_text()
+#: Section of the page -> registry, what its list begins with, file of the samples, what is before
+#: the new one there.
+ADDED = {
+    "A sliding rule": ("law", "MaximumDissipation,", "laws/conftest.py", "list[Rule]] = {\n"),
+    "A surface": ("surface", "Plane,", "conftest.py", "    return [_plane(), "),
+    "A direction field": (
+        "anisotropy",
+        "Constant,",
+        "test_anisotropy_conformance.py",
+        "dict[str, Any]]] = {\n",
+    ),
+}
+SUITES = (
+    "test_surface_geometry.py",
+    "test_surface_projection.py",
+    "test_anisotropy_conformance.py",
+)
 USES = ("cmake", "ninja", "nanobind")
+
+
+def add_as_the_page_says(root, section):
+    """A header, its name in the registry, and a sample: three places of a copy of the sources."""
+    text = PAGE.partition(f"\n## {section}\n")[2].partition("\n## ")[0]
+    registry, first, samples, before = ADDED[section]
+    (header,) = re.findall(r"```cpp\n(.*?)```", text, re.S)
+    (sample,) = re.findall(r"```python\n(.*?)```", text, re.S)
+    name = re.findall(rf"`({registry}/[\w/]+\.hpp)`", text.partition("```cpp")[0])[-1]
+    (root / HEADERS / name).write_text(header)
+    (made,) = re.findall(r"^class (\w+)", header, re.M)
+    listed = root / HEADERS / registry / "registry.hpp"
+    replace_once(listed, "#pragma once\n", f'#pragma once\n#include "anisocontact/{name}"\n')
+    replace_once(listed, first, f"{made}, {first}")
+    replace_once(root / "tests" / samples, before, before + sample)
 
 
 def replace_once(path, old, new):
@@ -63,7 +98,9 @@ def extended(tmp_path_factory):
     root = tmp_path_factory.mktemp("extended")
     for folder in ("cpp", "src"):
         shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("*.so"))
-    shutil.copytree(HERE, root / "tests", ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copytree(HERE, root / "tests/laws", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("conftest.py", *SUITES):
+        shutil.copy(HERE.parent / name, root / "tests")
     for name in ("CMakeLists.txt", "LICENSE"):
         shutil.copy(ROOT / name, root)
 
@@ -75,7 +112,9 @@ def extended(tmp_path_factory):
     )
     sample = '    "radial": [Rule("radial")],\n'
     toy = '    "toy": [Rule("toy", {"weight": 0.4})],\n'
-    replace_once(root / "tests/conftest.py", sample, sample + toy)
+    replace_once(root / "tests/laws/conftest.py", sample, sample + toy)
+    for section in ADDED:
+        add_as_the_page_says(root, section)
 
     configure = ["cmake", "-S", ".", "-B", "build", "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Quick"]
     run([*configure, f"-DPython_EXECUTABLE={sys.executable}"], root)
@@ -121,17 +160,35 @@ def test_bindings_and_registry(extended):
 def test_command(extended, command):
     printed = module(extended, "anisocontact", command)
     assert "toy" in printed and "weight of the circle" in printed
+    assert all(f"{name}" in printed for name in ("collinear", "skew-plane", "rays"))
+
+
+def conformance(root, chosen, *files):
+    """What passes of the suites as they are, run on the copy."""
+    printed = module(
+        root,
+        *("pytest", "-q", "-rA", "-p", "no:cacheprovider", "-c", os.devnull),
+        *("--rootdir", root, "--import-mode=importlib", "-k", chosen),
+        *(root / "tests" / file for file in files),
+    )
+    assert "failed" not in printed
+    return [line for line in printed.splitlines() if line.startswith("PASSED")]
 
 
 @pytest.mark.slow
-def test_conformance(extended):
-    """The suite as it is, run on the copy: every test of it for the toy, too."""
-    printed = module(
-        extended,
-        *("pytest", "-q", "-rA", "-p", "no:cacheprovider", "-c", os.devnull),
-        *("--rootdir", extended, "--import-mode=importlib", "-k", "toy or sample"),
-        extended / "tests/test_law_conformance.py",
-    )
-    passed = [line for line in printed.splitlines() if line.startswith("PASSED")]
-    assert len(passed) >= 15 and "failed" not in printed
+@pytest.mark.parametrize("name", ["toy", "collinear"])
+def test_conformance(extended, name):
+    """Every test of a rule, for the new one, too."""
+    passed = conformance(extended, f"{name} or sample", "laws/test_law_conformance.py")
+    assert len([line for line in passed if name in line]) >= 12
     assert any("test_every_rule_has_a_sample" in line for line in passed)
+
+
+@pytest.mark.slow
+def test_conformance_of_surface_and_field(extended):
+    """Every test of surfaces for the new one, and of fields for the new one on it."""
+    passed = conformance(extended, "skew-plane or has_a_sample", *SUITES)
+    assert any("test_every_registered_surface_has_a_sample" in line for line in passed)
+    assert any("test_every_entry_has_a_sample" in line for line in passed)
+    assert len([line for line in passed if "surface" in line and "skew-plane" in line]) >= 15
+    assert len([line for line in passed if "rays" in line and "skew-plane" in line]) >= 4
