@@ -12,7 +12,7 @@ struct CommittedSlopes {
   Flat axes;  ///< by the angles of the committed axes of adhesion
 };
 
-/// Slip, and what is remembered, turned with the normal onto the contact plane:
+/// Slip, and what is remembered, turned with the normal onto the contact plane (parallel transport):
 /// turned(w) = w - c (n_0 + n), c = w . n / (1 + n_0 . n). Components in the basis b_i of the committed
 /// point are kept, so that all but the stored force, whose components are covariant, follows from
 /// the two turned tangents.
