@@ -56,7 +56,8 @@ def add_as_the_page_says(root, section):
     listed = root / HEADERS / registry / "registry.hpp"
     replace_once(listed, "#pragma once\n", f'#pragma once\n#include "anisocontact/{name}"\n')
     replace_once(listed, first, f"{made}, {first}")
-    replace_once(root / "tests" / samples, before, before + sample)
+    entry = sample.rstrip().removesuffix(",")
+    replace_once(root / "tests" / samples, before, f"{before}{entry},\n")
 
 
 def replace_once(path, old, new):
