@@ -177,17 +177,18 @@ def test_a_cell_turned_inside_out_is_no_solution(fe):
 
 def test_alternating_points_are_found():
     """Requirement: chattering is detected: points that flip, not those that change once."""
-    contact = SimpleNamespace(trial=SimpleNamespace(status=np.zeros(3, dtype=np.int8)))
+    trial = SimpleNamespace(status=np.zeros(3, dtype=np.int8))
+    contact = SimpleNamespace(trial=trial, footing=lambda: np.zeros(3, dtype=np.int64))
     watch = StatusWatch([contact])
     assert not watch.unsettled()
     for i in range(6):
         contact.trial.status[:] = (1, 1 + i % 2, 0 if i < 3 else 1)
-        watch.note()
+        watch.note(1.0)
     assert watch.alternating()[0].tolist() == [False, True, False]
     assert watch.unsettled()
     assert watch.history(0)[:, 1].tolist() == [1, 2, 1, 2, 1, 2]
     for _ in range(3):
-        watch.note()
+        watch.note(1.0)
     assert not watch.unsettled()
     watch.clear()
     assert not watch.alternating()[0].any()

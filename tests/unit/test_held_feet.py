@@ -17,7 +17,6 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver.stepping.acceptance import held_points_stray
 from anisocontact.solver.stepping.culprits import find_culprits
-from anisocontact.solver.stepping.feet_watch import FeetWatch
 from anisocontact.solver.stepping.watch import StatusWatch
 
 #: Slope of both facets of the base, which fall towards their common side at x = 1.
@@ -169,7 +168,7 @@ def _contact(codes: list[int]) -> Any:
 def test_points_that_hop_are_held(codes, residuals, hops):
     """Two returns to a facet within the last iterations, while the residual does not fall fast."""
     contact = _contact(codes)
-    watch = FeetWatch([contact])
+    watch = StatusWatch([contact])
     for residual in residuals:
         watch.note(residual)
         watch.hold()
@@ -186,8 +185,7 @@ def test_a_point_that_hops_is_named_with_its_facets():
     for i in range(6):
         contact.update(moved(0.05 * (-1) ** i, -0.02), 1.0)
         facets.update(facet_of(contact.footing()).tolist())
-        watch.note()
-        watch.feet.note(1.0)
+        watch.note(1.0)
     assert facets == {0, 1}
     comm = SimpleNamespace(allgather=lambda one: [one])
     problem: Any = SimpleNamespace(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,6 +12,8 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.newton import STUCK_OVER, Newton
+from anisocontact.solver.system.assembly import ForceBalance
+from anisocontact.solver.terms.contacts import Contacts
 
 
 class Valley:
@@ -20,9 +23,8 @@ class Valley:
     residual only fall follows the bend.
     """
 
-    force_scale = 1.0
-    round_off = 0.0
-    follows = False
+    balance = replace(ForceBalance.none(2), force_scale=1.0)
+    contact_term = Contacts([])
     comm = MPI.COMM_SELF
 
     def __init__(self, steepness: float) -> None:
@@ -51,14 +53,6 @@ class Valley:
 
     def soften(self) -> bool:
         return False
-
-    def unbalanced(self, norm: float) -> float:
-        return norm
-
-    def held(self) -> bool:
-        return True
-
-    def take_share(self, _: float) -> None: ...
 
 
 def _solved(full_steps: bool, **options: Any) -> tuple[Any, np.ndarray]:
@@ -120,7 +114,7 @@ def test_cycle_of_two_is_given_up():
 class Floating(Valley):
     """Nothing pushes: 1e-9 is the rounding of forces that cancel."""
 
-    force_scale, round_off = 1e-12, 1e-9
+    balance = replace(ForceBalance.none(2), force_scale=1e-12, round_off=1e-9)
 
     def evaluate(self, x: Vec) -> np.ndarray:
         return np.array([5e-10, x.array_r[1]])

@@ -50,7 +50,8 @@ def cells_inside_out(problem: Problem, _: Vec) -> Refusal | None:
 
 def contact_lets_go(problem: Problem, x: Vec) -> Refusal | None:
     """Refuse states in which nothing holds a free body."""
-    reason = problem.contact_lets_go(x)
+    stabilisation = problem.stabilisation
+    reason = stabilisation.lets_go(problem.reduction.nodal(x)) if stabilisation.watches else ""
     return Refusal(reason) if reason else None
 
 

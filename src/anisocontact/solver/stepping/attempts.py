@@ -134,8 +134,8 @@ class Attempts:
     def _ways(self, first: Vec, last: Vec) -> list[_Way]:
         searching, full = _Way(first, full_steps=False), _Way(last)
         trusts = self._problem.stabilisation.trusts
-        if self._problem.follows:
-            ways = _following(searching, full, IN_CYCLES in self._problem.ways, trusts)
+        if self._problem.contact_term.follows:
+            ways = _following(searching, full, IN_CYCLES in self._problem.contact_term.ways, trusts)
         else:
             ways = [searching, searching, full] if trusts else [searching, full]
         if self._continuation.stiff():
@@ -157,8 +157,8 @@ class Attempts:
         x = way.start.copy()
         try:
             if way.flowing:
-                problem.flow()
-            problem.take_way(way.multipliers)
+                problem.stabilisation.flow.start(problem.nodal)
+            problem.contact_term.take_way(way.multipliers)
             if way.layered:
                 result = self._continuation.solve(x)
             else:

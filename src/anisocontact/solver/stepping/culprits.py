@@ -81,9 +81,9 @@ def _alternating(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
 
 
 def _hopping(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
-    for i, flags in enumerate(watch.feet.hopping()):
+    for i, flags in enumerate(watch.hopping()):
         for point in np.flatnonzero(flags):
-            facets = np.unique(facet_of(watch.feet.history(i)[:, point]))
+            facets = np.unique(facet_of(watch.feet(i)[:, point]))
             names = " and ".join(str(facet) for facet in facets)
             why = f"the point hops between facets {names} of the other side"
             if len(facets) == 1:

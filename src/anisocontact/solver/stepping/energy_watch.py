@@ -92,8 +92,14 @@ class EnergyWatch:
             return 0.0
         told = ("external", "residual")
         held = sum(abs(value) for name, value in energies.items() if name not in told)
-        rounded = _ROUND_OFF * self._problem.stiffness_energy()
+        rounded = _ROUND_OFF * self._stiffness_energy()
         return 0.0 if residual <= rounded else residual / max(self._work, held)
+
+    def _stiffness_energy(self) -> float:
+        """Energy of all nodes held but one, `sum of K_ii u_i^2`: the scale of what is rounded."""
+        diagonal = self._problem.bulk.diagonal.array_r
+        u = self._problem.accepted().array_r[: len(diagonal)]
+        return float(self._problem.comm.allreduce(float(diagonal @ u**2)))
 
     def _counted(self) -> npt.NDArray[np.int64]:
         return np.array([c.counts()["open"] for c in self._problem.contacts], dtype=np.int64)

@@ -86,7 +86,7 @@ class ContactProblem(AssembledSystem):
             Constraints(layout.new_vector()),
             RigidBodies([], space.mesh.comm),
         )
-        self.terms_of_contact = self._assembly.contacts
+        self.contact_term = self._assembly.contacts
         self.balance = ForceBalance.none(layout.owned)
         self._tangent = Tangent(self._assembly, space)
         self._parts = parts(space)
@@ -119,13 +119,13 @@ class ContactProblem(AssembledSystem):
         reason = result.reason
         if not reason:
             self.evaluate(x)
-            found = self._sides.objection(self._nodal)
+            found = self._sides.objection(self.nodal)
             reason = f"contact {found.contact!r}: {found.why}" if found else ""
         if reason:
             self.u.x.array[:] = before
             terms.roll_back()
             raise RuntimeError(reason)
-        terms.accept(self._nodal)
+        terms.accept(self.nodal)
         for body in self._bodies:
             body.commit()
         return result.iterations
@@ -158,7 +158,7 @@ class ContactProblem(AssembledSystem):
         """
         self.u.x.array[: x.getLocalSize()] = x.array_r
         self.u.x.scatter_forward()
-        self.balance = self._assembly.balance(TrialState(x, self._nodal, np.zeros(0)))
+        self.balance = self._assembly.balance(TrialState(x, self.nodal, np.zeros(0)))
         return self.balance.residual
 
     def tangent(self, x: Vec, out: Mat) -> bool:
@@ -171,16 +171,16 @@ class ContactProblem(AssembledSystem):
         Returns:
             Whether entries were added to its pattern.
         """
-        self._evaluate_at(x)
+        self.evaluate_at(x)
         return self._tangent.write(out)
 
     @property
     @override
-    def _nodal(self) -> Floats:
+    def nodal(self) -> Floats:
         return np.asarray(self.u.x.array.reshape(-1, 3))
 
     @override
-    def _evaluate_at(self, x: Vec) -> None:
+    def evaluate_at(self, x: Vec) -> None:
         if not np.array_equal(self.u.x.array[: x.getLocalSize()], x.array_r):
             self.evaluate(x)
 

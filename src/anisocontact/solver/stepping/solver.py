@@ -142,7 +142,7 @@ class Solver:
         self._energy.begin()
         strategy = self.choice.strategy
         if not (strategy.reduces and self._kept):
-            self.problem.recover()
+            self.problem.reduction.recover()
         self._newton = newton = strategy.solver(self._task, self._report, note, self._kept)
         attempts, alarms = Attempts(self.problem, newton, self._watch, self._turns), Alarms()
         try:
@@ -187,8 +187,8 @@ class Solver:
         self._energy.restore(kept.common["energy_watch"])
         self._kept = kept.strategy and kept.strategy | under(PENDING, kept.nodal)
         # without its interior it is no state to extrapolate from
-        whole = self.problem.whole or (self.choice.strategy.reduces and self._kept)
-        if "before" in kept.nodal and whole:
+        goes_on = bool(self._kept) and self.choice.strategy.reduces
+        if "before" in kept.nodal and (goes_on or not self.problem.reduction.pending()):
             before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
         self.place = Place(step, time, Pace(self.limits, **numbers), begun, before)
 
@@ -268,10 +268,9 @@ class Solver:
         raise stop
 
     def _report(self, iteration: int, residual: float) -> None:
-        self._watch.note()
-        self._watch.feet.note(residual)
+        self._watch.note(residual)
         if not self.problem.stabilisation.flow.flows:  # bodies that flow go far in an attempt
-            self._watch.feet.hold()
+            self._watch.hold()
         if self._on_iteration is not None:
             counts = {c.name: c.counts() for c in self.problem.contacts}
             step = self.steps[self.place.step].name

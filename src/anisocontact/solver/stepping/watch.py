@@ -1,4 +1,4 @@
-"""Slave points whose status alternates from one Newton iteration to the next."""
+"""Slave points that come to no rest from one Newton iteration to the next."""
 
 from __future__ import annotations
 
@@ -9,61 +9,97 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact import Contact
-from anisocontact.solver.stepping.feet_watch import FeetWatch
 
-Codes = npt.NDArray[np.int8]
+Codes = npt.NDArray[np.int64]
 Flags = npt.NDArray[np.bool_]
 
 #: Iterations that are remembered.
 MEMORY = 8
 #: Changes of status among them that make a point one that alternates.
 CHANGES = 4
+#: Returns to a facet among them that make a point one that hops.
+RETURNS = 2
+#: Residual over that of two iterations before that is falling fast.
+FALLING = 0.1
 
 
 class StatusWatch:
-    """Remembers the status of every slave point of this rank over the last iterations.
+    """Remembers status and foot of every slave point of this rank over the last iterations.
 
     Args:
         contacts: The contacts.
-
-    Attributes:
-        feet: Remembers what they had below them.
     """
 
     def __init__(self, contacts: Sequence[Contact]) -> None:
         self._contacts = list(contacts)
-        self.feet = FeetWatch(contacts)
-        self._seen: deque[list[Codes]] = deque(maxlen=MEMORY)
+        self._statuses: deque[list[Codes]] = deque(maxlen=MEMORY)
+        self._feet: deque[list[Codes]] = deque(maxlen=MEMORY)
+        self._residuals: deque[float] = deque(maxlen=MEMORY)
 
     def clear(self) -> None:
         """Forget everything: another attempt begins."""
-        self._seen.clear()
-        self.feet.clear()
+        for memory in (self._statuses, self._feet, self._residuals):
+            memory.clear()
 
-    def note(self) -> None:
-        """Take the status of the last evaluation."""
-        self._seen.append([contact.trial.status.copy() for contact in self._contacts])
+    def note(self, residual: float) -> None:
+        """Take status and feet of the last evaluation.
+
+        Args:
+            residual: Its residual, over the forces at work.
+        """
+        self._statuses.append([c.trial.status.astype(np.int64) for c in self._contacts])
+        self._feet.append([contact.footing() for contact in self._contacts])
+        self._residuals.append(residual)
+
+    def hold(self) -> None:
+        """Hold points that hop on the facet where they are.
+
+        Where the residual falls fast they come to rest by themselves.
+        """
+        known = self._residuals
+        if len(known) < 3 or known[-1] <= FALLING * known[-3]:
+            return
+        for contact, hops in zip(self._contacts, self.hopping(), strict=True):
+            contact.hold(hops)
 
     def history(self, contact: int) -> Codes:
         """Status of the points of a contact, (iterations, points), the latest at the end."""
-        points = len(self._contacts[contact].trial.status)
-        statuses = [seen[contact] for seen in self._seen]
-        return np.array(statuses, dtype=np.int8).reshape(len(statuses), points)
+        return self._of(self._statuses, contact)
+
+    def feet(self, contact: int) -> Codes:
+        """What they had below them, see `footing`, (iterations, points)."""
+        return self._of(self._feet, contact)
 
     def alternating(self) -> list[Flags]:
         """Points of each contact that changed their status again and again."""
-        return [self._changes(i) >= CHANGES for i in range(len(self._contacts))]
+        return [_changes(self.history(i)) >= CHANGES for i in range(len(self._contacts))]
+
+    def hopping(self) -> list[Flags]:
+        """Points of each contact that touch and came back to a facet again and again."""
+        return [self._returned(i) >= RETURNS for i in range(len(self._contacts))]
 
     def unsettled(self) -> bool:
         """Whether a point of this rank came back to a status that it has left lately."""
-        return any(bool(self._returns(i).any()) for i in range(len(self._contacts)))
+        lately = [self.history(i)[-3:] for i in range(len(self._contacts))]
+        return any(
+            bool(((seen[2] == seen[0]) & (seen[1] != seen[0])).any())
+            for seen in lately
+            if len(seen) == 3
+        )
 
-    def _changes(self, contact: int) -> npt.NDArray[np.int64]:
-        seen = self.history(contact)
-        return np.asarray((seen[1:] != seen[:-1]).sum(axis=0), dtype=np.int64)
+    def _returned(self, contact: int) -> Codes:
+        """How often each touching point came back to what it had below it before."""
+        feet = self.feet(contact)
+        touching = self._contacts[contact].trial.status != 0
+        returned = _changes(feet) - _changes(np.sort(feet, axis=0))
+        return np.asarray(np.where(touching, returned, 0), dtype=np.int64)
 
-    def _returns(self, contact: int) -> Flags:
-        seen = self.history(contact)[-3:]
-        if len(seen) < 3:
-            return np.zeros(1, dtype=bool)
-        return np.asarray((seen[2] == seen[0]) & (seen[1] != seen[0]))
+    def _of(self, memory: deque[list[Codes]], contact: int) -> Codes:
+        points = len(self._contacts[contact].trial.status)
+        seen = [codes[contact] for codes in memory]
+        return np.array(seen, dtype=np.int64).reshape(len(seen), points)
+
+
+def _changes(seen: Codes) -> Codes:
+    """How often each point changed from one iteration to the next, (points,)."""
+    return np.asarray((seen[1:] != seen[:-1]).sum(axis=0), dtype=np.int64)

@@ -11,7 +11,9 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec, check_memory
 from anisocontact.contact import NotHeldError
+from anisocontact.solver.system.assembly import ForceBalance
 from anisocontact.solver.system.culprit import Culprit, LostError
+from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
 
@@ -46,13 +48,13 @@ class System(Protocol):
     """What Newton asks of a system of equations; see `Problem`."""
 
     @property
-    def force_scale(self) -> float:
-        """Norm of the forces at work in the last evaluation."""
+    def balance(self) -> ForceBalance:
+        """Forces of the last evaluation."""
         ...
 
     @property
-    def round_off(self) -> float:
-        """Residual that floating point leaves in the last evaluation, force."""
+    def contact_term(self) -> Contacts:
+        """Its contacts, whose multipliers may follow every correction."""
         ...
 
     @property
@@ -93,27 +95,6 @@ class System(Protocol):
         """After a solution that failed: take penalties that are easier; whether to try again."""
         ...
 
-    @property
-    def follows(self) -> bool:
-        """Whether multipliers follow every correction: no line search can tell how far to go."""
-        ...
-
-    def unbalanced(self, norm: float) -> float:
-        """Norm of the residual with the multipliers as they are.
-
-        Args:
-            norm: Norm of what `evaluate` has returned.
-        """
-        ...
-
-    def held(self) -> bool:
-        """Whether multipliers that follow are what the last evaluation answers to them."""
-        ...
-
-    def take_share(self, share: float) -> None:
-        """Let multipliers take only a share of the next correction."""
-        ...
-
 
 @dataclass(frozen=True)
 class NewtonResult:
@@ -137,7 +118,7 @@ class Newton:
     """SNES with the exact tangent and convergence relative to the forces at work.
 
     An iterate is accepted when the norm of the residual is below `snes_rtol` times
-    `Problem.force_scale`, or below what floating point can resolve. Both are forces, so the
+    `ForceBalance.force_scale`, or below what floating point can resolve. Both are forces, so the
     choice of units changes nothing. Every PETSc option works with the prefix, for example
     `-anisocontact_snes_linesearch_type basic`.
 
@@ -206,7 +187,7 @@ class Newton:
         spent = 0
         last = x.copy()
         while True:
-            full = full_steps or self._problem.follows
+            full = full_steps or self._problem.contact_term.follows
             search.setType("basic" if full else self._line_search)
             result = self._equilibrium(x)
             spent += result.iterations
@@ -262,7 +243,7 @@ class Newton:
 
     def _damp(self, _: Vec, direction: Vec) -> bool:
         share = 1.0 if self._damping is None else self._damping()
-        self._problem.take_share(share)
+        self._problem.contact_term.take_share(share)
         if share != 1.0:
             direction.scale(share)
         return share != 1.0
@@ -271,17 +252,18 @@ class Newton:
         self, snes: SNES, iteration: int, norms: tuple[float, float, float]
     ) -> PETSc.SNES.ConvergedReason:
         reasons = PETSc.SNES.ConvergedReason
-        norm = self._problem.unbalanced(norms[2])
+        balance, contacts = self._problem.balance, self._problem.contact_term
+        norm = balance.norm if contacts.follows else norms[2]
         rtol, atol, _, _ = snes.getTolerances()
         # where next to no forces are at work, what is left of them is rounding of larger ones
-        rounded = self._problem.round_off / max(rtol, _EPSILON)
-        relative = norm / max(self._problem.force_scale, rounded, _TINY)
+        rounded = balance.round_off / max(rtol, _EPSILON)
+        relative = norm / max(balance.force_scale, rounded, _TINY)
         self._residuals.append(relative)
         self._on_iteration(iteration, relative)
         if not np.isfinite(norm):
             return reasons.DIVERGED_FUNCTION_NANORINF
-        small = norm <= max(rtol * self._problem.force_scale, self._problem.round_off, atol)
-        if small and self._problem.held():
+        small = norm <= max(rtol * balance.force_scale, balance.round_off, atol)
+        if small and contacts.held():
             return reasons.CONVERGED_FNORM_RELATIVE
         if relative > DIVERGED * min(self._residuals[1:], default=np.inf):
             return reasons.DIVERGED_DTOL
@@ -294,7 +276,7 @@ class Newton:
     def _idles(self) -> bool:
         """Whether the last corrections, with multipliers that follow, have gained too little."""
         known = self._residuals
-        if not self._problem.follows or len(known) < IDLE_OVER + 3:
+        if not self._problem.contact_term.follows or len(known) < IDLE_OVER + 3:
             return False
         return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
 

@@ -19,15 +19,16 @@ from anisocontact.solver.system.assembly import ForceBalance
 from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.contact_work import ContactWork
 from anisocontact.solver.system.culprit import Culprit, LostError
-from anisocontact.solver.system.interior import PENDING, with_interior
+from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.memory import BEGUN, Memory
 from anisocontact.solver.system.parts import make_parts
 from anisocontact.solver.system.reduction import Reduction
 from anisocontact.solver.system.rotations import Rotations, Turned
 from anisocontact.solver.system.step_begin import begin_step, check_steps, contact_must_hold
 from anisocontact.solver.system.tangent import Tangent
+from anisocontact.solver.system.whole import Whole
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
-from anisocontact.solver.terms.persistent import Arrays, Persistent, under
+from anisocontact.solver.terms.persistent import Persistent, under
 from anisocontact.solver.terms.step import Step
 
 Floats = npt.NDArray[np.float64]
@@ -57,7 +58,7 @@ class Problem(AssembledSystem):
             the last rank.
         layout: Where the unknowns are.
         together: The processes of the run, when one of them fails.
-        reduction: Who answers for the bulk; None where every state is one of all unknowns.
+        reduction: Who answers for the bulk.
         rotations: How far bodies at small strain have turned.
         load_factor: Fraction of the step at which the loads are.
         dt: Time increment to there.
@@ -91,28 +92,24 @@ class Problem(AssembledSystem):
         self.supports, self.loads, self.planes = parts.supports, parts.loads, parts.planes
         self.stabilisation = self._aid = parts.stabilisation
         self.assembly = assembly = parts.assembly
-        self.constraints, self.terms_of_contact = assembly.constraints, assembly.contacts
+        self.constraints, self.contact_term = assembly.constraints, assembly.contacts
         self.together = Together(self.comm)
         self._tangent = Tangent(assembly, model.space, parts.attached.coupling)
         self._bodies = Configuration(parts)
-        self.reduction: Reduction | None = None
-        self._pending: Arrays = {}
         self.rotations = Rotations(model, materials)
         self.balance = ForceBalance.none(self.layout.owned)
         self.load_factor = self.dt = 0.0
         self._accepted = AcceptedState(self.layout)
         self._contact_work = ContactWork(parts)
+        self._whole = Whole(self, parts, self._bodies, self._accepted)
+        self.reduction: Reduction = self._whole
         self._memory = Memory(assembly.terms, self._accepted, self._bodies)
 
     @property
     def u(self) -> Any:
         """Displacement, a DOLFINx function; holds the accepted state between increments."""
-        self.recover()
+        self.reduction.recover()
         return self._bodies.u
-
-    def dead_load(self) -> Floats:
-        """Loads on the unknowns this rank owns where they do not depend on the state, force."""
-        return self.layout.assembled(self.loads.force(self._bodies.nodal).reshape(-1))
 
     @property
     def outside(self) -> Floats:
@@ -128,11 +125,6 @@ class Problem(AssembledSystem):
     def comm(self) -> Any:
         """Communicator of the mesh."""
         return self.model.mesh.comm
-
-    @property
-    def support_scale(self) -> float:
-        """Force for a unit of length in the rows of prescribed unknowns, force/length."""
-        return self.assembly.scale
 
     @property
     def bulk_state(self) -> tuple[float, ...] | None:
@@ -243,16 +235,16 @@ class Problem(AssembledSystem):
         Returns:
             Whether entries were added to its pattern.
         """
-        self._evaluate_at(x)
+        self.evaluate_at(x)
         return self._tangent.write(out, self.load_factor)
 
     @property
     @override
-    def _nodal(self) -> Floats:
+    def nodal(self) -> Floats:
         return self._bodies.nodal
 
     @override
-    def _evaluate_at(self, x: Vec) -> None:
+    def evaluate_at(self, x: Vec) -> None:
         if not self._bodies.is_at(x):
             self.evaluate(x)
 
@@ -264,7 +256,7 @@ class Problem(AssembledSystem):
             NotHeldError: They do not converge.
             LostError: A body flows to where it cannot be.
         """
-        self._evaluate_at(x)
+        self.evaluate_at(x)
         wrong = self.behind_a_master(x) if self.stabilisation.flow.flows else None
         if wrong is not None:
             raise LostError(wrong)
@@ -278,35 +270,17 @@ class Problem(AssembledSystem):
     def pass_through(self, nodal: Floats) -> None:
         """Remember a state on the way to the next accepted one, (nodes, 3), length."""
         self._contact_work.pass_through(nodal)
-        self.terms_of_contact.pass_through()
-
-    def contact_lets_go(self, x: Vec) -> str:
-        """Why contact does not hold the free bodies in equilibrium; empty if it does."""
-        return self.stabilisation.lets_go(self._nodal_at(x)) if self.stabilisation.watches else ""
+        self.contact_term.pass_through()
 
     def behind_a_master(self, x: Vec) -> Culprit | None:
         """A body that is behind its master in equilibrium; None if all are where they may be."""
-        return self._parts.sides.objection(self._nodal_at(x), self.reduction is None)
-
-    def _nodal_at(self, x: Vec) -> Floats:
-        """Displacement of the local nodes, true for all that can be touched, (nodes, 3), length."""
-        if self.reduction is not None:
-            return self.layout.split(x)[0]
-        self._evaluate_at(x)
-        return self._bodies.nodal
+        return self._parts.sides.objection(self.reduction.nodal(x), self.reduction.whole)
 
     def turned(self, x: Vec) -> dict[str, Turned]:
         """How far bodies at small strain have turned in a state in equilibrium, by name."""
         if not self.rotations:
             return {}
-        if self.reduction is not None:
-            return self.rotations.reduced(self.reduction, x, self.load_factor == 1.0)
-        self._evaluate_at(x)
-        return self.rotations.at(self._bodies.nodal)
-
-    def flow(self) -> None:
-        """Let the bodies flow to the next equilibrium in this attempt, see `Flow`."""
-        self.stabilisation.flow.start(self._bodies.nodal)
+        return self.reduction.turned(self.rotations, x, self.load_factor == 1.0)
 
     def stabilise_at(self, where: npt.NDArray[np.bool_]) -> None:
         """Keep bodies in reach by springs at these of the nodes alone, (nodes,)."""
@@ -316,8 +290,9 @@ class Problem(AssembledSystem):
     def _stabilise(self) -> None:
         """Put the springs of stabilisation back to where they start from."""
         self._accepted.begin_way()
-        condensed = self.reduction is not None
-        nodal = self.layout.split(self._accepted.x)[0] if condensed else self._bodies.nodal
+        nodal = self._bodies.nodal
+        if not self.reduction.whole:
+            nodal = self.reduction.nodal(self._accepted.x)
         self._contact_work.begin(nodal)
         if self.stabilisation.watches:
             load = self.loads.force(nodal)
@@ -330,14 +305,7 @@ class Problem(AssembledSystem):
         Args:
             x: All unknowns of a state in equilibrium.
         """
-        if self.reduction is not None:
-            work = self.reduction.commit(x)
-            nodal = self.layout.split(x)[0]
-        else:
-            self._evaluate_at(x)
-            self._accepted.go_on(x, self.balance.outside)
-            self._accepted.take(self.balance.outside, self.balance.load)
-            work, nodal = self._accepted.way_work, self._bodies.nodal
+        work, nodal = self.reduction.commit(x), self.reduction.nodal(x)
         work += self._contact_work.beyond_the_means(nodal, self.dt, self._accepted.work + work)
         self._accepted.work += work + self.assembly.terms.accept(nodal)
         x.copy(self._accepted.x)
@@ -351,32 +319,12 @@ class Problem(AssembledSystem):
             contact_force: Forces of contact on them, force.
             load: Loads on them, force.
         """
-        self._accepted.x.array[: self.layout.owned] = u
-        place = self._bodies.take(self._accepted.x)
-        inner = self.assembly.bodies.force(place.nodal).reshape(-1)[: self.layout.owned]
-        outside = -(inner + contact_force)
-        self._accepted.take(self.constraints.tied(outside), self.constraints.tied(load))
+        self._whole.complete(u, contact_force, load)
 
-    def reduce_by(self, reduction: Reduction) -> None:
-        """Let something else answer for the bulk from the accepted state on."""
-        self.reduction, self._pending = reduction, {}
-
-    @property
-    def whole(self) -> bool:
-        """Whether the accepted state is one of all unknowns."""
-        return not self._pending and self.reduction is None
-
-    def recover(self) -> None:
-        """Bring the accepted state of all unknowns up to date."""
-        if self.reduction is not None:
-            self.reduction.recover()
-        if self._pending:
-            known, self._pending = self._pending, {}
-            load, contact = (known[name].reshape(-1) for name in ("load", "contact_force"))
-            given = np.repeat(known["in_reach"], 3)
-            given[self.supports.unknowns] = True
-            values = self._accepted.displacement
-            self.complete(with_interior(self.bulk, given, values, load + contact), contact, load)
+    def reduce_by(self, reduction: Reduction | None) -> None:
+        """Let something else answer for the bulk from the accepted state on; None for nobody."""
+        self._whole.take_pending({})
+        self.reduction = self._whole if reduction is None else reduction
 
     def roll_back(self) -> None:
         """Return to the accepted state."""
@@ -385,15 +333,10 @@ class Problem(AssembledSystem):
         self.assembly.terms.roll_back()
         self._stabilise()
 
-    def failed_points(self) -> Floats:
-        """Positions at which a law had no answer in the last evaluation, over all ranks, (n, 3)."""
-        return np.concatenate(self.comm.allgather(self.terms_of_contact.failed_points()))
-
     def persistent(self) -> Persistent:
         """All that the next increments depend on, of this rank."""
         nodal, common = self._memory.persistent()
-        pending = self._pending if self.reduction is None else self.reduction.pending()
-        nodal |= {f"{PENDING}{name}": v for name, v in pending.items()}
+        nodal |= {f"{PENDING}{name}": v for name, v in self.reduction.pending().items()}
         common |= {"rotations": self.rotations.persistent()} | self._tangent.persistent()
         return Persistent(nodal, self.assembly.terms.histories(), common)
 
@@ -414,7 +357,7 @@ class Problem(AssembledSystem):
         self._tangent.restore(kept.common)
         self.rotations.restore(kept.common["rotations"])
         self.assembly.terms.take_histories(iter(kept.points), self._bodies.nodal)
-        self.reduction, self._pending = None, under(PENDING, kept.nodal)
+        self._whole.take_pending(under(PENDING, kept.nodal))
 
     def inverted_cells(self) -> Floats:
         """Middles of the cells of this rank that the last evaluation turned inside out, (n, 3)."""
@@ -429,14 +372,11 @@ class Problem(AssembledSystem):
 
         Unknowns on an edge that several groups prescribe count for the first of them.
         """
-        if self.reduction is not None and not self.planes:
-            sums = self.reduction.reactions()
-        else:
-            self.recover()  # forces of the planes need all displacements on them
-            across, rest = self.planes.forces(self._accepted.reaction)
-            sums = self.supports.reactions(rest)
-            for name, force in across.items():
-                sums[name] = sums.get(name, 0.0) + force
+        source = self.reduction
+        if self.planes:
+            source.recover()  # forces of the planes need all displacements on them
+            source = self._whole
+        sums = source.reactions()
         for name, force in self.attached.reactions(self._bodies.nodal).items():
             sums[name] = sums.get(name, 0.0) + force
         return sums
@@ -448,10 +388,7 @@ class Problem(AssembledSystem):
             group: Its name.
             weights: Share of each local node in the mean, (nodes,).
         """
-        if self.reduction is not None:
-            return self.reduction.mean(group, weights)
-        self.recover()
-        return np.asarray(self.comm.allreduce(weights @ self._bodies.nodal))
+        return self.reduction.mean(group, weights)
 
     def energies(self) -> dict[str, float]:
         """Energies of the accepted state, force times length.
@@ -464,17 +401,7 @@ class Problem(AssembledSystem):
             "springs" and elastic supports and of the "transfer" of two half passes, and "residual",
             what is left of "external" less all others: first order in the size of the increments.
         """
-        if self.reduction is None:
-            self.recover()
-            elastic = self.assembly.bodies.energy(self._bodies.nodal)
-        else:
-            elastic = self.reduction.elastic()
-        stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": elastic}
+        stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": self.reduction.elastic()}
         stored |= self.assembly.acting.energies(self._bodies.nodal)
         work = self._accepted.work
         return {"external": work} | stored | {"residual": work - sum(stored.values())}
-
-    def stiffness_energy(self) -> float:
-        """Energy of all nodes held but one, `sum of K_ii u_i^2`: the scale of what is rounded."""
-        owned = self._accepted.displacement
-        return float(self.comm.allreduce(float(self.bulk.diagonal.array_r @ owned**2)))

@@ -1,40 +1,34 @@
-"""Who answers for the bulk of a problem while only some unknowns are kept up to date."""
+"""Who answers for the bulk of a problem: all of it, or what can be touched of it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import Vec
+from anisocontact.solver.system.rotations import Rotations, Turned
 from anisocontact.solver.terms.persistent import Arrays
 
 Floats = npt.NDArray[np.float64]
-Flags = npt.NDArray[np.bool_]
-
-
-@dataclass(frozen=True)
-class Kept:
-    """What is known of a state without the interior.
-
-    Attributes:
-        nodes: Nodes whose displacement is, (nodes,).
-        u: Displacements, true at these, (nodes, 3), length.
-        along_loads: Mean displacement along all loads, length.
-    """
-
-    nodes: Flags
-    u: Floats
-    along_loads: float
 
 
 class Reduction(Protocol):
-    """Bulk of which only some unknowns are kept up to date; see `Condensed`."""
+    """Bulk of which all unknowns are kept up to date, or only some; see `Whole` and `Condensed`.
+
+    Attributes:
+        whole: Whether all are.
+    """
+
+    whole: bool
 
     def commit(self, x: Vec) -> float:
         """Take over an accepted state and return the work from outside since the last one."""
+        ...
+
+    def nodal(self, x: Vec) -> Floats:
+        """Displacement of the local nodes, true where bodies can be touched, (nodes, 3), length."""
         ...
 
     def pending(self) -> Arrays:
@@ -57,20 +51,21 @@ class Reduction(Protocol):
         """Elastic energy of the accepted state."""
         ...
 
-    def mean(self, group: str, weights: Floats, x: Vec | None = None) -> Floats:
-        """Sum of the displacements of all nodes times their weights, (3,) or (3, k), length.
+    def mean(self, group: str, weights: Floats) -> Floats:
+        """Sum of the accepted displacements of all nodes times their weights, (3,), length.
 
         Args:
             group: Name under which the weights are known.
-            weights: Weight of each node, (nodes,) or (nodes, k).
-            x: All unknowns of a trial state in equilibrium; the accepted one if not given.
+            weights: Weight of each node, (nodes,).
         """
         ...
 
-    def kept(self, x: Vec) -> Kept:
-        """What is known of a trial state in equilibrium without the interior."""
-        ...
+    def turned(self, rotations: Rotations, x: Vec, last: bool) -> dict[str, Turned]:
+        """How far bodies have turned in a trial state in equilibrium, by name.
 
-    def displacement(self, x: Vec) -> Floats:
-        """Displacement of all nodes in a trial state in equilibrium, (nodes, 3), length."""
+        Args:
+            rotations: Who tells from displacements.
+            x: All unknowns of the state.
+            last: Whether this is the end of a step.
+        """
         ...

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import astuple, dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,6 @@ import numpy.typing as npt
 from anisocontact.base.fenicsx import MPI, Vec, basix, scalar_element
 from anisocontact.bulk import Material
 from anisocontact.mesh import Model
-from anisocontact.solver.system.reduction import Kept, Reduction
 
 Floats = npt.NDArray[np.float64]
 
@@ -87,6 +86,43 @@ def spurious(angle: float) -> float:
     return float(1.0 - np.cos(angle))
 
 
+@dataclass(frozen=True)
+class Kept:
+    """What is known of a state without the interior.
+
+    Attributes:
+        nodes: Nodes whose displacement is, (nodes,).
+        u: Displacements, true at these, (nodes, 3), length.
+        along_loads: Mean displacement along all loads, length.
+    """
+
+    nodes: npt.NDArray[np.bool_]
+    u: Floats
+    along_loads: float
+
+
+class PartlyKnown(Protocol):
+    """Displacements of which those of the interior take a solution; see `Condensed`."""
+
+    def kept(self, x: Vec) -> Kept:
+        """What is known of a trial state in equilibrium without the interior."""
+        ...
+
+    def mean(self, group: str, weights: Floats, x: Vec | None = None) -> Floats:
+        """Sum of the displacements of all nodes times their weights, (3,) or (3, k), length.
+
+        Args:
+            group: Name under which the weights are known.
+            weights: Weight of each node, (nodes,) or (nodes, k).
+            x: All unknowns of a trial state in equilibrium; the accepted one if not given.
+        """
+        ...
+
+    def displacement(self, x: Vec) -> Floats:
+        """Displacement of all nodes in a trial state in equilibrium, (nodes, 3), length."""
+        ...
+
+
 class Rotations:
     """Rotations of the bodies at small strain of a model.
 
@@ -127,7 +163,7 @@ class Rotations:
         self._now = (found, {})
         return found
 
-    def reduced(self, reduction: Reduction, x: Vec, last: bool) -> dict[str, Turned]:
+    def reduced(self, known: PartlyKnown, x: Vec, last: bool) -> dict[str, Turned]:
         """Rotation of every body of which only some unknowns are kept up to date.
 
         The mean gradient is known without the interior. Rotations of cells need all
@@ -136,20 +172,20 @@ class Rotations:
         that has grown since the last look or a step ends.
 
         Args:
-            reduction: Who answers for the bulk.
+            known: Who knows them.
             x: All unknowns of the state, true for what contacts need.
             last: Whether this is the end of a step.
         """
         found, looked = {}, dict(self._looked)
-        kept = reduction.kept(x)
+        kept = known.kept(x)
         u: Floats | None = None
         for name, cells in self._bodies.items():
-            gradient = reduction.mean(f"gradient of {name}", cells.mean, x)
+            gradient = known.mean(f"gradient of {name}", cells.mean, x)
             moved = cells.uneven(kept, gradient)
             before = self.accepted.get(name)
             local = (before.largest, before.bent) if before else (0.0, 0.0)
             if moved > max(0.0 if last else GROWN * looked.get(name, 0.0), WARNED):
-                u = reduction.displacement(x) if u is None else u
+                u = known.displacement(x) if u is None else u
                 local, looked[name] = cells.turned(u), moved
             found[name] = self._turned(name, gradient, *local)
         self._now = (found, looked)

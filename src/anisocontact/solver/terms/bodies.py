@@ -2,59 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Protocol, override
+from collections.abc import Iterator
+from typing import override
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import Mat, Vec
-from anisocontact.bulk import BodyHistory
+from anisocontact.bulk import LinearBulk, NonlinearBulk
+from anisocontact.solver.terms.form import FormBulk
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
 
 
-class Bulk(Protocol):
-    """Internal forces of bodies; see `LinearBulk` and `NonlinearBulk`.
-
-    Attributes:
-        rest_length: Length whose strain is round-off where nothing moves.
-        stores: Whether `energy` is that of all bodies.
-        stiffness: Matrix with the pattern of the bodies.
-        diagonal: Diagonal of the tangent at rest, force/length.
-    """
-
-    rest_length: float
-    stores: bool
-    stiffness: Mat
-    diagonal: Vec
-
-    @property
-    def histories(self) -> Mapping[str, BodyHistory]:
-        """What bodies whose material has a history have gone through, by body name."""
-        ...
-
-    def force(self, u: Vec) -> Vec:
-        """Internal force at the displacement of the nodes this rank owns."""
-        ...
-
-    def energy(self, u: Vec) -> float:
-        """Elastic energy over all ranks."""
-        ...
-
-    def set_time(self, dt: float) -> None:
-        """Take over the time increment of the next states."""
-        ...
-
-    def commit(self, u: Vec) -> None:
-        """Accept a state: histories advance."""
-        ...
-
-    def tangent(self, out: Mat) -> None:
-        """Write the tangent of the last `force` into a matrix that may have more unknowns."""
-        ...
+#: What forces inside bodies come from.
+type Bulk = LinearBulk | NonlinearBulk | FormBulk
 
 
 class Bodies(Term):

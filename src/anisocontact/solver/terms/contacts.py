@@ -100,11 +100,6 @@ class Contacts(Term):
         found = [half.master.feet() for half in self.passes]
         return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
-    def failed_points(self) -> Floats:
-        """Positions of this rank at which a law had no answer, (n, 3), length."""
-        found = [contact.failed_points() for contact in self._all]
-        return np.concatenate([np.zeros((0, 3)), *found])
-
     def improve(self) -> bool:
         """Better multipliers from equilibrium; whether any changed.
 

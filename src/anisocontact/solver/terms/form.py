@@ -27,7 +27,7 @@ Floats = npt.NDArray[np.float64]
 
 
 class FormBulk:
-    """Internal forces by a residual form of the user's; see `Bulk`.
+    """Internal forces by a residual form of the user's, as of `NonlinearBulk`.
 
     Args:
         F: Residual form, linear in its test function, of the function `u`.

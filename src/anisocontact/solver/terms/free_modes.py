@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,6 +12,7 @@ import scipy.sparse
 from scipy.sparse.csgraph import connected_components
 
 from anisocontact.base.fenicsx import fem
+from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 
 Floats = npt.NDArray[np.float64]
@@ -80,6 +81,28 @@ def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[Body]:
     count, number = connected_components(graph, directed=False)
     groups = [[n for n, k in zip(names, number, strict=True) if k == one] for one in range(count)]
     return [_body(model, group, [local[name] for name in group]) for group in groups]
+
+
+def joined(model: Model, contacts: Sequence[Contact]) -> list[Body]:
+    """Bodies that only supports and springs can hold, those in contact with each other as one.
+
+    Contact between bodies resists what one does to the other, not what they do as one rigid body;
+    contact with itself resists nothing. Bodies in contact with a surface that is given are left
+    out.
+
+    Args:
+        model: Mesh of the bodies.
+        contacts: The contacts.
+    """
+    others: set[str] = set()
+    links = []
+    for contact in contacts:
+        on, *against = (model.body_of(group) for group in contact.groups)
+        if against:
+            links.append((on, against[0]))
+        else:
+            others.add(on)
+    return [body for body in bodies(model, links) if not others & set(body.parts)]
 
 
 def _body(model: Model, parts: list[str], local: list[Ints]) -> Body:

@@ -25,10 +25,9 @@ from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.flow import Flow
 from anisocontact.solver.terms.free_body import FreeBody
-from anisocontact.solver.terms.free_modes import Body, Held, bodies, free_modes, named
+from anisocontact.solver.terms.free_modes import Body, Held, bodies, free_modes, joined, named
 from anisocontact.solver.terms.holding import NOTHING as NO_STIFFNESS
 from anisocontact.solver.terms.holding import stiffness, unheld, work
-from anisocontact.solver.terms.joined import joined
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
 

@@ -15,7 +15,7 @@ from anisocontact.solver.strategies.condensed.patterns import Probe, State
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.strategies.condensed.system import ContactSystem
 from anisocontact.solver.system.problem import Problem
-from anisocontact.solver.system.reduction import Kept
+from anisocontact.solver.system.rotations import Kept, Rotations, Turned
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
 
@@ -35,6 +35,8 @@ class Condensed:
         note: Told what is done, line by line.
         kept: What `persistent` gave of a run that goes on; nothing for one that begins.
     """
+
+    whole = False
 
     def __init__(
         self,
@@ -128,7 +130,7 @@ class Condensed:
             self._condense()
         assert self._system is not None
         problem.stabilise_at(self._reach.nodes)
-        self._trial_load = problem.dead_load()
+        self._trial_load = problem.layout.assembled(problem.loads.force(self._nodal()).reshape(-1))
         supports = np.zeros(self._stiffness.shape[0])
         supports[problem.supports.unknowns] = problem.supports.values
         self._system.set_load_factor(supports, self._trial_load)
@@ -178,6 +180,14 @@ class Condensed:
         self._stale = True
         return float(work)
 
+    def nodal(self, x: Vec) -> Floats:
+        """Displacement of the nodes in a vector of all unknowns, (nodes, 3), length."""
+        return np.array(x.array_r[: self._stiffness.shape[0]]).reshape(-1, 3)
+
+    def turned(self, rotations: Rotations, x: Vec, last: bool) -> dict[str, Turned]:
+        """As of `Reduction`."""
+        return rotations.reduced(self, x, last)
+
     def _trial(self, x: Vec) -> State:
         """The state of the contact unknowns of a vector of all unknowns."""
         own = self.system.new_vector()
@@ -193,7 +203,7 @@ class Condensed:
         work = self.system.patterns.load_work(state)
         return Kept(
             self._reach.nodes | given.reshape(-1, 3).all(axis=1),
-            self._nodes_of(x),
+            self.nodal(x),
             work / forces if forces > 0.0 else 0.0,
         )
 
@@ -279,16 +289,12 @@ class Condensed:
         if self._bulk is not None:
             self._bulk.close()
         self._bulk = self._system = None
-        self._problem.reduction = None
+        self._problem.reduce_by(None)
         self._problem.stabilisation.confine(None)
 
     def _nodal(self) -> Floats:
         """Accepted displacement of the nodes, true for those in reach, (nodes, 3), length."""
-        return self._nodes_of(self._problem.accepted())
-
-    def _nodes_of(self, x: Vec) -> Floats:
-        """Displacement of the nodes in a vector of all unknowns, (nodes, 3), length."""
-        return np.array(x.array_r[: self._stiffness.shape[0]]).reshape(-1, 3)
+        return self.nodal(self._problem.accepted())
 
     def _condense(self) -> None:
         """Eliminate what neither is prescribed nor can be touched from the accepted state on."""

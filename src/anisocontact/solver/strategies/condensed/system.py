@@ -67,7 +67,7 @@ class ContactSystem(AssembledSystem):
     ) -> None:
         self.bulk, self._in_reach = bulk, in_reach
         self._assembly, self._pass_through = problem.assembly, problem.pass_through
-        self.terms_of_contact, self._rigid = problem.terms_of_contact, problem.rigid
+        self.contact_term, self._rigid = problem.contact_term, problem.rigid
         self._stabilisation = self._aid = problem.stabilisation
         self._gathering = gathering
         self._nodal_now, self._v = nodal, nodal.reshape(-1).copy()
@@ -171,7 +171,7 @@ class ContactSystem(AssembledSystem):
             self._magnitudes(own),
             MPI.COMM_SELF,
             failed=self._assembly.reactions.failed or self.outgrown,
-            correction=self._multiplier_residual() if self.follows else None,
+            correction=self._multiplier_residual() if self.contact_term.follows else None,
         )
         return self.balance.residual.copy()
 
@@ -180,14 +180,14 @@ class ContactSystem(AssembledSystem):
         nodal = self._nodal_now = self.all_unknowns(u)[: len(self._v)].reshape(-1, 3)
         self._rigid.place(self._values)
         forces = self._assembly.reactions.force(nodal)
-        needed = [np.flatnonzero(forces.any(axis=1)), self.terms_of_contact.feet()]
+        needed = [np.flatnonzero(forces.any(axis=1)), self.contact_term.feet()]
         self.outgrown = not self._in_reach[np.concatenate(needed)].all()
         self.raw_forces = forces.reshape(-1)
         self.forces = self.handed(self.raw_forces)
 
     def _multiplier_residual(self) -> Floats:
         """`Contacts.multiplier_residual` of the unknowns of Newton's method, force."""
-        on_nodes = self.terms_of_contact.multiplier_residual(self._nodal_now)
+        on_nodes = self.contact_term.multiplier_residual(self._nodal_now)
         on_nodes = self.handed(on_nodes.reshape(-1))[self.bulk.contact]
         return np.append(on_nodes, self._rigid.multiplier_residual()[~self.prescribed])
 
@@ -202,11 +202,11 @@ class ContactSystem(AssembledSystem):
 
     @property
     @override
-    def _nodal(self) -> Floats:
+    def nodal(self) -> Floats:
         return self._nodal_now
 
     @override
-    def _evaluate_at(self, x: Vec) -> None:
+    def evaluate_at(self, x: Vec) -> None:
         self.evaluate(x)
 
     @override
@@ -233,13 +233,13 @@ class ContactSystem(AssembledSystem):
 
     def apply(self, pc: Any, b: Vec, x: Vec) -> None:
         """Newton correction, for PETSc: a preconditioner that is the solution."""
-        relative = float(np.linalg.norm(b.array_r)) / max(self.force_scale, _TINY)
+        relative = float(np.linalg.norm(b.array_r)) / max(self.balance.force_scale, _TINY)
         # Newton squares the residual: no correction has to be better than that or than asked for;
         # one that is rough takes points of a stiff contact from one status to another and back
         rough = _ROUGH if relative < self._before else _CAREFUL
         self._before = 0.5 * relative
         rtol = max(min(rough, relative), 0.1 * self.tolerance / max(relative, _TINY))
-        if self.follows:
+        if self.contact_term.follows:
             # forces that take violations away are large beside those that are out of balance
             size = max(float(np.linalg.norm(b.array_r)), _TINY)
             rtol = max(_FINE * min(self.balance.norm / size, 1.0), _FINEST)

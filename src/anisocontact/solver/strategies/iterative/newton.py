@@ -112,10 +112,10 @@ class IterativeNewton(Newton):
     def _precision(self, snes: SNES) -> float:
         """Residual of the next correction over that of its start."""
         residual = self._residuals[-1]
-        if self._problem.follows:
+        if self._problem.contact_term.follows:
             # forces that take violations away are large beside those that are out of balance
             size = max(snes.getFunction()[0].norm(), TINY)
-            return float(max(FINE * min(self._problem.unbalanced(size) / size, 1.0), FINEST))
+            return float(max(FINE * min(self._problem.balance.norm / size, 1.0), FINEST))
         needed = LAST * snes.getTolerances()[0] / max(residual, TINY)
         return float(max(min(LOOSEST, residual), min(needed, LOOSEST)))
 

@@ -98,7 +98,7 @@ class TwoLevel:
 
     def _build(self, tangent: Mat) -> None:
         self.close()
-        problem, scale = self._problem, self._problem.support_scale
+        problem, scale = self._problem, self._problem.assembly.scale
         self._split = split = Split(problem, self._patch.select())
         self._interior = interior = interior_matrix(tangent, split, scale)
         prolong = interpolation(problem, tangent, split, interior, f"{self._prefix}aggregates_")
@@ -115,7 +115,7 @@ class TwoLevel:
     def _renew(self, tangent: Mat) -> None:
         """The same interpolation for bodies that have changed."""
         assert self._coarse is not None and self._split is not None and self._smoother is not None
-        scale = self._problem.support_scale
+        scale = self._problem.assembly.scale
         interior_matrix(tangent, self._split, scale, self._interior)
         self._smoother.setOperators(self._interior)
         self._coarse.renew(tangent)
@@ -136,7 +136,7 @@ class TwoLevel:
             left = rest.array_r[given]
             if not self._problem.comm.allreduce(bool(left.any())):
                 return
-            x.array[given] += left / self._problem.support_scale
+            x.array[given] += left / self._problem.assembly.scale
             self._residual(tangent, b, x, rest)
 
     def _residual(self, tangent: Mat, b: Vec, x: Vec, out: Vec) -> None:

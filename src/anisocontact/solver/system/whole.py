@@ -1,0 +1,104 @@
+"""States of all unknowns, and those of which a checkpoint has no interior yet."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.fenicsx import Vec
+from anisocontact.solver.system.accepted import AcceptedState
+from anisocontact.solver.system.assembled import AssembledSystem
+from anisocontact.solver.system.configuration import Configuration
+from anisocontact.solver.system.interior import with_interior
+from anisocontact.solver.system.parts import Parts
+from anisocontact.solver.system.rotations import Rotations, Turned
+from anisocontact.solver.terms.persistent import Arrays
+
+Floats = npt.NDArray[np.float64]
+
+
+class Whole:
+    """Bulk of which all unknowns are kept up to date; see `Reduction`.
+
+    Args:
+        system: The system of all unknowns.
+        parts: Its parts.
+        bodies: Where the bodies are.
+        accepted: The accepted state.
+    """
+
+    whole = True
+
+    def __init__(
+        self,
+        system: AssembledSystem,
+        parts: Parts,
+        bodies: Configuration,
+        accepted: AcceptedState,
+    ) -> None:
+        self._system, self._parts = system, parts
+        self._bodies, self._accepted = bodies, accepted
+        self._pending: Arrays = {}
+
+    def commit(self, x: Vec) -> float:
+        """As of `Reduction`."""
+        self._system.evaluate_at(x)
+        balance = self._system.balance
+        self._accepted.go_on(x, balance.outside)
+        self._accepted.take(balance.outside, balance.load)
+        return self._accepted.way_work
+
+    def nodal(self, x: Vec) -> Floats:
+        """As of `Reduction`."""
+        self._system.evaluate_at(x)
+        return self._bodies.nodal
+
+    def pending(self) -> Arrays:
+        """As of `Reduction`."""
+        return self._pending
+
+    def take_pending(self, pending: Arrays) -> None:
+        """Begin with the interior to be solved for; nothing if it is known."""
+        self._pending = pending
+
+    def recover(self) -> None:
+        """Solve for an interior that is not known."""
+        if self._pending:
+            known, self._pending = self._pending, {}
+            load, contact = (known[name].reshape(-1) for name in ("load", "contact_force"))
+            given = np.repeat(known["in_reach"], 3)
+            given[self._parts.supports.unknowns] = True
+            values, bulk = self._accepted.displacement, self._parts.bulk
+            self.complete(with_interior(bulk, given, values, load + contact), contact, load)
+
+    def complete(self, u: Floats, contact_force: Floats, load: Floats) -> None:
+        """See `Problem.complete`."""
+        assembly, owned = self._parts.assembly, self._parts.layout.owned
+        self._accepted.x.array[:owned] = u
+        trial = self._bodies.take(self._accepted.x)
+        outside = -(assembly.bodies.force(trial.nodal).reshape(-1)[:owned] + contact_force)
+        tied = assembly.constraints.tied
+        self._accepted.take(tied(outside), tied(load))
+
+    def reactions(self) -> dict[str, Floats]:
+        """As of `Reduction`."""
+        self.recover()
+        across, rest = self._parts.planes.forces(self._accepted.reaction)
+        sums = self._parts.supports.reactions(rest)
+        for name, force in across.items():
+            sums[name] = sums.get(name, 0.0) + force
+        return sums
+
+    def elastic(self) -> float:
+        """As of `Reduction`."""
+        self.recover()
+        return self._parts.assembly.bodies.energy(self._bodies.nodal)
+
+    def mean(self, group: str, weights: Floats) -> Floats:
+        """As of `Reduction`."""
+        self.recover()
+        return np.asarray(self._parts.layout.comm.allreduce(weights @ self._bodies.nodal))
+
+    def turned(self, rotations: Rotations, x: Vec, last: bool) -> dict[str, Turned]:
+        """As of `Reduction`."""
+        return rotations.at(self.nodal(x))
