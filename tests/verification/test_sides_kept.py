@@ -19,7 +19,9 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import ContactProblem, Problem, Solver, Step, StoppedError
+from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.strategies.newton import Newton, NewtonResult
+from anisocontact.solver.system.culprit import Culprit, LostError
 from anisocontact.surfaces import make_surface
 
 type Floats = np.ndarray[Any, np.dtype[np.float64]]
@@ -289,6 +291,21 @@ def test_a_block_that_its_load_tips_over(master: str) -> None:
     with pytest.raises(StoppedError, match=said) as stopped:
         list(Solver(problem, steps, limits=Limits(smallest=0.1), strategy="direct").run())
     assert [culprit.kind for culprit in stopped.value.culprits] == ["behind"]
+
+
+def test_what_a_larger_part_has_shown_is_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The smallest part fails otherwise: the run still stops because equilibrium was lost."""
+    lost = LostError(Culprit("behind", (0.0, 0.0, 0.0), "body 'block' has turned over", "c"))
+    over = NewtonResult(1, [1.0], str(lost), (lost.culprit,))
+    other = NewtonResult(1, [1.0], "the line search got stuck")
+    outcomes = iter([Outcome(over, over.culprits), Outcome(other)])
+    monkeypatch.setattr(Attempts, "solve", lambda *_: next(outcomes))
+    step = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
+    said = (
+        "contact 'c': equilibrium is lost, and the bodies flow until body 'block' has turned over"
+    )
+    with pytest.raises(StoppedError, match=f"{said}; 1 cuts"):
+        list(Solver(_problem("plane"), [step], limits=Limits(smallest=0.25)).run())
 
 
 def test_a_script_does_not_accept_it_either(monkeypatch: pytest.MonkeyPatch) -> None:

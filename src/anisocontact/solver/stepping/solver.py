@@ -42,6 +42,7 @@ class Place:
         begun: Whether the problem has the loads of the step.
         before: State before the last accepted part of this step; None at its beginning.
         spent: Newton iterations since the last accepted part.
+        lost: What came of a part of this increment in which equilibrium was lost for good.
     """
 
     step: int
@@ -50,6 +51,7 @@ class Place:
     begun: bool = False
     before: Vec | None = None
     spent: int = 0
+    lost: Outcome | None = None
 
 
 class Solver:
@@ -216,6 +218,7 @@ class Solver:
             pace.advance(outcome.result.iterations)
             pace.bound(min(self._turns.allowed(part), largest))
             place.before, place.spent = last, 0
+            place.lost = None if done == 1.0 else place.lost
             yield accepted
 
     def _part(self, attempts: Attempts, step: Step, last: Vec) -> Outcome:
@@ -236,6 +239,8 @@ class Solver:
         """Make the next part smaller, or give up."""
         pace, result = self.place.pace, outcome.result
         tried, cuts = pace.part, pace.cuts
+        if result.culprits:
+            self.place.lost = outcome
         if outcome.final or not pace.cut():
             self._stop(step, outcome, f"{cuts} cuts, the last part was {tried:.2g}" if cuts else "")
         if self._on_cut is not None:
@@ -255,6 +260,7 @@ class Solver:
 
     def _stop(self, step: Step, outcome: Outcome, tried: str) -> NoReturn:
         """Say why an increment has no solution."""
+        outcome = self.place.lost or outcome
         increment, culprits = self.place.pace.increment, outcome.culprits
         reason = too_much_load(self.problem, increment / step.increments)
         if reason:
