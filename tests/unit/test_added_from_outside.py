@@ -2,8 +2,10 @@
 
 import json
 import re
+import shutil
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -96,15 +98,24 @@ assert main(["run", "case.toml", "-o", "out", "--restart"]) == 0
 """
 
 
-def run(tmp_path: Path, section: str, more: str, number: int = 0) -> Any:
-    """A block of code of a section of the page and then more, in a process of its own."""
+def run(
+    tmp_path: Path,
+    section: str,
+    more: str,
+    number: int = 0,
+    before: Sequence[str] = (),
+    after: Sequence[str] = (),
+) -> Any:
+    """A block of code of a section of the page and then more, in a process of its own.
+
+    What stands `before` starts it, `after` are its arguments.
+    """
     pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     page = (ROOT / "docs" / "dev" / "how-to-add.md").read_text().partition(f"## {section}\n")[2]
     codes = re.findall(r"```python\n(.*?)```", page.partition("\n## ")[0], re.S)
     script = f"import anisocontact\n{codes[number]}\n{more}"
-    return subprocess.run(
-        [sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True, check=False
-    )
+    command = [*before, sys.executable, "-c", script, *after]
+    return subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
 
 
 def test_material_of_the_page_runs_in_a_case_file(tmp_path):
@@ -151,6 +162,47 @@ def test_material_with_a_history_relaxes_and_goes_on(tmp_path):
         true = force[-1] / (1.0 - 0.3 * 0.01) ** 2
         np.testing.assert_allclose(stress, [[0, 0, true, 0, 0, 0]] * len(stress), atol=1e-7 * true)
     assert results.summary["energy"]["elastic"] == 0.0
+
+
+ON_TWO = """
+import sys
+
+from anisocontact.cli import main
+from anisocontact.results.writer import Writer
+
+if sys.argv[1] == "halted":
+    import os, signal
+    keep = Writer.keep
+
+    def interrupted(self, *arguments):
+        keep(self, *arguments)
+        if self.summary["steps"] == 3:
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    Writer.keep = interrupted
+sys.exit(main(["run", "case.toml", "-o", "out", *sys.argv[2:]]))
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.mpi
+def test_history_of_a_material_goes_to_other_processes(tmp_path):
+    """Requirement: internal variables are found again by another number of processes.
+
+    Source: the closed form of the test above, of a run that was halted on two processes and goes on
+    in one. Tolerance: that of Newton's method.
+    """
+    if shutil.which("mpirun") is None:
+        pytest.skip("no mpirun")
+    (tmp_path / "case.toml").write_text(RELAX)
+    two = ("timeout", "-k", "5", "200", "mpirun", "-n", "2")
+    halted = run(tmp_path, "A material", ON_TWO, 1, before=two, after=("halted",))
+    assert halted.returncode == 3, halted.stderr
+    done = run(tmp_path, "A material", ON_TWO, 1, after=("on", "--restart"))
+    assert done.returncode == 0, done.stderr
+    maxwell = 0.01 * np.cumprod(0.5 / (0.5 + np.array([0.1] + [0.2] * 6)))
+    force = Results(tmp_path / "out").history["reactions.bar.top.z"]
+    np.testing.assert_allclose(force, 2.0 * 0.01 + 3.0 * maxwell, rtol=1e-7)
 
 
 UNIT_CUBE = {

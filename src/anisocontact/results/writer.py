@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -17,6 +17,7 @@ from anisocontact.contact import facet_size
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.results.checkpoint import keep_checkpoint
 from anisocontact.results.collection import Collection
+from anisocontact.results.dataset import DataSet
 from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
 from anisocontact.results.no_energy import told
@@ -73,7 +74,7 @@ class Writer:
         self._began = time.perf_counter()
         self._problem = problem
         self._steps = list(steps)
-        self._every, self._quantities = every, quantities
+        self._every = every
         self._pictures = pictures
         self._increments = 0
         self._kept = 0
@@ -84,12 +85,18 @@ class Writer:
         self._observer = Observer(problem, self._steps)
         self._constants = _constants(problem, names)
         self._history = History(self.folder / "history.csv")
-        self._bodies = Bodies(problem, quantities)
         comm = problem.model.mesh.comm
-        self._fields = Collection(self.folder / "fields.pvd", ".vtu", comm)
-        self._points = Collection(self.folder / "contact.pvd", ".vtp", comm)
-        self._masters = Surfaces(problem.contacts, comm, quantities)
-        self._surfaces = Collection(self.folder / "surfaces.pvd", ".vtp", comm)
+        bodies = Bodies(problem, quantities)
+        surfaces = Surfaces(problem.contacts, comm, quantities)
+        #: Name of each sort of fields, its files, and what is in them now.
+        self._fields: dict[str, tuple[Collection, Callable[[], DataSet | None]]] = {
+            name: (Collection(self.folder / f"{name}.pvd", suffix, comm), now)
+            for name, suffix, now in (
+                ("fields", ".vtu", bodies.grid),
+                ("contact", ".vtp", lambda: slave_points(problem.contacts, quantities)),
+                ("surfaces", ".vtp", surfaces.mesh),
+            )
+        }
         self.summary: dict[str, Any] = self._head(title)
         if resumed is None:
             self._begin()
@@ -129,12 +136,9 @@ class Writer:
         self._increments, self._written = state["increments"], state["written"]
         self._kept = state["kept"]
         self._disk.write(lambda: self._history.resume(state["history"]))
-        self._fields.resume(state["fields"])
-        self._disk.write(self._fields.tidy)
-        self._points.resume(state["contact"])
-        self._disk.write(self._points.tidy)
-        self._surfaces.resume(state["surfaces"])
-        self._disk.write(self._surfaces.tidy)
+        for name, (files, _) in self._fields.items():
+            files.resume(state[name])
+            self._disk.write(files.tidy)
         self.log(f"goes on after {self.summary['steps']} accepted increments")
 
     def state(self) -> dict[str, Any]:
@@ -146,10 +150,7 @@ class Writer:
             "kept": self._kept,
             "written": self._written,
             "history": self._history.state(),
-            "fields": self._fields.state(),
-            "contact": self._points.state(),
-            "surfaces": self._surfaces.state(),
-        }
+        } | {name: files.state() for name, (files, _) in self._fields.items()}
 
     def keep(self, kept: Persistent, facts: Mapping[str, Any]) -> None:
         """Write a checkpoint, from which the run can go on.
@@ -304,10 +305,8 @@ class Writer:
         self.summary.update(numbers, contacts=contacts)
 
     def _write_fields(self, at: float) -> None:
-        self._fields.add(self._disk, at, self._bodies.grid())
-        points = slave_points(self._problem.contacts, self._quantities)
-        self._points.add(self._disk, at, points)
-        self._surfaces.add(self._disk, at, self._masters.mesh())
+        for files, now in self._fields.values():
+            files.add(self._disk, at, now())
         self._written = at
 
     def _write_summary(self) -> None:
