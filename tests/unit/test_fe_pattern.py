@@ -109,7 +109,7 @@ def test_where_no_way_is_prescribed_points_are_taken_to_slide_on():
 
 def test_the_way_is_that_of_the_slave_against_the_master():
     """Supports of both bodies count, from where the steps have come to, as far as the window."""
-    contact = Contact(pair().model, "block.bottom", "mat.top", law=LAW)
+    (contact,) = Contact(pair().model, "block.bottom", "mat.top", law=LAW).passes
     steps = pressed(0.3, 4)
     moving = {"mat.bottom": {"x": -0.1}}
     steps[1] = dataclasses.replace(steps[1], displacement=steps[1].displacement | moving)
@@ -118,8 +118,8 @@ def test_the_way_is_that_of_the_slave_against_the_master():
     rest, _ = Ahead([contact], steps).way(contact, steps[1], 0.5)
     np.testing.assert_allclose(rest[-1], [0.2, 0.015, 0.0], atol=1e-15)
     spacing = np.linalg.norm(np.diff(way, axis=0), axis=1)
-    assert spacing.max() <= SPACING * contact.facet_size + 1e-15
+    assert spacing.max() <= SPACING * contact.slave_points.size + 1e-15
     assert hops == 1
     far, _ = Ahead([contact], pressed(9.0, 4)).way(contact, None, 0.0)
-    reached = np.linalg.norm(far[-1]) / contact.facet_size
+    reached = np.linalg.norm(far[-1]) / contact.slave_points.size
     assert FARTHEST - SPACING < reached <= FARTHEST

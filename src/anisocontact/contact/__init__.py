@@ -1,6 +1,5 @@
 """Which facets meet what: forces and tangent of contact, history of the slave points."""
 
-import importlib
 import warnings
 from typing import Any
 
@@ -31,19 +30,12 @@ __all__ = [
     "warn_of",
 ]
 
-#: What to take instead of classes of before, which work for one more version.
-_BEFORE = {
-    "FacetContact": 'Contact(model, slave, "body.group", law)',
-    "TwoHalfPass": 'Contact(model, slave, "body.group", law, two_half=True)',
-    "SelfContact": "Contact(model, group, group, law, self_contact=True)",
-}
-
 
 def __getattr__(name: str) -> Any:
-    if name in {"AnyContact", "MeshedContact"}:
-        warnings.warn(f"{name}: take Contact", DeprecationWarning, stacklevel=2)
-        return Contact
-    if name not in _BEFORE:
+    from anisocontact.contact.deprecated import BEFORE
+
+    if name not in BEFORE:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    warnings.warn(f"{name}: take {_BEFORE[name]}", DeprecationWarning, stacklevel=2)
-    return getattr(importlib.import_module("anisocontact.contact.deprecated"), name)
+    made, today = BEFORE[name]
+    warnings.warn(f"{name}: take {today}", DeprecationWarning, stacklevel=2)
+    return made

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
 from anisocontact.contact.history import Snapshot
-from anisocontact.contact.master import Law, Master
+from anisocontact.contact.master import Master
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import Surfaced
 from anisocontact.contact.transfer import Couplings
@@ -25,9 +25,6 @@ Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
 _INTERIOR = PROJECTION_STATUS.index("interior")
-
-#: A surface with its laws.
-type SurfaceLaw = Interface
 
 
 @dataclass(frozen=True)
@@ -110,7 +107,7 @@ class AnalyticMaster(Master):
     """
 
     def __init__(
-        self, interface: SurfaceLaw, body: RigidBody | None, slave: SlavePoints, comm: Any
+        self, interface: Interface, body: RigidBody | None, slave: SlavePoints, comm: Any
     ) -> None:
         self.interface, self.body, self._slave, self._comm = interface, body, slave, comm
         self._sees_slave = interface.takes_slave()
@@ -123,7 +120,7 @@ class AnalyticMaster(Master):
         return self.interface.initial_state(self._slave.quadrature.reference)
 
     @override
-    def take(self, laws: Law, derivative: Law) -> None:
+    def take(self, laws: Interface, derivative: Interface) -> None:
         on, self._given = self._on_body, laws
         self._laws, self._derivative = on(laws), on(derivative)
 

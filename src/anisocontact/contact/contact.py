@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Unpack
+from typing import Any, Self, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.making import Before, Options, SurfaceMaster, given_master, passes_of
 from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.quadrature import FacetQuadrature
-from anisocontact.contact.transfer import Couplings
 from anisocontact.interface import STATUS, ContactLaw, Response, State
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.interface.failed_point import FailedPoint
@@ -123,26 +121,32 @@ class Contact:
     ) -> None:
         master = given_master(master, before)
         options = Options(
-            degree=degree,
-            current_area=current_area,
-            augmentation=augmentation,
-            adjust=adjust,
-            reach=reach,
-            two_half=two_half,
-            self_contact=self_contact,
-            apart=apart,
-            overlaps=overlaps,
+            degree,
+            current_area,
+            augmentation,
+            adjust,
+            reach,
+            two_half,
+            self_contact,
+            apart,
+            overlaps,
         )
         self._compose(passes_of(model, slave, master, law, options), name)
 
+    @classmethod
+    def of(cls, *passes: Pass, name: str = "") -> Self:
+        """A contact of passes, of which the first says what it is of."""
+        new = cls.__new__(cls)
+        new._compose(passes, name)
+        return new
+
     def _compose(self, passes: tuple[Pass, ...], name: str) -> None:
-        """Be made of passes; the first says what the contact is of."""
         first = passes[0]
         self.passes, self.slave, self.name = passes, first.slave, name or first.slave
         self.space = first.space
         self.physical_adhesion = True
         self._trial: Snapshot | None = None
-        self.facet_of_point = np.concatenate([half.facet_of_point for half in passes])
+        self.facet_of_point = np.concatenate([half.slave_points.facet for half in passes])
         self._comm = first.space.mesh.comm
         self._accept()
 
@@ -174,7 +178,7 @@ class Contact:
     @property
     def body(self) -> RigidBody | None:
         """Rigid body that carries the master, if one does."""
-        return self.passes[0].body
+        return self.passes[0].master.body
 
     @property
     def quadrature(self) -> FacetQuadrature:
@@ -189,7 +193,7 @@ class Contact:
     @property
     def facet_size(self) -> float:
         """Length of a slave facet: square root of the mean area."""
-        return self.passes[0].facet_size
+        return self.passes[0].slave_points.size
 
     @property
     def master_size(self) -> float:
@@ -200,6 +204,10 @@ class Contact:
     def body_stiffness(self) -> float:
         """As of `Pass`."""
         return self.passes[0].body_stiffness
+
+    def slip_stiffness(self, dt: float) -> float:
+        """As of `Trials`."""
+        return self.passes[0].trials.slip_stiffness(dt)
 
     @property
     def ran_off(self) -> Floats:
@@ -290,111 +298,36 @@ class Contact:
         self._trial = None
         self._accepted = seen_from_slave([half.accepted for half in self.passes])
 
-    def suit_strain(self, finite: bool) -> None:
-        """As of `Pass`."""
-        for half in self.passes:
-            half.suit_strain(finite)
-
-    def suit(self, diagonal: Floats) -> None:
-        """As of `Pass`."""
-        for half in self.passes:
-            half.suit(diagonal)
-
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial to the local nodes, (nodes, 3), force."""
         for half in self.passes:
-            half.add_force(out)
-
-    def couplings(self) -> list[Couplings]:
-        """Where `-d force / d u` of the trial has entries, and the entries, see `Pass`."""
-        return [blocks for half in self.passes for blocks in half.couplings()]
-
-    def add_tangent(self, matrix: Mat) -> None:
-        """Add `couplings` of a contact with a surface to the matrix of the system."""
-        for rows, columns, blocks in self.couplings():
-            matrix.setValuesBlockedLocalRCV(rows, columns, blocks, PETSc.InsertMode.ADD_VALUES)
+            half.answer.add_force(out)
 
     def couplable(self) -> Ints:
         """Local nodes that the contact acts on; all ranks together have all of them."""
         return self.passes[0].master.couplable()
 
-    def lever(self) -> float:
-        """As of `Pass`."""
-        return float(np.hypot.reduce([half.lever() for half in self.passes]))
-
-    @property
-    def retraceable(self) -> bool:
-        """As of `Pass`."""
-        return all(half.retraceable for half in self.passes)
-
     def improve(self) -> bool:
-        """As of `Pass`."""
-        return any([half.improve() for half in self.passes])
+        """As of `Trials`."""
+        return any([half.trials.improve() for half in self.passes])
 
     def soften(self) -> bool:
-        """As of `Pass`."""
-        return any([half.soften() for half in self.passes])
-
-    @property
-    def ways(self) -> tuple[str, ...]:
-        """As of `Pass`."""
-        return self.passes[0].ways
-
-    def take_way(self, name: str) -> None:
-        """As of `Pass`."""
-        for half in self.passes:
-            half.take_way(name)
-
-    @property
-    def follows(self) -> bool:
-        """As of `Pass`."""
-        return any(half.follows for half in self.passes)
-
-    def held(self) -> bool:
-        """As of `Pass`."""
-        return all([half.held() for half in self.passes])
-
-    def take_share(self, share: float) -> None:
-        """As of `Pass`."""
-        for half in self.passes:
-            half.take_share(share)
-
-    def add_lag(self, out: Floats) -> None:
-        """As of `Pass`."""
-        for half in self.passes:
-            half.add_lag(out)
-
-    def slip_stiffness(self, dt: float) -> float:
-        """As of `Pass`."""
-        return self.passes[0].slip_stiffness(dt)
-
-    def lay(self, compliance: float, dt: float) -> None:
-        """As of `Pass`."""
-        for half in self.passes:
-            half.lay(compliance, dt)
-
-    def take_away(self) -> None:
-        """As of `Pass`."""
-        for half in self.passes:
-            half.take_away()
+        """As of `Trials`."""
+        return any([half.trials.soften() for half in self.passes])
 
     def footing(self) -> npt.NDArray[np.int64]:
         """As of `Master`."""
-        return np.concatenate([half.footing() for half in self.passes])
+        return np.concatenate([half.master.footing(len(half.state)) for half in self.passes])
 
     def hold(self, points: Mask) -> None:
         """As of `Master`."""
         ends = np.cumsum([len(half.state) for half in self.passes])
         for half, its in zip(self.passes, np.split(points, ends[:-1]), strict=True):
-            half.hold(its)
+            half.master.hold(its)
 
     def strayed(self) -> Floats:
         """As of `Master`."""
-        return np.concatenate([half.strayed() for half in self.passes])
-
-    def located(self, state: State) -> Mask:
-        """Whether each point of a state has a surface below it, (n,)."""
-        return self.passes[0].located(state)
+        return np.concatenate([half.master.strayed(len(half.state)) for half in self.passes])
 
     def failed_points(self) -> Floats:
         """Positions of the trial at which the law has no answer, (failed, 3), length."""

@@ -1,90 +1,41 @@
-"""Names of contacts before there was one `Contact`: for one version, with a warning."""
+"""Names of contacts before there was one `Contact`, for one more version."""
 
 from __future__ import annotations
 
-from typing import Any, TypedDict, Unpack
-
-import numpy as np
-import numpy.typing as npt
+from functools import partial
+from typing import Any
 
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.making import Options, facet_pass
 from anisocontact.interface import ContactLaw
 from anisocontact.mesh import Model
 
-Ints = npt.NDArray[np.int32]
+
+def _facet_contact(
+    model: Model,
+    slave: str,
+    master: str,
+    *,
+    law: ContactLaw,
+    weight: float = 1.0,
+    mirrored: bool = False,
+    name: str = "",
+    **options: Any,
+) -> Contact:
+    given = Options(**options)
+    half = facet_pass(model, slave, master, law, given, weight=weight, mirrored=mirrored)
+    return Contact.of(half, name=name)
 
 
-class _Given(TypedDict, total=False):
-    """Arguments that `Contact` has as well."""
-
-    degree: int | None
-    reach: float | None
-    current_area: bool | None
-    adjust: float | None
+def _self_contact(model: Model, group: str, *, law: ContactLaw, **options: Any) -> Contact:
+    return Contact(model, group, group, law, self_contact=True, **options)
 
 
-class FacetContact(Contact):
-    """`Contact(model, slave, master, law)` with a facet group as the master."""
-
-    def __init__(
-        self,
-        model: Model,
-        slave: str,
-        master: str,
-        *,
-        law: ContactLaw,
-        weight: float = 1.0,
-        mirrored: bool = False,
-        name: str = "",
-        **options: Any,
-    ) -> None:
-        half = facet_pass(
-            model, slave, master, law, Options(**options), weight=weight, mirrored=mirrored
-        )
-        self._compose((half,), name)
-
-
-class TwoHalfPass(Contact):
-    """`Contact(model, slave, master, law, two_half=True)`."""
-
-    def __init__(
-        self,
-        model: Model,
-        slave: str,
-        master: str,
-        *,
-        law: ContactLaw,
-        name: str = "",
-        **options: Unpack[_Given],
-    ) -> None:
-        super().__init__(model, slave, master, law, two_half=True, name=name, **options)
-
-
-class SelfContact(Contact):
-    """`Contact(model, group, group, law, self_contact=True)`."""
-
-    def __init__(
-        self,
-        model: Model,
-        group: str,
-        *,
-        law: ContactLaw,
-        degree: int | None = None,
-        apart: float | None = None,
-        reach: float | None = None,
-        current_area: bool | None = None,
-        name: str = "",
-    ) -> None:
-        super().__init__(
-            model,
-            group,
-            group,
-            law,
-            degree=degree,
-            apart=apart,
-            reach=reach,
-            current_area=current_area,
-            self_contact=True,
-            name=name,
-        )
+#: Names, what makes the same, and what to take instead.
+BEFORE = {
+    "FacetContact": (_facet_contact, 'Contact(model, slave, "body.group", law)'),
+    "TwoHalfPass": (partial(Contact, two_half=True), "Contact(..., two_half=True)"),
+    "SelfContact": (_self_contact, "Contact(model, group, group, law, self_contact=True)"),
+    "AnyContact": (Contact, "Contact"),
+    "MeshedContact": (Contact, "Contact"),
+}

@@ -81,7 +81,7 @@ def check_start(contact: Pass, size: float) -> None:
     _check_sides(contact, size)
     for one in _fields(contact.interface):
         gaps = np.abs(contact.state["gap"])
-        near = contact.located(contact.state) & (gaps <= NEAR * size)
+        near = contact.master.located(contact.state) & (gaps <= NEAR * size)
         bad = _singular(contact, one, size)
         if contact.space.mesh.comm.allreduce(int((~bad).sum())) > 0:
             bad &= near
@@ -95,7 +95,7 @@ def check_start(contact: Pass, size: float) -> None:
 
 
 def _check_distances(contact: Pass) -> None:
-    gaps = contact.state["gap"][contact.located(contact.state)]
+    gaps = contact.state["gap"][contact.master.located(contact.state)]
     if not all(contact.space.mesh.comm.allgather(bool(np.isfinite(gaps).all()))):
         text = "slave points have no finite distance to it: is it far too large or too small?"
         raise InputError(text, "master")
@@ -103,12 +103,12 @@ def _check_distances(contact: Pass) -> None:
 
 def _check_sides(contact: Pass, size: float) -> None:
     """The nearest points of two bodies that do not overlap have normals that face each other."""
-    located = contact.located(contact.state)
+    located = contact.master.located(contact.state)
     gaps = np.abs(contact.state["gap"])
     comm = contact.space.mesh.comm
     least = min(comm.allgather(float(gaps[located].min(initial=np.inf))))
     nearest = located & (gaps <= least + OVERLAP * size)
-    outward = contact.outward()
+    outward = contact.slave_points.outward
     cosine = np.einsum("nd,nd->n", outward, contact.last.normal)
     wrong = nearest & (cosine > SAME_WAY)
     if 2 * comm.allreduce(int(wrong.sum())) <= comm.allreduce(int(nearest.sum())):
@@ -136,7 +136,7 @@ def _singular(contact: Pass, one: Carried, size: float) -> npt.NDArray[np.bool_]
     )
     state = contact.state.copy()
     state["offset"] += state["gap"] + size
-    return np.asarray(contact.probe(law, state) == _DIRECTION)
+    return np.asarray(contact.master.probe(law, state) == _DIRECTION)
 
 
 _DIRECTION = next(code for code, text in enumerate(FAILURE) if "direction field" in text)
@@ -147,7 +147,11 @@ def _refuse(contact: Pass, bad: npt.NDArray[np.bool_], text: str, field: str) ->
     local: Any = None
     if found.size:
         first = found[0]
-        vectors = (contact.points[first], contact.outward()[first], contact.last.normal[first])
+        vectors = (
+            contact.points[first],
+            contact.slave_points.outward[first],
+            contact.last.normal[first],
+        )
         local = [_shown(vector) for vector in vectors]
     comm = contact.space.mesh.comm
     everywhere = [one for one in comm.allgather(local) if one is not None]

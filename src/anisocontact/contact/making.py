@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
 from anisocontact.base.errors import InputError
-from anisocontact.contact.analytic import AnalyticMaster, SurfaceLaw
+from anisocontact.contact.analytic import AnalyticMaster
 from anisocontact.contact.facet_master import FacetMaster
 from anisocontact.contact.facet_mesh import facet_mesh
 from anisocontact.contact.one_pass import Pass
@@ -26,7 +26,7 @@ from anisocontact.surfaces import Surface
 APART = 3.0
 
 #: A surface, or one that has its laws, which may move.
-type SurfaceMaster = Surface | SurfaceLaw | MovingSurface
+type SurfaceMaster = Surface | Interface | MovingSurface
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Options:
 class Before(TypedDict, total=False):
     """Arguments of `Contact` of before, for one more version."""
 
-    interface: SurfaceLaw
+    interface: Interface
     body: RigidBody | None
 
 
@@ -131,7 +131,7 @@ def _laws(law: object) -> ContactLaw:
     return law
 
 
-def _with_laws(surface: Any, law: ContactLaw | None) -> SurfaceLaw:
+def _with_laws(surface: Any, law: ContactLaw | None) -> Interface:
     """A surface with laws, one of which has to bring them."""
     if isinstance(surface, Surface):
         return Interface(surface, _laws(law))

@@ -13,31 +13,12 @@ from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.transfer import Couplings
 from anisocontact.contact.whereabouts import Seen, Whereabouts
 from anisocontact.interface import Response, State
-from anisocontact.interface.series import History
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.rigid import RigidBody
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 Mask = npt.NDArray[np.bool_]
-
-
-class Law(Protocol):
-    """Laws of an interface, with a surface or without one."""
-
-    normal: NormalLaw
-
-    def penalties(self) -> tuple[float, float]:
-        """Normal penalty and least tangential stiffness, stress/length."""
-
-    def slip_stiffness(self, dt: float) -> float:
-        """Largest stiffness against slip in an increment of time, stress/length."""
-
-    def stiffened(self, normal: float, tangential: float = 1.0) -> Self:
-        """The laws with other penalties."""
-
-    def in_series(self, compliance: float, dt: float) -> tuple[Self, History]:
-        """The laws with a compliant layer behind adhesion."""
 
 
 class Answer(Protocol):

@@ -14,19 +14,13 @@ from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks
 from anisocontact.contact.history import Slid, Snapshot, dissipated
 from anisocontact.contact.initial import check_start
-from anisocontact.contact.layer import Layer
-from anisocontact.contact.master import Answer, Law, Linear, Master
-from anisocontact.contact.multipliers import STICK, Frames, Multipliers, Step
+from anisocontact.contact.master import Answer, Master
 from anisocontact.contact.points import SlavePoints
-from anisocontact.contact.schemes import USUAL, make_multipliers
-from anisocontact.contact.semismooth import RATIO, Base, Semismooth
-from anisocontact.contact.transfer import Couplings
-from anisocontact.contact.whereabouts import Seen, Whereabouts
-from anisocontact.interface import FAILURE, Response, State
+from anisocontact.contact.trials import Trials
+from anisocontact.contact.whereabouts import Whereabouts
+from anisocontact.interface import FAILURE, Response
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.interface.failed_point import FailedPoint
-from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.rigid import RigidBody
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -62,8 +56,10 @@ class Pass:
         space: As given.
         slave_points: Where the laws are evaluated.
         master: What the points meet.
-        interface: Laws, as the user gave them.
+        trials: What trials start from and which laws answer, with their multipliers.
         state: Committed history, one record for each point.
+        accepted: The points in the accepted increment.
+        answer: What the laws answered last: forces of the trial and their derivative.
         ran_off: Slave points that left the end of the master in the accepted increment, (k, 3).
         body_stiffness: Traction per displacement of a single node of the bodies behind it, mean
             over the surface, stress/length; 0 until they are known.
@@ -85,29 +81,24 @@ class Pass:
         area_told: bool = False,
     ) -> None:
         self.space, self.slave, self.slave_points, self.master = space, slave, points, master
-        self.interface = law
-        self._laws: Law = law
-        self._stiff_laws: Law = law
         self._comm, self._area_told = space.mesh.comm, area_told
+        self._dt = 1.0
         self.body_stiffness = 0.0
         self.ran_off: Floats = np.zeros((0, 3))
-        self._multipliers: Multipliers | None = None
-        self._ways: Mapping[str, Multipliers] = {}
-        self._layer: Layer | None = None
-        self._way: list[Slid] = []
-        self._linear: Linear | None = None
-        self._dt = 1.0
-        self._base: Base
-        self._slip: Floats
-        self.state = self._start = adjusted(master.initial_state(), adjust)
-        self._answer: Answer = master.answer(self.state, 1.0)
-        self._accepted: Snapshot = self._answer.snapshot
+        self.state = adjusted(master.initial_state(), adjust)
+        self.answer: Answer = master.answer(self.state, 1.0)
+        self.accepted: Snapshot = self.answer.snapshot
         self._trial: Snapshot | None = None
+        self.trials = Trials(master, law, self.state, self._comm)
         check_start(self, points.size)
         if augmentation is not None:
-            self._ways = make_multipliers(augmentation, law, points.size, self._comm)
-            self._multipliers = self._ways[USUAL]
-            self._begin()
+            self.trials.augment(augmentation, points.size)
+        self._begin()
+
+    @property
+    def interface(self) -> Any:
+        """Laws, as the user gave them."""
+        return self.trials.interface
 
     @property
     def groups(self) -> tuple[str, ...]:
@@ -115,44 +106,24 @@ class Pass:
         return (self.slave, *self.master.groups)
 
     @property
-    def body(self) -> RigidBody | None:
-        """Rigid body that carries the master, if one does."""
-        return self.master.body
-
-    @property
-    def facet_of_point(self) -> npt.NDArray[np.int64]:
-        """Number of each point's facet in the group, of those of this rank, (n,)."""
-        return self.slave_points.facet
-
-    @property
-    def facet_size(self) -> float:
-        """Length of a slave facet: square root of the mean area."""
-        return self.slave_points.size
-
-    @property
     def points(self) -> Floats:
         """Slave points where they are after the accepted increment, (n, 3), length."""
-        return self._accepted.points
+        return self.accepted.points
 
     @property
     def areas(self) -> Floats:
         """Area of each slave point after the accepted increment, (n,), length^2."""
-        return self._accepted.areas
-
-    @property
-    def accepted(self) -> Snapshot:
-        """The accepted increment."""
-        return self._accepted
+        return self.accepted.areas
 
     @property
     def last(self) -> Response:
         """Response of the accepted increment."""
-        return self._accepted.response
+        return self.accepted.response
 
     @property
     def current(self) -> Snapshot:
         """The trial, or the accepted increment if there was none since."""
-        return self._trial or self._accepted
+        return self._trial or self.accepted
 
     def suit_strain(self, finite: bool) -> None:
         """Take the area of now where bodies are at finite strain, unless told when it was made.
@@ -171,10 +142,8 @@ class Pass:
                 (nodes, 3), force/length.
         """
         self.body_stiffness = self.master.stiffness(diagonal)
-        if self._ways:
-            for way in self._ways.values():
-                way.suit(self.body_stiffness)
-            self._begin()
+        self.trials.suit(self.body_stiffness)
+        self._begin()
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
@@ -186,14 +155,11 @@ class Pass:
         Returns:
             The response; the committed history is unchanged.
         """
-        master, follower, self._dt = self.master, self._follower, dt
-        if master.place(u, self.state, self._start, self.last.state):
-            self._linear = None
-        if follower is None:
-            self._answer = master.settled(master.answer(self._start, dt))
-        else:
-            self._answer = self._linearised(follower, dt)
-        self._trial = self._answer.snapshot
+        if self.master.place(u, self.state, self.trials.start, self.last.state):
+            self.trials.forget()
+        self._dt = dt
+        self.answer = self.trials.answer(dt)
+        self._trial = self.answer.snapshot
         return self._trial.response
 
     def failed_point(self, contact: str) -> FailedPoint | None:
@@ -207,7 +173,7 @@ class Pass:
             return None
         point = int(np.flatnonzero(failure)[0])
         said = {"contact": contact, "point": point, "failure": FAILURE[failure[point]]}
-        found: FailedPoint = self.master.failed_point(point, self._start, self._dt, **said)
+        found: FailedPoint = self.master.failed_point(point, self.trials.start, self._dt, **said)
         return found
 
     def unanswered(self, contact: str) -> FailedPoint | None:
@@ -216,57 +182,14 @@ class Pass:
         Args:
             contact: Name of the contact.
         """
-        for i in range(len(self._start)):
+        for i in range(len(self.trials.start)):
             said = {"contact": contact, "point": i, "failure": ""}
-            point: FailedPoint = self.master.failed_point(i, self._start, self._dt, **said)
+            point: FailedPoint = self.master.failed_point(i, self.trials.start, self._dt, **said)
             try:
                 point.evaluate()
             except InputError as error:
                 return replace(point, failure=str(error))
         return None
-
-    def _linearised(self, follower: Semismooth | Layer, dt: float) -> Answer:
-        """A trial to which the multipliers have followed, with the derivative of a Newton step."""
-        master = self.master
-        self._follow(follower, dt)
-        trial = master.answer(self._start, dt, tangent=False, separate=True)
-        step = self._step(trial.snapshot)
-        state, self._slip = follower.stiff(step)
-        stiff = master.answer(state, dt, derivative=True, separate=True)
-        stiffness = stiff.stiffness / follower.ratio
-        if not follower.tangential:
-            physical = self._laws.slip_stiffness(dt) * trial.snapshot.areas
-            stiffness += physical * (trial.snapshot.response.status == STICK)
-        answer: Answer = master.settled(trial.by_derivative(stiff, stiffness))
-        self._linear = master.linear(answer)
-        traction = master.into_frame(trial.snapshot.response.traction)
-        self._base = Base(follower.vector(step), traction, self._linear.slipped(self._slip))
-        return answer
-
-    def _follow(self, follower: Semismooth | Layer, dt: float) -> None:
-        """Let the multipliers follow a step of Newton's method."""
-        change = None if self._linear is None else self._linear.change()
-        if change is None:
-            return
-        self._start = follower.advance(
-            self._start,
-            self._base.after(change, follower.share),
-            self._frames(self.master.here(self._start, dt)),
-            self._frames(self._start),
-        )
-
-    def add_force(self, out: Floats) -> None:
-        """Add the forces of the trial to the local nodes, (nodes, 3), force."""
-        self._answer.add_force(out)
-
-    def couplings(self) -> list[Couplings]:
-        """Where `-d force / d u` of the trial has entries, and the entries.
-
-        Returns:
-            Each with nodes of the rows (p, r) and of the columns (p, c), numbered as
-            `CoupledTangent` has them, -1 for none, and p blocks, (p, r, c, 3, 3) or (p, 3 r, 3 c).
-        """
-        return self._answer.couplings()
 
     def body_blocks(self) -> BodyBlocks:
         """Rows and columns of the rigid body that carries the master in the tangent of the trial.
@@ -274,7 +197,7 @@ class Pass:
         Raises:
             ValueError: There is none.
         """
-        answer: Any = self._answer
+        answer: Any = self.answer
         blocks: BodyBlocks = answer.body_blocks()
         return blocks
 
@@ -285,214 +208,45 @@ class Pass:
         known to a share of their distance from the origin.
         """
         distance = np.linalg.norm(self.current.points, axis=1)
-        if self.body is not None:
-            distance += np.linalg.norm(self.body.position)
-        return float(np.linalg.norm(self._answer.stiffness * distance))
-
-    def add_lag(self, out: Floats) -> None:
-        """Add the forces that a Newton step takes beyond those of the trial.
-
-        They take the violation of multipliers that follow away; (nodes, 3), force.
-        """
-        if self._linear is not None:
-            self._linear.add_force(self._slip, out)
-
-    def lag_wrench(self, about: Floats) -> Floats:
-        """Force and moment on the slave that belong to `add_lag` over the points here, (6,).
-
-        Args:
-            about: Point of the moment, (3,), length.
-        """
-        if self._linear is None:
-            return np.zeros(6)
-        return self.current.wrench(about, self.master.out_of_frame(self._base.lag))
+        if self.master.body is not None:
+            distance += np.linalg.norm(self.master.body.position)
+        return float(np.linalg.norm(self.answer.stiffness * distance))
 
     def commit(self) -> None:
         """Make the trial the history."""
-        self.ran_off = self.master.commit(self._accepted, self.state, self._trial)
+        self.ran_off = self.master.commit(self.accepted, self.state, self._trial)
         if self._trial is not None:
-            self._accepted = self._trial
+            self.accepted = self._trial
             if self._way:
                 self.last.state["dissipation"] = dissipated(self.state, self._way, self.last.state)
             self.state = self.last.state
-            if self._multipliers is not None and self._multipliers.tangential:
-                # a force that is a multiplier does no work on elastic slip
+            if not self.trials.does_work:
                 self.state["energy_adhesion"] = 0.0
             self._trial = None
-        if self._multipliers is not None:
-            self._multipliers.commit()
-        self._multipliers = self._ways.get(USUAL)
+        self.trials.end(accepted=True)
         self._begin()
 
     def roll_back(self) -> None:
         """Forget the trial."""
         self.master.roll_back(self._trial is not None)
         self._trial = None
-        answer: Any = self._answer
-        self._answer = replace(answer, snapshot=self._accepted)
-        self._multipliers = self._ways.get(USUAL)
+        answer: Any = self.answer
+        self.answer = replace(answer, snapshot=self.accepted)
+        self.trials.end(accepted=False)
         self._begin()
+
+    def _begin(self) -> None:
+        self._way: list[Slid] = []
+        self.trials.begin(self.state, self.accepted)
 
     @property
     def retraceable(self) -> bool:
         """Whether `update` answers at any state from the accepted one, and nothing else changes."""
-        return self.master.retraceable and self._multipliers is None
+        return self.master.retraceable and not self.trials.augmented
 
     def pass_through(self) -> None:
         """Remember the trial as a state that bodies which flow have gone through."""
         self._way.append(Slid.of(self.current.response.state))
-
-    def improve(self) -> bool:
-        """Take better multipliers from the trial, which is in equilibrium.
-
-        Without multipliers points that are held beside their closest ones are let go: with them the
-        way back costs more than the thousandth of a facet that may be wrong.
-
-        Returns:
-            Whether anything changed, so that equilibrium has to be found again.
-
-        Raises:
-            NotHeldError: They do not converge.
-        """
-        if self._multipliers is None:
-            return self.master.let_go()
-        better = self._multipliers.improve(self._step(self.current))
-        if better is None:
-            return False
-        self._start_from(better)
-        return True
-
-    def soften(self) -> bool:
-        """After a solution that failed: hold points that were let go, or take softer penalties.
-
-        Returns:
-            Whether to try again.
-        """
-        if self.master.hold_again():
-            return True
-        start = None if self._multipliers is None else self._multipliers.soften(self._start)
-        if start is None:
-            return False
-        self._start_from(start)
-        return True
-
-    @property
-    def ways(self) -> tuple[str, ...]:
-        """Ways to the multipliers in an increment, see `schemes`; none without augmentation."""
-        return tuple(self._ways)
-
-    def take_way(self, name: str) -> None:
-        """Find the multipliers in another way until the trial is kept or forgotten.
-
-        Args:
-            name: One of the names in `schemes`; a contact that does not have it goes on as usual.
-        """
-        if name in self._ways:
-            self._multipliers = self._ways[name]
-            self._begin()
-
-    @property
-    def follows(self) -> bool:
-        """Whether multipliers follow every step of Newton's method."""
-        return self._follower is not None
-
-    def held(self) -> bool:
-        """Whether multipliers that follow are what the trial answers to them."""
-        follower = self._follower
-        return follower is None or follower.held(self._step(self.current))
-
-    def take_share(self, share: float) -> None:
-        """Take only a share of the next step of multipliers that follow."""
-        if self._follower is not None:
-            self._follower.share = share
-
-    @property
-    def _follower(self) -> Semismooth | Layer | None:
-        """What follows every step of Newton's method."""
-        own = None if self._multipliers is None else self._multipliers.follower
-        return self._layer or own
-
-    def slip_stiffness(self, dt: float) -> float:
-        """Largest stiffness of a physical adhesion against slip, stress/length; 0 for others.
-
-        Args:
-            dt: Time increment.
-        """
-        if self._multipliers is not None and self._multipliers.tangential:
-            return 0.0
-        return float(self.interface.slip_stiffness(dt))
-
-    def lay(self, compliance: float, dt: float) -> None:
-        """Put a compliant layer behind adhesion, see `Layer`, until `take_away`; or a stiffer one.
-
-        Args:
-            compliance: Of the layer, length/stress.
-            dt: Time increment.
-        """
-        soft, start = self.interface.in_series(compliance, dt)
-        stiff, begun = self.interface.in_series(compliance / RATIO, dt)
-        first = self._start
-        if self._layer is not None:
-            first = self._layer.without(first)
-            self._layer.stiffer(compliance, (start, begun))
-        else:
-            normal = None if self._multipliers is None else self._multipliers.follower
-            histories = start, begun
-            self._layer = Layer(compliance, histories, normal, self.master.at, self._comm)
-        self._take(soft, stiff)
-        self._start = self._layer.begin(first, self.master.axes(self.last))
-
-    def take_away(self) -> None:
-        """Take the layer away."""
-        if self._layer is not None:
-            self._start = self._layer.without(self._start)
-            self._layer = None
-            self._take(self.interface, self.interface)
-
-    def _take(self, laws: Law, stiff: Law) -> None:
-        """Answer by other laws, and take the derivative of others."""
-        self._laws, self._stiff_laws = laws, stiff
-        self._stiffen()
-        self._linear = None
-
-    def _stiffen(self) -> None:
-        """Multiply the penalties of the laws as the multipliers say."""
-        laws, stiff = self._laws, self._stiff_laws
-        if self._multipliers is not None:
-            laws = laws.stiffened(*self._multipliers.factors)
-            if self._follower is not None:
-                stiff = stiff.stiffened(*self._follower.stiff_factors)
-        self.master.take(laws, stiff)
-
-    def _begin(self) -> None:
-        """Let trials start from the committed state."""
-        self._start = self.state
-        self._way, self._linear = [], None
-        self.master.begin()
-        if self._multipliers is not None:
-            self._start_from(self._multipliers.begin(self.state, self.located(self.state)))
-        if self._layer is not None:
-            self._start = self._layer.begin(self._start, self.master.axes(self.last))
-
-    def _start_from(self, start: State) -> None:
-        """Let trials start from other multipliers, perhaps with other penalties."""
-        self._start = start
-        self._stiffen()
-        self._linear = None
-
-    def _step(self, trial: Snapshot) -> Step:
-        """A trial with the frames of the master."""
-        return Step(
-            self._start,
-            trial.response,
-            trial.areas,
-            self._frames(trial.response.state),
-            self._frames(self._start),
-            self.master.axes(trial.response),
-        )
-
-    def _frames(self, state: State) -> Frames:
-        return Frames.of(self.master.at(state)[1])
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
@@ -512,43 +266,13 @@ class Pass:
         own = dict(zip(ENERGIES, self._comm.allreduce(local).tolist(), strict=True))
         return own | self.master.energies()
 
-    def located(self, state: State) -> Mask:
-        """Whether each point of a state has a surface below it, (n,)."""
-        return self.master.located(state)
-
-    def outward(self) -> Floats:
-        """Outward normals of the slave at its points in the reference configuration, (n, 3)."""
-        return self.slave_points.outward
-
-    def look(self, x: Floats) -> Seen:
-        """The master where it is now from points of space, (n, 3), length."""
-        return self.master.look(x)
-
     def whereabouts(self, u: Floats) -> Whereabouts:
         """Where the points of the trial are beside the master, in its frame; collective.
 
         Args:
             u: Displacement of the local nodes in the trial, (nodes, 3), length.
         """
-        return self.master.whereabouts(u, self._accepted, self.state, self.current)
-
-    def probe(
-        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
-    ) -> npt.NDArray[np.int8]:
-        """Why other laws would fail in the reference configuration, codes of `FAILURE`, (n,)."""
-        return self.master.probe(laws, state)
-
-    def footing(self) -> npt.NDArray[np.int64]:
-        """As of `Master`."""
-        return self.master.footing(len(self.state))
-
-    def hold(self, points: Mask) -> None:
-        """As of `Master`."""
-        self.master.hold(points)
-
-    def strayed(self) -> Floats:
-        """As of `Master`."""
-        return self.master.strayed(len(self.state))
+        return self.master.whereabouts(u, self.accepted, self.state, self.current)
 
     def persistent(self) -> dict[str, npt.NDArray[Any]]:
         """All that the next increments and the output depend on, an entry for each point.
@@ -556,14 +280,13 @@ class Pass:
         Multipliers are the pressure and the elastic force in the state; "level" is what their
         penalties are multiplied with.
         """
-        now = self._accepted
+        now = self.accepted
         fields = {name: getattr(now.response, name) for name in _KEPT}
-        level = 1.0 if self._multipliers is None else self._multipliers.level
         own = {
             "state": self.state,
             "points": now.points,
             "areas": now.areas,
-            "level": np.full(len(now.areas), level),
+            "level": np.full(len(now.areas), self.trials.level),
         }
         kept = {name: values.copy() for name, values in (own | fields).items()}
         return self.master.persistent(kept)
@@ -582,9 +305,7 @@ class Pass:
             state=self.state,
             **{name: np.array(kept[name]) for name in _KEPT},
         )
-        self._accepted = Snapshot(np.array(kept["points"]), np.array(kept["areas"]), response)
+        self.accepted = Snapshot(np.array(kept["points"]), np.array(kept["areas"]), response)
         self._trial = None
-        if self._multipliers is not None:
-            level = float(kept["level"].max(initial=0.0))
-            self._multipliers.level = max(self._comm.allgather(level))
+        self.trials.level = max(self._comm.allgather(float(kept["level"].max(initial=0.0))))
         self._begin()

@@ -129,7 +129,7 @@ class _ContactNow(SlavePoints):
     def least_gap(self) -> float:
         """Smallest gap, negative where points overlap; 0 where no point has a surface below it."""
         parts = self.contact.passes
-        gaps = [part.state["gap"][part.located(part.state)] for part in parts]
+        gaps = [part.state["gap"][part.master.located(part.state)] for part in parts]
         comm = self.contact.space.mesh.comm
         least = min(comm.allgather(float(np.concatenate(gaps).min(initial=np.inf))))
         return float(least) if np.isfinite(least) else 0.0

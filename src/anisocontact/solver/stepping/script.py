@@ -216,7 +216,7 @@ class ContactProblem(AssembledSystem):
         passes: list[Any] = [one for contact in self.contacts for one in contact.passes]
         for one in passes:
             now = one.current.response
-            near = one.located(now.state) & (now.gap <= NEAR * one.facet_size)
+            near = one.master.located(now.state) & (now.gap <= NEAR * one.slave_points.size)
             if self._any(near):
                 nodes.append(one.master.couplable())
         touched = np.concatenate(nodes)

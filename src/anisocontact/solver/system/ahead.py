@@ -57,7 +57,7 @@ class Ahead:
             way = way[:, None]
             if len(way) == 1:
                 way, hops = going_on(one)
-            found += one.master.reachable(way, MARGIN * one.facet_size, hops)
+            found += one.master.reachable(way, MARGIN * one.slave_points.size, hops)
         return found
 
     def way(self, one: Pass, step: Step | None, level: float) -> tuple[Floats, int]:
@@ -79,7 +79,7 @@ class Ahead:
             sizes = np.linalg.norm(jumps, axis=1) / self._increments[first:]
         if len(jumps):
             ends = np.concatenate([ends[:1] + level * jumps[:1], ends[1:]])
-        spacing, farthest = SPACING * one.facet_size, FARTHEST * one.facet_size
+        spacing, farthest = SPACING * one.slave_points.size, FARTHEST * one.slave_points.size
         # what is farther than twice as far from a place within is outside
         way = _sampled(ends - ends[0], spacing, most=int(2.0 * FARTHEST / SPACING) + 1)
         beyond = np.flatnonzero(np.linalg.norm(way, axis=1) > farthest)
@@ -93,7 +93,7 @@ def going_on(one: Pass) -> tuple[Floats, int]:
 
     Also how many of these places an increment goes.
     """
-    slid = one.master.slid(one.state) / one.facet_size
+    slid = one.master.slid(one.state) / one.slave_points.size
     longest = float(np.linalg.norm(slid, axis=1).max(initial=0.0))
     if not 0.0 < longest < np.inf:
         return np.zeros((1, 1, 3)), 0
@@ -101,7 +101,7 @@ def going_on(one: Pass) -> tuple[Floats, int]:
     count = int(np.ceil(increments * longest / SPACING))
     share = np.linspace(0.0, increments, count + 1)[:, None, None]
     hops = int(np.ceil(min(longest, FARTHEST) / SPACING))
-    return share * slid * one.facet_size, hops
+    return share * slid * one.slave_points.size, hops
 
 
 def _path(steps: Sequence[Step], body: str) -> Floats:

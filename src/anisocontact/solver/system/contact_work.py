@@ -107,7 +107,7 @@ class ContactWork:
         """Whether supports and prescribed motions alone drive the bodies, and contact can tell."""
         parts = self._parts
         held = not (parts.stabilisation.watches or parts.rigid.free or parts.attached)
-        held = held and all(contact.retraceable for contact in self._contacts)
+        held = held and all(half.retraceable for c in self._contacts for half in c.passes)
         loaded = held and bool(parts.loads.force(nodal).any())
         return held and not self._comm.allreduce(loaded, MPI.LOR)
 

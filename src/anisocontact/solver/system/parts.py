@@ -119,8 +119,9 @@ def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) ->
     """Tell contacts how stiff their bodies are, and which of them are at finite strain."""
     diagonal = np.array(bodies.bulk.diagonal.array_r).reshape(-1, 3)
     for contact, is_finite in zip(contacts, finite, strict=True):
-        contact.suit_strain(is_finite)
-        contact.suit(diagonal)
+        for half in contact.passes:
+            half.suit_strain(is_finite)
+            half.suit(diagonal)
 
 
 def _finite(model: Model, materials: Mapping[str, Material], contact: Contact) -> bool:

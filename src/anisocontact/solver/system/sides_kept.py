@@ -113,7 +113,7 @@ class SidesKept:
             return 0.0, 0.0, (0.0, 0.0, 0.0)
         comm = watched.one.space.mesh.comm
         x = watched.places + u[watched.nodes]
-        seen = watched.one.look(x)
+        seen = watched.one.master.look(x)
         depth = np.where(seen.on, -seen.gap, 0.0)
         behind = depth > DEEP * watched.body.size
         count, total = comm.allreduce(np.array([float(behind.sum()), float(len(behind))]))
@@ -130,7 +130,7 @@ class SidesKept:
         if len(points):
             first = int(points[0])
             x, y, z = one.current.points[first].tolist()
-            local = ((x, y, z), first, int(one.facet_of_point[first]))
+            local = ((x, y, z), first, int(one.slave_points.facet[first]))
         known = [place for place in one.space.mesh.comm.allgather(local) if place is not None]
         position, point, facet = known[0]
         return Culprit("behind", position, why, watched.name, point, facet)
@@ -147,6 +147,6 @@ def _watched(model: Model, one: Pass, name: str, groups: list[Body]) -> _Watched
     if any(model.body_of(group) in body.parts for group in one.groups[1:]):
         return _alone(one, name)
     nodes = body.nodes[:: max(1, len(body.nodes) // MOST_NODES)]
-    seen = one.look(places[nodes])
+    seen = one.master.look(places[nodes])
     nodes = nodes[seen.on & (seen.gap > -DEEP * body.size)]
     return _Watched(one, name, body, nodes, places[nodes])

@@ -28,6 +28,8 @@ class Contacts(Term):
 
     def __init__(self, contacts: Sequence[Contact]) -> None:
         self._all = list(contacts)
+        self._halves = [p for c in self._all for p in c.passes]
+        self._trials = [p.trials for p in self._halves]
         self.passes = [p for c in self._all if c.meshed for p in c.passes]
         self._smooth = [p for c in self._all if not c.meshed for p in c.passes]
         self._dt = 1.0
@@ -51,15 +53,15 @@ class Contacts(Term):
 
     @override
     def lever(self) -> float:
-        return float(np.linalg.norm([contact.lever() for contact in self._all]))
+        return float(np.linalg.norm([half.lever() for half in self._halves]))
 
     @override
     def blocks(self) -> list[Couplings]:
-        return [found for one in self._smooth for found in one.couplings()]
+        return [found for one in self._smooth for found in one.answer.couplings()]
 
     @override
     def couplings(self) -> list[Couplings]:
-        return [found for one in self.passes for found in one.couplings()]
+        return [found for one in self.passes for found in one.answer.couplings()]
 
     @override
     def accept(self, u: Floats) -> float:
@@ -82,7 +84,7 @@ class Contacts(Term):
 
     @override
     def histories(self) -> list[Arrays]:
-        return [part.persistent() for contact in self._all for part in contact.passes]
+        return [half.persistent() for half in self._halves]
 
     @override
     def take_histories(self, kept: Iterator[Arrays], u: Floats) -> None:
@@ -91,9 +93,8 @@ class Contacts(Term):
 
     def pass_through(self) -> None:
         """Remember a state that the bodies flow through, for the work of friction."""
-        for contact in self._all:
-            for part in contact.passes:
-                part.pass_through()
+        for half in self._halves:
+            half.pass_through()
 
     def feet(self) -> npt.NDArray[np.int64]:
         """Local nodes of the master facets that are below slave points in the trial."""
@@ -106,25 +107,25 @@ class Contacts(Term):
         Raises:
             NotHeldError: They do not converge.
         """
-        return any([contact.improve() for contact in self._all])
+        return any([one.improve() for one in self._trials])
 
     def soften(self) -> bool:
         """After a solution that failed: softer penalties; whether any changed."""
-        return any([contact.soften() for contact in self._all])
+        return any([one.soften() for one in self._trials])
 
     @property
     def follows(self) -> bool:
         """Whether multipliers follow every correction of Newton's method."""
-        return any(contact.follows for contact in self._all)
+        return any(one.follows for one in self._trials)
 
     def held(self) -> bool:
         """Whether multipliers that follow are what the last evaluation answers to them."""
-        return all([contact.held() for contact in self._all])
+        return all([one.held() for one in self._trials])
 
     def take_share(self, share: float) -> None:
         """Let multipliers that follow take only a share of the next correction."""
-        for contact in self._all:
-            contact.take_share(share)
+        for one in self._trials:
+            one.take_share(share)
 
     def multiplier_residual(self, u: Floats) -> Floats:
         """Forces of the condensed residual of multipliers that follow, (nodes, 3).
@@ -132,16 +133,16 @@ class Contacts(Term):
         A correction takes them beyond the forces of the trial.
         """
         out = np.zeros(u.shape)
-        for contact in self._all:
-            contact.add_lag(out)
+        for one in self._trials:
+            one.add_lag(out)
         return out
 
     @property
     def ways(self) -> frozenset[str]:
-        """Ways to the multipliers that a contact has, see `Contact.ways`."""
-        return frozenset(way for contact in self._all for way in contact.ways)
+        """Ways to the multipliers that a contact has, see `Trials.ways`."""
+        return frozenset(way for one in self._trials for way in one.ways)
 
     def take_way(self, name: str) -> None:
-        """Find multipliers in another way in this attempt, see `Contact.take_way`."""
-        for contact in self._all:
-            contact.take_way(name)
+        """Find multipliers in another way in this attempt, see `Trials.take_way`."""
+        for one in self._trials:
+            one.take_way(name)

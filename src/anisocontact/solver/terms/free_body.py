@@ -100,8 +100,9 @@ class FreeBody:
         if not self.sprung:
             return self.size
         near = [
-            np.abs(c.current.response.gap[c.located(c.state)]).min(initial=np.inf)
+            np.abs(p.current.response.gap[p.master.located(p.state)]).min(initial=np.inf)
             for c in self.contacts
+            for p in c.passes
         ]
         least = min(self.contacts[0].space.mesh.comm.allgather(float(min(near))))
         return float(min(max(2.0 * least, TOUCHING * self.size), self.size))
@@ -126,7 +127,7 @@ class FreeBody:
         projected = self.springs.copy()
         for contact in self.contacts:
             for half in contact.passes:
-                for blocks in half.couplings():
+                for blocks in half.answer.couplings():
                     projected += self.motions @ self._projected(blocks) @ self.motions.T
         sizes = np.linalg.svd(projected, compute_uv=False)
         return bool(sizes.min(initial=np.inf) > self.least)

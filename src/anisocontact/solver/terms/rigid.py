@@ -53,14 +53,14 @@ class RigidBodies(Term):
     def __init__(self, contacts: Sequence[Contact], comm: Any) -> None:
         on_bodies = [p for c in contacts if c.body is not None for p in c.passes]
         self.bodies: list[RigidBody] = list(
-            dict.fromkeys(c.body for c in on_bodies if c.body is not None)
+            dict.fromkeys(p.master.body for p in on_bodies if p.master.body is not None)
         )
         names = [body.name for body in self.bodies]
         for name in names:
             if names.count(name) > 1:
                 raise InputError(f"two rigid bodies have the name {name!r}", "body")
         self.free = [body for body in self.bodies if body.free]
-        self.contacts = {b: [c for c in on_bodies if c.body is b] for b in self.bodies}
+        self.contacts = {b: [p for p in on_bodies if p.master.body is b] for b in self.bodies}
         self._comm = comm
         self._drives = {body: Drive(body) for body in self.bodies}
         self._scales = {body: self._scale(body) for body in self.bodies}
@@ -140,7 +140,9 @@ class RigidBodies(Term):
         """`Contacts.multiplier_residual` of the free bodies as the rows have it, (size,), force."""
         rows = np.zeros(self.size)
         for i, body in enumerate(self.free):
-            local = sum((c.lag_wrench(body.position) for c in self.contacts[body]), np.zeros(6))
+            local = sum(
+                (c.trials.lag_wrench(body.position) for c in self.contacts[body]), np.zeros(6)
+            )
             row = -np.asarray(self._comm.allreduce(local)) / self._scales[body]
             rows[6 * i : 6 * i + 6] = np.where(self._drives[body].held, 0.0, row)
         return rows

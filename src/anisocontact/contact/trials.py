@@ -1,0 +1,313 @@
+"""What trials of a pass start from, and how multipliers and layers follow the displacements."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.history import Snapshot
+from anisocontact.contact.layer import Layer
+from anisocontact.contact.master import Answer, Linear, Master
+from anisocontact.contact.multipliers import STICK, AugmentedLaw, Frames, Multipliers, Step
+from anisocontact.contact.schemes import USUAL, make_multipliers
+from anisocontact.contact.semismooth import RATIO, Base, Semismooth
+from anisocontact.interface import State
+from anisocontact.interface.augmentation import Augmentation
+
+Floats = npt.NDArray[np.float64]
+
+
+class Trials:
+    """Laws at slave points from a state on: as the user gave them, augmented, or with a layer.
+
+    Args:
+        master: What the points meet.
+        law: Laws, as the user gave them.
+        state: Committed state.
+        comm: Communicator of the mesh.
+
+    Attributes:
+        master: As given.
+        interface: Laws, as the user gave them.
+        start: State from which trials start.
+    """
+
+    def __init__(self, master: Master, law: Any, state: State, comm: Any) -> None:
+        self.master, self.interface, self.start, self._comm = master, law, state, comm
+        self._laws: AugmentedLaw = law
+        self._stiff_laws: AugmentedLaw = law
+        self._ways: Mapping[str, Multipliers] = {}
+        self._multipliers: Multipliers | None = None
+        self._layer: Layer | None = None
+        self._linear: Linear | None = None
+        self._base: Base
+        self._slip: Floats
+        self._state: State
+        self._accepted: Snapshot
+        self._now: Snapshot
+
+    def augment(self, augmentation: Augmentation, size: float) -> None:
+        """Let multipliers make the laws exact.
+
+        Args:
+            augmentation: How exactly the contact is to hold.
+            size: Facet size, length.
+
+        Raises:
+            InputError: As of `make_multipliers`.
+        """
+        self._ways = make_multipliers(augmentation, self.interface, size, self._comm)
+        self._multipliers = self._ways[USUAL]
+
+    def suit(self, stiffness: float) -> None:
+        """Bring penalties to the stiffness of the bodies, stress/length."""
+        for way in self._ways.values():
+            way.suit(stiffness)
+
+    @property
+    def level(self) -> float:
+        """What the penalties of multipliers are multiplied with."""
+        return 1.0 if self._multipliers is None else self._multipliers.level
+
+    @level.setter
+    def level(self, level: float) -> None:
+        if self._multipliers is not None:
+            self._multipliers.level = level
+
+    @property
+    def augmented(self) -> bool:
+        """Whether there are multipliers."""
+        return self._multipliers is not None
+
+    @property
+    def does_work(self) -> bool:
+        """Whether tangential forces do work on elastic slip: those that are multipliers do none."""
+        return self._multipliers is None or not self._multipliers.tangential
+
+    def begin(self, state: State, accepted: Snapshot) -> None:
+        """Let trials start from the committed state.
+
+        Args:
+            state: The state.
+            accepted: The points in it.
+        """
+        self.start, self._linear = state, None
+        self._state, self._now, self._accepted = state, accepted, accepted
+        self.master.begin()
+        if self._multipliers is not None:
+            self._start_from(self._multipliers.begin(state, self.master.located(state)))
+        if self._layer is not None:
+            self.start = self._layer.begin(self.start, self.master.axes(accepted.response))
+
+    def end(self, accepted: bool) -> None:
+        """Take it that an increment is accepted or given up: the next one is found as usual."""
+        if accepted and self._multipliers is not None:
+            self._multipliers.commit()
+        self._multipliers = self._ways.get(USUAL)
+
+    def forget(self) -> None:
+        """Forget about which trial a Newton step was linear."""
+        self._linear = None
+
+    def answer(self, dt: float) -> Answer:
+        """The trial where the master is, with the derivative of a Newton step."""
+        follower, answer = self._follower, None
+        if follower is not None:
+            answer = self._linearised(follower, dt)
+        else:
+            answer = self.master.settled(self.master.answer(self.start, dt))
+        self._now = answer.snapshot
+        return answer
+
+    def improve(self) -> bool:
+        """Take better multipliers from the trial, which is in equilibrium.
+
+        Without multipliers points that are held beside their closest ones are let go: with them the
+        way back costs more than the thousandth of a facet that may be wrong.
+
+        Returns:
+            Whether anything changed, so that equilibrium has to be found again.
+
+        Raises:
+            NotHeldError: They do not converge.
+        """
+        if self._multipliers is None:
+            return self.master.let_go()
+        better = self._multipliers.improve(self._step(self._now))
+        if better is None:
+            return False
+        self._start_from(better)
+        return True
+
+    def soften(self) -> bool:
+        """After a solution that failed: hold points that were let go, or take softer penalties.
+
+        Returns:
+            Whether to try again.
+        """
+        if self.master.hold_again():
+            return True
+        start = None if self._multipliers is None else self._multipliers.soften(self.start)
+        if start is None:
+            return False
+        self._start_from(start)
+        return True
+
+    def _linearised(self, follower: Semismooth | Layer, dt: float) -> Answer:
+        """A trial to which the multipliers have followed, with the derivative of a Newton step."""
+        master = self.master
+        self._follow(follower, dt)
+        trial = master.answer(self.start, dt, tangent=False, separate=True)
+        step = self._step(trial.snapshot)
+        state, self._slip = follower.stiff(step)
+        stiff = master.answer(state, dt, derivative=True, separate=True)
+        stiffness = stiff.stiffness / follower.ratio
+        if not follower.tangential:
+            physical = self._laws.slip_stiffness(dt) * trial.snapshot.areas
+            stiffness += physical * (trial.snapshot.response.status == STICK)
+        answer: Answer = master.settled(trial.by_derivative(stiff, stiffness))
+        self._linear = master.linear(answer)
+        traction = master.into_frame(trial.snapshot.response.traction)
+        self._base = Base(follower.vector(step), traction, self._linear.slipped(self._slip))
+        return answer
+
+    def _follow(self, follower: Semismooth | Layer, dt: float) -> None:
+        """Let the multipliers follow a step of Newton's method."""
+        change = None if self._linear is None else self._linear.change()
+        if change is None:
+            return
+        self.start = follower.advance(
+            self.start,
+            self._base.after(change, follower.share),
+            self._frames(self.master.here(self.start, dt)),
+            self._frames(self.start),
+        )
+
+    def add_lag(self, out: Floats) -> None:
+        """Add the forces that a Newton step takes beyond those of the trial.
+
+        They take the violation of multipliers that follow away; (nodes, 3), force.
+        """
+        if self._linear is not None:
+            self._linear.add_force(self._slip, out)
+
+    def lag_wrench(self, about: Floats) -> Floats:
+        """Force and moment on the slave that belong to `add_lag` over the points here, (6,).
+
+        Args:
+            about: Point of the moment, (3,), length.
+        """
+        if self._linear is None:
+            return np.zeros(6)
+        return self._now.wrench(about, self.master.out_of_frame(self._base.lag))
+
+    @property
+    def ways(self) -> tuple[str, ...]:
+        """Ways to the multipliers in an increment, see `schemes`; none without augmentation."""
+        return tuple(self._ways)
+
+    def take_way(self, name: str) -> None:
+        """Find the multipliers in another way until the trial is kept or forgotten.
+
+        Args:
+            name: One of the names in `schemes`; a contact that does not have it goes on as usual.
+        """
+        if name in self._ways:
+            self._multipliers = self._ways[name]
+            self.begin(self._state, self._accepted)
+
+    @property
+    def follows(self) -> bool:
+        """Whether multipliers follow every step of Newton's method."""
+        return self._follower is not None
+
+    def held(self) -> bool:
+        """Whether multipliers that follow are what the trial answers to them."""
+        follower = self._follower
+        return follower is None or follower.held(self._step(self._now))
+
+    def take_share(self, share: float) -> None:
+        """Take only a share of the next step of multipliers that follow."""
+        if self._follower is not None:
+            self._follower.share = share
+
+    @property
+    def _follower(self) -> Semismooth | Layer | None:
+        """What follows every step of Newton's method."""
+        own = None if self._multipliers is None else self._multipliers.follower
+        return self._layer or own
+
+    def slip_stiffness(self, dt: float) -> float:
+        """Largest stiffness of a physical adhesion against slip, stress/length; 0 for others.
+
+        Args:
+            dt: Time increment.
+        """
+        if self._multipliers is not None and self._multipliers.tangential:
+            return 0.0
+        return float(self.interface.slip_stiffness(dt))
+
+    def lay(self, compliance: float, dt: float) -> None:
+        """Put a compliant layer behind adhesion, see `Layer`, until `take_away`; or a stiffer one.
+
+        Args:
+            compliance: Of the layer, length/stress.
+            dt: Time increment.
+        """
+        soft, start = self.interface.in_series(compliance, dt)
+        stiff, begun = self.interface.in_series(compliance / RATIO, dt)
+        first = self.start
+        if self._layer is not None:
+            first = self._layer.without(first)
+            self._layer.stiffer(compliance, (start, begun))
+        else:
+            normal = None if self._multipliers is None else self._multipliers.follower
+            histories = start, begun
+            self._layer = Layer(compliance, histories, normal, self.master.at, self._comm)
+        self._take(soft, stiff)
+        self.start = self._layer.begin(first, self.master.axes(self._accepted.response))
+
+    def take_away(self) -> None:
+        """Take the layer away."""
+        if self._layer is not None:
+            self.start = self._layer.without(self.start)
+            self._layer = None
+            self._take(self.interface, self.interface)
+
+    def _take(self, laws: AugmentedLaw, stiff: AugmentedLaw) -> None:
+        """Answer by other laws, and take the derivative of others."""
+        self._laws, self._stiff_laws = laws, stiff
+        self._stiffen()
+        self._linear = None
+
+    def _stiffen(self) -> None:
+        """Multiply the penalties of the laws as the multipliers say."""
+        laws, stiff = self._laws, self._stiff_laws
+        if self._multipliers is not None:
+            laws = laws.stiffened(*self._multipliers.factors)
+            if self._follower is not None:
+                stiff = stiff.stiffened(*self._follower.stiff_factors)
+        self.master.take(laws, stiff)
+
+    def _start_from(self, start: State) -> None:
+        """Let trials start from other multipliers, perhaps with other penalties."""
+        self.start = start
+        self._stiffen()
+        self._linear = None
+
+    def _step(self, trial: Snapshot) -> Step:
+        """A trial with the frames of the master."""
+        return Step(
+            self.start,
+            trial.response,
+            trial.areas,
+            self._frames(trial.response.state),
+            self._frames(self.start),
+            self.master.axes(trial.response),
+        )
+
+    def _frames(self, state: State) -> Frames:
+        return Frames.of(self.master.at(state)[1])
