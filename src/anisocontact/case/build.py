@@ -18,7 +18,7 @@ from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.merge import merge
 from anisocontact.rigid import RigidBody
-from anisocontact.solver import ElasticSupport, Problem, Solver, Spring, Step
+from anisocontact.solver import ElasticSupport, Problem, Solver, Spring, Step, Turn
 
 __all__ = ["Built", "build"]
 
@@ -116,8 +116,9 @@ def _model(file: CaseFile) -> Model:
         parts.append(source.arrays(MPI.COMM_WORLD))
     for name, section in mesh.files.items():
         place = f"mesh.files.{name}"
-        source = objects.mesh_file(section, file.resolve(section.path), place)
+        path, there = file.resolve(section.path), objects.placement(section)
         with objects.within(place):
+            source = GmshFile(path, section.bodies, section.rename, there, "path")
             parts.append(source.arrays(MPI.COMM_WORLD))
     for shape, bodies in mesh.shaped().items():
         for name, table in bodies.items():
@@ -211,7 +212,7 @@ def _steps(case: Case, model: Model) -> list[Step]:
                     motion={name: given.given() for name, given in section.motion.items()},
                     load={name: given.components() for name, given in section.load.items()},
                     pressure=section.pressure,
-                    rotation={group: objects.turn(t) for group, t in section.rotation.items()},
+                    rotation={group: Turn(**dict(t)) for group, t in section.rotation.items()},
                     **vectors,
                 )
             )

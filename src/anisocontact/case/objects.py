@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol
 
 from anisocontact.anisotropy import DirectionField, make_directions
@@ -17,10 +16,8 @@ from anisocontact.surfaces import Surface, make_surface
 
 if TYPE_CHECKING:
     from anisocontact.bulk import Material
-    from anisocontact.case.bodies import MeshFile, Placed, Rotate, Shaped
-    from anisocontact.case.loads import Turning
-    from anisocontact.mesh import Body, GmshFile, Placement, Rotation
-    from anisocontact.solver import Turn
+    from anisocontact.case.bodies import Placed, Shaped
+    from anisocontact.mesh import Body, Placement
 
 __all__ = [
     "body",
@@ -28,12 +25,9 @@ __all__ = [
     "directions",
     "interface",
     "material",
-    "mesh_file",
     "normal_law",
     "placement",
-    "rotation",
     "surface",
-    "turn",
     "within",
 ]
 
@@ -95,34 +89,12 @@ def body(section: Shaped, name: str, place: str) -> Body:
         return Body(name, shape, placement(section))
 
 
-def mesh_file(section: MeshFile, path: Path, place: str) -> GmshFile:
-    """The source of bodies of a `mesh.files` table; `path` is that of its file."""
-    from anisocontact.mesh import GmshFile
-
-    with within(place):
-        return GmshFile(path, section.bodies, section.rename, placement(section), "path")
-
-
 def placement(section: Placed) -> Placement:
     """Where the bodies of a table stand."""
-    from anisocontact.mesh import Placement
+    from anisocontact.mesh import Placement, Rotation
 
-    turn = None if section.rotate is None else rotation(section.rotate)
+    turn = None if section.rotate is None else Rotation(**dict(section.rotate))
     return Placement(section.scale, turn, section.move)
-
-
-def rotation(section: Rotate) -> Rotation:
-    """The rotation of a table."""
-    from anisocontact.mesh import Rotation
-
-    return Rotation(section.axis, angle_deg=section.angle_deg, point=section.point)
-
-
-def turn(section: Turning) -> Turn:
-    """The rotation of a facet group along a step."""
-    from anisocontact.solver import Turn
-
-    return Turn(section.axis, angle_deg=section.angle_deg, point=section.point, move=section.move)
 
 
 def contact_law(
