@@ -19,7 +19,7 @@ from anisocontact.solver.strategies.condensed import strategy
 from anisocontact.solver.strategies.condensed.dense import ContactTangent, KeptFactor, gmres
 from anisocontact.solver.strategies.condensed.eliminate import WAYS
 from anisocontact.solver.strategies.condensed.parts import Condensation
-from anisocontact.solver.strategies.condensed.patterns import Patterns, State
+from anisocontact.solver.strategies.condensed.patterns import InteriorState, Patterns
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
 from anisocontact.solver.terms.term import SingularError
 
@@ -102,7 +102,7 @@ def test_patterns_against_the_whole_system() -> None:
     load[bulk.prescribed] = 0.0
     supports, contact = rng.random(3), rng.random(4)
     a, b = patterns.supports(supports), patterns.loads(load)
-    state = State(contact, a, b, rng.random(3))
+    state = InteriorState(contact, a, b, rng.random(3))
     u = patterns.displacement(state)
     fixed = np.union1d(bulk.contact, bulk.prescribed)
     inside = np.setdiff1d(np.arange(32), fixed)

@@ -16,8 +16,8 @@ from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.solver import Problem, Solver, Step
-from anisocontact.solver.system.ahead import FARTHEST, SPACING, Ahead
 from anisocontact.solver.system.coupled import MOST_LEFT
+from anisocontact.solver.system.prediction import FARTHEST, SPACING, ContactPrediction
 from anisocontact.solver.terms.turn import Turn
 
 #: Two half passes.
@@ -59,7 +59,7 @@ def run(problem, steps, ahead=True):
     preallocate = coupled._preallocate
     coupled._preallocate = lambda matrix: [count.append(len(coupled.pattern)), preallocate(matrix)]
     if not ahead:
-        problem.look_ahead = lambda steps: None
+        problem.predict_contact = lambda steps: None
     solver = Solver(problem, steps, strategy="direct")
     forces = [a.resultants["block.bottom"][0] for a in solver.run()]
     return np.array(forces), count
@@ -113,13 +113,13 @@ def test_the_way_is_that_of_the_slave_against_the_master():
     steps = pressed(0.3, 4)
     moving = {"mat.bottom": {"x": -0.1}}
     steps[1] = dataclasses.replace(steps[1], displacement=steps[1].displacement | moving)
-    way, hops = Ahead([contact], steps).way(contact, None, 0.0)
+    way, hops = ContactPrediction([contact], steps).way(contact, None, 0.0)
     np.testing.assert_allclose(way[[0, -1]], [[0.0, 0.0, 0.0], [0.4, 0.03, -0.03]], atol=1e-15)
-    rest, _ = Ahead([contact], steps).way(contact, steps[1], 0.5)
+    rest, _ = ContactPrediction([contact], steps).way(contact, steps[1], 0.5)
     np.testing.assert_allclose(rest[-1], [0.2, 0.015, 0.0], atol=1e-15)
     spacing = np.linalg.norm(np.diff(way, axis=0), axis=1)
     assert spacing.max() <= SPACING * contact.slave_points.size + 1e-15
     assert hops == 1
-    far, _ = Ahead([contact], pressed(9.0, 4)).way(contact, None, 0.0)
+    far, _ = ContactPrediction([contact], pressed(9.0, 4)).way(contact, None, 0.0)
     reached = np.linalg.norm(far[-1]) / contact.slave_points.size
     assert FARTHEST - SPACING < reached <= FARTHEST

@@ -14,6 +14,8 @@ ROOMS = (
     *("base", "surfaces", "anisotropy", "laws", "interface", "point"),
     *("rigid", "mesh", "bulk", "contact", "solver", "results", "case", "cli"),
 )
+#: The same within the solver.
+SOLVER = ("terms", "system", "strategies", "stepping")
 MOST_ROOMS = 14
 
 
@@ -70,6 +72,16 @@ def test_no_arrow_points_up() -> None:
         if room in ROOMS:
             above = set(ROOMS[ROOMS.index(room) + 1 :])
             assert not used & above, f"{room} uses {sorted(used & above)} above it"
+
+
+def test_no_arrow_points_up_in_the_solver() -> None:
+    for i, room in enumerate(SOLVER):
+        own, above = f"anisocontact.solver.{room}.", SOLVER[i + 1 :]
+        used = {m for name, them in uses().items() if name.startswith(own) for m in them}
+        wrong = {
+            m for m in used if m.startswith("anisocontact.solver.") and m.split(".")[2] in above
+        }
+        assert not wrong, f"{room} uses {sorted(wrong)} above it"
 
 
 def test_points_know_nothing_of_results() -> None:

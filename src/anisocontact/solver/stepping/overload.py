@@ -31,7 +31,7 @@ NONE = 1e-9
 
 
 @dataclass(frozen=True)
-class _Held:
+class _Carried:
     """What contact carries of a body.
 
     Attributes:
@@ -86,7 +86,7 @@ def _found(problem: Problem, load: Floats) -> Iterator[str]:
             )
 
 
-def _holding(problem: Problem, free: FreeBody) -> _Held | None:
+def _holding(problem: Problem, free: FreeBody) -> _Carried | None:
     """Contact of a body in the accepted state; None where it is not flat, or there is none."""
     total, sizes, pairs = np.zeros(3), 0.0, []
     for contact in free.contacts:
@@ -100,7 +100,7 @@ def _holding(problem: Problem, free: FreeBody) -> _Held | None:
     pushed = float(np.linalg.norm(total))
     if not pushed > FLAT * sizes > 0.0:
         return None
-    return _Held(total / pushed, pushed, [(contact, size / sizes) for contact, size in pairs])
+    return _Carried(total / pushed, pushed, [(contact, size / sizes) for contact, size in pairs])
 
 
 def _limit(problem: Problem, contact: Contact, along: Floats) -> float:

@@ -22,7 +22,7 @@ from anisocontact.solver.terms.bodies import Bodies
 from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.form import Dirichlet, FormBulk
-from anisocontact.solver.terms.loose import Part, loose_motions, parts
+from anisocontact.solver.terms.loose import MeshPart, loose_motions, parts
 from anisocontact.solver.terms.rigid import RigidBodies
 
 Floats = npt.NDArray[np.float64]
@@ -210,7 +210,7 @@ class ContactProblem(AssembledSystem):
     def _any(self, here: npt.NDArray[np.bool_]) -> bool:
         return bool(self.comm.allreduce(int(here.any())))
 
-    def _untouched(self) -> list[Part]:
+    def _untouched(self) -> list[MeshPart]:
         """Parts of the mesh that no contact which touches somewhere acts on, now."""
         nodes = [np.zeros(0, dtype=np.int32)]
         passes: list[Any] = [one for contact in self.contacts for one in contact.passes]

@@ -16,9 +16,9 @@ from anisocontact.solver.stepping.alarms import Alarms
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.stepping.culprits import NAMED
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
-from anisocontact.solver.stepping.led_turns import led_turns
 from anisocontact.solver.stepping.overload import too_much_load
 from anisocontact.solver.stepping.pace import Pace
+from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
@@ -32,7 +32,7 @@ from anisocontact.solver.terms.step import Step
 
 
 @dataclass
-class Place:
+class RunPosition:
     """How far a run has come.
 
     Attributes:
@@ -104,7 +104,7 @@ class Solver:
         self.steps = list(steps)
         self.limits = limits or Limits()
         problem.check(self.steps)
-        self.cautions = led_turns(problem.model, problem.materials, self.steps)
+        self.cautions = prescribed_turns(problem.model, problem.materials, self.steps)
         self.place = self._beginning(0, 0.0)
         self._task = Task(problem, self.steps, options_prefix, dict(options or {}))
         self.choice = choose(strategy, self._task)
@@ -192,10 +192,10 @@ class Solver:
         goes_on = bool(self._kept) and self.choice.strategy.reduces
         if "before" in kept.nodal and (goes_on or not self.problem.reduction.pending()):
             before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
-        self.place = Place(step, time, Pace(self.limits, **numbers), begun, before)
+        self.place = RunPosition(step, time, Pace(self.limits, **numbers), begun, before)
 
-    def _beginning(self, step: int, time: float) -> Place:
-        return Place(step, time, Pace(self.limits, self.limits.largest))
+    def _beginning(self, step: int, time: float) -> RunPosition:
+        return RunPosition(step, time, Pace(self.limits, self.limits.largest))
 
     def _step(self, attempts: Attempts, step: Step) -> Iterator[Accepted]:
         place, pace = self.place, self.place.pace

@@ -23,7 +23,7 @@ _KINK = 0.7
 
 
 @dataclass(frozen=True)
-class Turned:
+class PathTurn:
     """The largest angle at a point in contact.
 
     Attributes:
@@ -43,14 +43,14 @@ class Turned:
         )
 
 
-def largest_turn(problem: Problem) -> Turned:
+def largest_turn(problem: Problem) -> PathTurn:
     """The largest turn of the trial, over all ranks; collective."""
-    found = Turned(0.0, "")
+    found = PathTurn(0.0, "")
     for contact in problem.contacts:
         trial = contact.trial
         angle = contact.extreme(trial.state["turn"][trial.status > 0])
         if angle > found.angle:
-            found = Turned(angle, contact.name)
+            found = PathTurn(angle, contact.name)
     return found
 
 

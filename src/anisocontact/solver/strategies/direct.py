@@ -40,5 +40,5 @@ class DirectStrategy:
         kept: Arrays,
     ) -> Newton:
         """Newton's method on the whole system."""
-        task.problem.look_ahead(task.steps)
+        task.problem.predict_contact(task.steps)
         return Newton(task.problem, task.prefix, task.options, on_iteration)

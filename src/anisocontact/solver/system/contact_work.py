@@ -38,15 +38,15 @@ _AT_ONCE = 1e-9
 
 
 @dataclass(frozen=True)
-class _Place:
+class _WayPoint:
     """A state on the way: nodes (nodes, 3) and rigid bodies (bodies, 6), length and radian."""
 
     nodal: Floats
     rigid: Floats
 
-    def towards(self, other: _Place, share: float) -> _Place:
+    def towards(self, other: _WayPoint, share: float) -> _WayPoint:
         """The state at a share of the straight way to another one."""
-        return _Place(
+        return _WayPoint(
             (1.0 - share) * self.nodal + share * other.nodal,
             (1.0 - share) * self.rigid + share * other.rigid,
         )
@@ -62,12 +62,12 @@ class ContactWork:
     def __init__(self, parts: Parts) -> None:
         self._parts, self._contacts, self._rigid = parts, parts.contacts, parts.rigid
         self._comm: Any = parts.layout.comm
-        self._places: list[_Place] = []
+        self._places: list[_WayPoint] = []
 
     def begin(self, nodal: Floats) -> None:
         """Start from the accepted state, displacement of the local nodes (nodes, 3), length."""
         accepted = [body.accepted.values for body in self._rigid.bodies]
-        self._places = [_Place(nodal.copy(), np.reshape(accepted, (-1, 6)))]
+        self._places = [_WayPoint(nodal.copy(), np.reshape(accepted, (-1, 6)))]
 
     def pass_through(self, nodal: Floats) -> None:
         """Go on to a state that bodies which flow have come to."""
@@ -111,7 +111,9 @@ class ContactWork:
         loaded = held and bool(parts.loads.force(nodal).any())
         return held and not self._comm.allreduce(loaded, MPI.LOR)
 
-    def _piece(self, start: _Place, end: _Place, dt: float, work: float) -> tuple[Floats, Floats]:
+    def _piece(
+        self, start: _WayPoint, end: _WayPoint, dt: float, work: float
+    ) -> tuple[Floats, Floats]:
         """Work on nodes and on rigid bodies along a piece, as fine as needed, and by the mean."""
         powers = {share: self._power(start, end, share, dt) for share in (0.0, 0.5, 1.0)}
         means = 0.5 * (powers[0.0] + powers[1.0])
@@ -127,7 +129,7 @@ class ContactWork:
             powers |= {share: self._power(start, end, share, dt) for share in found}
         return _rule(powers, rest)[0], means
 
-    def _power(self, start: _Place, end: _Place, share: float, dt: float) -> Floats:
+    def _power(self, start: _WayPoint, end: _WayPoint, share: float, dt: float) -> Floats:
         """Force from outside at a share of a piece times its way, on nodes and on rigid bodies."""
         self._ask(start.towards(end, share), max(share, _AT_ONCE) * dt)
         forces = np.zeros_like(start.nodal)
@@ -140,16 +142,16 @@ class ContactWork:
                 local[1] += float(one.current.wrench(body.position) @ way)
         return np.asarray(self._comm.allreduce(local))
 
-    def _ask(self, place: _Place, dt: float) -> None:
+    def _ask(self, place: _WayPoint, dt: float) -> None:
         """Let the contacts answer from the accepted state."""
         for body, values in zip(self._rigid.bodies, place.rigid, strict=True):
             body.place(values)
         for contact in self._contacts:
             contact.update(place.nodal, dt)
 
-    def _here(self, nodal: Floats) -> _Place:
+    def _here(self, nodal: Floats) -> _WayPoint:
         values = [body.trial.values for body in self._rigid.bodies]
-        return _Place(nodal.copy(), np.reshape(values, (-1, 6)))
+        return _WayPoint(nodal.copy(), np.reshape(values, (-1, 6)))
 
     def _kinks(self) -> bool:
         """Whether enough points begin or end contact or slip, or bodies flow."""

@@ -58,7 +58,8 @@ class Problem(AssembledSystem):
             the last rank.
         layout: Where the unknowns are.
         together: The processes of the run, when one of them fails.
-        reduction: Who answers for the bulk.
+        whole: Who answers for the bulk where every state is one of all unknowns.
+        reduction: Who answers for it now.
         rotations: How far bodies at small strain have turned.
         load_factor: Fraction of the step at which the loads are.
         dt: Time increment to there.
@@ -101,8 +102,8 @@ class Problem(AssembledSystem):
         self.load_factor = self.dt = 0.0
         self._accepted = AcceptedState(self.layout)
         self._contact_work = ContactWork(parts)
-        self._whole = Whole(self, parts, self._bodies, self._accepted)
-        self.reduction: Reduction = self._whole
+        self.whole = Whole(self, parts, self._bodies, self._accepted)
+        self.reduction: Reduction = self.whole
         self._memory = Memory(assembly.terms, self._accepted, self._bodies)
 
     @property
@@ -125,11 +126,6 @@ class Problem(AssembledSystem):
     def comm(self) -> Any:
         """Communicator of the mesh."""
         return self.model.mesh.comm
-
-    @property
-    def bulk_state(self) -> tuple[float, ...] | None:
-        """What the tangent without contact depends on; None where it is on every state."""
-        return self.stabilisation.stiffnesses if self.linear else None
 
     @property
     def linear(self) -> bool:
@@ -155,9 +151,9 @@ class Problem(AssembledSystem):
         """Matrix for `tangent`."""
         return self._tangent.new_matrix()
 
-    def look_ahead(self, steps: Sequence[Step]) -> None:
+    def predict_contact(self, steps: Sequence[Step]) -> None:
         """Have places in matrices of `new_tangent` for what contact will need in these steps."""
-        self._tangent.look_ahead(steps)
+        self._tangent.predict_contact(steps)
 
     def begin(self, step: Step, again: bool = False) -> None:
         """Take over the loads of a step from the accepted state.
@@ -311,20 +307,10 @@ class Problem(AssembledSystem):
         x.copy(self._accepted.x)
         self.rotations.commit()
 
-    def complete(self, u: Floats, contact_force: Floats, load: Floats) -> None:
-        """Bring the accepted state of all unknowns up to date.
-
-        Args:
-            u: Displacements this rank owns, length.
-            contact_force: Forces of contact on them, force.
-            load: Loads on them, force.
-        """
-        self._whole.complete(u, contact_force, load)
-
     def reduce_by(self, reduction: Reduction | None) -> None:
         """Let something else answer for the bulk from the accepted state on; None for nobody."""
-        self._whole.take_pending({})
-        self.reduction = self._whole if reduction is None else reduction
+        self.whole.take_pending({})
+        self.reduction = self.whole if reduction is None else reduction
 
     def roll_back(self) -> None:
         """Return to the accepted state."""
@@ -357,7 +343,7 @@ class Problem(AssembledSystem):
         self._tangent.restore(kept.common)
         self.rotations.restore(kept.common["rotations"])
         self.assembly.terms.take_histories(iter(kept.points), self._bodies.nodal)
-        self._whole.take_pending(under(PENDING, kept.nodal))
+        self.whole.take_pending(under(PENDING, kept.nodal))
 
     def inverted_cells(self) -> Floats:
         """Middles of the cells of this rank that the last evaluation turned inside out, (n, 3)."""
@@ -375,7 +361,7 @@ class Problem(AssembledSystem):
         source = self.reduction
         if self.planes:
             source.recover()  # forces of the planes need all displacements on them
-            source = self._whole
+            source = self.whole
         sums = source.reactions()
         for name, force in self.attached.reactions(self._bodies.nodal).items():
             sums[name] = sums.get(name, 0.0) + force

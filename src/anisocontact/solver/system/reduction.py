@@ -40,7 +40,7 @@ class Reduction(Protocol):
         ...
 
     def recover(self) -> None:
-        """Bring the state of all unknowns up to date with `Problem.complete`."""
+        """Bring the state of all unknowns up to date with `Whole.complete`."""
         ...
 
     def reactions(self) -> dict[str, Floats]:

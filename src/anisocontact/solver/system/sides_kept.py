@@ -16,11 +16,11 @@ from anisocontact.contact import Contact, Pass
 from anisocontact.contact.whereabouts import CRUSHED
 from anisocontact.mesh import Model
 from anisocontact.solver.system.culprit import Culprit
-from anisocontact.solver.terms.free_modes import Body, bodies
+from anisocontact.solver.terms.free_modes import ConnectedBody, bodies
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
-type Place = tuple[float, float, float]
+type Point = tuple[float, float, float]
 
 #: Most nodes of a body on a rank that are looked at.
 MOST_NODES = 200
@@ -47,7 +47,7 @@ class _Watched:
 
     one: Pass
     name: str
-    body: Body | None
+    body: ConnectedBody | None
     nodes: Ints
     places: Floats
 
@@ -107,7 +107,7 @@ class SidesKept:
             text = f"body {name!r} is behind its master with {behind:.0%} of it"
             yield Culprit("behind", place, text + far, watched.name)
 
-    def _behind(self, watched: _Watched, u: Floats | None) -> tuple[float, float, Place]:
+    def _behind(self, watched: _Watched, u: Floats | None) -> tuple[float, float, Point]:
         """Share of a body behind the master that was in front of it, how far at most, and where."""
         if watched.body is None or u is None:
             return 0.0, 0.0, (0.0, 0.0, 0.0)
@@ -140,7 +140,7 @@ def _alone(one: Pass, name: str) -> _Watched:
     return _Watched(one, name, None, np.zeros(0, dtype=np.int64), np.zeros((0, 3)))
 
 
-def _watched(model: Model, one: Pass, name: str, groups: list[Body]) -> _Watched:
+def _watched(model: Model, one: Pass, name: str, groups: list[ConnectedBody]) -> _Watched:
     places = np.asarray(model.space.tabulate_dof_coordinates())
     slave = model.body_of(one.slave)
     body = next(group for group in groups if slave in group.parts)

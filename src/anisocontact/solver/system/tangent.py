@@ -9,9 +9,9 @@ import numpy as np
 
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.reachable import NodePairs
-from anisocontact.solver.system.ahead import Ahead
 from anisocontact.solver.system.assembly import Assembly
 from anisocontact.solver.system.coupled import CoupledTangent
+from anisocontact.solver.system.prediction import ContactPrediction
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
 
@@ -40,15 +40,15 @@ class Tangent:
             if self._passes or extra or coupling
             else None
         )
-        self._ahead: Ahead | None = None
+        self._prediction: ContactPrediction | None = None
         self._step: Step | None = None
         self._load_factor = 0.0
         self._restored = False
 
-    def look_ahead(self, steps: Sequence[Step]) -> None:
+    def predict_contact(self, steps: Sequence[Step]) -> None:
         """Have places in the pattern for what contact will need in these steps."""
         if self._passes:
-            self._ahead = Ahead(self._passes, steps)
+            self._prediction = ContactPrediction(self._passes, steps)
 
     def begin(self, step: Step) -> None:
         """Take it that a step begins."""
@@ -98,5 +98,5 @@ class Tangent:
         return grown
 
     def _foreseen(self) -> Sequence[NodePairs]:
-        ahead = self._ahead
-        return [] if ahead is None else ahead.pairs(self._step, self._load_factor)
+        prediction = self._prediction
+        return [] if prediction is None else prediction.pairs(self._step, self._load_factor)

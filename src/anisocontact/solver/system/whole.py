@@ -72,7 +72,13 @@ class Whole:
             self.complete(with_interior(bulk, given, values, load + contact), contact, load)
 
     def complete(self, u: Floats, contact_force: Floats, load: Floats) -> None:
-        """See `Problem.complete`."""
+        """Bring the accepted state of all unknowns up to date.
+
+        Args:
+            u: Displacements this rank owns, length.
+            contact_force: Forces of contact on them, force.
+            load: Loads on them, force.
+        """
         assembly, owned = self._parts.assembly, self._parts.layout.owned
         self._accepted.x.array[:owned] = u
         trial = self._bodies.take(self._accepted.x)

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.contact import Contact
 from anisocontact.contact.transfer import Couplings
-from anisocontact.solver.terms.free_modes import Body
+from anisocontact.solver.terms.free_modes import ConnectedBody
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -43,7 +43,7 @@ class FreeBody:
         trusted: Whether contact and springs alone are to hold it in this attempt.
     """
 
-    body: Body
+    body: ConnectedBody
     modes: str
     contacts: Sequence[Contact]
     size: float

@@ -28,7 +28,7 @@ type Held = tuple[Ints, Floats]
 
 
 @dataclass(frozen=True)
-class Body:
+class ConnectedBody:
     """Nodes that move together where nothing is strained: a body, or bodies that share nodes.
 
     Attributes:
@@ -56,7 +56,7 @@ class Body:
         return " + ".join(self.parts)
 
 
-def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[Body]:
+def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[ConnectedBody]:
     """All bodies of a model; those that share nodes are one.
 
     Args:
@@ -83,7 +83,7 @@ def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[Body]:
     return [_body(model, group, [local[name] for name in group]) for group in groups]
 
 
-def joined(model: Model, contacts: Sequence[Contact]) -> list[Body]:
+def joined(model: Model, contacts: Sequence[Contact]) -> list[ConnectedBody]:
     """Bodies that only supports and springs can hold, those in contact with each other as one.
 
     Contact between bodies resists what one does to the other, not what they do as one rigid body;
@@ -105,7 +105,7 @@ def joined(model: Model, contacts: Sequence[Contact]) -> list[Body]:
     return [body for body in bodies(model, links) if not others & set(body.parts)]
 
 
-def _body(model: Model, parts: list[str], local: list[Ints]) -> Body:
+def _body(model: Model, parts: list[str], local: list[Ints]) -> ConnectedBody:
     comm = model.mesh.comm
     here = np.unique(np.concatenate(local))
     nodes = here[here < model.space.dofmap.index_map.size_local]
@@ -116,7 +116,7 @@ def _body(model: Model, parts: list[str], local: list[Ints]) -> Body:
     arms = x - centre
     size = np.sqrt(comm.allreduce(float((arms**2).sum())) / count)
     fields = _fields((places[here] - centre) / size)
-    return Body(tuple(parts), nodes, arms / size, count, here, fields, float(size))
+    return ConnectedBody(tuple(parts), nodes, arms / size, count, here, fields, float(size))
 
 
 def _fields(arms: Floats) -> Floats:
@@ -125,7 +125,7 @@ def _fields(arms: Floats) -> Floats:
     return np.concatenate([shift, np.cross(shift, arms)])
 
 
-def free_modes(body: Body, held: Iterable[Held], comm: Any) -> Floats:
+def free_modes(body: ConnectedBody, held: Iterable[Held], comm: Any) -> Floats:
     """Rigid motions of a body that meet no support.
 
     A support of node i along a holds `a . (t + w x r_i)`; the motions that do no work on any of

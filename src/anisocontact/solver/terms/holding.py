@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy.linalg
 
-from anisocontact.solver.terms.free_modes import FREE, Body
+from anisocontact.solver.terms.free_modes import FREE, ConnectedBody
 from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
@@ -22,7 +22,9 @@ Floats = npt.NDArray[np.float64]
 NOTHING = 1e-12
 
 
-def stiffness(elastic: Term, bodies: Sequence[Body], shape: tuple[int, ...], comm: Any) -> Floats:
+def stiffness(
+    elastic: Term, bodies: Sequence[ConnectedBody], shape: tuple[int, ...], comm: Any
+) -> Floats:
     """Stiffness that springs and elastic supports have in the rigid motions of bodies.
 
     Args:
@@ -44,14 +46,14 @@ def stiffness(elastic: Term, bodies: Sequence[Body], shape: tuple[int, ...], com
     return np.asarray(comm.allreduce(matrix))
 
 
-def work(bodies: Sequence[Body], force: Floats) -> Floats:
+def work(bodies: Sequence[ConnectedBody], force: Floats) -> Floats:
     """Work of forces on this rank on the rigid motions of bodies, (6 bodies,), force."""
     parts = [np.einsum("kni,ni->k", body.fields, force[body.local]) for body in bodies]
     return np.concatenate([np.zeros(0), *parts])
 
 
 def unheld(
-    bodies: Sequence[Body],
+    bodies: Sequence[ConnectedBody],
     free: Sequence[Floats],
     stiff: Floats,
     load: Floats,
@@ -75,7 +77,7 @@ def unheld(
         A spring along x of 10 holds that motion against a force of 1, one of 1e-3 does not.
 
         >>> node, arms = np.arange(1), np.zeros((1, 3))
-        >>> block = Body(("b",), node, arms, 1, node, np.zeros((6, 1, 3)), size=1.0)
+        >>> block = ConnectedBody(("b",), node, arms, 1, node, np.zeros((6, 1, 3)), size=1.0)
         >>> pull = np.eye(6)[0]
         >>> [len(unheld([block], [np.eye(6)], np.diag(k * pull), pull, 1e-9, far=2.0)[0])
         ...  for k in (10.0, 1e-3)]

@@ -21,7 +21,7 @@ NOTHING = 1e-10
 
 
 @dataclass(frozen=True)
-class Part:
+class MeshPart:
     """A part of a mesh that is connected.
 
     Attributes:
@@ -35,7 +35,7 @@ class Part:
     modes: Floats
 
 
-def parts(space: Any) -> list[Part]:
+def parts(space: Any) -> list[MeshPart]:
     """The connected parts of the mesh of a displacement; collective.
 
     Args:
@@ -57,17 +57,17 @@ def parts(space: Any) -> list[Part]:
         for i, e in enumerate(np.eye(3)):
             modes[i, here] = e
             modes[3 + i, here] = np.cross(e, arms / size)
-        found.append(Part(nodes, middle, modes.reshape(6, -1)))
+        found.append(MeshPart(nodes, middle, modes.reshape(6, -1)))
     return found
 
 
-def loose_motions(part: Part, stiffness: Mat, level: float, fixed: Ints, comm: Any) -> str:
+def loose_motions(part: MeshPart, stiffness: Mat, scale: float, fixed: Ints, comm: Any) -> str:
     """Motions of a part that meet no stiffness and no condition, in words; empty if there is none.
 
     Args:
         part: The part.
         stiffness: Tangent of the form alone, without conditions.
-        level: Force for a unit of length of a single node, force/length.
+        scale: Force for a unit of length of a single node, force/length.
         fixed: Unknowns with conditions, local numbers.
         comm: Communicator of the mesh.
     """
@@ -77,7 +77,7 @@ def loose_motions(part: Part, stiffness: Mat, level: float, fixed: Ints, comm: A
     for mode in part.modes:
         x.array[:] = mode
         stiffness.mult(x, force)
-        row = force.array_r / level
+        row = force.array_r / scale
         row[held] = mode[held]
         rows.append(row)
     x.destroy()

@@ -25,7 +25,14 @@ from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.flow import Flow
 from anisocontact.solver.terms.free_body import FreeBody
-from anisocontact.solver.terms.free_modes import Body, Held, bodies, free_modes, joined, named
+from anisocontact.solver.terms.free_modes import (
+    ConnectedBody,
+    Held,
+    bodies,
+    free_modes,
+    joined,
+    named,
+)
 from anisocontact.solver.terms.holding import NOTHING as NO_STIFFNESS
 from anisocontact.solver.terms.holding import stiffness, unheld, work
 from anisocontact.solver.terms.persistent import Arrays
@@ -170,7 +177,7 @@ class Stabilisation(Term):
 
     def _unheld(
         self,
-        group: list[Body],
+        group: list[ConnectedBody],
         free: list[Floats],
         springs: Floats,
         load: Floats | None,
@@ -374,7 +381,13 @@ class Stabilisation(Term):
         self.energy, self.released, self.careful = energy, released, bool(careful)
 
     def _add(
-        self, body: Body, left: Floats, motions: Floats, springs: Floats, step: str, now: bool
+        self,
+        body: ConnectedBody,
+        left: Floats,
+        motions: Floats,
+        springs: Floats,
+        step: str,
+        now: bool,
     ) -> None:
         contacts, modes = self._of(body), named(left)
         field = f"step {step!r}"
@@ -391,7 +404,7 @@ class Stabilisation(Term):
         self._free.append(free)
         self.notes.append(f"{text}; stabilised until contact holds it")
 
-    def _refuse(self, body: Body, modes: str, step: str, weak: bool) -> NoReturn:
+    def _refuse(self, body: ConnectedBody, modes: str, step: str, weak: bool) -> NoReturn:
         several = len(body.parts) > 1
         if not self._of(body):
             why = "it is in no contact"
@@ -410,7 +423,7 @@ class Stabilisation(Term):
         text = f"body {body.name!r} is free to move: {modes}; {why} needs a support"
         raise InputError(text, f"step {step!r}")
 
-    def _of(self, body: Body) -> list[Contact]:
+    def _of(self, body: ConnectedBody) -> list[Contact]:
         """Contacts of a body."""
         return [c for c in self._contacts if set(body.parts) & self._sides(c)]
 

@@ -11,7 +11,7 @@ import scipy.sparse
 
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.strategies.condensed.parts import Condensation, connected
-from anisocontact.solver.strategies.condensed.patterns import Probe, State
+from anisocontact.solver.strategies.condensed.patterns import InteriorState, Probe
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.strategies.condensed.system import ContactSystem
 from anisocontact.solver.system.problem import Problem
@@ -54,14 +54,14 @@ class Condensed:
         self._reach = Reach(problem.model, problem.contacts, steps, problem.attached.nodes)
         self._bulk: Condensation | None = None
         self._system: ContactSystem | None = None
-        self._state: State | None = None
+        self._state: InteriorState | None = None
         self._trial_load: Floats = np.zeros(n)
         self._load: Floats = np.zeros(n)
         self._forces: Floats = np.zeros(n)
         self._stale = False
         self._held: dict[tuple[str, int], int] = {}
         self._means: dict[str, tuple[Probe, Floats]] = {}
-        self._whole: tuple[State, Floats] | None = None
+        self._whole: tuple[InteriorState, Floats] | None = None
         problem.reduce_by(self)
         if kept:
             self._restore(kept)
@@ -110,7 +110,7 @@ class Condensed:
         system = self._eliminate(self._reach.start)
         system.patterns.restore(kept)
         system.solver.restore(kept)
-        self._state = State(kept["u"], kept["a"], kept["b"], kept["at_supports"])
+        self._state = InteriorState(kept["u"], kept["a"], kept["b"], kept["at_supports"])
         if "load" in kept:  # also where the interior is known meanwhile, by other operations
             self._load = kept["load"].reshape(-1)
             self._forces = kept["contact_force"].reshape(-1)
@@ -188,7 +188,7 @@ class Condensed:
         """As of `Reduction`."""
         return rotations.reduced(self, x, last)
 
-    def _trial(self, x: Vec) -> State:
+    def _trial(self, x: Vec) -> InteriorState:
         """The state of the contact unknowns of a vector of all unknowns."""
         own = self.system.new_vector()
         own.array[:] = x.array_r[self.system.places]
@@ -223,9 +223,9 @@ class Condensed:
             else:
                 u = self._solved(state, accepted)
             self._whole = None
-            self._problem.complete(u, self._forces, self._load)
+            self._problem.whole.complete(u, self._forces, self._load)
 
-    def _solved(self, state: State, x: Vec) -> Floats:
+    def _solved(self, state: InteriorState, x: Vec) -> Floats:
         """Displacements of all nodes, (n,), with those of `x` where they are prescribed."""
         u = self.system.patterns.displacement(state)
         fixed = self.system.bulk.prescribed

@@ -20,7 +20,7 @@ Flags = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
-class Part:
+class CondensedPart:
     """A connected part of the bulk with its interior eliminated.
 
     Attributes:
@@ -42,7 +42,7 @@ def connected(nodes: int, cells: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]
         cells: Nodes of each cell, (cells, k).
 
     Returns:
-        Part of each node, (nodes,).
+        CondensedPart of each node, (nodes,).
 
     Example:
         >>> connected(4, np.array([[0, 1], [2, 3]], dtype=np.int32)).tolist()
@@ -92,7 +92,7 @@ class Condensation:
         self.stiffness = stiffness
         self.prescribed: Ints = np.flatnonzero(prescribed)
         self._note = note
-        self._parts: dict[int, Part] = {}
+        self._parts: dict[int, CondensedPart] = {}
         old = {} if before is None else before._parts
         for number in range(int(part_of.max()) + 1):
             free = np.flatnonzero((part_of == number) & ~prescribed)
@@ -136,7 +136,7 @@ class Condensation:
             part.factor.close()
         self._parts = {}
 
-    def _part(self, known: Part | None, free: Ints, border: Ints) -> Part:
+    def _part(self, known: CondensedPart | None, free: Ints, border: Ints) -> CondensedPart:
         if known is not None:
             if np.array_equal(known.free, free) and np.array_equal(known.border, border):
                 return known
@@ -145,9 +145,9 @@ class Condensation:
         matrix.sort_indices()
         inside = np.searchsorted(free, border)
         if len(border) == len(free):
-            return Part(free, border, WholeBorder(matrix.toarray()))
+            return CondensedPart(free, border, WholeBorder(matrix.toarray()))
         name, way = chosen()
         self._note(
             f"condensing {len(free)} unknowns of a body on {len(border)} contact unknowns ({name})"
         )
-        return Part(free, border, way(matrix, inside))
+        return CondensedPart(free, border, way(matrix, inside))

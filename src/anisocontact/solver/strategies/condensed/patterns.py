@@ -60,7 +60,7 @@ class Span:
 
 
 @dataclass(frozen=True)
-class State:
+class InteriorState:
     """A state of equilibrium of the interior: `u = E u_c + e a + y b`.
 
     Attributes:
@@ -75,14 +75,14 @@ class State:
     b: Floats
     at_supports: Floats
 
-    def same(self, other: State) -> bool:
+    def same(self, other: InteriorState) -> bool:
         """Whether another state is this one."""
         pairs = ((self.u, other.u), (self.a, other.a), (self.b, other.b))
         return all(np.array_equal(mine, its) for mine, its in pairs)
 
 
 @dataclass(frozen=True)
-class Response:
+class ForcePattern:
     """Forces and what the bulk makes of them.
 
     Attributes:
@@ -106,7 +106,7 @@ class Probe:
         loaded: Their work on the answers to the patterns of forces, (k, number of those).
     """
 
-    response: Response
+    response: ForcePattern
     lifted: Floats
     loaded: Floats
 
@@ -227,19 +227,19 @@ class Patterns:
         self._load_work = self._answers.T @ self._forces
         return list(range(old, old + patterns.shape[1]))
 
-    def respond(self, forces: Floats) -> Response:
+    def respond(self, forces: Floats) -> ForcePattern:
         """What the bulk makes of forces, (n, k), zero where prescribed."""
         bulk = self._bulk
         answer = bulk.interior(forces)
         on_contact = forces[bulk.contact] - (bulk.stiffness @ answer)[bulk.contact]
-        return Response(forces, answer, on_contact)
+        return ForcePattern(forces, answer, on_contact)
 
     def probe(self, forces: Floats) -> Probe:
         """Forces, (n, k), zero where prescribed, for `work_of`."""
         nothing = np.zeros((forces.shape[1], 0))
         return Probe(self.respond(forces), nothing, nothing)
 
-    def work_of(self, probe: Probe, state: State) -> Floats:
+    def work_of(self, probe: Probe, state: InteriorState) -> Floats:
         """Work `f . u` of each force of a probe in a state, (k,)."""
         a, b = self._padded(state)
         own = probe.response
@@ -254,22 +254,22 @@ class Patterns:
         lift = self._lift_force[:, : len(a)] @ a
         return np.asarray(self._passed_on[:, : len(b)] @ b - lift)
 
-    def works(self, state: State) -> Floats:
+    def works(self, state: InteriorState) -> Floats:
         """Work `f . u` of each pattern of forces in a state, (number of forces,)."""
         a, b = self._padded(state)
         return np.asarray(self._passed_on.T @ state.u + self._lift_work.T @ a + self._load_work @ b)
 
-    def load_work(self, state: State) -> float:
+    def load_work(self, state: InteriorState) -> float:
         """Work `f . u` of the loads of a state, force times length."""
         return float(self._padded(state)[1] @ self.works(state))
 
-    def outside(self, state: State) -> Floats:
+    def outside(self, state: InteriorState) -> Floats:
         """Forces from outside along each pattern of displacements: all but those of contact."""
         a, b = self._padded(state)
         bulk = self._lift_force.T @ state.u + self._lift_stiffness @ a - self._lift_work @ b
         return np.asarray(bulk - self._lifts[self._bulk.prescribed].T @ state.at_supports)
 
-    def energy(self, state: State) -> float:
+    def energy(self, state: InteriorState) -> float:
         """Elastic energy of a state, force times length."""
         a, b = self._padded(state)
         u = state.u
@@ -277,14 +277,14 @@ class Patterns:
         own = a @ self._lift_stiffness @ a + b @ self._load_work @ b
         return float(0.5 * (u @ self._bulk.schur_times(u) + own) + coupling)
 
-    def work(self, before: State, after: State) -> float:
+    def work(self, before: InteriorState, after: InteriorState) -> float:
         """Work from outside between two states, trapezoidal rule, force times length."""
         (a, b), (a_new, b_new) = self._padded(before), self._padded(after)
         loads = 0.5 * (b + b_new) @ (self.works(after) - self.works(before))
         supports = 0.5 * (self.outside(before) + self.outside(after)) @ (a_new - a)
         return float(loads + supports)
 
-    def displacement(self, state: State) -> Floats:
+    def displacement(self, state: InteriorState) -> Floats:
         """Displacement of all unknowns, (n,): the one solution with the interior of a state."""
         a, b = self._padded(state)
         bulk = self._bulk
@@ -293,7 +293,7 @@ class Patterns:
         u -= bulk.interior((bulk.stiffness @ u)[:, None])[:, 0]
         return np.asarray(u + self._lifts @ a + self._answers @ b)
 
-    def _padded(self, state: State) -> tuple[Floats, Floats]:
+    def _padded(self, state: InteriorState) -> tuple[Floats, Floats]:
         """Coefficients with zeros for patterns that have come since."""
         missing = (self._lifts.shape[1] - len(state.a), self._forces.shape[1] - len(state.b))
         return np.pad(state.a, (0, missing[0])), np.pad(state.b, (0, missing[1]))

@@ -11,7 +11,7 @@ import scipy.sparse
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.condensed.dense import ContactTangent, KeptFactor
 from anisocontact.solver.strategies.condensed.parts import Condensation
-from anisocontact.solver.strategies.condensed.patterns import Patterns, State
+from anisocontact.solver.strategies.condensed.patterns import InteriorState, Patterns
 from anisocontact.solver.strategies.newton import TOLERANCE
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import ForceBalance, Magnitudes, closed
@@ -86,7 +86,7 @@ class ContactSystem(AssembledSystem):
         self.balance = ForceBalance.none(len(self.places))
         self.tolerance = TOLERANCE
         self.outgrown = False
-        self.way: list[State] = []
+        self.way: list[InteriorState] = []
         self._before = np.inf
         self._load_norm = 0.0
         self._a, self._b, self._g = np.zeros(0), np.zeros(0), np.zeros(len(bulk.contact))
@@ -131,10 +131,10 @@ class ContactSystem(AssembledSystem):
         u = self._v if self._gathering is None else self._gathering.T @ self._v
         return np.concatenate([u, self._values])
 
-    def state(self, u: Floats) -> State:
+    def state(self, u: Floats) -> InteriorState:
         """State with the contact unknowns `u` and the forces of the last evaluation."""
         u = u[: len(self.bulk.contact)]
-        return State(u.copy(), self._a, self._b, self.forces[self.bulk.prescribed])
+        return InteriorState(u.copy(), self._a, self._b, self.forces[self.bulk.prescribed])
 
     @property
     def comm(self) -> Any:

@@ -57,8 +57,9 @@ class TwoLevel:
     def setUp(self, pc: PETSc.PC) -> None:
         """Take the tangent that the linear solver has been given."""
         tangent, _ = pc.getOperators()
-        bulk = self._problem.bulk_state
-        changed = bulk is None or bulk != self._bulk
+        # what the tangent without contact depends on, beside the state where bodies are not linear
+        bulk = self._problem.stabilisation.stiffnesses
+        changed = not self._problem.linear or bulk != self._bulk
         if self._outdated(changed):
             self._build(tangent)
         elif changed:

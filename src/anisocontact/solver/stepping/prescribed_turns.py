@@ -24,7 +24,9 @@ _PLACES = 16
 _UNSEEN = 1e-6
 
 
-def led_turns(model: Model, materials: Mapping[str, Material], steps: Sequence[Step]) -> list[str]:
+def prescribed_turns(
+    model: Model, materials: Mapping[str, Material], steps: Sequence[Step]
+) -> list[str]:
     """What steps prescribe beyond the range of small strain, a line for each body.
 
     Args:

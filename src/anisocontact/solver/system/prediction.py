@@ -26,8 +26,8 @@ MOST_INCREMENTS = 10.0
 SPACING = 0.5
 
 
-class Ahead:
-    """Looks ahead along the prescribed motions of all steps.
+class ContactPrediction:
+    """Predicts contact along the prescribed motions of all steps.
 
     Args:
         passes: Passes over slave points.
@@ -41,7 +41,7 @@ class Ahead:
         bodies = {name.partition(".")[0] for name in names}
         self._paths = {body: _path(steps, body) for body in bodies}
 
-    def pairs(self, step: Step | None, level: float) -> list[NodePairs]:
+    def pairs(self, step: Step | None, load_factor: float) -> list[NodePairs]:
         """Nodes that can be coupled from now on.
 
         Where nothing is prescribed, as under loads and turns, points are taken to go on as they
@@ -49,24 +49,24 @@ class Ahead:
 
         Args:
             step: The step that has been begun last; None before the first.
-            level: Fraction of it.
+            load_factor: Fraction of it.
         """
         found = []
         for one in self._passes:
-            way, hops = self.way(one, step, level)
+            way, hops = self.way(one, step, load_factor)
             way = way[:, None]
             if len(way) == 1:
                 way, hops = going_on(one)
             found += one.master.reachable(way, MARGIN * one.slave_points.size, hops)
         return found
 
-    def way(self, one: Pass, step: Step | None, level: float) -> tuple[Floats, int]:
+    def way(self, one: Pass, step: Step | None, load_factor: float) -> tuple[Floats, int]:
         """Displacement of the slave against the master at places along the way, (w, 3), length.
 
         Args:
             one: The pass.
             step: The step that has been begun last; None before the first.
-            level: Fraction of it.
+            load_factor: Fraction of it.
 
         Returns:
             The places, and how many of them an increment goes at most.
@@ -78,7 +78,7 @@ class Ahead:
         with np.errstate(over="ignore"):
             sizes = np.linalg.norm(jumps, axis=1) / self._increments[first:]
         if len(jumps):
-            ends = np.concatenate([ends[:1] + level * jumps[:1], ends[1:]])
+            ends = np.concatenate([ends[:1] + load_factor * jumps[:1], ends[1:]])
         spacing, farthest = SPACING * one.slave_points.size, FARTHEST * one.slave_points.size
         # what is farther than twice as far from a place within is outside
         way = _sampled(ends - ends[0], spacing, most=int(2.0 * FARTHEST / SPACING) + 1)
