@@ -91,3 +91,25 @@ def test_bodies_have_their_own_material():
     points = model.space.tabulate_dof_coordinates()
     u.array[:] = (points * [0.1, 0.0, 0.0]).reshape(-1)
     assert bulk.energy(u) == pytest.approx(0.5 * 0.1**2 * (10.0 * 1.0 + 70.0 * 2.0), rel=1e-12)
+
+
+def test_a_material_that_forgets_a_variable_is_one_line():
+    """Requirement: what `advance` gives are the variables of `history`."""
+    import ufl
+
+    from anisocontact.bulk import NonlinearBulk
+    from anisocontact.mesh import BoxSpec, build_box
+
+    class Forgets:
+        linear, young, history = False, 1.0, {"damage": (), "strain": (3, 3)}
+
+        def advance(self, u, before):
+            return {"damage": before["damage"]}
+
+        def piola(self, u, before):
+            return (1.0 - before["damage"]) * ufl.grad(u)
+
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    said = r"material.block: advance gives damage, history has damage, strain"
+    with pytest.raises(InputError, match=said):
+        NonlinearBulk(model, {"block": Forgets()})

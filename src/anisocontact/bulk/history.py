@@ -9,6 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import basix, compiled_expression, fem, ufl
 from anisocontact.bulk.hyperelastic import cauchy_stress
 from anisocontact.mesh import Model
@@ -68,6 +69,9 @@ class BodyHistory:
         dt: Time increment, a constant of DOLFINx.
         degree: Degree of the quadrature at whose points the variables live.
 
+    Raises:
+        InputError: The material advances other variables than it has.
+
     Attributes:
         before: Accepted state, as the material is told of it.
     """
@@ -86,6 +90,9 @@ class BodyHistory:
         self.before = Before(variables, dt)
         self._stress = self._zero((3, 3), degree)
         after = dict(material.advance(u, self.before))
+        if after.keys() != variables.keys():
+            text = f"advance gives {', '.join(after)}, history has {', '.join(variables)}"
+            raise InputError(text, f"material.{body}")
         self._updates = [(variables[name], self._at_points(after[name])) for name in variables]
         self._updates.append((self._stress, self._at_points(cauchy_stress(self, u))))
         places = self._at_points(ufl.SpatialCoordinate(self._mesh))
