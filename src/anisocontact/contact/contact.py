@@ -329,12 +329,6 @@ class Contact:
         """As of `Master`."""
         return np.concatenate([half.master.strayed(len(half.state)) for half in self.passes])
 
-    def failed_points(self) -> Floats:
-        """Positions of the trial at which the law has no answer, (failed, 3), length."""
-        if self._trial is None:
-            return np.zeros((0, 3))
-        return self._trial.points[self._trial.response.failed]
-
     def elastic_slip(self) -> Floats:
         """Elastic part of the displacement of the slave relative to the master, (n, 3), length."""
         slips = [half.elastic_slip() for half in self.passes]

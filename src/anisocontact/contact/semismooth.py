@@ -36,12 +36,12 @@ class Base:
     Attributes:
         multiplier: lambda as a vector, (n, 3), stress.
         traction: P, (n, 3), stress.
-        lag: Change of P that takes the violation away, (n, 3), stress.
+        residual: Change of P that takes the violation away, (n, 3), stress.
     """
 
     multiplier: Floats
     traction: Floats
-    lag: Floats
+    residual: Floats
 
     def after(self, change: Floats, share: float) -> Floats:
         """Multiplier after a step.
@@ -54,7 +54,7 @@ class Base:
             lambda as a vector, (n, 3), stress.
         """
         rest = (1.0 - share) * self.multiplier
-        return np.asarray(rest + share * (self.traction + self.lag) + change)
+        return np.asarray(rest + share * (self.traction + self.residual) + change)
 
 
 class Semismooth(Multipliers):

@@ -186,23 +186,23 @@ class Trials:
             self._frames(self.start),
         )
 
-    def add_lag(self, out: Floats) -> None:
-        """Add the forces that a Newton step takes beyond those of the trial.
+    def add_multiplier_residual(self, out: Floats) -> None:
+        """Add the condensed residual of the multipliers: what a step takes beyond the trial.
 
-        They take the violation of multipliers that follow away; (nodes, 3), force.
+        These forces take the violation of multipliers that follow away; (nodes, 3), force.
         """
         if self._linear is not None:
             self._linear.add_force(self._slip, out)
 
-    def lag_wrench(self, about: Floats) -> Floats:
-        """Force and moment on the slave that belong to `add_lag` over the points here, (6,).
+    def multiplier_wrench(self, about: Floats) -> Floats:
+        """Force and moment on the slave of `add_multiplier_residual` over the points here, (6,).
 
         Args:
             about: Point of the moment, (3,), length.
         """
         if self._linear is None:
             return np.zeros(6)
-        return self._now.wrench(about, self.master.out_of_frame(self._base.lag))
+        return self._now.wrench(about, self.master.out_of_frame(self._base.residual))
 
     @property
     def ways(self) -> tuple[str, ...]:

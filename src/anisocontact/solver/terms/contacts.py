@@ -134,7 +134,7 @@ class Contacts(Term):
         """
         out = np.zeros(u.shape)
         for one in self._trials:
-            one.add_lag(out)
+            one.add_multiplier_residual(out)
         return out
 
     @property

@@ -141,7 +141,8 @@ class RigidBodies(Term):
         rows = np.zeros(self.size)
         for i, body in enumerate(self.free):
             local = sum(
-                (c.trials.lag_wrench(body.position) for c in self.contacts[body]), np.zeros(6)
+                (c.trials.multiplier_wrench(body.position) for c in self.contacts[body]),
+                np.zeros(6),
             )
             row = -np.asarray(self._comm.allreduce(local)) / self._scales[body]
             rows[6 * i : 6 * i + 6] = np.where(self._drives[body].held, 0.0, row)
