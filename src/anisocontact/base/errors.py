@@ -49,6 +49,7 @@ class InputError(ValueError):
 
     Attributes:
         field: the dotted path as given.
+        said: the line without it.
         failed: the slave point at which a law in Python failed, if one did: a `FailedPoint`.
 
     Example:
@@ -60,10 +61,9 @@ class InputError(ValueError):
 
     def __init__(self, message: str, field: str = "") -> None:
         line = " ".join(message.split())
-        if field and not line.startswith(f"{field}:"):
-            line = f"{field}: {line}"
-        super().__init__(printable(line))
-        self.field = field
+        said = line.removeprefix(f"{field}:").lstrip() if field else line
+        super().__init__(printable(f"{field}: {said}" if field else said))
+        self.field, self.said = field, printable(said)
 
 
 class MachineError(RuntimeError):

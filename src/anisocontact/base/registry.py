@@ -74,6 +74,17 @@ class Parameter:
             return numbers[0] == numbers[3] and numbers[1] == -numbers[2]
         return not self.alike or list(numbers) == [numbers[0] * k for k in self.alike]
 
+    def shaped(self, numbers: Sequence[float]) -> Any:
+        """A flat list of numbers in the form of the kind: a number, a word, a tuple."""
+        if self.kind == "choice":
+            return self.choices[int(numbers[0])]
+        if self.kind == "flag":
+            return bool(numbers[0])
+        if self.kind in ("integer", "integers"):
+            whole = tuple(int(v) for v in numbers)
+            return whole[0] if self.kind == "integer" else whole
+        return float(numbers[0]) if self.kind == "scalar" else tuple(float(v) for v in numbers)
+
 
 @dataclass(frozen=True)
 class Entry:
@@ -303,17 +314,9 @@ def arguments(e: Entry, numbers: Mapping[str, Sequence[float]]) -> dict[str, Any
         >>> ball = entry(surfaces(), "sphere")
         >>> found = arguments(ball, values(ball, {"centre": (0, 0, 0), "radius": 2}))
         >>> found["centre"], found["radius"]
-        ([0.0, 0.0, 0.0], 2.0)
+        ((0.0, 0.0, 0.0), 2.0)
     """
-    return {p.name: _given(p, numbers[p.name]) for p in e.parameters}
-
-
-def _given(p: Parameter, numbers: Sequence[float]) -> Any:
-    if p.kind == "choice":
-        return p.choices[int(numbers[0])]
-    if p.kind == "flag":
-        return bool(numbers[0])
-    return numbers[0] if _SIZES.get(p.kind, p.count) == 1 else list(numbers)
+    return {p.name: p.shaped(numbers[p.name]) for p in e.parameters}
 
 
 #: Angle in radian beyond which degrees must have been meant; rounding of a full turn is none.

@@ -47,9 +47,8 @@ def within(place: str) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        said = str(error).removeprefix(error.field).removeprefix(": ")
         field = ".".join(part for part in (place, error.field) if part)
-        raise InputError(said, field=field) from None
+        raise InputError(error.said, field=field) from None
 
 
 def surface(section: Registered, place: str) -> Surface:

@@ -79,25 +79,13 @@ class Quantity:
         except (OverflowError, TypeError):
             raise line(f"{shown(given)} given, {self.allowed()} needed") from None
         except InputError as error:
-            said = str(error).removeprefix(f"{error.field}: ")
+            said = error.said
             raise line(said if len(said) < 200 else f"{said[:197]}...") from None
         if self.count is not None and len(numbers) != self.count:
             raise line(f"{shown(given)} given, {self.count} numbers needed")
         if max(numbers, default=0.0) > self.most:
             raise line(f"{shown(given)} given, must be at most {self.most:g}")
-        return self.shape(numbers)
-
-    def shape(self, numbers: list[float] | tuple[float, ...]) -> Any:
-        """A flat list of numbers in the form of the parameter's kind."""
-        p = self.parameter
-        if p.kind == "choice":
-            return p.choices[int(numbers[0])]
-        if p.kind == "flag":
-            return bool(numbers[0])
-        if p.kind in ("integer", "integers"):
-            whole = tuple(int(v) for v in numbers)
-            return whole[0] if p.kind == "integer" else whole
-        return float(numbers[0]) if p.kind == "scalar" else tuple(float(v) for v in numbers)
+        return p.shaped(numbers)
 
     def default(self) -> Any:
         """The parameter's default as it would stand in a case file."""
@@ -106,7 +94,7 @@ class Quantity:
             return None  # may be left out, and nothing stands for it
         if self.parameter.unit == "angle":
             numbers = tuple(math.degrees(v) for v in numbers)
-        return self.shape(numbers)
+        return self.parameter.shaped(numbers)
 
     def allowed(self) -> str:
         """What may be written, in a few words."""

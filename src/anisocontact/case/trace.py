@@ -235,9 +235,8 @@ def _parameters(table: Mapping[str, Any]) -> set[str]:
 
 def _moved(error: InputError, i: int) -> InputError:
     """The same mistake at the table of the further run."""
-    said = str(error).removeprefix(error.field).removeprefix(": ")
     place = error.field.removeprefix("contact.").removeprefix("friction").removeprefix(".")
-    return InputError(said, field=f"compare[{i}].{place}".rstrip("."))
+    return InputError(error.said, field=f"compare[{i}].{place}".rstrip("."))
 
 
 def _without_auto(schema: Any) -> Any:

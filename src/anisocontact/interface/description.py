@@ -97,7 +97,8 @@ def _class(word: str, kind: type, parts: Callable[[Any], dict[str, Any]]) -> _Ki
 
 def _chosen(key: str, entries: Iterable[registry.Entry], named: tuple[str, Any]) -> dict[str, Any]:
     """What was chosen from a registry, by the key that chooses, and its parameters."""
-    return {key: named[0]} | registry.arguments(registry.entry(entries, named[0]), named[1])
+    values = registry.arguments(registry.entry(entries, named[0]), named[1])
+    return {key: named[0]} | {n: list(v) if type(v) is tuple else v for n, v in values.items()}
 
 
 def _adhesion(part: Adhesion) -> dict[str, Any]:
