@@ -8,6 +8,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "anisocontact/kernel/parallel.hpp"
+#include "anisocontact/law/slide_batch.hpp"
 #include "arrays.hpp"
 #include "rooms.hpp"
 #include "types.hpp"
@@ -19,60 +20,6 @@ namespace {
 struct RuleHandle {
   law::AnyRule any;
 };
-
-/// Inputs of a batch of slides; what is left out is null.
-struct SlideInput {
-  const double *stiffness, *friction, *trial, *pressure;
-  const double *metric, *axes, *increment;
-
-  law::SlideProblem<double> problem(std::size_t i) const {
-    law::SlideProblem<double> p;
-    for (std::size_t k = 0; k < 4; ++k) {
-      p.stiffness(k / 2, k % 2) = stiffness[4 * i + k];
-      p.friction(k / 2, k % 2) = friction[4 * i + k];
-      p.a_co(k / 2, k % 2) = metric ? metric[4 * i + k] : unit_[k];
-      p.axes[k / 2][k % 2] = axes ? axes[4 * i + k] : unit_[k];
-    }
-    p.trial = {{trial[2 * i], trial[2 * i + 1]}};
-    p.pressure = pressure[i];
-    p.increment = increment ? Vector<double>{{increment[2 * i], increment[2 * i + 1]}}
-                            : -slip_from_force(p, p.trial);
-    p.elastic = p.increment;
-    return p;
-  }
-
- private:
-  static constexpr std::array<double, 4> unit_{1.0, 0.0, 0.0, 1.0};
-};
-
-struct SlideOutput {
-  double *traction, *stored, *slip, *d_trial, *d_pressure;
-  bool *slides, *converged;
-};
-
-template <bool with_tangent>
-void slide_one(const law::AnyRule& rule, const SlideInput& in, const SlideOutput& out,
-               std::size_t i) noexcept {
-  const auto p = in.problem(i);
-  law::SlideResult<double> r{p.trial, p.trial, {}, true};
-  law::SlideTangent t{unit<double, Place::co>(), {}};
-  out.slides[i] = law::friction_norm(p.friction, p.trial) > p.pressure;
-  if (out.slides[i]) {
-    r = law::slide(rule, p);
-    if constexpr (with_tangent) t = law::slide_tangent(rule, p, r);
-  }
-  for (std::size_t k = 0; k < 2; ++k) {
-    out.traction[2 * i + k] = r.traction[k];
-    out.stored[2 * i + k] = r.stored[k];
-    out.slip[2 * i + k] = r.slip[k];
-  }
-  out.converged[i] = r.converged;
-  if constexpr (with_tangent)
-    for (std::size_t k = 0; k < 2; ++k) {
-      out.d_pressure[2 * i + k] = t.d_pressure[k];
-      for (std::size_t j = 0; j < 2; ++j) out.d_trial[4 * i + 2 * k + j] = t.d_trial(k, j);
-    }
-}
 
 /// The data of an optional array, whose length is checked.
 template <class A>
@@ -93,14 +40,14 @@ nb::dict slide(const RuleHandle& rule, const Matrices& stiffness, const Matrices
   Array<double> traction({n, 2}), stored({n, 2}), slip({n, 2}), d_trial({n_tangent, 2, 2}),
       d_pressure({n_tangent, 2});
   Array<bool> slides({n}), converged({n});
-  const SlideInput in{stiffness.data(),   friction.data(),  trial.data(),         pressure.data(),
-                      data_of(metric, n), data_of(axes, n), data_of(increment, n)};
-  const SlideOutput out{traction.data,   stored.data, slip.data,     d_trial.data,
-                        d_pressure.data, slides.data, converged.data};
+  const law::SlideBatch batch{{stiffness.data(), friction.data(), trial.data(), pressure.data(),
+                               data_of(metric, n), data_of(axes, n), data_of(increment, n)},
+                              {traction.data, stored.data, slip.data, d_trial.data, d_pressure.data,
+                               slides.data, converged.data}};
   {
     nb::gil_scoped_release free;
-    kernel::parallel_for(n, threads, [&](std::size_t i) {
-      with_tangent ? slide_one<true>(rule.any, in, out, i) : slide_one<false>(rule.any, in, out, i);
+    kernel::parallel_pieces(n, threads, [&](std::size_t first, std::size_t last) {
+      law::slide(rule.any, batch, first, last, with_tangent);
     });
   }
   nb::dict d;

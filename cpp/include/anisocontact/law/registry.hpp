@@ -39,13 +39,6 @@ ContraContra<S> friction_tensor(const AnyFriction& f, const ContraContra<S>& a_c
   return std::visit([&](const auto& m) { return m.tensor(a_contra, axes, second); }, f);
 }
 
-/// What a rule makes of a trial force outside the yield ellipse; compiled with the laws.
-SlideResult<double> slide(const AnyRule& rule, const SlideProblem<double>& p) noexcept;
-
-/// Its derivatives at fixed tensors.
-SlideTangent slide_tangent(const AnyRule& rule, const SlideProblem<double>& p,
-                           const SlideResult<double>& r) noexcept;
-
 inline bool frictionless(const AnyFriction& f) noexcept {
   return std::visit([](const auto& m) noexcept { return m.frictionless(); }, f);
 }
