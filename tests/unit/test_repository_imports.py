@@ -1,4 +1,4 @@
-"""A room uses those below it and never one that uses it."""
+"""A room uses those below it and never one that uses it; no file uses one that uses it."""
 
 import ast
 import subprocess
@@ -7,6 +7,8 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import Path
+
+import pytest
 
 SOURCES = Path(__file__).parents[2] / "src" / "anisocontact"
 #: From the bottom up, as `docs/dev/architecture.md` draws them.
@@ -59,6 +61,25 @@ def rooms() -> Mapping[str, set[str]]:
     return found
 
 
+def circles(graph: Mapping[str, set[str]]) -> set[frozenset[str]]:
+    """Sets of more than one name that reach each other."""
+
+    def reached(start: str) -> set[str]:
+        seen: set[str] = set()
+        todo = [start]
+        while todo:
+            todo += (new := graph[todo.pop()] - seen)
+            seen |= new
+        return seen
+
+    closure = {name: reached(name) for name in graph}
+    return {
+        frozenset(m for m in closure[name] if name in closure[m])
+        for name in graph
+        if name in closure[name]
+    }
+
+
 def test_rooms_are_few_and_known() -> None:
     """A new room is drawn in the architecture page before it is built."""
     present = {p.name for p in SOURCES.iterdir() if (p / "__init__.py").exists()}
@@ -82,6 +103,22 @@ def test_no_arrow_points_up_in_the_solver() -> None:
             m for m in used if m.startswith("anisocontact.solver.") and m.split(".")[2] in above
         }
         assert not wrong, f"{room} uses {sorted(wrong)} above it"
+
+
+def test_no_circle_of_files() -> None:
+    """Also of files that name each other only for their types: one of them is in the wrong room."""
+    assert [sorted(circle) for circle in circles(uses())] == []
+
+
+@pytest.mark.parametrize(
+    ("graph", "found"),
+    [
+        ({"a": {"b"}, "b": {"c"}, "c": set()}, set()),
+        ({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set()}, {frozenset({"b", "c"})}),
+    ],
+)
+def test_circles_are_seen(graph: Mapping[str, set[str]], found: set[frozenset[str]]) -> None:
+    assert circles(graph) == found
 
 
 def test_points_know_nothing_of_results() -> None:

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.interface import FAILURE, ContactLaw, Interface
+from anisocontact.contact.master import Master
+from anisocontact.contact.points import SlavePoints
+from anisocontact.interface import FAILURE, ContactLaw, Interface, Response, State
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw
-
-if TYPE_CHECKING:  # they ask for the checks here
-    from anisocontact.contact.contact import Contact
-    from anisocontact.contact.one_pass import Pass
 
 Floats = npt.NDArray[np.float64]
 
@@ -42,7 +40,37 @@ class Overlap:
     count: int
 
 
-def initial_overlap(contact: Contact, size: float) -> Overlap | None:
+class Placed(Protocol):
+    """Slave points where they are, with the space of the bodies: a contact or a pass of it."""
+
+    space: Any
+
+    @property
+    def state(self) -> State:
+        """Committed history, one record for each point."""
+
+    @property
+    def points(self) -> Floats:
+        """The points, (n, 3), length."""
+
+
+class Beginning(Placed, Protocol):
+    """Slave points that meet a master for the first time."""
+
+    slave: str
+    slave_points: SlavePoints
+    master: Master
+
+    @property
+    def interface(self) -> Interface | ContactLaw:
+        """The laws."""
+
+    @property
+    def last(self) -> Response:
+        """What the laws answer where the points are."""
+
+
+def initial_overlap(contact: Placed, size: float) -> Overlap | None:
     """Overlap of the accepted state.
 
     Args:
@@ -65,7 +93,7 @@ def initial_overlap(contact: Contact, size: float) -> Overlap | None:
     return Overlap(worst[0], np.array(worst[1]), count) if count else None
 
 
-def check_start(contact: Pass, size: float) -> None:
+def check_start(contact: Beginning, size: float) -> None:
     """Refuse what cannot be meant; contacts ask for it when they are made.
 
     Args:
@@ -94,14 +122,14 @@ def check_start(contact: Pass, size: float) -> None:
         )
 
 
-def _check_distances(contact: Pass) -> None:
+def _check_distances(contact: Beginning) -> None:
     gaps = contact.state["gap"][contact.master.located(contact.state)]
     if not all(contact.space.mesh.comm.allgather(bool(np.isfinite(gaps).all()))):
         text = "slave points have no finite distance to it: is it far too large or too small?"
         raise InputError(text, "master")
 
 
-def _check_sides(contact: Pass, size: float) -> None:
+def _check_sides(contact: Beginning, size: float) -> None:
     """The nearest points of two bodies that do not overlap have normals that face each other."""
     located = contact.master.located(contact.state)
     gaps = np.abs(contact.state["gap"])
@@ -127,7 +155,7 @@ def _fields(law: Interface | ContactLaw) -> list[Carried]:
     return [one for one in law.carried if one.field is not None]
 
 
-def _singular(contact: Pass, one: Carried, size: float) -> npt.NDArray[np.bool_]:
+def _singular(contact: Beginning, one: Carried, size: float) -> npt.NDArray[np.bool_]:
     """Points at which a field has no direction: asked by pressing every point a little."""
     law = (
         NormalLaw(penalty=1.0),
@@ -142,7 +170,7 @@ def _singular(contact: Pass, one: Carried, size: float) -> npt.NDArray[np.bool_]
 _DIRECTION = next(code for code, text in enumerate(FAILURE) if "direction field" in text)
 
 
-def _refuse(contact: Pass, bad: npt.NDArray[np.bool_], text: str, field: str) -> None:
+def _refuse(contact: Beginning, bad: npt.NDArray[np.bool_], text: str, field: str) -> None:
     found = np.flatnonzero(bad)
     local: Any = None
     if found.size:
