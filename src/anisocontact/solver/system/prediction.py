@@ -15,7 +15,7 @@ from anisocontact.solver.terms.step import AXES, Step
 Floats = npt.NDArray[np.float64]
 
 # Places that are not used cost fill: a margin of a quarter or a longer window make eliminations
-# dearer than the symbolic factorisations that they save, see docs/dev/architecture.md.
+# dearer than the symbolic factorisations that they save, see docs/dev/decisions.md.
 #: Motion beside the prescribed one, over the size of a slave facet: bodies deform.
 MARGIN = 0.1
 #: How far ahead facets are looked for, over the size of a slave facet.
