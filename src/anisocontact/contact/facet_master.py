@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import Any, override
 
@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact.facet_answer import ByPoints, Evaluation, FacetAnswer
-from anisocontact.contact.gathering import gather, gather_named
 from anisocontact.contact.held_feet import HeldFeet, footing, on_held_facets
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Master
@@ -108,9 +107,31 @@ class FacetMaster(Master):
         now = self._gathered.local(self.sides.reference) + u
         anew = self.sides.outrun(now)
         if anew:
-            hints = (self._hint, self._accepted[1], *self._held.hints)
-            self.sides = gather(self.sides, now, histories, hints, self._transfer)
+            # some of them can be one and the same
+            states = {id(state): state for state in histories}.values()
+            hints = {id(h): h for h in (self._hint, self._accepted[1], *self._held.hints)}.values()
+            named = [*(state["facet"] for state in states), *(hint.facet for hint in hints)]
+            named += [] if self._transfer is None else self._transfer.facets()
+            for facets in named:
+                facets[:] = self._gathered.globally(facets)
+            self._number_anew(now, named)
         return anew
+
+    def _number_anew(self, now: Floats, named: Sequence[Ints]) -> None:
+        """Have the facets that are near and those that are named; collective.
+
+        Args:
+            now: Positions of the local nodes, (nodes, 3), length.
+            named: Arrays of facets of the whole group, -1 for none; those of this process are
+                written.
+        """
+        if self._gathered.distributed:
+            numbers = np.unique(np.concatenate(named)).astype(np.int64)
+            self.sides = self.sides.gather(now, numbers[numbers >= 0])
+        for facets in named:
+            facets[:] = self._gathered.renumbered(facets)
+        if self._transfer is not None:
+            self._transfer.gathered(self.sides)
 
     def _project(self, before: FacetProjections) -> FacetProjections:
         now, held = self._nodes.now, self._held.points
@@ -311,7 +332,7 @@ class FacetMaster(Master):
         kept = {name: values.copy() for name, values in kept.items()}
         named = kept["state"]["facet"], kept["projection.facet"]
         now = self._gathered.local(self.sides.reference) + u
-        self.sides = gather_named(self.sides, now, named, self._transfer)
+        self._number_anew(now, named)
         ends = [v.max(initial=0.0) for v in (kept["transferred"], -kept["transferred"])]
         most, least = np.max(self._comm.allgather(ends), axis=0)
         self._transferred = float(most - least)

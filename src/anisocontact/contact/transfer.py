@@ -18,8 +18,7 @@ master. Both are errors of the discretisation and fall with the size of the face
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -80,11 +79,9 @@ class Transfer:
         self.handed: Mask = np.zeros(len(slave.nodes) * len(rule.weights), dtype=bool)
         self._parts: Overlaps | None = None
 
-    def facets(self) -> Ints:
-        """Facets of the master that the overlaps lie on."""
-        if self._parts is None:
-            return np.zeros(0, dtype=np.int32)
-        return np.concatenate([self._parts.facet, self._facet])
+    def facets(self) -> list[Ints]:
+        """Facets of the master that the overlaps lie on, as arrays that can be numbered anew."""
+        return [] if self._parts is None else [self._parts.facet, self._facet]
 
     def place(self, now: Floats) -> None:
         """Put the overlaps where the facets are; the surface has to be there already.
@@ -112,18 +109,10 @@ class Transfer:
         self._off = self._rule.shape - mean
         self._facet = parts.facet.copy()
 
-    def gathered(self, sides: Sides, renumbered: Callable[[Ints], Ints]) -> None:
-        """Go on with other facets of the master; the trial is forgotten.
-
-        Args:
-            sides: Slave and master.
-            renumbered: Numbers of facets from those that they had before.
-        """
+    def gathered(self, sides: Sides) -> None:
+        """Go on with other facets of the master, in which `facets` are; the trial is forgotten."""
         self._master, self._surface, self._excluded = sides.master, sides.surface, sides.near
         self._trial = None
-        if self._parts is not None:
-            self._parts = replace(self._parts, facet=renumbered(self._parts.facet))
-            self._facet = renumbered(self._facet)
 
     def roll_back(self) -> None:
         """Forget the trial: the next one starts from the overlaps, whatever was tried before."""
