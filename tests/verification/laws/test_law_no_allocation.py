@@ -35,7 +35,8 @@ def test_no_allocation_in_the_hot_path(tmp_path):
     compiler = os.environ.get("CXX", "").split() or [shutil.which("c++") or "g++"]
     program = tmp_path / "no_allocation"
     command = [*compiler, "-std=c++20", "-O0", f"-I{ROOT / 'cpp/include'}", f"-isystem{eigen()}"]
-    subprocess.run([*command, str(SOURCE), "-o", str(program), "-pthread"], check=True)
+    sources = [str(SOURCE), *map(str, (ROOT / "cpp/src").glob("*.cpp"))]
+    subprocess.run([*command, *sources, "-o", str(program), "-pthread"], check=True)
     r = subprocess.run([str(program)], capture_output=True, text=True, check=False)
     assert r.returncode == 0, r.stdout
     assert r.stdout == "0 allocations in the hot path\n"
