@@ -77,3 +77,12 @@ def test_laws_go_on_a_surface() -> None:
     apart = Contact(model, SIDES[0], plane, ContactLaw(*LAWS))
     together = Contact(model, SIDES[0], Interface(plane, *LAWS))
     assert np.array_equal(_answer(apart), _answer(together))
+
+
+def test_parts_of_an_interface() -> None:
+    """Adhesion and friction of an interface by their names of before."""
+    interface = Interface(make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)), *LAWS)
+    with pytest.warns(DeprecationWarning, match="is now Interface.tangential.adhesion"):
+        assert interface.adhesion is LAWS[1]
+    with pytest.warns(DeprecationWarning, match="is now Interface.tangential.friction"):
+        assert interface.friction is LAWS[2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -78,6 +79,18 @@ class Interface:
                 raise InputError(text + "master only", self.needs_slave)
             self.carried = tuple(replace(c, on="master") for c in self.carried)
         self.core = _core.Interface(surface.core, law.core)
+
+    @property
+    def adhesion(self) -> Adhesion | None:
+        """Law inside the yield ellipse; by this name for one version more."""
+        _warn_of("adhesion")
+        return self.tangential.adhesion
+
+    @property
+    def friction(self) -> Friction | None:
+        """Yield ellipse and sliding rule; by this name for one version more."""
+        _warn_of("friction")
+        return self.tangential.friction
 
     def _with(self, law: ContactLaw) -> Interface:
         return Interface(self.surface, law, threads=self.threads)
@@ -181,3 +194,8 @@ class Interface:
             failure=r["failure"],
             tangent_slave=r["tangent_own"],
         )
+
+
+def _warn_of(name: str) -> None:
+    text = f"Interface.{name} is now Interface.tangential.{name}"
+    warnings.warn(text, DeprecationWarning, stacklevel=3)

@@ -22,7 +22,7 @@ from anisocontact.anisotropy import DirectionField
 from anisocontact.base.errors import InputError
 from anisocontact.interface.series import History
 from anisocontact.interface.states import STATE, State, as_state, raw_state
-from anisocontact.laws import SIDES, Carried, NormalLaw
+from anisocontact.laws import SIDES, Adhesion, Carried, Friction, NormalLaw
 from anisocontact.surfaces import Floats
 
 #: How the history enters a step: a law in Python sees it turned to where the point is.
@@ -124,6 +124,7 @@ class PythonLaw:
         in_python: Whether the law is written in Python.
         dtype: Type of the state of a point: fields of `STATE`, and `internal` (k,).
         carried: Direction field and the body that carries it.
+        adhesion: None, as `friction`: they are laws of the core.
 
     Raises:
         InputError: Another word for the body.
@@ -152,6 +153,8 @@ class PythonLaw:
 
     in_python = True
     model = sliding_rule = ""
+    adhesion: Adhesion | None = None
+    friction: Friction | None = None
 
     def __init__(
         self,

@@ -8,6 +8,7 @@ import numpy as np
 
 from anisocontact.laws.domain import Strip, domain_from_tensors
 from anisocontact.point.history import Table
+from anisocontact.point.pictures.style import tangential_law
 from anisocontact.surfaces import Floats
 
 # Of a strip, which has no end, so many half-widths are drawn.
@@ -51,7 +52,8 @@ def adhesion_domain(interface: Any, row: Table) -> tuple[Floats, Floats] | None:
 
 def _friction(interface: Any, row: Table) -> Floats | None:
     """F in space, (3, 3)."""
-    friction = getattr(interface, "friction", None)
+    law = tangential_law(interface)
+    friction = law.friction if law else None
     if friction is None or friction.frictionless or not row["status"]:
         return None
     return np.asarray(friction.tensor(interface.surface, row["xi"][None], "spatial")[0])
@@ -59,10 +61,12 @@ def _friction(interface: Any, row: Table) -> Floats | None:
 
 def _adhesion(interface: Any, row: Table) -> Floats | None:
     """S = -B in space, (3, 3)."""
-    named = getattr(getattr(interface, "adhesion", None), "named", None)
-    if named is None or named[0] != "elastic" or not row["status"]:
+    law = tangential_law(interface)
+    adhesion = law.adhesion if law else None
+    if adhesion is None or adhesion.named[0] != "elastic" or not row["status"]:
         return None
-    axes, stiffness = row["adhesion_axes"], np.asarray(named[1]["stiffness"], dtype=np.float64)
+    axes = row["adhesion_axes"]
+    stiffness = np.asarray(adhesion.named[1]["stiffness"], dtype=np.float64)
     tensor: Floats = np.einsum("a,ai,aj->ij", stiffness, axes, axes)
     return tensor
 

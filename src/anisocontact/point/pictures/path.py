@@ -13,7 +13,17 @@ from anisocontact.base.figure_style import new_figure
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
 from anisocontact.point.pictures.ellipse import adhesion_domain
-from anisocontact.point.pictures.style import AXES, COLOURS, INK, UNITS, chosen, number, runs, size
+from anisocontact.point.pictures.style import (
+    AXES,
+    COLOURS,
+    INK,
+    UNITS,
+    chosen,
+    number,
+    runs,
+    size,
+    tangential_law,
+)
 from anisocontact.surfaces import Floats, Surface
 
 # An ellipse smaller than this share of the picture is drawn enlarged.
@@ -120,7 +130,8 @@ def _directions(
     ax: Any, interface: PointInterface, box: Floats, extent: float, toward: Floats
 ) -> list[Line2D]:
     """Both friction axes on a grid of the patch."""
-    field = getattr(getattr(interface, "friction", interface), "directions", None)
+    law = tangential_law(interface)
+    field = law.friction_directions if law else None
     if field is None:
         return []
     inner = [np.linspace(a, b, _MARKS + 2)[1:-1] for a, b in box.tolist()]

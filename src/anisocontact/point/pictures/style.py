@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -49,3 +50,8 @@ def number(value: float) -> str:
 def size(points: Floats) -> float:
     """Diagonal of the box around points (n, 3)."""
     return float(np.linalg.norm(np.ptp(points.reshape(-1, 3), axis=0)))
+
+
+def tangential_law(interface: Any) -> Any | None:
+    """The tangential law of an interface; one of a user's own need not tell it."""
+    return getattr(interface, "tangential", None)

@@ -105,7 +105,7 @@ def _holding(problem: Problem, free: FreeBody) -> _Carried | None:
 
 def _limit(problem: Problem, contact: Contact, along: Floats) -> float:
     """Friction over pressure along a direction, the mean over the normal force of a contact."""
-    friction = getattr(contact.interface.tangential, "friction", None)
+    friction = contact.interface.tangential.friction
     if friction is None:  # a law in Python
         return np.inf
     weights = contact.areas * contact.last.pressure
