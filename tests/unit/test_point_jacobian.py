@@ -13,8 +13,8 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.point import Group
-from anisocontact.point.balance import Balance, Control, Pose
-from anisocontact.point.device import Advance, Dashpot, Device, Place, Spring
+from anisocontact.point.balance import Control, PointBalance, Pose
+from anisocontact.point.device import Advance, Dashpot, Device, DraggedSpring, FixedPlace
 from anisocontact.point.foot import foot
 from anisocontact.point.group import turned_arms
 from anisocontact.surfaces import make_surface
@@ -25,15 +25,15 @@ ARMS = 0.05 * np.array([[0, 0, 0], [1, 2, 0], [-1, 0.5, 1.0], [0.3, -1, -0.7]])
 
 DEVICES = {
     "place": Device(START),
-    "position": Place(START),
-    "spring": Spring(np.diag([300.0, 200.0, 100.0]), START + 0.01),
+    "position": FixedPlace(START),
+    "spring": DraggedSpring(np.diag([300.0, 200.0, 100.0]), START + 0.01),
     "dead-load": Dashpot(np.array([1.0, -2.0, 0.5]), 30.0, START, 0.1),
     "push": Advance(np.array([0.0, 0.6, 0.8]), START, 0.003),
 }
 CONTROLS = {"pressure": Control(pressure=10.0), "gap": Control(gap=-2e-3), "none": Control()}
 
 
-def _balance(device: str, orientation: str, control: str) -> Balance:
+def _balance(device: str, orientation: str, control: str) -> PointBalance:
     marks = make_directions("constant", vector=(0.3, 1.0, 0.5))
     interface = Interface(
         TORUS,
@@ -42,7 +42,7 @@ def _balance(device: str, orientation: str, control: str) -> Balance:
         Friction(coefficients=(0.35, 0.15), directions=marks),
     )
     pose = Pose(START, foot(TORUS, START), ARMS)
-    return Balance(
+    return PointBalance(
         interface=interface,
         state=interface.initial_state(pose.points),
         pose=pose,

@@ -21,7 +21,7 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.multipliers import Frames, Step
+from anisocontact.contact.multipliers import ContactTrial, Frames
 from anisocontact.contact.semismooth import RATIO, Semismooth
 from anisocontact.interface import STATUS, Response, State
 from anisocontact.interface.series import History
@@ -106,7 +106,7 @@ class Layer:
             own[name] = self._own[name]
         return own
 
-    def held(self, step: Step) -> bool:
+    def held(self, step: ContactTrial) -> bool:
         """Whether the multipliers are what the trial answers to them."""
         change = self._found(step) - self._force
         found = step.answer.traction
@@ -115,7 +115,7 @@ class Layer:
         settled = changed <= ENOUGH**2 * carried
         return bool(settled) and (self._normal is None or self._normal.held(step))
 
-    def stiff(self, step: Step) -> tuple[State, Floats]:
+    def stiff(self, step: ContactTrial) -> tuple[State, Floats]:
         """Where to take the derivative, and the slip that a step is to take away.
 
         Args:
@@ -147,13 +147,13 @@ class Layer:
         self._shift(new, self._histories[0], self._way.under(self._force), now)
         return new
 
-    def vector(self, step: Step) -> Floats:
+    def vector(self, step: ContactTrial) -> Floats:
         """The multipliers of a trial as vectors where it is, (n, 3), stress."""
         pressure = step.answer.pressure[:, None] * step.now.normal
         normal = pressure if self._normal is None else self._normal.vector(step)
         return np.asarray(normal + self._force)
 
-    def _found(self, step: Step) -> Floats:
+    def _found(self, step: ContactTrial) -> Floats:
         """Tangential tractions of a trial, (n, 3), stress."""
         force = step.now.vector(step.answer.state["traction"])
         return np.where((step.answer.status != _OPEN)[:, None], force, 0.0)
@@ -209,7 +209,7 @@ class _Way:
     compliance: Floats
 
     @classmethod
-    def of(cls, step: Step, compliance: float) -> _Way:
+    def of(cls, step: ContactTrial, compliance: float) -> _Way:
         touching = step.answer.status != _OPEN
         axes = step.axes[touching]
         # the layer is one of the axes: e_a . way = c t_a for the force t_a e_a

@@ -131,7 +131,7 @@ class Frames:
 
 
 @dataclass(frozen=True)
-class Step:
+class ContactTrial:
     """A trial of the points and what it started from.
 
     Attributes:
@@ -226,7 +226,7 @@ class Multipliers:
     def commit(self) -> None:
         """Keep what the increment has shown to be right."""
 
-    def improve(self, step: Step) -> State | None:
+    def improve(self, step: ContactTrial) -> State | None:
         """Better multipliers from a trial in equilibrium.
 
         Args:
@@ -251,7 +251,7 @@ class Multipliers:
         """
         return None
 
-    def values(self, step: Step) -> tuple[Floats, Floats]:
+    def values(self, step: ContactTrial) -> tuple[Floats, Floats]:
         """Multipliers, and what the trial answers to them: N and T as a vector, (n, 4) each."""
         old, force = np.zeros((2, len(step.start), 3))
         if self.tangential:
@@ -270,7 +270,7 @@ class Multipliers:
         )
         return float(max(self._comm.allgather(float(each.max(initial=0.0)))))
 
-    def _norms(self, change: Floats, step: Step) -> tuple[float, float]:
+    def _norms(self, change: Floats, step: ContactTrial) -> tuple[float, float]:
         """Norms over the area of a change of the multipliers and of the tractions."""
         traction, areas = step.answer.traction, step.areas
         squares = np.array([areas @ (change**2).sum(axis=1), areas @ (traction**2).sum(axis=1)])

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.multipliers import Multipliers, Step
+from anisocontact.contact.multipliers import ContactTrial, Multipliers
 from anisocontact.contact.penalty import PENALTY_FACTOR
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.contact.uzawa import Uzawa
@@ -67,7 +67,7 @@ class Nested(Uzawa):
     def commit(self) -> None:
         """Keep nothing."""
 
-    def improve(self, step: Step) -> State | None:
+    def improve(self, step: ContactTrial) -> State | None:
         """Better multipliers from a trial in equilibrium, see `Multipliers.improve`."""
         if self._ends:
             return None

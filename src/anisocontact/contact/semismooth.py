@@ -20,7 +20,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.multipliers import OPEN, SHARE, STICK, Frames, Multipliers, Step
+from anisocontact.contact.multipliers import OPEN, SHARE, STICK, ContactTrial, Frames, Multipliers
 from anisocontact.interface import State
 
 Floats = npt.NDArray[np.float64]
@@ -79,7 +79,7 @@ class Semismooth(Multipliers):
         normal, tangential = self.factors
         return self.ratio * normal, self.ratio * tangential if self.tangential else 1.0
 
-    def begin_from(self, step: Step) -> State:
+    def begin_from(self, step: ContactTrial) -> State:
         """What the trials start from after equilibrium with penalties: what it answers.
 
         A point whose gap has closed carries friction from where it came to lie.
@@ -108,17 +108,17 @@ class Semismooth(Multipliers):
         self.factor = self.level
         return super().begin(state, located)
 
-    def improve(self, step: Step) -> State | None:
+    def improve(self, step: ContactTrial) -> State | None:
         """They are as good as equilibrium is: see `held`."""
         return None
 
-    def held(self, step: Step) -> bool:
+    def held(self, step: ContactTrial) -> bool:
         """Whether the multipliers are what the trial answers to them."""
         given, found = self.values(step)
         changed, carried = self._norms(found - given, step)
         return self._violation(found - given) <= self._limit and changed <= SHARE * carried
 
-    def stiff(self, step: Step) -> tuple[State, Floats]:
+    def stiff(self, step: ContactTrial) -> tuple[State, Floats]:
         """Where to take the derivative, and the violation that a step is to take away.
 
         Args:
@@ -160,7 +160,7 @@ class Semismooth(Multipliers):
             new["stored"] = np.einsum("nid,nd->ni", before.tangents, tangential)
         return new
 
-    def vector(self, step: Step) -> Floats:
+    def vector(self, step: ContactTrial) -> Floats:
         """The multipliers of a trial as vectors where it is, (n, 3), stress."""
         given, _ = self.values(step)
         turned = step.before.turned_to(step.now, given[:, 1:])

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.master import Answer, Linear, Master
-from anisocontact.contact.multipliers import STICK, AugmentedLaw, Frames, Multipliers, Step
+from anisocontact.contact.multipliers import STICK, AugmentedLaw, ContactTrial, Frames, Multipliers
 from anisocontact.contact.schemes import USUAL, make_multipliers
 from anisocontact.contact.semismooth import RATIO, Base, Semismooth
 from anisocontact.interface import State
@@ -298,9 +298,9 @@ class Trials:
         self._stiffen()
         self._linear = None
 
-    def _step(self, trial: Snapshot) -> Step:
+    def _step(self, trial: Snapshot) -> ContactTrial:
         """A trial with the frames of the master."""
-        return Step(
+        return ContactTrial(
             self.start,
             trial.response,
             trial.areas,

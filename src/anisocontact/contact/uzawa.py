@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.multipliers import SHARE, Multipliers, NotHeldError, Step
+from anisocontact.contact.multipliers import SHARE, ContactTrial, Multipliers, NotHeldError
 from anisocontact.interface import State
 from anisocontact.interface.augmentation import Augmentation
 
@@ -85,7 +85,7 @@ class Uzawa(Multipliers):
         self._mixing = Mixing(self._comm)
         return start
 
-    def improve(self, step: Step) -> State | None:
+    def improve(self, step: ContactTrial) -> State | None:
         """Better multipliers from a trial in equilibrium, see `Multipliers.improve`."""
         given, found = self.values(step)
         if self._held(found - given, step):
@@ -99,7 +99,7 @@ class Uzawa(Multipliers):
             new["stored"] = np.einsum("nid,nd->ni", step.before.tangents, better[:, 1:])
         return new
 
-    def _held(self, change: Floats, step: Step) -> bool:
+    def _held(self, change: Floats, step: ContactTrial) -> bool:
         changed, carried = self._norms(change, step)
         largest = self._violation(change)
         if largest <= self._limit and changed <= SHARE * carried:

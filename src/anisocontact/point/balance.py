@@ -113,7 +113,7 @@ class StepError(Exception):
 
 
 @dataclass(frozen=True)
-class Balance:
+class PointBalance:
     """The equations of a step.
 
     Args:

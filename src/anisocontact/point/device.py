@@ -77,7 +77,7 @@ class Device:
         return x
 
 
-class Place(Device):
+class FixedPlace(Device):
     """The reference where the path says, with its penetration.
 
     Args:
@@ -93,7 +93,7 @@ class Place(Device):
         return Action(np.zeros(3), np.zeros((3, 3)), aim=self.place)
 
 
-class Spring(Device):
+class DraggedSpring(Device):
     """A linear spring to a free end.
 
     Args:

@@ -10,8 +10,8 @@ import numpy as np
 from anisocontact.base.errors import InputError
 from anisocontact.interface import State
 from anisocontact.point.balance import (
-    Balance,
     Control,
+    PointBalance,
     PointInterface,
     Pose,
     StepError,
@@ -203,7 +203,7 @@ class _Runner:
             StepError: It did not converge.
         """
         a = self.now
-        balance = Balance(
+        balance = PointBalance(
             self.interface,
             a.state,
             a.pose,

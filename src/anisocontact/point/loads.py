@@ -15,8 +15,8 @@ from anisocontact.point.device import (
     Committed,
     Dashpot,
     Device,
-    Place,
-    Spring,
+    DraggedSpring,
+    FixedPlace,
     in_space,
 )
 from anisocontact.point.foot import foot, foot_at
@@ -140,7 +140,7 @@ class PrescribedPath(Load):
         if p.size == 2:
             return Device(surface.position(p[None])[0])
         if self.pressure is None and self.gap is None:
-            return Place(p)
+            return FixedPlace(p)
         under = foot(surface, p)
         if not under.reached:
             raise InputError(f"no point of the surface is under it at time {t:g}", field="path")
@@ -198,7 +198,7 @@ class DraggingSpring(Load):
 
     def device(self, surface: Surface, before: Committed, t: float) -> Device:
         """The spring with its free end of time t."""
-        return Spring(self.stiffness, self.end(surface, t))
+        return DraggedSpring(self.stiffness, self.end(surface, t))
 
 
 class DeadLoad(Load):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from anisocontact.point.balance import Balance, StepError, Trial
+from anisocontact.point.balance import PointBalance, StepError, Trial
 from anisocontact.point.press import pressed
 from anisocontact.surfaces import Floats
 
@@ -14,7 +14,7 @@ TOLERANCE = 1e-12
 MOST_ITERATIONS = 40
 
 
-def solve(balance: Balance, guess: Floats) -> tuple[Trial, int]:
+def solve(balance: PointBalance, guess: Floats) -> tuple[Trial, int]:
     """Solve the equations of a step.
 
     Args:
@@ -61,7 +61,7 @@ def _direction(trial: Trial) -> Floats:
     return np.linalg.lstsq(trial.jacobian, -trial.residual, rcond=1e-13)[0]
 
 
-def _searched(balance: Balance, trial: Trial, step: Floats) -> Trial:
+def _searched(balance: PointBalance, trial: Trial, step: Floats) -> Trial:
     """The step, halved until the residual falls; the best of what was tried if it does not."""
     before = float(np.linalg.norm(trial.residual))
     best: Trial | None = None

@@ -6,12 +6,12 @@ from collections.abc import Callable
 
 import numpy as np
 
-from anisocontact.point.balance import Balance, StepError, Trial, shown
+from anisocontact.point.balance import PointBalance, StepError, Trial, shown
 from anisocontact.point.foot import foot
 from anisocontact.surfaces import Floats
 
 
-def pressed(balance: Balance, guess: Floats) -> Trial:
+def pressed(balance: PointBalance, guess: Floats) -> Trial:
     """The guess, moved along its normal until the resultant pressure is the one that is given.
 
     The pressure grows with the penetration, so a bracketed Newton iteration in the gap always
@@ -48,7 +48,7 @@ def _root(
     miss: Callable[[float], tuple[float, float, Trial]],
     gap: float,
     target: float,
-    balance: Balance,
+    balance: PointBalance,
 ) -> Trial:
     """Gap at which `miss` vanishes: positive for more penetration, negative for less."""
     low, high = -np.inf, np.inf  # the gap is in between
