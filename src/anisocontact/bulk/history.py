@@ -109,7 +109,8 @@ class BodyHistory:
         """
         rows = self._rows(self._stress, len(self._cells))
         values = self._stress.x.array.reshape(-1, 3, 3)[rows]
-        return self._cells, values.reshape(len(self._cells), -1, 3, 3)
+        points = len(values) // max(len(self._cells), 1)
+        return self._cells, values.reshape(len(self._cells), points, 3, 3)
 
     def commit(self) -> None:
         """Accept the increment: the displacement and the time increment are those of its end."""

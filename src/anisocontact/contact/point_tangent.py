@@ -51,7 +51,8 @@ class PointTangent:
         # the blocks are so stiff that the rounding of positions would be felt in the difference
         moved = (now.moved - then.moved)[np.maximum(named, 0)]
         moved[named < 0] = 0.0
-        force = np.einsum("nic,nc->ni", self._answer.forces.by_nodes, moved.reshape(len(moved), -1))
+        flat = moved.reshape(len(moved), 3 * moved.shape[1])  # also where a rank has no points
+        force = np.einsum("nic,nc->ni", self._answer.forces.by_nodes, flat)
         points, snapshot = self._points, self._answer.snapshot
         grown = points.areas(points.at(now.now)) - points.areas(points.at(then.now))
         force -= grown[:, None] * snapshot.response.traction

@@ -18,6 +18,7 @@ master. Both are errors of the discretisation and fall with the size of the face
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -283,12 +284,12 @@ class Transfer:
         along = np.concatenate([slave, -value], axis=1)
         right = along[:, None, :, None] * jet.d1[:, :, None, :]
         right[:, :, slave.shape[1] :] += first.swapaxes(1, 2)[..., None] * apart[:, None, None]
-        return np.asarray(inverse @ right.reshape(len(apart), 2, -1))
+        return np.asarray(inverse @ right.reshape(len(apart), 2, 3 * right.shape[2]))
 
 
 def _summed(t: _Trial, values: Floats) -> Floats:
     """Values at the points of a trial summed over the pairs of facets."""
-    flat = t.sums @ values.reshape(len(values), -1)
+    flat = t.sums @ values.reshape(len(values), math.prod(values.shape[1:]))
     return np.asarray(flat.reshape(len(t.owner), *values.shape[1:]))
 
 
