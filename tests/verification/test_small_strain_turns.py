@@ -65,6 +65,23 @@ def test_rotation_of_a_displacement(cell: str, order: int, axis: Any) -> None:
         assert found["b"].angle == 0.0
 
 
+@pytest.mark.parametrize(("slope", "too_far"), [(0.5, False), (0.56, True), (2.0, True)])
+def test_shear_of_a_whole(slope: float, too_far: bool) -> None:
+    """A block in simple shear, which turns by less than it is strained.
+
+    Requirement: accepted to 15 degrees, refused beyond. Source: R of a simple shear turns by
+    `atan(slope / 2)`, 14.04 and 15.64 degrees for the first two; rounding is left.
+    """
+    model = build_box({"a": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 1))})
+    x = model.space.tabulate_dof_coordinates()
+    sheared = x[:, [2, 1, 0]] * (slope, 0.0, 0.0)
+    steel = make_material("linear-elastic", E=200.0, nu=0.3)
+    turned = Rotations(model, {"a": steel}).at(sheared)["a"]
+    assert turned.whole == pytest.approx(np.arctan(slope / 2.0), rel=1e-8)
+    assert not turned.turns
+    assert turned.too_far == too_far
+
+
 @pytest.mark.parametrize("axis", AXES)
 def test_steps_that_lead_a_body_through_a_turn(fe: Any, axis: Any) -> None:
     """Supports that turn a body at small strain are found before anything is solved.

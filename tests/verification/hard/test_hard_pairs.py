@@ -149,17 +149,18 @@ def test_friction_beyond_one(to_the_end, mu, angle, penalty):
 
 @pytest.mark.parametrize("strategy", ["auto", pytest.param("iterative", marks=pytest.mark.slow)])
 def test_linear_bodies_jump_with_every_strategy(to_the_end, strategy):
-    """mu = 1.5 and bodies at small strain, which `auto` condenses: they jump all the same.
+    """mu = 1.75 and bodies at small strain, which `auto` condenses: they jump twice all the same.
 
     Source: `direct`, whose viscous forces are others. Tolerance: with friction above 1 more than
     one state of stick and slip is in equilibrium; rounding alone changes the forces by 2e-4, and
-    over 24 pairs of coefficients and angles the strategies differ by up to 1.5e-2. Before the
-    jump the force is a tenth larger. What is accepted is in balance to 1e-6.
+    where they take another way the strategies differ by up to 2.7e-2. Before the last jump the
+    force is a quarter larger. What is accepted is in balance to 1e-6. The block is sheared by 11
+    degrees at most: beyond 15 it would be refused.
     """
     marks = 'directions = { kind = "constant", vector = [1, 0, 0], angle_deg = 0 }'
     text = pair(
-        contact("block.bottom", "plate.top", f"coefficients = [1.5, 1.0], {marks}"),
-        step("press", 1, x=0, z=-0.15) + step("drag", 3, x=1.2),
+        contact("block.bottom", "plate.top", f"coefficients = [1.75, 1.0], {marks}"),
+        step("press", 1, x=0, z=-0.041) + step("drag", 1, x=1.2),
         model="linear-elastic",
     )
     early = "smallest_increment = 0.25"

@@ -33,6 +33,8 @@ CURE = 'take a material at finite strain, model = "neo-hookean" or "st-venant-ki
 #: A turn that is not this many times the strain comes with it: simple shear turns by 0.7 of its
 #: strain, and there the strain is the larger matter.
 OF_STRAIN = 1.5
+#: Beyond this angle the whole is refused whatever its strain.
+ANY_STRAIN = 3.0 * REFUSED
 #: What known displacements have to have grown by before all cells are looked at again.
 GROWN = 1.25
 #: Cells that are looked at together.
@@ -65,7 +67,8 @@ class Turned:
     @property
     def too_far(self) -> bool:
         """Whether small strain is no model of it."""
-        return (self.whole > REFUSED and self.turns) or self.bent > PART
+        bound = REFUSED if self.turns else ANY_STRAIN
+        return self.whole > bound or self.bent > PART
 
     @property
     def strain(self) -> float:
