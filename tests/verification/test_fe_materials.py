@@ -77,6 +77,18 @@ def _yeoh(axial: float, lateral: float) -> tuple[float, float]:
     return _rubber(axial, lateral, slopes)
 
 
+def _ogden(axial: float, lateral: float) -> tuple[float, float]:
+    stretches = np.array([axial, lateral, lateral])
+    j = stretches.prod()
+    stress = BULK * (j - 1) * j / stretches
+    for mu, alpha in OGDEN:
+        powers = (stretches / np.cbrt(j)) ** alpha
+        stress += mu * (powers - powers.mean()) / stretches
+    return float(stress[0]), float(stress[1])
+
+
+#: Terms of Ogden's vulcanised rubber, mu times 1/MPa and alpha [Ogden 1972, table 1].
+OGDEN = ((0.63, 1.3), (0.0012, 5.0), (-0.01, -2.0))
 #: First Piola-Kirchhoff stresses along and across, of the stretches along and across.
 STRESS = {
     "st-venant-kirchhoff": _st_venant,
@@ -84,10 +96,16 @@ STRESS = {
     "neo-hookean-incompressible": _incompressible,
     "mooney-rivlin": _mooney,
     "yeoh": _yeoh,
+    "ogden": _ogden,
 }
 OWN = {
     "mooney-rivlin": {"C10": 0.4, "C01": 0.1, "bulk_modulus": BULK},
     "yeoh": {"C10": 0.5, "C20": -0.02, "C30": 0.01, "bulk_modulus": BULK},
+    "ogden": {
+        "mu": [mu for mu, _ in OGDEN],
+        "alpha": [alpha for _, alpha in OGDEN],
+        "bulk_modulus": BULK,
+    },
 }
 
 

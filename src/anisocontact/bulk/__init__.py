@@ -1,5 +1,6 @@
 """Materials of the bodies and the forces inside them."""
 
+from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.history import Before, BodyHistory, HistoryMaterial
 from anisocontact.bulk.hyperelastic import (
     NeoHookean,
@@ -12,14 +13,25 @@ from anisocontact.bulk.hyperelastic import (
 )
 from anisocontact.bulk.library import make_material, materials, register_material
 from anisocontact.bulk.linear import LinearBulk
-from anisocontact.bulk.materials import LinearElastic, Material
+from anisocontact.bulk.materials import LinearElastic, Material, small_strain
 from anisocontact.bulk.nonlinear import NonlinearBulk
+from anisocontact.bulk.ogden import Ogden
 from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
+from anisocontact.bulk.point_law import (
+    BodyPoints,
+    ElasticVolume,
+    PointLaw,
+    PointResult,
+    PointState,
+)
 from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
 
 __all__ = [
+    "AtPoints",
     "Before",
     "BodyHistory",
+    "BodyPoints",
+    "ElasticVolume",
     "HistoryMaterial",
     "LinearBulk",
     "LinearElastic",
@@ -28,7 +40,11 @@ __all__ = [
     "NeoHookean",
     "NeoHookeanIncompressible",
     "NonlinearBulk",
+    "Ogden",
     "Orthotropic",
+    "PointLaw",
+    "PointResult",
+    "PointState",
     "StVenantKirchhoff",
     "TransverselyIsotropic",
     "UserEnergy",
@@ -39,4 +55,5 @@ __all__ = [
     "make_material",
     "materials",
     "register_material",
+    "small_strain",
 ]

@@ -8,7 +8,7 @@ from typing import Any
 
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.bulk.materials import Density, Isotropic
+from anisocontact.bulk.materials import Density, Isotropic, small_strain
 
 _MODULI = (
     Parameter("E", "scalar", "stress", "Young's modulus at rest", "positive"),
@@ -40,12 +40,14 @@ def cauchy_stress(material: Any, u: Any) -> Any:
     """
     if material.linear:
         return material.stress(u)
+    if small_strain(material):
+        return material.piola(u)
     gradient = deformation_gradient(u)
     return material.piola(u) * gradient.T / ufl.det(gradient)
 
 
-def volumetric(u: Any, bulk: Any, j: Any) -> Density:
-    """`K/2 (J - 1)^2`, integrated at so few points that cells do not lock.
+def volumetric(u: Any, bulk: Any, change: Any) -> Density:
+    """`K/2 e^2` of a change of volume e, integrated at so few points that cells do not lock.
 
     One point of a cell, of second-order hexahedra eight: as many constraints as the displacement
     can meet [Malkus Hughes 1978, equivalence of reduced integration and a pressure of lower order].
@@ -55,14 +57,14 @@ def volumetric(u: Any, bulk: Any, j: Any) -> Density:
     Args:
         u: Displacement, a DOLFINx function.
         bulk: Bulk modulus K, UFL, stress.
-        j: det F, UFL.
+        change: Change of volume such as J - 1, UFL.
 
     Returns:
         The term and the degree of its quadrature.
     """
     element = u.function_space.element.basix_element
     second_order_hexahedra = element.degree == 2 and element.cell_type.name == "hexahedron"
-    return 0.5 * bulk * (j - 1.0) ** 2, 2 if second_order_hexahedra else 1
+    return 0.5 * bulk * change**2, 2 if second_order_hexahedra else 1
 
 
 class Hyperelastic(ABC):
@@ -160,7 +162,7 @@ class NeoHookeanIncompressible(Isotropic, Hyperelastic):
         j = ufl.det(gradient)
         first = ufl.tr(gradient.T * gradient)
         distortion = 0.5 * shear * (j ** (-2.0 / 3.0) * first - 3.0)
-        return [(distortion, None), volumetric(u, lame + 2.0 / 3.0 * shear, j)]
+        return [(distortion, None), volumetric(u, lame + 2.0 / 3.0 * shear, j - 1.0)]
 
 
 class UserEnergy(Hyperelastic):

@@ -13,6 +13,7 @@ from anisocontact.bulk.hyperelastic import (
     StVenantKirchhoff,
 )
 from anisocontact.bulk.materials import LinearElastic, Material
+from anisocontact.bulk.ogden import Ogden
 from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
 from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
 
@@ -27,6 +28,7 @@ _MATERIALS: dict[str, type[Any]] = {
         NeoHookeanIncompressible,
         MooneyRivlin,
         Yeoh,
+        Ogden,
     )
 }
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec, compiled, create_stiffness, ufl
-from anisocontact.bulk.history import BodyHistory
+from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.materials import Material, body_measure
 from anisocontact.mesh import Model
 
@@ -37,7 +37,7 @@ class LinearBulk:
     #: Whether `energy` is that of all bodies.
     stores = True
     #: Linear materials have no history.
-    histories: Mapping[str, BodyHistory] = MappingProxyType({})
+    histories: Mapping[str, AtPoints] = MappingProxyType({})
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
         self.stiffness = create_stiffness(
@@ -69,6 +69,10 @@ class LinearBulk:
             The energy over all ranks, force times length.
         """
         return 0.5 * float(u.dot(self.force(u)))
+
+    def dissipated(self) -> float:
+        """Linear materials dissipate nothing."""
+        return 0.0
 
     def set_time(self, dt: float) -> None:
         """Take over a time increment, which changes nothing."""

@@ -23,10 +23,17 @@ class Material(Protocol):
     Attributes:
         linear: Whether the stress is linear in the displacement, so that the stiffness is constant.
         young: Young's modulus at rest, stress; scale of the default penalty.
+
+    One that is not linear and takes displacement gradients to be small has `small_strain = True`.
     """
 
     linear: bool
     young: float
+
+
+def small_strain(material: Any) -> bool:
+    """Whether a material takes displacement gradients to be small: linear ones, if not told."""
+    return bool(getattr(material, "small_strain", material.linear))
 
 
 #: A term of an energy per reference volume, UFL, and the degree of its quadrature, None for the

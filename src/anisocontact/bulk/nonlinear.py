@@ -19,8 +19,10 @@ from anisocontact.base.fenicsx import (
     fem,
     ufl,
 )
+from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure
+from anisocontact.bulk.point_law import BodyPoints
 from anisocontact.mesh import Model
 
 
@@ -42,18 +44,20 @@ class NonlinearBulk:
         # full integration of the stiffness at rest; UFL's own estimate grows with every power of J
         full = 2 * model.order
         given: Mapping[str, Any] = materials
-        self.histories = {
-            name: BodyHistory(law, model, name, self._u, self._dt, full)
-            for name, law in given.items()
-            if hasattr(law, "history")
-        }
-        work, energy = _forms(model, {**given, **self.histories}, self._u, v, full)
+        self.histories: dict[str, BodyHistory | BodyPoints] = {}
+        for name, law in given.items():
+            if hasattr(law, "history"):
+                kind: Any = BodyPoints if hasattr(law, "update") else BodyHistory
+                self.histories[name] = kind(law, model, name, self._u, self._dt, full)
+        self._points = [b for b in self.histories.values() if isinstance(b, BodyPoints)]
+        forms = _Forms(model, {**given, **self.histories}, self._u, v, du, full)
         self._comm = model.mesh.comm
-        self._work = compiled(work, self._comm)
-        self._tangent = compiled(ufl.derivative(work, self._u, du), self._comm)
-        self._energy = None if energy is None else compiled(energy, self._comm)
+        self._work = compiled(forms.work, self._comm)
+        self._tangent = compiled(forms.tangent, self._comm)
+        self._energy = None if forms.energy is None else compiled(forms.energy, self._comm)
+        self._dissipated = compiled(forms.dissipated, self._comm) if forms.dissipated else None
         #: Whether `energy` is that of all bodies: every material has one.
-        self.stores = energy is not None
+        self.stores = forms.energy is not None
         self.stiffness = create_stiffness(self._tangent)
         self._force = create_force(self._work)
         #: Length whose strain is round-off where nothing moves: F = I + grad(u) is rounded over
@@ -72,11 +76,13 @@ class NonlinearBulk:
             The force; the vector is overwritten by the next call.
         """
         self._set(u)
+        for body in self._points:
+            body.evaluate()
         assemble_force(self._work, self._force)
         return self._force
 
     def energy(self, u: Vec) -> float:
-        """Elastic energy.
+        """Stored energy of the accepted state.
 
         Args:
             u: Displacement of the nodes this rank owns, length.
@@ -90,12 +96,20 @@ class NonlinearBulk:
         self._set(u)
         return float(self._comm.allreduce(fem.assemble_scalar(self._energy)))
 
+    def dissipated(self) -> float:
+        """What materials have dissipated until the accepted state, over all ranks."""
+        if self._dissipated is None:
+            return 0.0
+        return float(self._comm.allreduce(fem.assemble_scalar(self._dissipated)))
+
     def tangent(self, out: Mat) -> None:
-        """Write the tangent of the last `force` or `energy` into a matrix.
+        """Write the tangent of the last `force` into a matrix.
 
         Args:
             out: A matrix that has room for it.
         """
+        for body in self._points:
+            body.write_tangent()
         out.zeroEntries()
         assemble_into(out, self._tangent)
         out.assemble(PETSc.Mat.AssemblyType.FINAL)
@@ -128,25 +142,43 @@ def _cell_size(model: Model) -> float:
     return float(np.cbrt(volume / cells.size_global))
 
 
-def _forms(
-    model: Model, laws: Mapping[str, Any], u: Any, v: Any, full: int
-) -> tuple[Any, Any | None]:
-    """Virtual work of the stresses and, where every material has one, the energy."""
-    dx = body_measure(model)
-    work, energy = 0, 0
-    complete = all(law.linear or hasattr(law, "energy") for law in laws.values())
-    for i, name in enumerate(model.body_names()):
-        material = laws[name]
-        if material.linear:
-            half = 0.5 * ufl.inner(material.stress(u), ufl.sym(ufl.grad(u)))
-            terms: Sequence[Density] = [(half, None)]
-        elif hasattr(material, "energy"):
-            terms = material.energy(u)
-        else:
-            work += ufl.inner(material.piola(u), ufl.grad(v)) * dx(i, degree=full)
-            continue
-        for density, degree in terms:
-            part = density * dx(i, degree=full if degree is None else degree)
-            energy += part
-            work += ufl.derivative(part, u, v)
-    return work, energy if complete else None
+class _Forms:
+    """Virtual work of the stresses, its derivative, and the energies as far as materials tell them.
+
+    Attributes:
+        work: Linear form.
+        tangent: Its derivative.
+        energy: What bodies store; None where a material has a stress but no energy.
+        dissipated: What they have dissipated; 0 where no material has a history.
+    """
+
+    def __init__(
+        self, model: Model, laws: Mapping[str, Any], u: Any, v: Any, du: Any, full: int
+    ) -> None:
+        dx = body_measure(model)
+        work, energy, slope, self.dissipated = 0, 0, 0, 0
+        told = True
+        for i, name in enumerate(model.body_names()):
+            law, here = laws[name], dx(i, degree=full)
+            for density, degree in _stored(law, u):
+                part = density * dx(i, degree=full if degree is None else degree)
+                energy += part
+                work += ufl.derivative(part, u, v)
+            if isinstance(law, BodyPoints):
+                work += law.work(v) * here
+                slope += law.slope(du, v) * here
+            elif not (law.linear or hasattr(law, "energy")):
+                work += ufl.inner(law.piola(u), ufl.grad(v)) * here
+                told &= getattr(law, "stores", False)
+            if isinstance(law, AtPoints):
+                energy += law.stored * here
+                self.dissipated += law.dissipated * here
+        self.work, self.energy = work, energy if told else None
+        self.tangent = ufl.derivative(work, u, du) + slope
+
+
+def _stored(law: Any, u: Any) -> Sequence[Density]:
+    """Terms of the energy of a material from which its stress follows."""
+    if law.linear:
+        return [(0.5 * ufl.inner(law.stress(u), ufl.sym(ufl.grad(u))), None)]
+    return law.energy(u) if hasattr(law, "energy") else []

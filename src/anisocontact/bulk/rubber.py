@@ -16,7 +16,7 @@ from anisocontact.base.registry import Entry, Parameter
 from anisocontact.bulk.hyperelastic import Hyperelastic, volumetric
 from anisocontact.bulk.materials import Density
 
-_BULK = Parameter(
+BULK = Parameter(
     "bulk_modulus", "scalar", "stress", "bulk modulus K of the energy K/2 (J - 1)^2", "positive"
 )
 
@@ -48,7 +48,7 @@ class _Rubber(Hyperelastic):
         trace = ufl.tr(c)
         first = j ** (-2.0 / 3.0) * trace
         second = 0.5 * j ** (-4.0 / 3.0) * (trace**2 - ufl.inner(c, c))
-        return [(self._distortion(constants, first, second), None), volumetric(u, bulk, j)]
+        return [(self._distortion(constants, first, second), None), volumetric(u, bulk, j - 1.0)]
 
     @abstractmethod
     def _distortion(self, constants: list[Any], first: Any, second: Any) -> Any:
@@ -82,7 +82,7 @@ class MooneyRivlin(_Rubber):
         (
             Parameter("C10", "scalar", "stress", "constant of the first invariant"),
             Parameter("C01", "scalar", "stress", "constant of the second invariant"),
-            _BULK,
+            BULK,
         ),
     )
 
@@ -121,7 +121,7 @@ class Yeoh(_Rubber):
             Parameter("C10", "scalar", "stress", "half of the shear modulus at rest"),
             Parameter("C20", "scalar", "stress", "constant of the square"),
             Parameter("C30", "scalar", "stress", "constant of the cube"),
-            _BULK,
+            BULK,
         ),
     )
 

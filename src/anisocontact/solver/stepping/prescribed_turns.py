@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.bulk import Material
+from anisocontact.bulk import Material, small_strain
 from anisocontact.mesh import Model
 from anisocontact.solver.system.rotations import CURE, REFUSED, WARNED, spurious
 from anisocontact.solver.terms.step import Step
@@ -31,7 +31,7 @@ def prescribed_turns(
 
     Args:
         model: The mesh.
-        materials: Body name -> material; those that are linear count.
+        materials: Body name -> material; those at small strain count.
         steps: The steps.
 
     Returns:
@@ -40,7 +40,7 @@ def prescribed_turns(
     Raises:
         InputError: A body is led through more than five degrees.
     """
-    linear = [name for name, law in sorted(materials.items()) if law.linear]
+    linear = [name for name, law in sorted(materials.items()) if small_strain(law)]
     largest: dict[str, tuple[float, str]] = {}
     for step, name, angle in _angles(model, linear, steps):
         if angle > largest.get(name, (WARNED, ""))[0]:

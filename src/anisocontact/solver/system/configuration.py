@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import MPI, Vec, fem
+from anisocontact.bulk import small_strain
 from anisocontact.solver.system.assembly import TrialState
 from anisocontact.solver.system.cells import DeformedCells
 from anisocontact.solver.system.parts import Parts
@@ -28,7 +29,7 @@ class Configuration:
     def __init__(self, parts: Parts) -> None:
         self._parts = parts
         self.u: Any = fem.Function(parts.model.space, name="displacement")
-        finite = [name for name, material in parts.materials.items() if not material.linear]
+        finite = [name for name, material in parts.materials.items() if not small_strain(material)]
         self._cells = DeformedCells(parts.model, finite)
         self._at: Floats | None = None
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact.base.errors import InputError
-from anisocontact.bulk import LinearBulk, Material, NonlinearBulk
+from anisocontact.bulk import LinearBulk, Material, NonlinearBulk, small_strain
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 from anisocontact.solver.system.assembly import Assembly
@@ -126,7 +126,7 @@ def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) ->
 
 def _finite(model: Model, materials: Mapping[str, Material], contact: Contact) -> bool:
     """Whether one of the bodies of a contact is at finite strain."""
-    return not all(materials[model.body_of(group)].linear for group in contact.groups)
+    return not all(small_strain(materials[model.body_of(group)]) for group in contact.groups)
 
 
 def _check(

@@ -16,7 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import MPI, Vec, basix, scalar_element
-from anisocontact.bulk import Material
+from anisocontact.bulk import Material, small_strain
 from anisocontact.mesh import Model
 
 Floats = npt.NDArray[np.float64]
@@ -131,7 +131,7 @@ class Rotations:
 
     Args:
         model: The mesh.
-        materials: Body name -> material; those that are linear count.
+        materials: Body name -> material; those at small strain count.
 
     Attributes:
         accepted: Of every body after the accepted increment, by name; the same on every rank.
@@ -139,7 +139,7 @@ class Rotations:
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
         self._model = model
-        self._young = {n: law.young for n, law in sorted(materials.items()) if law.linear}
+        self._young = {n: law.young for n, law in sorted(materials.items()) if small_strain(law)}
         self._looked: dict[str, float] = {}
         self._now: tuple[dict[str, Turned], dict[str, float]] = ({}, {})
         self.accepted: dict[str, Turned] = {}

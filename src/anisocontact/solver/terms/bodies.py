@@ -57,7 +57,8 @@ class Bodies(Term):
 
     @override
     def energies(self, u: Floats) -> dict[str, float]:
-        return {"elastic": self.energy(u)}
+        found = {"elastic": self.energy(u)}
+        return found | ({"inelastic": self.bulk.dissipated()} if self.bulk.histories else {})
 
     @override
     def accept(self, u: Floats) -> float:

@@ -21,7 +21,7 @@ from anisocontact.base.fenicsx import (
     prescribed_rows,
     ufl,
 )
-from anisocontact.bulk import BodyHistory
+from anisocontact.bulk import AtPoints
 
 Floats = npt.NDArray[np.float64]
 
@@ -41,7 +41,7 @@ class FormBulk:
     rest_length = 0.0
     stores = False
     #: What a form remembers is the user's.
-    histories: Mapping[str, BodyHistory] = MappingProxyType({})
+    histories: Mapping[str, AtPoints] = MappingProxyType({})
 
     def __init__(self, F: Any, u: Any, J: Any = None) -> None:
         space = u.function_space
@@ -60,6 +60,10 @@ class FormBulk:
 
     def energy(self, u: Vec) -> float:
         """Unknown: a form has none."""
+        return 0.0
+
+    def dissipated(self) -> float:
+        """Unknown as well."""
         return 0.0
 
     def set_time(self, dt: float) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import facet_sides, geometry
-from anisocontact.bulk import Material
+from anisocontact.bulk import Material, small_strain
 from anisocontact.contact import FacetQuadrature, facet_quadrature
 from anisocontact.contact.quadrature import Surfaced
 from anisocontact.contact.transfer import Couplings
@@ -49,7 +49,9 @@ class Pressures(Term):
             body = self._model.body_of(group, field)
             if group not in self._surfaces:
                 self._model.boundary(group, field)
-                self._surfaces[group] = _Surface(self._model, group, self._materials[body].linear)
+                self._surfaces[group] = _Surface(
+                    self._model, group, small_strain(self._materials[body])
+                )
             self._end[group] = float(value)
 
     def given(self, step: Step) -> Iterator[Given]:

@@ -1,0 +1,99 @@
+"""What a body keeps at its quadrature points from one accepted increment to the next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.fenicsx import basix, compiled_expression, fem, ufl
+from anisocontact.mesh import Model
+
+Floats = npt.NDArray[np.float64]
+
+#: In front of the names of internal variables among arrays that are kept.
+_VARIABLE = "history/"
+
+
+class AtPoints:
+    """Internal variables, stress and energies of a body at its quadrature points; zero at first.
+
+    Args:
+        model: Mesh of the body.
+        body: Its name.
+        history: Internal variables by name with their shape, () of a number.
+        degree: Degree of the quadrature at whose points they live.
+
+    Attributes:
+        points: The points in the reference cell, (points, 3).
+        variables: Internal variables by name, DOLFINx functions.
+        stored: Energy per reference volume that the accepted state has stored, a function.
+        dissipated: What has been dissipated until then.
+    """
+
+    linear = False
+
+    def __init__(
+        self, model: Model, body: str, history: Mapping[str, tuple[int, ...]], degree: int
+    ) -> None:
+        self._mesh = model.mesh
+        self._cells = np.sort(model.cells(body))
+        self._owned = int(np.searchsorted(self._cells, model.mesh.topology.index_map(3).size_local))
+        cell = model.mesh.basix_cell()
+        self._degree = degree
+        self.points: Floats = np.asarray(basix.make_quadrature(cell, degree)[0], dtype=np.float64)
+        self.variables = {name: self._zero(shape) for name, shape in history.items()}
+        self._stress = self._zero((3, 3))
+        self.stored, self.dissipated = self._zero(()), self._zero(())
+        places = self._at_points(ufl.SpatialCoordinate(self._mesh))
+        self.places: Floats = places.eval(self._mesh, self._cells).reshape(-1, 3)
+
+    def stress(self) -> tuple[npt.NDArray[np.int32], Floats]:
+        """Cells of the body on this rank, (n,), and true stress at their points, (n, points, 3, 3).
+
+        It is that of the last accepted increment.
+        """
+        values = self._read(self._stress)
+        return self._cells, values.reshape(len(self._cells), len(self.points), 3, 3)
+
+    def persistent(self) -> dict[str, Floats]:
+        """Values at the points of cells this rank owns, (points, ...), and where these are."""
+        owned = self._owned * len(self.points)
+        kept = {name: self._read(v)[:owned].reshape(owned, -1) for name, v in self._named().items()}
+        return {"reference": self.places[:owned]} | kept
+
+    def restore(self, kept: Mapping[str, Floats]) -> None:
+        """Go on from what `persistent` gave; collective."""
+        for name, variable in self._named().items():
+            self._write(variable, kept[name], self._owned)
+            variable.x.scatter_forward()
+
+    def _named(self) -> dict[str, Any]:
+        named = {f"{_VARIABLE}{name}": v for name, v in self.variables.items()}
+        energies = {"stored": self.stored, "dissipated": self.dissipated}
+        return named | {"stress": self._stress} | energies
+
+    def _zero(self, shape: tuple[int, ...]) -> Any:
+        cell = self._mesh.basix_cell()
+        element = basix.ufl.quadrature_element(cell, value_shape=shape, degree=self._degree)
+        return fem.Function(fem.functionspace(self._mesh, element))
+
+    def _at_points(self, expression: Any) -> Any:
+        return compiled_expression(expression, self.points, self._mesh.comm)
+
+    def _rows(self, variable: Any, cells: int) -> npt.NDArray[np.int32]:
+        """Places of the points of the first cells of the body in the array of a variable."""
+        return np.asarray(variable.function_space.dofmap.list[self._cells[:cells]].reshape(-1))
+
+    def _read(self, variable: Any) -> Floats:
+        """Values at the points of all cells of the body, (n, ...)."""
+        rows = self._rows(variable, len(self._cells))
+        values: Floats = variable.x.array.reshape(-1, variable.function_space.dofmap.bs)[rows]
+        return values.reshape(-1, *variable.ufl_shape)
+
+    def _write(self, variable: Any, values: Floats, cells: int | None = None) -> None:
+        size = variable.function_space.dofmap.bs
+        rows = self._rows(variable, len(self._cells) if cells is None else cells)
+        variable.x.array.reshape(-1, size)[rows] = values.reshape(-1, size)

@@ -1,0 +1,184 @@
+"""Materials by a law of their points, in NumPy for all points of a body at once.
+
+What no formula in UFL says, such as a yield condition that is solved for at every point, is
+evaluated between two assemblies: a law takes the strains of all quadrature points and gives
+stresses and their derivatives, which stand in the forms as values at these points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from anisocontact.base.fenicsx import fem, ufl
+from anisocontact.bulk.at_points import AtPoints, Floats
+from anisocontact.bulk.hyperelastic import cauchy_stress, volumetric
+from anisocontact.bulk.materials import Density
+from anisocontact.bulk.strain import STRAINS, Strain
+from anisocontact.mesh import Model
+
+
+@dataclass(frozen=True)
+class PointState:
+    """What happens at n points of a body in an increment.
+
+    Attributes:
+        strain: Strain at its end, of the kind the law names, (n, 3, 3).
+        before: Internal variables at its begin by name, (n, ...).
+        dt: Time increment; 0 where the stiffness at rest is asked for.
+        place: Positions in the reference configuration, (n, 3), length.
+    """
+
+    strain: Floats
+    before: Mapping[str, Floats]
+    dt: float
+    place: Floats
+
+
+@dataclass(frozen=True)
+class PointResult:
+    """What a law says of them.
+
+    Attributes:
+        stress: Stress conjugate to the strain, (n, 3, 3).
+        tangent: Its derivative by the strain, (n, 3, 3, 3, 3), symmetric in the last two indices.
+        after: Internal variables at the end of the increment by name, (n, ...).
+        stored: Energy per reference volume that is stored then, (n,), energy/volume.
+        dissipated: What was dissipated in the increment, (n,), energy/volume.
+    """
+
+    stress: Floats
+    tangent: Floats
+    after: Mapping[str, Floats]
+    stored: Floats
+    dissipated: Floats
+
+
+class PointLaw(Protocol):
+    """What is asked of a law of points, beside `linear = False` and `young`.
+
+    A law that is elastic against a change of volume may have `energy(u)` and `piola(u)` of that
+    part in UFL beside it, see `ElasticVolume`.
+
+    Attributes:
+        strain: Word for its strain, "small" or "logarithmic".
+        history: Internal variables by name with their shape, () of a number; zero at the start.
+    """
+
+    strain: str
+    history: Mapping[str, tuple[int, ...]]
+
+    def update(self, state: PointState) -> PointResult:
+        """Stress, tangent, new variables and energies; must not change its argument."""
+        ...
+
+
+class ElasticVolume:
+    """The part `K/2 tr(E)^2` of a law whose own stress does not depend on the change of volume.
+
+    It is integrated at so few points that cells do not lock where the material flows, or is nearly
+    incompressible; see `volumetric`.
+
+    Attributes:
+        strain: Word for the strain E.
+        bulk: Bulk modulus K, stress.
+    """
+
+    linear = False
+    strain = "small"
+    bulk: float
+
+    def energy(self, u: Any) -> list[Density]:
+        """The term with the degree of its quadrature."""
+        return [volumetric(u, self._bulk(u), self._change(ufl.grad(u)))]
+
+    def piola(self, u: Any) -> Any:
+        """First Piola-Kirchhoff stress of this part, UFL."""
+        gradient = ufl.variable(ufl.grad(u))
+        return ufl.diff(0.5 * self._bulk(u) * self._change(gradient) ** 2, gradient)
+
+    def _bulk(self, u: Any) -> Any:
+        return fem.Constant(ufl.domain.extract_unique_domain(u), self.bulk)
+
+    def _change(self, gradient: Any) -> Any:
+        """Change of volume of a displacement gradient, UFL."""
+        kind: Any = STRAINS[self.strain]
+        return kind.dilatation(gradient)
+
+
+class BodyPoints(AtPoints):
+    """A law of points, bound to a body and what its points have gone through.
+
+    Args:
+        law: The law.
+        model: Mesh of the body.
+        body: Its name.
+        u: Displacement, a DOLFINx function.
+        dt: Time increment, a constant of DOLFINx.
+        degree: Degree of the quadrature at whose points the law is evaluated.
+    """
+
+    stores = True
+
+    def __init__(
+        self, law: PointLaw, model: Model, body: str, u: Any, dt: Any, degree: int
+    ) -> None:
+        super().__init__(model, body, law.history, degree)
+        self._law, self._dt = law, dt
+        self.small_strain = law.strain == "small"
+        self._elastic: Any = law if hasattr(law, "energy") else None
+        self._gradient = self._at_points(ufl.grad(u))
+        self._piola, self._slope = self._zero((3, 3)), self._zero((3, 3, 3, 3))
+        self._true_stress = self._at_points(cauchy_stress(self, u))
+        self._last: tuple[Strain, PointResult]
+        self.evaluate()
+        self.write_tangent()
+
+    def energy(self, u: Any) -> list[Density]:
+        """Terms of the energy that stand in UFL."""
+        return [] if self._elastic is None else list(self._elastic.energy(u))
+
+    def piola(self, u: Any) -> Any:
+        """First Piola-Kirchhoff stress at the points, (3, 3), UFL, stress."""
+        return self._piola if self._elastic is None else self._piola + self._elastic.piola(u)
+
+    def work(self, v: Any) -> Any:
+        """Virtual work of the stress of the law per reference volume, UFL."""
+        return ufl.inner(self._piola, ufl.grad(v))
+
+    def slope(self, du: Any, v: Any) -> Any:
+        """Derivative of `work` along a displacement, UFL."""
+        i, j, k, m = ufl.indices(4)
+        return self._slope[i, j, k, m] * ufl.grad(du)[k, m] * ufl.grad(v)[i, j]
+
+    def evaluate(self) -> None:
+        """Bring the stress to where the displacement and the time increment are now."""
+        gradient = self._gradient.eval(self._mesh, self._cells).reshape(-1, 3, 3)
+        lost = ~np.isfinite(gradient).all(axis=(1, 2))
+        strain = STRAINS[self._law.strain](np.where(lost[:, None, None], 0.0, gradient))
+        strain.value[lost] = np.nan
+        before = {name: self._read(variable) for name, variable in self.variables.items()}
+        state = PointState(strain.value, before, float(self._dt.value), self.places)
+        with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+            result = self._law.update(state)
+            self._write(self._piola, strain.piola(result.stress))
+        self._last = strain, result
+
+    def write_tangent(self) -> None:
+        """Bring the tangent to where the stress is."""
+        strain, result = self._last
+        with np.errstate(invalid="ignore", over="ignore"):
+            self._write(self._slope, strain.tangent(result.stress, result.tangent))
+
+    def commit(self) -> None:
+        """Accept the increment: the displacement and the time increment are those of its end."""
+        self.evaluate()
+        _, result = self._last
+        self._write(self._stress, self._true_stress.eval(self._mesh, self._cells))
+        for name, variable in self.variables.items():
+            self._write(variable, np.asarray(result.after[name]))
+        self._write(self.stored, result.stored)
+        self._write(self.dissipated, self._read(self.dissipated) + result.dissipated)
