@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.assembly import ForceBalance
+from anisocontact.solver.system.culprit import Culprit, LostError
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.stabilisation import Stabilisation
 
@@ -33,10 +34,14 @@ class AssembledSystem:
 
         Raises:
             NotHeldError: They do not converge.
+            LostError: A body flows to where it cannot be.
         """
         self.evaluate_at(x)
         aid, moved = self._aid, False
         if aid is not None:
+            wrong = self.behind_a_master(x) if aid.flow.flows else None
+            if wrong is not None:
+                raise LostError(wrong)
             moved = aid.improve(self.nodal, self.balance.force_scale)
             if moved and (aid.flow.flows or aid.untouched()):
                 self._go_on(x)
@@ -60,6 +65,10 @@ class AssembledSystem:
 
     def evaluate_at(self, x: Vec) -> None:
         """Evaluate a state, unless it is that of the last evaluation."""
+        raise NotImplementedError
+
+    def behind_a_master(self, x: Vec) -> Culprit | None:
+        """A body that is behind its master in equilibrium; None if all are where they may be."""
         raise NotImplementedError
 
     def _go_on(self, x: Vec) -> None:

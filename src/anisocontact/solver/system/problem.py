@@ -18,7 +18,7 @@ from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import ForceBalance
 from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.contact_work import ContactWork
-from anisocontact.solver.system.culprit import Culprit, LostError
+from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.memory import BEGUN, Memory
 from anisocontact.solver.system.parts import make_parts
@@ -60,6 +60,7 @@ class Problem(AssembledSystem):
         together: The processes of the run, when one of them fails.
         whole: Who answers for the bulk where every state is one of all unknowns.
         reduction: Who answers for it now.
+        sides: Finds bodies behind their masters.
         rotations: How far bodies at small strain have turned.
         load_factor: Fraction of the step at which the loads are.
         dt: Time increment to there.
@@ -91,7 +92,8 @@ class Problem(AssembledSystem):
         self.contacts, self.bulk, self.rigid = parts.contacts, parts.bulk, parts.rigid
         self.layout, self.attached = parts.layout, parts.attached
         self.supports, self.loads, self.planes = parts.supports, parts.loads, parts.planes
-        self.stabilisation = self._aid = parts.stabilisation
+        self.sides, self.stabilisation = parts.sides, parts.stabilisation
+        self._aid = parts.stabilisation
         self.assembly = assembly = parts.assembly
         self.constraints, self.contact_term = assembly.constraints, assembly.contacts
         self.together = Together(self.comm)
@@ -245,20 +247,6 @@ class Problem(AssembledSystem):
             self.evaluate(x)
 
     @override
-    def improve(self, x: Vec) -> bool:
-        """As of `AssembledSystem`.
-
-        Raises:
-            NotHeldError: They do not converge.
-            LostError: A body flows to where it cannot be.
-        """
-        self.evaluate_at(x)
-        wrong = self.behind_a_master(x) if self.stabilisation.flow.flows else None
-        if wrong is not None:
-            raise LostError(wrong)
-        return super().improve(x)
-
-    @override
     def _go_on(self, x: Vec) -> None:
         self._accepted.go_on(x, self.balance.outside)
         self.pass_through(self._bodies.nodal)
@@ -268,9 +256,9 @@ class Problem(AssembledSystem):
         self._contact_work.pass_through(nodal)
         self.contact_term.pass_through()
 
+    @override
     def behind_a_master(self, x: Vec) -> Culprit | None:
-        """A body that is behind its master in equilibrium; None if all are where they may be."""
-        return self._parts.sides.objection(self.reduction.nodal(x), self.reduction.whole)
+        return self.sides.objection(self.reduction.nodal(x), self.reduction.whole)
 
     def turned(self, x: Vec) -> dict[str, Turned]:
         """How far bodies at small strain have turned in a state in equilibrium, by name."""

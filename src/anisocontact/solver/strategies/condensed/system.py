@@ -15,6 +15,7 @@ from anisocontact.solver.strategies.condensed.patterns import InteriorState, Pat
 from anisocontact.solver.strategies.newton import TOLERANCE
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import ForceBalance, Magnitudes, closed
+from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
 
 Floats = npt.NDArray[np.float64]
@@ -68,7 +69,8 @@ class ContactSystem(AssembledSystem):
         self.bulk, self._in_reach = bulk, in_reach
         self._assembly, self._pass_through = problem.assembly, problem.pass_through
         self.contact_term, self._rigid = problem.contact_term, problem.rigid
-        self._stabilisation = self._aid = problem.stabilisation
+        self._sides, self._stabilisation = problem.sides, problem.stabilisation
+        self._aid = problem.stabilisation
         self._gathering = gathering
         self._nodal_now, self._v = nodal, nodal.reshape(-1).copy()
         self.prescribed = self._rigid.prescribed()
@@ -215,6 +217,10 @@ class ContactSystem(AssembledSystem):
         if changed:
             self._evaluated = None
         return changed
+
+    @override
+    def behind_a_master(self, x: Vec) -> Culprit | None:
+        return self._sides.objection(self._nodal_now, whole=False)
 
     @override
     def _go_on(self, x: Vec) -> None:
