@@ -6,6 +6,7 @@ are the same as when it last ended well, so that a second call takes a fraction 
 
 from __future__ import annotations
 
+import compileall
 import fcntl
 import hashlib
 import os
@@ -216,6 +217,8 @@ def main() -> int:
         make_venv()
         install_dependencies(project)
         build_core()
+        # pip makes bytecode of what it copies; ours is read where it is
+        compileall.compile_dir(ROOT / "src", quiet=2)
     except SetupError as error:
         print(f"error: {error}", file=sys.stderr)
         return 1

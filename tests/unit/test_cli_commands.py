@@ -351,7 +351,7 @@ def test_report_of_what_is_left(quick_pictures, capsys, case, missing):
         ("check", "mpi4py,dolfinx,petsc4py,basix,ufl,pyvista,vtkmodules,gmsh", 2),
         ("run", "mpi4py,dolfinx,petsc4py,basix,ufl,pyvista,vtkmodules,gmsh", 2),
         ("check", "petsc4py", 2),
-        ("run", "vtkmodules", 3),
+        ("run", "dolfinx", 2),
     ],
 )
 @pytest.mark.parametrize("launcher", ["", "PMI_RANK"])

@@ -17,6 +17,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.results import Results
+from anisocontact.results.deformed import magnification
 from anisocontact.results.paraview import Bodies
 from anisocontact.results.quantities import von_mises
 from anisocontact.results.report import maps, shape, write_report
@@ -273,13 +274,13 @@ def test_without_graphics_matplotlib_draws(run, monkeypatch, tmp_path):
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert [entry.name for entry in tmp_path.iterdir()] == ["deformed.png"]
     # The largest movement is 0.025 of a body whose diagonal is 1.5: a round magnification of 5.
-    assert shape.magnification(run.results.fields()) == 5.0
+    assert magnification(run.results.fields()) == 5.0
 
 
 def test_bodies_that_move_far_are_true_to_scale(run):
     grid = run.results.fields()
     grid.point_data["displacement"] = np.full((grid.n_points, 3), 10.0 * grid.length)
-    assert shape.magnification(grid) == 1.0
+    assert magnification(grid) == 1.0
 
 
 def test_maps_of_a_slave_that_moves_far(run):

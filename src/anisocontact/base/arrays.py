@@ -41,6 +41,32 @@ def points(x: npt.ArrayLike, columns: int, name: str = "x", rows: int | None = N
     return a
 
 
+def connected(count: int, links: npt.NDArray[np.integer]) -> npt.NDArray[np.int64]:
+    """Number of the connected part each of some things belongs to.
+
+    Args:
+        count: How many things there are.
+        links: Those that are connected, a row each: nodes of cells, for instance, (n, k).
+
+    Returns:
+        Parts, numbered by their first things, (count,).
+
+    Example:
+        >>> connected(4, np.array([[0, 2], [3, 1]])).tolist()
+        [0, 1, 0, 1]
+    """
+    root = np.arange(count)
+    first, other = np.repeat(links[:, 0], links.shape[1] - 1), links[:, 1:].ravel()
+    while len(first):
+        first, other = root[first], root[other]
+        apart = first != other
+        first, other = first[apart], other[apart]
+        np.minimum.at(root, np.maximum(first, other), np.minimum(first, other))
+        while np.any(root[root] != root):
+            root = root[root]
+    return np.asarray(np.unique(root, return_inverse=True)[1], dtype=np.int64)
+
+
 def blocks(x: npt.ArrayLike, shape: tuple[int, ...], name: str) -> Floats:
     """`x` as a contiguous array of doubles of one shape.
 

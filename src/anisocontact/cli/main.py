@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import atexit
+import gc
 import os
 import sys
 import traceback
@@ -105,6 +107,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     # NumPy and SciPy bring a pool of threads each, which wait for each other in products that the
     # memory bounds; it is read when they are imported. Contacts have threads of their own.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # What is imported stays: looking through it for garbage takes as long as a small case.
+    gc.set_threshold(100_000)
+    atexit.register(gc.freeze)
     with ended_by_signals():
         together = started_together()
         if together is None:

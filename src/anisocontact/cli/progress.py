@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import Any, TextIO, cast
-
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
-from rich.progress import Progress as Bar
+from typing import TYPE_CHECKING, Any, TextIO, cast
 
 from anisocontact.base.errors import printable
 from anisocontact.case.run import Listener, accepted_line, points_text, ran_off_lines
 from anisocontact.cli.output import Output, say
 from anisocontact.solver import Accepted, Cut, Progress, Step
+
+if TYPE_CHECKING:
+    from rich.progress import Progress as Bar
 
 __all__ = ["progress_on"]
 
@@ -28,6 +27,10 @@ def progress_on(stream: Output, steps: Sequence[Step]) -> Iterator[Listener]:
     if not stream.isatty():
         yield Lines(stream)
         return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
+    from rich.progress import Progress as Bar
+
     columns = (
         TextColumn("{task.description}", markup=False),
         BarColumn(bar_width=24),

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
+import scipy
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import basix, facet_sides, geometry, scalar_element

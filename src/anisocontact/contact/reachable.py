@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csr_array
+import scipy
 
 from anisocontact.contact.sides import Sides, located
 from anisocontact.interface import State
@@ -82,7 +82,7 @@ def _met(group: Numbers, facet: Ints, facets: int, hops: int) -> tuple[Numbers, 
     """Pairs of facets that are in one group, or in groups at most `hops` apart."""
     rows, columns = _different(group, facet, facets)
     shape = (int(rows.max(initial=0)) + hops + 1, facets)
-    there = csr_array((np.ones(len(rows)), (rows, columns)), shape=shape)
+    there = scipy.sparse.csr_array((np.ones(len(rows)), (rows, columns)), shape=shape)
     total = there.T @ there
     for apart in range(1, hops + 1):
         later = there[:-apart].T @ there[apart:]

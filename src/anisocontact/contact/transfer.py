@@ -24,7 +24,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csr_array
+import scipy
 
 from anisocontact.contact.couples import Couples
 from anisocontact.contact.facet_mesh import FacetShapes
@@ -147,7 +147,7 @@ class Transfer:
             count = len(self._master.nodes)
             pair, place = np.unique(parts.owner[points] * count + hit.facet, return_inverse=True)
             entries = (np.ones(len(points)), (place.reshape(-1), np.arange(len(points))))
-            sums = csr_array(entries, shape=(len(pair), len(points)))
+            sums = scipy.sparse.csr_array(entries, shape=(len(pair), len(points)))
             owner, facet = np.divmod(pair, count)
             forces = force.reshape(-1, q, 3)
             facet = facet.astype(np.int32)

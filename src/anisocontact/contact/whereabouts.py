@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.spatial.transform import Rotation
+
+from anisocontact.rigid.rotation import rotation, rotation_vector
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -120,7 +121,7 @@ class Whereabouts:
             return first, np.zeros(3)
         u, _, v = np.linalg.svd(spread)
         turn = u @ np.diag([1.0, 1.0, np.linalg.det(u @ v)]) @ v
-        return first, np.asarray(Rotation.from_matrix(turn).as_rotvec())
+        return first, rotation_vector(turn)
 
     def _crossed(self, which: Ints, middle: Floats, turn: Floats) -> Mask:
         """Whether points come from in front of the master through it; see `_path`."""
@@ -143,9 +144,9 @@ class Whereabouts:
         longest = float(np.linalg.norm(ends - self.before[which], axis=1).max())
         longest += float(np.linalg.norm(turn) * np.linalg.norm(arms, axis=1).max())
         count = int(min(np.ceil(longest / (SPACING * self.size)) + 1, MOST_PLACES))
-        rest = ends - (Rotation.from_rotvec(turn).apply(arms) + middle)
+        rest = ends - (arms @ rotation(turn).T + middle)
         shares = np.linspace(0.0, 1.0, count + 1)
-        turns = Rotation.from_rotvec(shares[:, None] * turn).as_matrix()
+        turns = np.stack([rotation(share * turn) for share in shares])
         return np.asarray(arms @ turns.swapaxes(1, 2) + middle + shares[:, None, None] * rest)
 
 

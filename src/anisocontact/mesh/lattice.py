@@ -9,8 +9,8 @@ from itertools import product
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
 
+from anisocontact.base.arrays import connected
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.arrays import Floats, Nodes
 
@@ -182,10 +182,7 @@ class Weld:
 
         tolerance = SAME_NODE * float(np.ptp(points, axis=0).max())
         pairs = cKDTree(points).query_pairs(tolerance, output_type="ndarray")
-        links = scipy.sparse.coo_array(
-            (np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(points),) * 2
-        )
-        _, labels = scipy.sparse.csgraph.connected_components(links, directed=False)
+        labels = connected(len(points), pairs)
         _, firsts = np.unique(labels, return_index=True)
         stays = nodes[firsts][labels]
         gone = stays != nodes

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from html import escape
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.files import Disk, replacing, write_text
@@ -81,7 +81,7 @@ class Collection:
 
     def _write_list(self) -> None:
         rows = "".join(
-            f'    <DataSet timestep="{t!r}" part="0" file={quoteattr(name)}/>\n'
+            f'    <DataSet timestep="{t!r}" part="0" file="{escape(name)}"/>\n'
             for t, name in self._entries
         )
         write_text(

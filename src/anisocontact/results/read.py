@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.results.dataset import DataSet, read_points
 from anisocontact.results.history import read_history
 
 if TYPE_CHECKING:
@@ -89,6 +91,19 @@ class Results:
         points: pyvista.PolyData = self._read("contact.pvd", index)
         return points
 
+    def slave_points(self, index: int = -1) -> DataSet:
+        """What `contact` gives, as arrays without pyvista.
+
+        Args:
+            index: Which of `times`, the last one if not given.
+
+        Returns:
+            Points, where they are at that time, and what is known at them.
+        """
+        path = self._file("contact.pvd", index)
+        with _whole(path):
+            return read_points(path)
+
     def surfaces(self, index: int = -1) -> pyvista.PolyData:
         """Patches of the analytic masters.
 
@@ -154,5 +169,5 @@ def _whole(path: Path) -> Iterator[None]:
     """Make of everything that is wrong with a file one line that names it."""
     try:
         yield
-    except (OSError, ValueError, KeyError, ElementTree.ParseError, csv.Error) as error:
+    except (OSError, ValueError, KeyError, zlib.error, ElementTree.ParseError, csv.Error) as error:
         raise InputError(f"'{path}' cannot be read: {error}") from None

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import bsr_array
+import scipy
 
 from anisocontact import _core
 from anisocontact.base.arrays import points
@@ -85,7 +85,7 @@ class SmoothSurface(FacetSurface):
         x = points(coordinates, 3, "coordinates", rows=self._points)
         self.core.update(np.concatenate((x, self._smoothing.middles(x))))
 
-    def middle_derivatives(self, coordinates: npt.ArrayLike) -> bsr_array:
+    def middle_derivatives(self, coordinates: npt.ArrayLike) -> scipy.sparse.bsr_array:
         """How the middles of the edges follow the points, exact.
 
         Args:
@@ -97,4 +97,4 @@ class SmoothSurface(FacetSurface):
         x = points(coordinates, 3, "coordinates", rows=self._points)
         first, column, blocks = self._smoothing.derivatives(x)
         shape = (3 * (first.size - 1), 3 * self._points)
-        return bsr_array((blocks, column, first), shape=shape)
+        return scipy.sparse.bsr_array((blocks, column, first), shape=shape)

@@ -12,9 +12,9 @@ from matplotlib.colors import ListedColormap
 from scipy.spatial import KDTree
 
 from anisocontact.base.figure_style import STATUS_COLOURS
+from anisocontact.results.dataset import DataSet
 
 if TYPE_CHECKING:
-    import pyvista
     from matplotlib.axes import Axes
     from matplotlib.image import AxesImage
 
@@ -85,7 +85,7 @@ class ContactView:
 
     closed: bool
 
-    def __init__(self, points: pyvista.PolyData, number: int) -> None:
+    def __init__(self, points: DataSet, number: int) -> None:
         chosen = np.asarray(points.point_data["contact"]) == number
         if "pass" in points.point_data:
             chosen &= np.asarray(points.point_data["pass"]) == 0

@@ -99,7 +99,7 @@ class RunData:
     @cache  # noqa: B019 (one object for one report)
     def view(self, index: int, contact: int) -> ContactView:
         """A contact in a written state."""
-        return ContactView(self.results.contact(index), contact)
+        return ContactView(self.results.slave_points(index), contact)
 
     def path_length(self) -> tuple[str, Floats]:
         """How far what moves most has come: a group, a rigid body, its angle, or else the time."""

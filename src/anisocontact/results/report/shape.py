@@ -6,30 +6,21 @@ asks for them; where that fails, matplotlib draws the same.
 
 from __future__ import annotations
 
-import math
 import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import Any
 
 from anisocontact.base.figure_style import new_figure, save
 from anisocontact.base.whole_files import draft_of
+from anisocontact.results.deformed import LABEL, caption, magnification, round_box, surfaces
 
-if TYPE_CHECKING:
-    import pyvista
-
-__all__ = ["LABEL", "Drawing", "caption", "magnification", "round_box", "surfaces"]
+__all__ = ["Drawing"]
 
 #: Seconds that VTK may take.
 PATIENCE = 120.0
-#: Largest displacement in the picture as a share of the size of the bodies.
-VISIBLE = 0.1
-LABEL = "displacement [length]"
-
-_RENDERER = "anisocontact.results.report.render"
+_RENDERER = "anisocontact.results.deformed"
 
 
 class Drawing:
@@ -63,28 +54,6 @@ class Drawing:
 
         self._picture.unlink(missing_ok=True)
         _by_matplotlib(pyvista.read(self._source), self._picture)
-
-
-def magnification(grid: pyvista.UnstructuredGrid) -> float:
-    """A round number >= 1 that makes the displacement visible; 1 if it is so as it is."""
-    largest = float(np.linalg.norm(grid.point_data["displacement"], axis=1).max())
-    if largest == 0.0:
-        return 1.0
-    wanted = VISIBLE * float(grid.length) / largest
-    if wanted < 3.0:
-        return 1.0
-    power = 10.0 ** math.floor(math.log10(wanted))
-    return next(f * power for f in (5.0, 2.0, 1.0) if f * power <= wanted * (1.0 + 1e-12))
-
-
-def surfaces(
-    grid: pyvista.UnstructuredGrid, scale: float
-) -> tuple[pyvista.PolyData, pyvista.PolyData]:
-    """Surface of the bodies as triangles: deformed, with the `size` of the movement, and not."""
-    grid = grid.copy()
-    grid.point_data["size"] = np.linalg.norm(grid.point_data["displacement"], axis=1)
-    skin: pyvista.PolyData = grid.extract_surface(algorithm="dataset_surface").triangulate()
-    return skin.warp_by_vector("displacement", factor=scale), skin
 
 
 def _start_vtk(source: Path, picture: Path) -> subprocess.Popen[bytes] | None:
@@ -133,21 +102,3 @@ def _by_matplotlib(grid: Any, picture: Path) -> None:
     figure.colorbar(faces, ax=axes, label=LABEL, shrink=0.6)
     axes.set_title(caption(scale))
     save(figure, picture)
-
-
-def caption(scale: float) -> str:
-    """Heading of the picture: how much the displacement is magnified."""
-    times = "true to scale" if scale == 1.0 else f"displacement times {scale:g}"
-    return f"{times}; grey: before"
-
-
-def round_box(*meshes: pyvista.PolyData) -> tuple[Any, Any, Any]:
-    """Box of round numbers around meshes: low and high corner, number of labels along each axis."""
-    corners = np.concatenate([np.reshape(mesh.bounds, (3, 2)).T for mesh in meshes])
-    low, high = corners.min(axis=0), corners.max(axis=0)
-    least = float((high - low).max()) / 8.0
-    power = 10.0 ** math.floor(math.log10(least))
-    step = next(f * power for f in (1.0, 2.0, 5.0, 10.0) if f * power >= least)
-    # What sticks out by a tenth of a step needs no further one.
-    low, high = np.floor(low / step + 0.1) * step, np.ceil(high / step - 0.1) * step
-    return low, high, np.rint((high - low) / step).astype(int) + 1

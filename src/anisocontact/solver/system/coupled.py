@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import bsr_array, csr_array
+import scipy
 
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.reachable import NodePairs
@@ -58,7 +58,7 @@ class CoupledTangent:
         self._first = 3 * index_map.local_range[0]
         self._keys: Keys = np.empty(0, dtype=np.int64)
         self._given = self._keys
-        self._sum = csr_array((0, 0), dtype=np.float64)
+        self._sum = scipy.sparse.csr_array((0, 0), dtype=np.float64)
         self._blocks: Floats = np.empty((0, 9))
 
     @property
@@ -75,12 +75,14 @@ class CoupledTangent:
         self._given = np.full(1, -1, dtype=np.int64)
 
     @cached_property
-    def _of_bulk(self) -> csr_array:
+    def _of_bulk(self) -> scipy.sparse.csr_array:
         """Pattern of the bulk in the rows of this rank, columns of the whole system."""
         starts, columns, _ = self._stiffness.getValuesCSR()
         starts = np.append(starts, [starts[-1]] * (self._size[0] + 1 - len(starts)))
         shape = (self._size[0], self._size[1])
-        return csr_array((np.ones(len(columns), dtype=bool), columns, starts), shape=shape)
+        return scipy.sparse.csr_array(
+            (np.ones(len(columns), dtype=bool), columns, starts), shape=shape
+        )
 
     @cached_property
     def _entries(self) -> tuple[Keys, Keys]:
@@ -154,7 +156,7 @@ class CoupledTangent:
             self._preallocate(out)
         places = np.searchsorted(self._keys, keys[there])
         entries = (np.ones(len(there)), (places, there))
-        self._sum = csr_array(entries, shape=(len(self._keys), len(keys)))
+        self._sum = scipy.sparse.csr_array(entries, shape=(len(self._keys), len(keys)))
         self._given = keys
         return grown
 
@@ -202,12 +204,16 @@ def _found(known: Keys, keys: Keys) -> npt.NDArray[np.bool_]:
     return np.asarray(known[places] == keys)
 
 
-def _entries_of(row: Keys, column: Keys, unknowns: int) -> csr_array:
+def _entries_of(row: Keys, column: Keys, unknowns: int) -> scipy.sparse.csr_array:
     """Pattern of the unknowns of pairs of nodes, (unknowns, unknowns)."""
     nodes = unknowns // 3
-    pairs = csr_array((np.ones(len(row), dtype=bool), (row, column)), shape=(nodes, nodes))
+    pairs = scipy.sparse.csr_array(
+        (np.ones(len(row), dtype=bool), (row, column)), shape=(nodes, nodes)
+    )
     blocks = np.ones((pairs.nnz, 3, 3), dtype=bool)
-    return bsr_array((blocks, pairs.indices, pairs.indptr), shape=(unknowns, unknowns)).tocsr()
+    return scipy.sparse.bsr_array(
+        (blocks, pairs.indices, pairs.indptr), shape=(unknowns, unknowns)
+    ).tocsr()
 
 
 def _joined(bulk: Any, contact: Any) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
+import scipy
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 

@@ -8,9 +8,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
-from scipy.sparse.csgraph import connected_components
 
+from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import fem
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
@@ -75,11 +74,10 @@ def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[Connecte
         for j, b in enumerate(names[:i]):
             if comm.allreduce(len(np.intersect1d(nodes[a], nodes[b]))):
                 pairs.append((i, j))
-    rows, columns = np.array(pairs, dtype=np.int64).reshape(-1, 2).T
-    entries = (np.ones(len(rows)), (rows, columns))
-    graph = scipy.sparse.coo_array(entries, shape=(len(names), len(names)))
-    count, number = connected_components(graph, directed=False)
-    groups = [[n for n, k in zip(names, number, strict=True) if k == one] for one in range(count)]
+    number = connected(len(names), np.array(pairs, dtype=np.int64).reshape(-1, 2))
+    groups = [
+        [n for n, k in zip(names, number, strict=True) if k == one] for one in np.unique(number)
+    ]
     return [_body(model, group, [local[name] for name in group]) for group in groups]
 
 

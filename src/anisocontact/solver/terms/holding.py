@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy.linalg
+import scipy
 
 from anisocontact.solver.terms.free_modes import FREE, ConnectedBody
 from anisocontact.solver.terms.term import Term

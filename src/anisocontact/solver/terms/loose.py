@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
-from scipy.sparse.csgraph import connected_components
 
+from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import MPI, Mat
 from anisocontact.solver.terms.free_modes import named
 
@@ -94,10 +93,8 @@ def _labels(space: Any) -> Ints:
     comm, index_map = space.mesh.comm, space.dofmap.index_map
     cells = np.asarray(space.dofmap.list)
     count = index_map.size_local + index_map.num_ghosts
-    pairs = (np.repeat(cells[:, 0], cells.shape[1] - 1), cells[:, 1:].ravel())
-    graph = scipy.sparse.coo_array((np.ones(len(pairs[0])), pairs), shape=(count, count))
-    number, here = connected_components(graph, directed=False)
-    first = np.append(0, np.cumsum(comm.allgather(int(number))))
+    here = connected(count, cells)
+    first = np.append(0, np.cumsum(comm.allgather(int(here.max(initial=-1)) + 1)))
     own = here + first[comm.rank]
     # a ghost and the node it is a copy of are one
     of_ghosts = (np.asarray(index_map.ghosts, dtype=np.int64), own[index_map.size_local :])
@@ -107,5 +104,4 @@ def _labels(space: Any) -> Ints:
         mine = (nodes >= low) & (nodes < high)
         links.append(np.column_stack([own[nodes[mine] - low], labels[mine]]))
     joined = np.concatenate(comm.allgather(np.concatenate(links)))
-    whole = scipy.sparse.coo_array((np.ones(len(joined)), joined.T), shape=(first[-1], first[-1]))
-    return np.asarray(connected_components(whole, directed=False)[1][own], dtype=np.int64)
+    return np.asarray(connected(int(first[-1]), joined)[own])

@@ -6,7 +6,7 @@ from typing import override
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
+import scipy
 
 from anisocontact.base.fenicsx import PETSc, check_memory
 from anisocontact.solver.strategies.condensed.factor import Eliminated, aij, singular, solves

@@ -7,10 +7,11 @@ from itertools import pairwise, starmap
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
+import scipy
 
+from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import Vec
-from anisocontact.solver.strategies.condensed.parts import Condensation, connected
+from anisocontact.solver.strategies.condensed.parts import Condensation
 from anisocontact.solver.strategies.condensed.patterns import InteriorState, Probe
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.strategies.condensed.system import ContactSystem

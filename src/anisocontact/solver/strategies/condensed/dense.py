@@ -11,8 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import numpy.typing as npt
-import scipy.linalg
-import scipy.sparse
+import scipy
 
 from anisocontact.contact.transfer import Couplings
 from anisocontact.solver.terms.persistent import Arrays

@@ -6,7 +6,7 @@ from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
+import scipy
 
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.solver.terms.term import SingularError

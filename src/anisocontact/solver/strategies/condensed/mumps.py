@@ -8,7 +8,7 @@ from typing import Any, override
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
+import scipy
 
 from anisocontact.base.fenicsx import PETSc, call_petsc, check_memory, has_petsc
 from anisocontact.solver.strategies.condensed.factor import (

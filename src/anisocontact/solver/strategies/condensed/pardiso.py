@@ -9,7 +9,7 @@ from typing import Any, override
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
+import scipy
 
 from anisocontact.solver.strategies.condensed.factor import Eliminated, mirror, singular
 

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
-from scipy.sparse.csgraph import connected_components
+import scipy
 
 from anisocontact.solver.strategies.condensed.dense import blocks_times
 from anisocontact.solver.strategies.condensed.eliminate import WholeBorder, chosen
@@ -32,27 +31,6 @@ class CondensedPart:
     free: Ints
     border: Ints
     factor: Eliminated
-
-
-def connected(nodes: int, cells: npt.NDArray[np.int32]) -> npt.NDArray[np.int32]:
-    """Number of the connected part each node belongs to.
-
-    Args:
-        nodes: Number of nodes.
-        cells: Nodes of each cell, (cells, k).
-
-    Returns:
-        CondensedPart of each node, (nodes,).
-
-    Example:
-        >>> connected(4, np.array([[0, 1], [2, 3]], dtype=np.int32)).tolist()
-        [0, 0, 1, 1]
-    """
-    first = np.repeat(cells[:, 0], cells.shape[1] - 1)
-    pairs = (np.ones(len(first), dtype=np.int8), (first, cells[:, 1:].ravel()))
-    graph = scipy.sparse.coo_array(pairs, shape=(nodes, nodes))
-    _, part = connected_components(graph, directed=False)
-    return np.asarray(part)
 
 
 class Condensation:
@@ -83,7 +61,7 @@ class Condensation:
     def __init__(
         self,
         stiffness: scipy.sparse.csr_array,
-        part_of: npt.NDArray[np.int32],
+        part_of: npt.NDArray[np.int64],
         touched: Flags,
         prescribed: Flags,
         before: Condensation | None = None,

@@ -6,7 +6,7 @@ from typing import Any, override
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
+import scipy
 
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.condensed.dense import ContactTangent, KeptFactor
