@@ -8,9 +8,13 @@ import subprocess
 import sys
 import time
 
+import numpy as np
 import pytest
 
+from anisocontact.base.compiler import FAST, machine_key
+
 _fenicsx = pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+FormMatrix = pytest.importorskip("anisocontact.base.form_matrix", exc_type=ImportError).FormMatrix
 
 ANSWER = "JIT compilation timed out, probably due to x. Try cleaning cache (e.g. remove {}) or so."
 
@@ -22,7 +26,7 @@ def test_marks_of_the_dead_are_removed_and_the_living_waited_for(tmp_path, monke
     os.utime(mark, (time.time() - age,) * 2)
     asked = []
 
-    def form(what):
+    def form(what, jit_options):
         asked.append(what)
         if not mark.exists() or len(asked) > waits:
             return "compiled"
@@ -35,12 +39,69 @@ def test_marks_of_the_dead_are_removed_and_the_living_waited_for(tmp_path, monke
 
 
 def test_other_failures_stay_failures(monkeypatch):
-    def form(_):
+    def form(_, jit_options):
         raise RuntimeError("no compiler")
 
     monkeypatch.setattr(_fenicsx.fem, "form", form)
     with pytest.raises(RuntimeError, match="no compiler"):
         _fenicsx.compiled("form", _fenicsx.MPI.COMM_SELF)
+
+
+def test_a_compiler_without_the_fast_arguments_compiles_with_those_of_dolfinx(monkeypatch):
+    asked = []
+
+    def form(what, jit_options):
+        asked.append(jit_options)
+        if "-march=native" in jit_options["cffi_extra_compile_args"]:
+            raise OSError("unrecognised argument")
+        return what
+
+    monkeypatch.setattr(_fenicsx.fem, "form", form)
+    assert _fenicsx.compiled("form", _fenicsx.MPI.COMM_SELF) == "form"
+    fast, plain = asked
+    assert fast["cffi_extra_compile_args"] == list(FAST)
+    assert fast["cache_dir"] == plain["cache_dir"] / machine_key()
+
+
+def test_who_has_set_arguments_for_dolfinx_has_chosen(monkeypatch):
+    given = {"cffi_extra_compile_args": ["-O1"], "cache_dir": "here"}
+    monkeypatch.setattr(_fenicsx.dolfinx.jit, "get_options", lambda: given)
+    monkeypatch.setattr(_fenicsx.fem, "form", lambda _, jit_options: jit_options)
+    assert _fenicsx.compiled("form", _fenicsx.MPI.COMM_SELF) == given
+
+
+def _hyperelastic():
+    """Force and tangent forms of a cube of neo-Hookean rubber, and its displacement."""
+    from anisocontact.bulk import make_material
+    from anisocontact.mesh import BoxSpec, build_box
+
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+    u = _fenicsx.fem.Function(model.space)
+    u.x.array[:] = 0.05 * np.random.default_rng(3).standard_normal(len(u.x.array))
+    rubber = make_material("neo-hookean", E=1.0, nu=0.3)
+    v, du = (f(model.space) for f in (_fenicsx.ufl.TestFunction, _fenicsx.ufl.TrialFunction))
+    energy = sum(density for density, _ in rubber.energy(u)) * _fenicsx.ufl.dx(degree=2)
+    force = _fenicsx.ufl.derivative(energy, u, v)
+    return u, force, _fenicsx.ufl.derivative(force, u, du)
+
+
+def test_fast_forms_are_those_of_the_default_arguments_and_keep_what_is_no_number():
+    """Sums in another order: a few roundings; what is no number reaches every node of its cells."""
+    u, force, tangent = _hyperelastic()
+    plain = _fenicsx.fem.assemble_vector(_fenicsx.fem.form(force)).array
+    fast_form = _fenicsx.compiled(force, u.function_space.mesh.comm)
+    fast = _fenicsx.fem.assemble_vector(fast_form).array
+    assert np.abs(fast - plain).max() <= 64 * np.finfo(float).eps * np.abs(plain).max()
+    matrices = [
+        FormMatrix(_fenicsx.compiled(tangent, u.function_space.mesh.comm)).matrix.getValuesCSR()[2],
+        _fenicsx.fem.assemble_matrix(_fenicsx.fem.form(tangent)).to_scipy().tocsr(),
+    ]
+    difference = np.sort(matrices[0]) - np.sort(matrices[1].data)
+    assert np.abs(difference).max() <= 64 * np.finfo(float).eps * np.abs(matrices[0]).max()
+    u.x.array[0] = np.nan
+    plain = _fenicsx.fem.assemble_vector(_fenicsx.fem.form(force)).array
+    fast = _fenicsx.fem.assemble_vector(fast_form).array
+    assert np.isnan(plain).any() and np.array_equal(np.isnan(fast), np.isnan(plain))
 
 
 @pytest.mark.slow
@@ -49,7 +110,7 @@ def test_a_run_after_one_that_was_killed_while_it_compiled(tmp_path, case_text):
     (tmp_path / "case.toml").write_text(case_text)
     check = [sys.executable, "-m", "anisocontact", "check", str(tmp_path / "case.toml")]
     environment = os.environ | {"XDG_CACHE_HOME": str(tmp_path / "cache")}
-    cache = tmp_path / "cache" / "fenics"
+    cache = tmp_path / "cache" / "fenics" / machine_key()
     subprocess.run(check, env=environment, check=True, capture_output=True)
     marks = list(cache.glob("libffcx_forms_*.c"))
     assert marks

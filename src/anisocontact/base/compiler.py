@@ -2,20 +2,47 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
+import platform
 import shlex
 import shutil
 import subprocess
 import sysconfig
 import tempfile
+from functools import cache as once
 from pathlib import Path
 
 from anisocontact.base.errors import MachineError
 
-__all__ = ["lack_of_compiler"]
+__all__ = ["FAST", "lack_of_compiler", "machine_key"]
+
+#: Arguments for code of this machine alone whose sums may be in any order, and in which what is not
+#: a number stays none: an iterate far off is judged by that.
+FAST = ("-O3", "-march=native", "-ffast-math", "-fno-finite-math-only", "-g0")
 
 #: What a compiled form begins with.
 _PROBE = "#include <Python.h>\n"
+
+
+@once
+def machine_key() -> str:
+    """Name of this kind of processor: code made for one may not run on another.
+
+    A home of many machines, or a folder copied to another, so never mixes their code.
+    """
+    told = [platform.machine(), platform.processor()]
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8", errors="replace").splitlines()
+    except OSError:
+        lines = []
+    for name in _TELLING:
+        told += [line for line in lines if line.startswith(name)][:1]
+    return f"{platform.machine()}-{hashlib.sha256(chr(10).join(told).encode()).hexdigest()[:12]}"
+
+
+#: What tells processors apart, lines of the first one: what it can do, and which one it is.
+_TELLING = ("vendor_id", "cpu family", "model", "flags", "Features", "CPU part")
 
 
 def lack_of_compiler(cache: Path) -> MachineError | None:

@@ -33,6 +33,7 @@ try:
 
     import dolfinx
     from dolfinx import cpp, fem, graph, io
+    from dolfinx import la as _la
     from dolfinx import mesh as dmesh
     from dolfinx.fem import petsc as fem_petsc
     from petsc4py import PETSc as _PETSc
@@ -43,7 +44,7 @@ except ImportError as missing:
         name="dolfinx",
     ) from missing
 
-from anisocontact.base.compiler import lack_of_compiler
+from anisocontact.base.compiler import FAST, lack_of_compiler, machine_key
 from anisocontact.base.errors import MachineError
 from anisocontact.base.machine import MEMORY
 
@@ -75,6 +76,7 @@ __all__ = [
     "fem",
     "geometry",
     "has_petsc",
+    "la",
     "locate_entities",
     "middle_nodes",
     "prescribe",
@@ -84,8 +86,10 @@ __all__ = [
     "vector_space",
 ]
 
-# UFL has no types, and those of petsc4py take enumerations and sums of vectors for errors.
+# UFL has no types, DOLFINx few, and those of petsc4py take enumerations and sums of vectors for
+# errors.
 ufl: Any = _ufl
+la: Any = _la
 PETSc: Any = _PETSc
 type Mat = Any
 type Vec = Any
@@ -115,35 +119,66 @@ def compiled(form: Any, comm: MPI.Comm) -> Any:
     Raises:
         MachineError: It cannot be compiled on this machine.
     """
-    return _from_cache(lambda: fem.form(form), comm)
+    return _from_cache(lambda options: fem.form(form, jit_options=options), comm)
 
 
 def compiled_expression(expression: Any, points: Floats, comm: MPI.Comm) -> Any:
     """An expression at points of each cell as machine code: `fem.Expression`, as `compiled`."""
-    return _from_cache(lambda: fem.Expression(expression, points), comm)
+    return _from_cache(
+        lambda options: fem.Expression(expression, points, jit_options=options), comm
+    )
 
 
-def _from_cache(compile_: Callable[[], Any], comm: MPI.Comm) -> Any:
+def _jit_options() -> list[dict[str, Any]]:
+    """Ways to compile, the fastest code first: a compiler may not take its arguments.
+
+    Who has set arguments for DOLFINx has chosen.
+    """
+    given = dolfinx.jit.get_options()
+    if given["cffi_extra_compile_args"] != _JIT_DEFAULTS["cffi_extra_compile_args"][0]:
+        return [given]
+    own = {
+        "cffi_extra_compile_args": list(FAST),
+        "cache_dir": Path(given["cache_dir"], machine_key()),
+    }
+    return [given | own, given]
+
+
+_JIT_DEFAULTS = dolfinx.jit.DOLFINX_DEFAULT_JIT_OPTIONS
+
+
+def _from_cache(compile_: Callable[[dict[str, Any]], Any], comm: MPI.Comm) -> Any:
     """What FFCx compiles, or has compiled before.
 
     It marks a form that is being compiled by a file in its cache and gives up after ten seconds
     of waiting for whoever wrote it. A slow compilation is waited for, what a dead one has left is
     removed.
     """
+    options, *others = _jit_options()
     while True:
         try:
-            return compile_()
+            return compile_(options)
         except (TimeoutError, RuntimeError) as error:
-            if _WAITED not in str(error):
+            if _WAITED in str(error):
+                _wait(error, comm)
+            elif others:
+                options, *others = others
+            else:
                 raise _not_compiled(error) from error
-            if comm.rank == 0 and (found := _MODULE.search(str(error))):
-                mark = Path(found[1])
-                with contextlib.suppress(FileNotFoundError):
-                    if time.time() - mark.stat().st_mtime > ABANDONED:
-                        mark.unlink()
-            comm.barrier()
         except Exception as error:
-            raise _not_compiled(error) from error
+            if not others:
+                raise _not_compiled(error) from error
+            options, *others = others
+
+
+def _wait(error: Exception, comm: MPI.Comm) -> None:
+    """Remove the mark that a form waits for if whoever wrote it is dead."""
+    if comm.rank == 0 and (found := _MODULE.search(str(error))):
+        mark = Path(found[1])
+        with contextlib.suppress(FileNotFoundError):
+            if time.time() - mark.stat().st_mtime > ABANDONED:
+                mark.unlink()
+    comm.barrier()
 
 
 def _not_compiled(error: Exception) -> Exception:

@@ -6,9 +6,8 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-
-from anisocontact.base.fenicsx import Mat, PETSc, Vec, compiled, create_stiffness, ufl
+from anisocontact.base.fenicsx import Mat, Vec, compiled, create_stiffness, ufl
+from anisocontact.base.form_matrix import add_matrix
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.materials import Material, body_measure
 from anisocontact.mesh import Model
@@ -87,14 +86,7 @@ class LinearBulk:
             out: A matrix that has room for it and may have more unknowns.
         """
         out.zeroEntries()
-        if out.getSizes() == self.stiffness.getSizes():
-            subset = PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN
-            out.axpy(1.0, self.stiffness, structure=subset)
-            return
-        first, _ = self.stiffness.getOwnershipRange()
-        starts, columns, values = self.stiffness.getValuesCSR()
-        rows = first + np.arange(len(starts) - 1, dtype=PETSc.IntType)
-        out.setValuesIJV(starts, columns, values, PETSc.InsertMode.ADD_VALUES, rows)
+        add_matrix(out, self.stiffness)
         out.assemble()
 
 

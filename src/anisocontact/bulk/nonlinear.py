@@ -9,16 +9,14 @@ import numpy as np
 
 from anisocontact.base.fenicsx import (
     Mat,
-    PETSc,
     Vec,
     assemble_force,
-    assemble_into,
     compiled,
     create_force,
-    create_stiffness,
     fem,
     ufl,
 )
+from anisocontact.base.form_matrix import FormMatrix
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure
@@ -53,12 +51,12 @@ class NonlinearBulk:
         forms = _Forms(model, {**given, **self.histories}, self._u, v, du, full)
         self._comm = model.mesh.comm
         self._work = compiled(forms.work, self._comm)
-        self._tangent = compiled(forms.tangent, self._comm)
+        self._tangent = FormMatrix(compiled(forms.tangent, self._comm))
         self._energy = None if forms.energy is None else compiled(forms.energy, self._comm)
         self._dissipated = compiled(forms.dissipated, self._comm) if forms.dissipated else None
         #: Whether `energy` is that of all bodies: every material has one.
         self.stores = forms.energy is not None
-        self.stiffness = create_stiffness(self._tangent)
+        self.stiffness = self._tangent.matrix
         self._force = create_force(self._work)
         #: Length whose strain is round-off where nothing moves: F = I + grad(u) is rounded over
         #: the size of a cell.
@@ -110,9 +108,7 @@ class NonlinearBulk:
         """
         for body in self._points:
             body.write_tangent()
-        out.zeroEntries()
-        assemble_into(out, self._tangent)
-        out.assemble(PETSc.Mat.AssemblyType.FINAL)
+        self._tangent.write(out)
 
     def set_time(self, dt: float) -> None:
         """Take over the time increment of the next states."""

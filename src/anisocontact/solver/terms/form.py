@@ -13,14 +13,13 @@ from anisocontact.base.fenicsx import (
     Mat,
     Vec,
     assemble_force,
-    assemble_into,
     compiled,
     create_force,
-    create_stiffness,
     prescribe,
     prescribed_rows,
     ufl,
 )
+from anisocontact.base.form_matrix import FormMatrix
 from anisocontact.bulk import AtPoints
 
 Floats = npt.NDArray[np.float64]
@@ -47,9 +46,9 @@ class FormBulk:
         space = u.function_space
         tangent = ufl.derivative(F, u, ufl.TrialFunction(space)) if J is None else J
         self._residual = compiled(F, space.mesh.comm)
-        self._tangent = compiled(tangent, space.mesh.comm)
+        self._tangent = FormMatrix(compiled(tangent, space.mesh.comm))
         self.finite = u in ufl.algorithms.expand_derivatives(tangent).coefficients()
-        self.stiffness = create_stiffness(self._tangent)
+        self.stiffness = self._tangent.matrix
         self.diagonal = self.stiffness.getDiagonal()
         self._force = create_force(self._residual)
 
@@ -74,9 +73,7 @@ class FormBulk:
 
     def tangent(self, out: Mat) -> None:
         """Write the derivative at the values of the function."""
-        out.zeroEntries()
-        assemble_into(out, self._tangent)
-        out.assemble()
+        self._tangent.write(out)
 
 
 class Dirichlet:
