@@ -143,6 +143,8 @@ def escape_bars(
 def write_pages(app: Sphinx) -> None:
     """Write the pages that changed and remove those whose origin is gone."""
     from anisocontact.base import registry
+    from anisocontact.base.amplitudes import amplitudes
+    from anisocontact.base.paths import paths
     from anisocontact.case import json_schema
     from anisocontact.case.trace import trace_schema
     from anisocontact.cli import build_parser
@@ -155,6 +157,8 @@ def write_pages(app: Sphinx) -> None:
         "Adhesion models": registry.adhesion_models(),
         "Friction models": registry.friction_models(),
         "Sliding rules": registry.sliding_rules(),
+        "Amplitudes": amplitudes(),
+        "Paths": paths(),
     }
     pages = {
         "case-file": CaseReference(json_schema()).page(),

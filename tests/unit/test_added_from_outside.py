@@ -310,3 +310,40 @@ def test_strategy_of_the_page_solves(tmp_path):
     np.testing.assert_allclose(
         found.history["contacts.0.force.z"], known.history["contacts.0.force.z"], rtol=1e-7
     )
+
+
+SWING = """
+from anisocontact.case import load
+from anisocontact.case.build import build
+
+path = Path("case.toml")
+path.write_text(TEXT)
+built = build(load(path))
+print(*(accepted.reactions["bar.bottom"][2] for accepted in built.solver.run()))
+"""
+SWUNG = BAR.replace('"blatz-ko"\nG = {shear}', '"linear-elastic"\nE = 1e3\nnu = 0').format()
+SWUNG = (
+    SWUNG.partition("[[step]]")[0]
+    + """
+[amplitude.ring]
+kind = "decay"
+period = 1.0
+tau = 0.5
+
+[[step]]
+name = "ring"
+increments = 8
+displacement = { "bar.bottom" = { x = 0, y = 0, z = 0 } }
+force = { "bar.top" = { z = { amplitude = "ring", value = 2 } } }
+"""
+)
+
+
+def test_amplitude_of_the_page_leads_a_load(tmp_path):
+    """Requirement: a class and a decorator are all it takes; the force is the formula's."""
+    more = f"from pathlib import Path\nTEXT = {SWUNG!r}\n{SWING}"
+    done = run(tmp_path, "An amplitude", more)
+    assert done.returncode == 0, done.stderr
+    time = np.arange(1, 9) / 8
+    exact = -2.0 * np.exp(-time / 0.5) * np.sin(2.0 * np.pi * time)
+    np.testing.assert_allclose([float(v) for v in done.stdout.split()], exact, atol=1e-12)

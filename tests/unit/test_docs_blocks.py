@@ -111,6 +111,7 @@ materials = {"block": make_material("linear-elastic", E=100.0, nu=0.3)}
 """
 #: What the Python blocks of a page suppose, by page.
 BEFORE = {
+    "amplitudes": BLOCK,
     "own-script": BLOCK
     + """
 import ufl
@@ -170,6 +171,7 @@ turned = milled = make_directions("constant", vector=(1, 0, 0))
 }
 #: What has to hold afterwards.
 AFTER = {
+    "amplitudes": "assert Solver(Problem(model, materials), steps).cautions == []",
     "own-script": "assert problem.solve() is not None and contact.last.status.max() > 0",
     "own-law": """
 u = np.zeros((len(model.space.tabulate_dof_coordinates()), 3))

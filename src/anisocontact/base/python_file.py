@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 
-__all__ = ["module_of"]
+__all__ = ["module_of", "where_failed"]
 
 
 def module_of(path: Path) -> ModuleType:
@@ -33,6 +34,17 @@ def module_of(path: Path) -> ModuleType:
     with _beside(path):
         spec.loader.exec_module(module)
     return module
+
+
+def where_failed(error: BaseException) -> str:
+    """An error of somebody's code in one line: file and line, and what it says."""
+    at: tuple[str | None, int | None] = (None, None)
+    if isinstance(error, SyntaxError):
+        at = (error.filename, error.lineno)
+    elif frames := traceback.extract_tb(error.__traceback__)[1:]:
+        at = (frames[-1].filename, frames[-1].lineno)
+    said = " ".join(f"{type(error).__name__}: {getattr(error, 'msg', None) or error}".split())
+    return said if at[0] is None else f"{Path(at[0]).name}, line {at[1]}: {said}"
 
 
 @contextmanager

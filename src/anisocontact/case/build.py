@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from typing import Any
 
 from anisocontact.base.errors import InputError, ModelWarning
 from anisocontact.base.fenicsx import MPI, PETSc
 from anisocontact.base.limits import Limits
 from anisocontact.case import objects
 from anisocontact.case.contacts import contact
+from anisocontact.case.courses import Schedule
 from anisocontact.case.law_file import law_of
-from anisocontact.case.model import Case
-from anisocontact.case.quantity import FREE
+from anisocontact.case.model import Case, StepSection
 from anisocontact.case.read import CaseFile
 from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays
@@ -76,7 +77,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
         contact(case, section, model, materials, bodies, f"contact[{i}]", law)
         for i, (section, law) in enumerate(zip(case.contact, own, strict=True))
     ]
-    steps = _steps(case, model)
+    steps = _steps(case, model, Schedule(case, file.resolve, python))
     _check_options(case.solver.options)
     problem = Problem(
         model,
@@ -188,32 +189,38 @@ def _rigid_bodies(case: Case) -> dict[str, RigidBody]:
     return bodies
 
 
-def _steps(case: Case, model: Model) -> list[Step]:
-    steps = []
+def _steps(case: Case, model: Model, schedule: Schedule) -> list[Step]:
+    steps, begun = [], 0.0
     for i, section in enumerate(case.step):
         place = f"step[{i}]"
         for what, group in section.groups():
             model.facets(group, f"{place}.{what}")
-        displacement = {
-            group: {axis: None if v == FREE else v for axis, v in given.given().items()}
-            for group, given in section.displacement.items()
-        }
-        vectors = {
-            kind: {name: given.given() for name, given in getattr(section, kind).items()}
-            for kind in ("traction", "force", "body_force", "anchor")
-        }
         with objects.within(place):
-            steps.append(
-                Step(
-                    section.name,
-                    section.increments,
-                    displacement,
-                    duration=section.duration,
-                    motion={name: given.given() for name, given in section.motion.items()},
-                    load={name: given.components() for name, given in section.load.items()},
-                    pressure=section.pressure,
-                    rotation={group: Turn(**dict(t)) for group, t in section.rotation.items()},
-                    **vectors,
-                )
-            )
+            steps.append(_step(section, schedule, begun))
+        begun += section.duration
     return steps
+
+
+def _step(section: StepSection, schedule: Schedule, begun: float) -> Step:
+    def led(kind: str) -> dict[str, dict[str, Any]]:
+        return {
+            name: schedule.values(given.given(), getattr(given, "path", None), begun)
+            for name, given in getattr(section, kind).items()
+        }
+
+    turns = {}
+    for name, table in section.rotation.items():
+        given = dict(table)
+        if table.amplitude is not None:
+            given["amplitude"] = schedule.amplitude(table.amplitude, begun)
+        with objects.within(f"rotation.{name}"):
+            turns[name] = Turn(**given)
+    kinds = ("displacement", "motion", "load", "traction", "force", "body_force", "anchor")
+    return Step(
+        section.name,
+        section.increments,
+        duration=section.duration,
+        pressure={group: schedule.value(v, begun) for group, v in section.pressure.items()},
+        rotation=turns,
+        **{kind: led(kind) for kind in kinds},
+    )

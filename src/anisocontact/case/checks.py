@@ -8,6 +8,7 @@ from typing import Any
 from anisocontact.base.errors import InputError
 from anisocontact.base.words import meant
 from anisocontact.case import law_file, objects
+from anisocontact.case.courses import check_courses
 from anisocontact.case.model import (
     AUGMENTED,
     PENALTY,
@@ -46,6 +47,7 @@ def check(case: Case) -> Iterator[InputError]:
     yield from check_rigid(case)
     yield from _held(case)
     yield from _steps(case)
+    yield from check_courses(case)
     smallest, largest = case.solver.smallest_increment, case.solver.largest_increment
     if smallest > largest:
         text = f"{smallest!r} given, must be at most solver.largest_increment, {largest!r}"

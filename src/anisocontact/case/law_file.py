@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.python_file import module_of
+from anisocontact.base.python_file import module_of, where_failed
 from anisocontact.case import objects
 from anisocontact.case.model import ContactSection
 from anisocontact.case.section import near
@@ -20,11 +21,10 @@ from anisocontact.interface.python_law import (
     LawState,
     PythonLaw,
     TangentialLaw,
-    where_failed,
 )
 from anisocontact.laws import SIDES
 
-__all__ = ["contact_law", "law_of"]
+__all__ = ["contact_law", "law_of", "module_at"]
 
 
 class _Later:
@@ -97,16 +97,9 @@ def law_of(
     if given is None:
         return None
     with objects.within(f"{place}.python"):
-        path = _found(resolve, given.file)
-        if not execute:
+        module = module_at(resolve, given.file, execute)
+        if module is None:
             return None
-        if path.suffix != ".py":
-            raise InputError(f"'{given.file}' given, a Python file needed, '.py'", "file")
-        try:
-            module = module_of(path)
-        except (Exception, SystemExit) as error:
-            text = f"'{given.file}' cannot be run: {where_failed(error)}"
-            raise InputError(text, "file") from None
         kind = getattr(module, given.law, None)
         if not isinstance(kind, type):
             classes = {n: k for n, k in vars(module).items() if isinstance(k, type)}
@@ -122,11 +115,30 @@ def law_of(
         return law
 
 
-def _found(resolve: Callable[[str], Path], given: str) -> Path:
+def module_at(
+    resolve: Callable[[str], Path], given: str, execute: bool = True
+) -> ModuleType | None:
+    """The module of a Python file that a case names; None if it is not to be run.
+
+    Args:
+        resolve: From a path in the case file to where that is.
+        given: The path as it is written.
+        execute: Whether the file is run; if not, it only has to be there.
+
+    Raises:
+        InputError: No such file, or one that cannot be run.
+    """
     path = resolve(given)
     if not path.is_file():
         raise InputError(f"'{given}' given, no such file", "file")
-    return path
+    if not execute:
+        return None
+    if path.suffix != ".py":
+        raise InputError(f"'{given}' given, a Python file needed, '.py'", "file")
+    try:
+        return module_of(path)
+    except (Exception, SystemExit) as error:
+        raise InputError(f"'{given}' cannot be run: {where_failed(error)}", "file") from None
 
 
 def _check_law(law: Any, name: str) -> None:

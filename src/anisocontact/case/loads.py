@@ -7,6 +7,7 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 from pydantic_core import ErrorDetails
 
+from anisocontact.case.amplitudes import PATH, Scheduled, led, times
 from anisocontact.case.bodies import Point, Rotate
 from anisocontact.case.quantity import FREE, line, number
 from anisocontact.case.section import Section
@@ -19,8 +20,9 @@ class Components(Section):
 
     @model_validator(mode="after")
     def _some(self) -> Self:
-        if not self.given():
-            raise line("nothing given, at least one of x, y, z needed")
+        keys = [key for key in ("x", "y", "z", "path") if key in type(self).model_fields]
+        if all(getattr(self, key) is None for key in keys):
+            raise line(f"nothing given, at least one of {', '.join(keys)} needed")
         return self
 
     @classmethod
@@ -38,33 +40,34 @@ class Components(Section):
 class Displacement(Components):
     """Displacement of a facet group at the end of the step; "free" releases the support."""
 
-    x: Annotated[float | str | None, number("scalar", "length", "along x", word=FREE)] = None
-    y: Annotated[float | str | None, number("scalar", "length", "along y", word=FREE)] = None
-    z: Annotated[float | str | None, number("scalar", "length", "along z", word=FREE)] = None
+    x: Annotated[float | Scheduled | str | None, led("length", "along x", word=FREE)] = None
+    y: Annotated[float | Scheduled | str | None, led("length", "along y", word=FREE)] = None
+    z: Annotated[float | Scheduled | str | None, led("length", "along z", word=FREE)] = None
+    path: str | None = PATH
 
 
 class Traction(Components):
     """Force per reference area on a facet group at the end of the step."""
 
-    x: Annotated[float | None, number("scalar", "stress", "along x")] = None
-    y: Annotated[float | None, number("scalar", "stress", "along y")] = None
-    z: Annotated[float | None, number("scalar", "stress", "along z")] = None
+    x: Annotated[float | Scheduled | None, led("stress", "along x")] = None
+    y: Annotated[float | Scheduled | None, led("stress", "along y")] = None
+    z: Annotated[float | Scheduled | None, led("stress", "along z")] = None
 
 
 class Force(Components):
     """Force on a whole facet group at the end of the step, as a uniform traction."""
 
-    x: Annotated[float | None, number("scalar", "force", "along x")] = None
-    y: Annotated[float | None, number("scalar", "force", "along y")] = None
-    z: Annotated[float | None, number("scalar", "force", "along z")] = None
+    x: Annotated[float | Scheduled | None, led("force", "along x")] = None
+    y: Annotated[float | Scheduled | None, led("force", "along y")] = None
+    z: Annotated[float | Scheduled | None, led("force", "along z")] = None
 
 
 class BodyForce(Components):
     """Force on a body per reference volume, or its acceleration where a density is given."""
 
-    x: Annotated[float | None, number("scalar", "stress/length", "along x")] = None
-    y: Annotated[float | None, number("scalar", "stress/length", "along y")] = None
-    z: Annotated[float | None, number("scalar", "stress/length", "along z")] = None
+    x: Annotated[float | Scheduled | None, led("stress/length", "along x")] = None
+    y: Annotated[float | Scheduled | None, led("stress/length", "along y")] = None
+    z: Annotated[float | Scheduled | None, led("stress/length", "along z")] = None
     density: Annotated[
         float,
         number(
@@ -77,15 +80,16 @@ class BodyForce(Components):
 
     def given(self) -> dict[str, Any]:
         """Components of the force per volume."""
-        return {axis: self.density * value for axis, value in super().given().items()}
+        return {axis: times(value, self.density) for axis, value in super().given().items()}
 
 
 class Anchor(Components):
     """Displacement of a spring's end on ground at the end of the step."""
 
-    x: Annotated[float | None, number("scalar", "length", "along x")] = None
-    y: Annotated[float | None, number("scalar", "length", "along y")] = None
-    z: Annotated[float | None, number("scalar", "length", "along z")] = None
+    x: Annotated[float | Scheduled | None, led("length", "along x")] = None
+    y: Annotated[float | Scheduled | None, led("length", "along y")] = None
+    z: Annotated[float | Scheduled | None, led("length", "along z")] = None
+    path: str | None = PATH
 
 
 class ElasticBed(Section):
@@ -120,6 +124,11 @@ class Turning(Rotate):
         0.0,
         0.0,
     )
+    amplitude: str | None = Field(
+        None,
+        description="name of an amplitude that begins at 0: angle and way times it; linear along "
+        "the step if left out",
+    )
 
 
 class Loading(Section):
@@ -137,7 +146,7 @@ class Loading(Section):
     force: dict[str, Force] = Field(
         default_factory=dict, description='forces on whole facet groups by "body.group"'
     )
-    pressure: dict[str, Annotated[float, number("scalar", "stress", "pressure")]] = Field(
+    pressure: dict[str, Annotated[float | Scheduled, led("stress", "pressure")]] = Field(
         default_factory=dict,
         description='pressures by "body.group", positive into the body; they follow a body at '
         "finite strain",

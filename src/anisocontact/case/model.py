@@ -21,9 +21,12 @@ from pydantic import (
 )
 
 from anisocontact.base import registry
+from anisocontact.base.amplitudes import amplitudes
 from anisocontact.base.limits import Limits
+from anisocontact.base.paths import paths
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.strategies import AUTO, strategies
+from anisocontact.case.amplitudes import PYTHON, amplitude_table, path_table
 from anisocontact.case.bodies import Mesh, mesh_type
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
 from anisocontact.case.python_section import PythonSection
@@ -257,6 +260,8 @@ class Case(Section):
     spring: dict[str, GroupSpring] = Field(
         default_factory=dict, description="springs of facet groups by name"
     )
+    amplitude: dict[str, Any] = Field(default_factory=dict)
+    path: dict[str, Any] = Field(default_factory=dict)
     step: list[StepSection] = Field(min_length=1, description="load steps, one after the other")
     output: Output = Output()
     solver: Solver = Solver()
@@ -276,6 +281,8 @@ class Registries:
     materials: tuple[Entry, ...]
     shapes: tuple[Entry, ...] = ()
     output_quantities: tuple[Entry, ...] = ()
+    amplitudes: tuple[Entry, ...] = ()
+    paths: tuple[Entry, ...] = ()
     strategies: tuple[Entry, ...] = ()
 
     @classmethod
@@ -291,6 +298,8 @@ class Registries:
             materials=materials,
             shapes=shapes,
             output_quantities=written,
+            amplitudes=(*amplitudes(), PYTHON),
+            paths=paths(),
             strategies=strategies(),
         )
 
@@ -356,6 +365,14 @@ def case_type(known: Registries) -> type[Case]:
         contact=(
             list[contact],  # type: ignore[valid-type]
             Field(default_factory=list, description="pairs in contact"),
+        ),
+        amplitude=(
+            dict[str, Annotated[Any, amplitude_table(known.amplitudes)]],
+            Field(default_factory=dict, description="amplitudes by name, for values of steps"),
+        ),
+        path=(
+            dict[str, Annotated[Any, path_table(known.paths)]],
+            Field(default_factory=dict, description="paths by name, for what is led along them"),
         ),
         output=(_output(known.arrays), Output()),
         solver=(_solver(known.strategies), Solver()),

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from anisocontact.base.errors import InputError
+from anisocontact.case.amplitudes import FunctionTable
 
 if TYPE_CHECKING:
     from anisocontact.case.read import CaseFile
@@ -24,10 +25,13 @@ def named(file: CaseFile) -> Iterator[tuple[str, str]]:
     for i, contact in enumerate(file.case.contact):
         if contact.python is not None:
             yield f"contact[{i}].python.file", contact.python.file
+    for name, amplitude in file.case.amplitude.items():
+        if isinstance(amplitude, FunctionTable):
+            yield f"amplitude.{name}.file", amplitude.file
 
 
 def fingerprints(file: CaseFile) -> dict[str, str]:
-    """What the files that a case names contain: meshes, and laws in Python.
+    """What the files that a case names contain: meshes, laws and amplitudes in Python.
 
     Args:
         file: The case.

@@ -118,16 +118,24 @@ class OneOf:
         what: Name of the classes, such as "Surface".
         *keys: The keys that choose.
         base: Class with further keys.
+        bases: Other ones, of the names that are chosen.
     """
 
-    def __init__(self, what: str, *keys: Key, base: type[Registered] = Registered) -> None:
+    def __init__(
+        self,
+        what: str,
+        *keys: Key,
+        base: type[Registered] = Registered,
+        bases: Mapping[str, type[Registered]] | None = None,
+    ) -> None:
         self.keys = keys
         self.models: dict[tuple[str, ...], type[Registered]] = {}
         for entries in itertools.product(*(key.entries for key in keys)):
             chosen = dict(zip(keys, entries, strict=True))
             names = tuple(entry.name for entry in chosen.values())
             title = what + "".join(n.title().replace("-", "") for n in names)
-            self.models[names] = table(title, chosen, base)
+            of_name = (bases or {}).get(names[0], base)
+            self.models[names] = table(title, chosen, of_name)
 
     def validate(self, data: object) -> Registered:
         """The table as an object of the class its keys choose."""

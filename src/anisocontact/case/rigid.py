@@ -7,6 +7,7 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 from pydantic_core import ErrorDetails
 
+from anisocontact.case.amplitudes import PATH, Scheduled, led
 from anisocontact.case.quantity import FREE, line, number
 from anisocontact.case.section import Section
 
@@ -50,7 +51,7 @@ class Rigid(Section):
 
 
 def _turn(axis: str) -> Any:
-    return Annotated[float | str | None, number("scalar", "angle", f"turn about {axis}", word=FREE)]
+    return Annotated[float | Scheduled | str | None, led("angle", f"turn about {axis}", word=FREE)]
 
 
 class Motion(Section):
@@ -59,12 +60,13 @@ class Motion(Section):
     Turns are about axes of space through its reference point; `rotation` has others.
     """
 
-    x: Annotated[float | str | None, number("scalar", "length", "along x", word=FREE)] = None
-    y: Annotated[float | str | None, number("scalar", "length", "along y", word=FREE)] = None
-    z: Annotated[float | str | None, number("scalar", "length", "along z", word=FREE)] = None
+    x: Annotated[float | Scheduled | str | None, led("length", "along x", word=FREE)] = None
+    y: Annotated[float | Scheduled | str | None, led("length", "along y", word=FREE)] = None
+    z: Annotated[float | Scheduled | str | None, led("length", "along z", word=FREE)] = None
     rx_deg: _turn("x") = None  # type: ignore[valid-type]
     ry_deg: _turn("y") = None  # type: ignore[valid-type]
     rz_deg: _turn("z") = None  # type: ignore[valid-type]
+    path: str | None = PATH
 
     @classmethod
     def _text(cls, e: ErrorDetails) -> str:
@@ -74,17 +76,18 @@ class Motion(Section):
 
     @model_validator(mode="after")
     def _some(self) -> Self:
-        if not self.components():
-            raise line("nothing given, at least one of x, y, z, rx_deg, ry_deg, rz_deg needed")
+        if not self.components() and self.path is None:
+            keys = "x, y, z, rx_deg, ry_deg, rz_deg, path"
+            raise line(f"nothing given, at least one of {keys} needed")
         return self
 
-    def components(self) -> dict[str, float | None]:
+    def components(self) -> dict[str, float | Scheduled | None]:
         """Values by component, see `given`."""
         return {key.removesuffix("_deg"): value for key, value in self.given().items()}
 
-    def given(self) -> dict[str, float | None]:
+    def given(self) -> dict[str, float | Scheduled | None]:
         """Values by key: None where free, turns in degrees."""
-        values = ((key, value) for key, value in self if value is not None)
+        values = ((key, value) for key, value in self if value is not None and key != "path")
         return {key: None if value == FREE else value for key, value in values}
 
 
@@ -94,19 +97,19 @@ class Load(Section):
     Moments are about the reference point and along axes of space; they do not turn with the body.
     """
 
-    x: Annotated[float | None, number("scalar", "force", "force along x")] = None
-    y: Annotated[float | None, number("scalar", "force", "force along y")] = None
-    z: Annotated[float | None, number("scalar", "force", "force along z")] = None
-    rx: Annotated[float | None, number("scalar", "force length", "moment about x")] = None
-    ry: Annotated[float | None, number("scalar", "force length", "moment about y")] = None
-    rz: Annotated[float | None, number("scalar", "force length", "moment about z")] = None
+    x: Annotated[float | Scheduled | None, led("force", "force along x")] = None
+    y: Annotated[float | Scheduled | None, led("force", "force along y")] = None
+    z: Annotated[float | Scheduled | None, led("force", "force along z")] = None
+    rx: Annotated[float | Scheduled | None, led("force length", "moment about x")] = None
+    ry: Annotated[float | Scheduled | None, led("force length", "moment about y")] = None
+    rz: Annotated[float | Scheduled | None, led("force length", "moment about z")] = None
 
     @model_validator(mode="after")
     def _some(self) -> Self:
-        if not self.components():
+        if not self.given():
             raise line("nothing given, at least one of x, y, z, rx, ry, rz needed")
         return self
 
-    def components(self) -> dict[str, float]:
-        """What is given."""
+    def given(self) -> dict[str, float | Scheduled]:
+        """Values by component."""
         return {name: value for name, value in self if value is not None}

@@ -6,6 +6,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from anisocontact.case import load
+from anisocontact.case.amplitudes import FunctionTable
 from anisocontact.cli.output import say
 
 if TYPE_CHECKING:
@@ -26,6 +27,9 @@ def command(arguments: argparse.Namespace) -> int:
         for section in file.case.contact:
             if section.python is not None:
                 say(f"not run   {section.python.file}: its law is not checked")
+        for table in file.case.amplitude.values():
+            if isinstance(table, FunctionTable):
+                say(f"not run   {table.file}: its amplitude is not checked")
     return 0
 
 

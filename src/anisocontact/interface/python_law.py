@@ -8,10 +8,8 @@ plane. The core does the rest: projection, pressure, transport of the history, t
 from __future__ import annotations
 
 import math
-import traceback
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
@@ -20,6 +18,7 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.anisotropy import DirectionField
 from anisocontact.base.errors import InputError
+from anisocontact.base.python_file import where_failed
 from anisocontact.interface.series import History
 from anisocontact.interface.states import STATE, State, as_state, raw_state
 from anisocontact.laws import SIDES, Adhesion, Carried, Friction, NormalLaw
@@ -291,17 +290,6 @@ def evaluate(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> 
             text = f"the law returned {values[bad[0]].tolist()} at {len(bad)} of {n} points, "
             raise InputError(text + "finite numbers needed", field=name)
     return result
-
-
-def where_failed(error: BaseException) -> str:
-    """An error of somebody's code in one line: file and line, and what it says."""
-    at: tuple[str | None, int | None] = (None, None)
-    if isinstance(error, SyntaxError):
-        at = (error.filename, error.lineno)
-    elif frames := traceback.extract_tb(error.__traceback__)[1:]:
-        at = (frames[-1].filename, frames[-1].lineno)
-    said = " ".join(f"{type(error).__name__}: {getattr(error, 'msg', None) or error}".split())
-    return said if at[0] is None else f"{Path(at[0]).name}, line {at[1]}: {said}"
 
 
 def state_type(count: int) -> np.dtype[np.void]:

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base import registry
+from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
 
@@ -132,8 +133,8 @@ class RigidBody:
         """
         values = self.trial.values
         for name, value in turns_in_radian(components, "").items():
-            if value is None:
-                raise InputError("None given, needs a finite number", name)
+            if value is None or isinstance(value, Course):
+                raise InputError(f"{value!r} given, needs a finite number", name)
             values[component_number(name, name)] = value
         self.place(values)
 
@@ -187,7 +188,9 @@ class RigidBody:
         return np.asarray(vectors @ self.trial.rotation.T)
 
 
-def turns_in_radian(components: Mapping[str, object], field: str) -> dict[str, float | None]:
+def turns_in_radian(
+    components: Mapping[str, object], field: str
+) -> dict[str, float | Course | None]:
     """Components of a motion with turns in radian, of which `rx_deg` and the like are in degrees.
 
     Args:
@@ -205,7 +208,7 @@ def turns_in_radian(components: Mapping[str, object], field: str) -> dict[str, f
         >>> turns_in_radian({"x": 1.0, "rz_deg": 180.0}, "motion.die")
         {'x': 1.0, 'rz': 3.141592653589793}
     """
-    found: dict[str, float | None] = {}
+    found: dict[str, float | Course | None] = {}
     for name, given in components.items():
         plain = name.removesuffix("_deg")
         in_degrees = plain != name and plain in COMPONENTS[3:]
@@ -216,11 +219,19 @@ def turns_in_radian(components: Mapping[str, object], field: str) -> dict[str, f
         if given is None:
             found[component] = None
             continue
-        if not isinstance(given, int | float) or not math.isfinite(given):
+        value = given.value if isinstance(given, Course) else given
+        if not isinstance(value, int | float) or not math.isfinite(value):
             raise InputError(f"{given!r} given, needs a finite number", where)
         if name in COMPONENTS[3:]:
-            registry.check_radian(given, where)
-        found[component] = math.radians(given) if in_degrees else given
+            registry.check_radian(value, where)
+        factor = math.radians(1.0) if in_degrees else 1.0
+        found[component] = (
+            given.scaled(factor)
+            if isinstance(given, Course)
+            else math.radians(value)
+            if in_degrees
+            else value
+        )
     return found
 
 

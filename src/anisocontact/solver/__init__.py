@@ -1,6 +1,14 @@
 """Newton's method, load steps and what a run reports."""
 
+from anisocontact.base.amplitudes import (
+    Amplitude,
+    amplitudes,
+    make_amplitude,
+    register_amplitude,
+)
+from anisocontact.base.course import Course, courses_of
 from anisocontact.base.limits import Limits
+from anisocontact.base.paths import Path, make_path, paths, register_path
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
 from anisocontact.solver.stepping.script import ContactProblem
 from anisocontact.solver.stepping.solver import Solver
@@ -15,12 +23,15 @@ from anisocontact.solver.terms.turn import Turn
 
 __all__ = [
     "Accepted",
+    "Amplitude",
     "ContactProblem",
+    "Course",
     "Culprit",
     "Cut",
     "ElasticSupport",
     "Limits",
     "Newton",
+    "Path",
     "Problem",
     "Progress",
     "Solver",
@@ -30,5 +41,12 @@ __all__ = [
     "Strategy",
     "Task",
     "Turn",
+    "amplitudes",
+    "courses_of",
+    "make_amplitude",
+    "make_path",
+    "paths",
+    "register_amplitude",
+    "register_path",
     "register_strategy",
 ]

@@ -103,8 +103,9 @@ class Solver:
         self.problem = problem
         self.steps = list(steps)
         self.limits = limits or Limits()
-        problem.check(self.steps)
-        self.cautions = prescribed_turns(problem.model, problem.materials, self.steps)
+        self._doubtful = problem.check(self.steps)
+        turns = prescribed_turns(problem.model, problem.materials, self.steps)
+        self.cautions = [*self._doubtful, *turns]
         self.place = self._beginning(0, 0.0)
         self._task = Task(problem, self.steps, options_prefix, dict(options or {}))
         self.choice = choose(strategy, self._task)
@@ -141,6 +142,8 @@ class Solver:
         self._on_iteration, self._on_cut = on_iteration, on_cut
         note = on_note or (lambda _: None)
         warn = on_warning or (lambda text: note(f"warning: {text}"))
+        for text in self._doubtful:
+            warn(text)
         self._energy.begin()
         strategy = self.choice.strategy
         if not (strategy.reduces and self._kept):

@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.course import Course
 from anisocontact.contact import Pass
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.terms.step import AXES, Step
@@ -115,8 +116,12 @@ def _path(steps: Sequence[Step], body: str) -> Floats:
         own = np.zeros_like(path)
         for k, step in enumerate(steps):
             own[k + 1] = own[k]
-            for axis, value in step.displacement.get(group, {}).items():
-                own[k + 1, AXES.index(axis)] = own[k, AXES.index(axis)] if value is None else value
+            for axis, goal in step.displacement.get(group, {}).items():
+                i = AXES.index(axis)
+                if isinstance(goal, Course):
+                    own[k + 1, i] = goal.at(1.0, step.duration, own[k, i])
+                elif goal is not None:
+                    own[k + 1, i] = goal
         farther = np.abs(own).max(axis=0) > np.abs(path).max(axis=0)
         path[:, farther] = own[:, farther]
     return path

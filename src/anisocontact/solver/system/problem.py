@@ -29,7 +29,7 @@ from anisocontact.solver.system.tangent import Tangent
 from anisocontact.solver.system.whole import Whole
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.persistent import Persistent, under
-from anisocontact.solver.terms.step import Step
+from anisocontact.solver.terms.step import Step, check_courses
 
 Floats = npt.NDArray[np.float64]
 
@@ -172,17 +172,22 @@ class Problem(AssembledSystem):
         begin_step(self._parts, step, start, self._accepted.reaction, again)
         self._tangent.begin(step)
 
-    def check(self, steps: Sequence[Step]) -> None:
+    def check(self, steps: Sequence[Step]) -> list[str]:
         """Go through all steps without solving.
+
+        Returns:
+            What the steps ask for that is doubtful, a line each.
 
         Raises:
             InputError: A step asks for what is not there, or cannot be.
         """
+        doubtful = check_courses(steps)
         check_steps(self._parts, steps)
         for step in steps:
             self.attached.check(step)
         self.rigid.check(steps)
         self.check_held(steps)
+        return doubtful
 
     def check_held(self, steps: Sequence[Step]) -> bool:
         """Find out whether supports or contacts can hold every body in every step.

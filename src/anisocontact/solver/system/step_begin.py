@@ -65,8 +65,9 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
     for step, supports, loads in _rehearsed(parts, steps):
         # Where a turn ends is not known before it has been.
         turned = turned or bool(step.rotation)
-        if not turned:
-            planes.check(supports.unknowns, supports.end, step.name)
+        for share in () if turned else supports.places:
+            supports.set_load_factor(float(share))
+            planes.check(supports.unknowns, supports.values, step.name)
         held = [*supports.held(), *planes.held()]
         check_swallowed(parts.layout, step, loads.given(step), held)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import override
 
@@ -15,6 +14,7 @@ from anisocontact.base.registry import Parameter
 from anisocontact.contact import facet_quadrature
 from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
+from anisocontact.solver.terms.led import Led
 from anisocontact.solver.terms.loads import mean_shares
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.pressure import outward
@@ -215,20 +215,19 @@ class _SpringTerm(Attached):
             raise InputError(text, field)
         self._weights = weights[self.nodes]
         self._stiffness = np.asarray(spec.stiffness, dtype=float)
-        self._start, self._end, self._anchor = np.zeros((3, 3))
+        self._led, self._anchor = Led(3), np.zeros(3)
         #: Anchor and force in the accepted state, (2, 3), length and force.
         self._accepted: Floats = np.zeros((2, 3))
 
     @override
     def begin(self, step: Step, released: Floats) -> None:
-        self._start = self._end.copy()
-        values: Mapping[str, float] = step.anchor.get(self.name, {})
-        for axis, value in values.items():
-            self._end[AXES.index(axis)] = value
+        self._led.begin(step.duration)
+        for axis, value in step.anchor.get(self.name, {}).items():
+            self._led.lead(AXES.index(axis), value)
 
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
-        self._anchor = (1.0 - factor) * self._start + factor * self._end
+        self._anchor = self._led.at(factor)
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:

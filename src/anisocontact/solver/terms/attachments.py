@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
@@ -56,7 +57,8 @@ class Attachments(TermGroup):
             stiffness = dict(zip(AXES, self._anchored[name], strict=True))
             for axis, value in values.items():
                 if value and not stiffness[axis]:
-                    text = f"{value:g} given, the spring has no stiffness along {axis}"
+                    given = "a course" if isinstance(value, Course) else f"{value:g}"
+                    text = f"{given} given, the spring has no stiffness along {axis}"
                     raise InputError(text, f"{place}.{name}.{axis}")
 
     @property

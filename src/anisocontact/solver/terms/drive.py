@@ -8,10 +8,14 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.rigid import COMPONENTS, RigidBody
 from anisocontact.rigid.body import component_number
+from anisocontact.solver.terms.led import Led
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.turn import Turn
 
 Floats = npt.NDArray[np.float64]
+
+#: Places along a step at which the pace of a rotation is looked at.
+_PLACES = 64
 
 
 class Drive:
@@ -27,9 +31,8 @@ class Drive:
     def __init__(self, body: RigidBody) -> None:
         self._body = body
         self.held = np.ones(6, dtype=bool)
-        self._start, self._end = np.zeros(6), np.zeros(6)
         self._turn: Turn | None = None
-        self._load_start, self._load_end = np.zeros(6), np.zeros(6)
+        self._motion, self._load = Led(6), Led(6)
 
     def begin(self, step: Step, values: Floats, reaction: Floats) -> None:
         """Take over a step; what it does not name stays where it is.
@@ -45,29 +48,36 @@ class Drive:
                 though it is held.
         """
         was_held = self.held.copy()
-        self._start, self._end = values.copy(), values.copy()
+        self._motion.begin(step.duration, values)
         self._turn = step.rotation.get(self._body.name)
         if self._turn is not None:
             self.held[:] = True
         self._take_motion(step)
-        self._load_start = self._load_end.copy()
-        self._load_end[self.held] = 0.0
+        loads, freed = self._load.end, was_held & ~self.held
+        start = np.where(self.held, 0.0, np.where(freed, reaction, loads))
+        self._load.begin(step.duration, start)
+        for i in np.flatnonzero(freed):
+            self._load.lead(int(i), float(loads[i]))
         self._take_load(step)
-        freed = was_held & ~self.held
-        self._load_start = np.where(self.held, 0.0, np.where(freed, reaction, self._load_start))
 
     def values(self, fraction: float) -> Floats:
         """Translation and turn at a fraction of the step where they are prescribed, (6,)."""
         if self._turn is not None:
-            place = self._body.reference + self._start[:3]
+            place = self._body.reference + self._motion.start[:3]
             moved = self._turn.path(place[None], fraction)[0] - place
-            change = np.concatenate([moved, fraction * self._turn.vector])
-            return np.asarray(self._start + change)
-        return np.where(self.held, (1.0 - fraction) * self._start + fraction * self._end, 0.0)
+            change = np.concatenate([moved, self._turn.share(fraction) * self._turn.vector])
+            return np.asarray(self._motion.start + change)
+        return np.where(self.held, self._motion.at(fraction), 0.0)
+
+    def largest_turn(self) -> float:
+        """Rotation along the step where it is prescribed, at its fastest pace, radian."""
+        places = _PLACES if self._motion.follows else 1
+        turns = np.array([self.values(k / places)[3:] for k in range(places + 1)])
+        return places * float(np.linalg.norm(np.diff(turns, axis=0), axis=1).max())
 
     def load(self, fraction: float) -> Floats:
         """Force and moment at a fraction of the step, (6,)."""
-        return (1.0 - fraction) * self._load_start + fraction * self._load_end
+        return self._load.at(fraction)
 
     def _take_motion(self, step: Step) -> None:
         name = self._body.name
@@ -77,7 +87,7 @@ class Drive:
             if given is None and not self._body.free:
                 raise InputError("the rigid body was not made free", where)
             self.held[i] = given is not None
-            self._end[i] = 0.0 if given is None else float(given)
+            self._motion.lead(i, 0.0 if given is None else given)
 
     def _take_load(self, step: Step) -> None:
         name = self._body.name
@@ -88,4 +98,4 @@ class Drive:
                 raise InputError(
                     f"{COMPONENTS[i]} is held; a load acts on a component that motion frees", where
                 )
-            self._load_end[i] = float(value)
+            self._load.lead(i, value)

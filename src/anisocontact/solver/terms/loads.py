@@ -12,8 +12,9 @@ from anisocontact.base.fenicsx import body_shares
 from anisocontact.bulk import Material
 from anisocontact.contact import facet_quadrature
 from anisocontact.mesh import Model
+from anisocontact.solver.terms.led import Led
 from anisocontact.solver.terms.pressure import Given, Pressures
-from anisocontact.solver.terms.step import AXES, Step
+from anisocontact.solver.terms.step import AXES, Goal, Step
 from anisocontact.solver.terms.term import Term, TermGroup
 
 Floats = npt.NDArray[np.float64]
@@ -29,8 +30,7 @@ class DeadLoads(Term):
     def __init__(self, model: Model) -> None:
         self._model = model
         self._shares: dict[tuple[str, str], Floats] = {}
-        self._start: dict[tuple[str, str], Floats] = {}
-        self._end: dict[tuple[str, str], Floats] = {}
+        self._values: dict[tuple[str, str], Led] = {}
         index_map = model.space.dofmap.index_map
         self._released: Floats = np.zeros(3 * (index_map.size_local + index_map.num_ghosts))
         self._now = self._released.reshape(-1, 3)
@@ -38,24 +38,25 @@ class DeadLoads(Term):
     @override
     def begin(self, step: Step, released: Floats) -> None:
         self._released = released
-        self._start = {key: value.copy() for key, value in self._end.items()}
+        for led in self._values.values():
+            led.begin(step.duration)
         for kind, share in _SHARES.items():
-            loads: Mapping[str, Mapping[str, float]] = getattr(step, kind)
+            loads: Mapping[str, Mapping[str, Goal]] = getattr(step, kind)
             for name, values in loads.items():
                 if (kind, name) not in self._shares:
                     found = share(self._model, name, f"step {step.name!r}.{kind}")
                     self._shares[kind, name] = found
-                end = self._end.setdefault((kind, name), np.zeros(3))
+                    self._values[kind, name] = Led(3)
+                    self._values[kind, name].begin(step.duration)
                 for axis, value in values.items():
-                    end[AXES.index(axis)] = value
+                    self._values[kind, name].lead(AXES.index(axis), value)
 
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
         force = (1.0 - factor) * self._released
         nodal = force.reshape(-1, 3)
-        for key, end in self._end.items():
-            start = self._start.get(key, np.zeros(3))
-            nodal += self._shares[key][:, None] * ((1.0 - factor) * start + factor * end)
+        for key, led in self._values.items():
+            nodal += self._shares[key][:, None] * led.at(factor)
         self._now = nodal
 
     @override
@@ -65,7 +66,7 @@ class DeadLoads(Term):
     def given(self, step: Step) -> Iterator[Given]:
         """What a step that has begun gives other than zero, by components."""
         for kind in _SHARES:
-            loads: Mapping[str, Mapping[str, float]] = getattr(step, kind)
+            loads: Mapping[str, Mapping[str, Goal]] = getattr(step, kind)
             for name, values in loads.items():
                 share = self._shares[kind, name]
                 for axis, value in values.items():

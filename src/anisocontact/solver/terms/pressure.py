@@ -15,6 +15,7 @@ from anisocontact.contact import FacetQuadrature, facet_quadrature
 from anisocontact.contact.quadrature import Surfaced
 from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
+from anisocontact.solver.terms.led import Led
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
 
@@ -37,13 +38,13 @@ class Pressures(Term):
         self._model = model
         self._materials = materials
         self._surfaces: dict[str, _Surface] = {}
-        self._start: dict[str, float] = {}
-        self._end: dict[str, float] = {}
+        self._values: dict[str, Led] = {}
         self._now: dict[str, float] = {}
 
     @override
     def begin(self, step: Step, released: Floats) -> None:
-        self._start = dict(self._end)
+        for led in self._values.values():
+            led.begin(step.duration)
         for group, value in step.pressure.items():
             field = f"step {step.name!r}.pressure"
             body = self._model.body_of(group, field)
@@ -52,7 +53,9 @@ class Pressures(Term):
                 self._surfaces[group] = _Surface(
                     self._model, group, small_strain(self._materials[body])
                 )
-            self._end[group] = float(value)
+                self._values[group] = Led(1)
+                self._values[group].begin(step.duration)
+            self._values[group].lead(0, value)
 
     def given(self, step: Step) -> Iterator[Given]:
         """Pressures of a step that has begun, other than zero, as they act in the reference."""
@@ -65,10 +68,7 @@ class Pressures(Term):
 
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
-        self._now = {
-            group: (1.0 - factor) * self._start.get(group, 0.0) + factor * end
-            for group, end in self._end.items()
-        }
+        self._now = {group: float(led.at(factor)[0]) for group, led in self._values.items()}
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:

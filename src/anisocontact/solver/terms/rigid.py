@@ -83,7 +83,7 @@ class RigidBodies(Term):
         for step in steps:
             self._known(step)
             for drive in drives.values():
-                drive.begin(step, np.zeros(6), np.zeros(6))
+                drive.begin(step, drive.values(1.0), np.zeros(6))
 
     @override
     def begin(self, step: Step, released: Floats) -> None:
@@ -94,9 +94,8 @@ class RigidBodies(Term):
 
     def prescribed_turn(self, step: Step) -> float:
         """Largest rotation along the step that is prescribed of a body or facet group, radian."""
-        ends = [d.values(1.0) - d.values(0.0) for d in self._drives.values()]
-        turns = [float(np.linalg.norm(end[3:])) for end in ends]
-        return max([*turns, *(abs(turn.angle) for turn in step.rotation.values())], default=0.0)
+        turns = [drive.largest_turn() for drive in self._drives.values()]
+        return max([*turns, *(turn.fastest for turn in step.rotation.values())], default=0.0)
 
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
+from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.rigid import turns_in_radian
 from anisocontact.solver.terms.turn import Turn
@@ -14,13 +15,20 @@ AXES = ("x", "y", "z")
 # Fields of a step that are forces with a direction.
 _FORCES = ("traction", "force", "body_force")
 
+#: What a value is led to along a step: a number at its end, or all the way.
+Goal = float | Course
+
+
+#: Field of a step, name of what is led, component.
+Place = tuple[str, str, str]
+
 
 @dataclass(frozen=True)
 class Step:
     """A stretch of loading; every value goes linearly from where it is to the one given.
 
     What is not named keeps its value. A displacement of None releases the support: the force it
-    carried goes to zero along the step.
+    carried goes to zero along the step. A `Course` in the place of a number is followed instead.
 
     Attributes:
         name: Name in progress and output.
@@ -53,16 +61,16 @@ class Step:
 
     name: str
     increments: int
-    displacement: Mapping[str, Mapping[str, float | None]] = field(default_factory=dict)
-    traction: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    displacement: Mapping[str, Mapping[str, Goal | None]] = field(default_factory=dict)
+    traction: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
     duration: float = 1.0
-    motion: Mapping[str, Mapping[str, float | None]] = field(default_factory=dict)
-    load: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    force: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
-    pressure: Mapping[str, float] = field(default_factory=dict)
-    body_force: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    motion: Mapping[str, Mapping[str, Goal | None]] = field(default_factory=dict)
+    load: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
+    force: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
+    pressure: Mapping[str, Goal] = field(default_factory=dict)
+    body_force: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
     rotation: Mapping[str, Turn] = field(default_factory=dict)
-    anchor: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    anchor: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if isinstance(self.increments, bool) or not isinstance(self.increments, int):
@@ -90,6 +98,22 @@ class Step:
             if group in self.motion:
                 text = "given with a motion of the same rigid body, one of the two is allowed"
                 raise self._error(f"rotation.{group}", text)
+        rotation = {
+            name: replace(turn, duration=self.duration) for name, turn in self.rotation.items()
+        }
+        object.__setattr__(self, "rotation", rotation)
+
+    def goals(self) -> Iterator[tuple[Place, Goal | None]]:
+        """All values that are given, but for rotations, with where they stand."""
+        for kind in ("displacement", "motion", "load", "anchor", *_FORCES):
+            named: Mapping[str, Mapping[str, Goal | None]] = getattr(self, kind)
+            for name, values in named.items():
+                yield from (((kind, name, component), goal) for component, goal in values.items())
+        yield from ((("pressure", group, ""), goal) for group, goal in self.pressure.items())
+
+    def courses(self) -> dict[Place, Course]:
+        """Those of the values that follow an amplitude."""
+        return {place: goal for place, goal in self.goals() if isinstance(goal, Course)}
 
     def led(self) -> list[str]:
         """Names of the facet groups with prescribed displacements, each once."""
@@ -117,17 +141,62 @@ class Step:
             for axis, value in values.items():
                 self._check(kind, group, axis, value)
 
-    def _check(self, kind: str, group: str, axis: str, value: float | None) -> None:
+    def _check(self, kind: str, group: str, axis: str, value: Goal | None) -> None:
         where = f"{kind}.{group}.{axis}"
         if axis not in AXES:
             raise self._error(where, f"no axis {axis!r}, allowed: {', '.join(AXES)}")
         self._check_value(kind, where, value)
 
-    def _check_value(self, kind: str, where: str, value: float | None) -> None:
-        if value is None and kind == "displacement":
+    def _check_value(self, kind: str, where: str, value: Goal | None) -> None:
+        if (value is None and kind == "displacement") or isinstance(value, Course):
             return
         if not isinstance(value, int | float) or not math.isfinite(value):
             raise self._error(where, f"{value!r} given, needs a finite number")
 
     def _error(self, where: str, message: str) -> InputError:
         return InputError(message, f"step {self.name!r}.{where}")
+
+
+def check_courses(steps: Sequence[Step]) -> list[str]:
+    """Refuse courses that do not begin where the step before ends.
+
+    Args:
+        steps: All steps of a run.
+
+    Returns:
+        Warnings: increments that are too few to follow an amplitude.
+
+    Raises:
+        InputError: A jump, or an amplitude without a number.
+    """
+    known: dict[Place, float | None] = {}
+    said = []
+    for step in steps:
+        turned = set(step.rotation)
+        known |= {place: None for place in known if place[1] in turned}
+        for place, goal in step.goals():
+            name = ".".join(part for part in place if part)
+            field = f"step {step.name!r}.{name}"
+            try:
+                known[place] = _end(goal, known.get(place, 0.0), step.duration)
+                if isinstance(goal, Course) and goal.coarse(step.duration, step.increments):
+                    said.append(
+                        f"{field}: {step.increments} increments are too few to follow its amplitude"
+                    )
+            except InputError as error:
+                raise InputError(error.said, field) from None
+            if place[0] == "motion":  # a load on what is freed begins with what held it
+                known["load", *place[1:]] = None if goal is None else 0.0
+    return said
+
+
+def _end(goal: Goal | None, before: float | None, duration: float) -> float | None:
+    """Value at the end of a step; None where it is not known beforehand."""
+    if not isinstance(goal, Course):
+        return goal
+    if before is not None and (jump := goal.jump(before)):
+        raise InputError(
+            f"the amplitude begins at {before + jump:g} where {before:g} is: lead it there in a "
+            "step before, or let it count from there, relative = true"
+        )
+    return None if before is None and goal.relative else goal.at(1.0, duration, before or 0.0)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, Vec, fem
 from anisocontact.mesh import Model
-from anisocontact.solver.terms.step import AXES, Step
+from anisocontact.solver.terms.step import AXES, Goal, Step
 from anisocontact.solver.terms.turn import Turn
 
 Floats = npt.NDArray[np.float64]
@@ -19,8 +20,11 @@ Support = tuple[str, int]  # facet group, axis
 #: Displacements that count as the same, over the largest coordinate.
 SAME = 1e-13
 
-# What an unknown is led to: a value, through a turn, or nowhere (after a turn).
-Goal = float | Turn | None
+# What an unknown is led to: a value, along a course or a turn, or nowhere (after these).
+Aim = Goal | Turn | None
+
+#: Places along a step at which what follows a course is compared with what else is prescribed.
+_PLACES = 16
 
 
 class Supports:
@@ -40,9 +44,11 @@ class Supports:
         # Two values for a node are one if they differ by round-off of a rotation.
         self._same = SAME * float(model.mesh.comm.allreduce(x, MPI.MAX))
         self._nodes: dict[str, Ints] = {}
-        self._goals: dict[Support, Goal] = {}
+        self._goals: dict[Support, Aim] = {}
         self._owner: dict[Support, Ints] = {}
         self._turned: list[tuple[Turn, Ints, Floats]] = []
+        self._courses: list[tuple[Course, Ints]] = []
+        self._duration = 1.0
         self.unknowns: Ints = np.zeros(0, dtype=np.int64)
         self.start: Floats = np.zeros(0)
         self.end: Floats = np.zeros(0)
@@ -61,25 +67,39 @@ class Supports:
                 values.
         """
         self._take_over(step)
-        taken = np.full(len(u), np.nan)
+        taken = np.full((len(self.places), len(u)), np.nan)
         owner: dict[Support, Ints] = {}
         for (group, axis), goal in self._goals.items():
             unknowns = 3 * self._owned_nodes(group) + axis
-            value = self._end(goal, unknowns, u)
-            clash = np.abs(taken[unknowns] - value) > self._same
+            value = np.array([self._at(goal, unknowns, u, share) for share in self.places])
+            clash = np.abs(taken[:, unknowns] - value) > self._same
             if clash.any():
-                raise self._clash(step, group, axis, owner, unknowns[clash], taken, value[clash])
-            owner[group, axis] = unknowns[np.isnan(taken[unknowns])]
-            taken[unknowns] = value
+                place, first = np.argwhere(clash)[0]
+                shared = unknowns[clash.any(axis=0)]
+                values = taken[place, unknowns[first]], value[place, first]
+                raise self._clash(step, group, axis, owner, shared, values)
+            owner[group, axis] = unknowns[np.isnan(taken[-1, unknowns])]
+            taken[:, unknowns] = value
         self._owner = owner
-        self.unknowns = np.flatnonzero(~np.isnan(taken))
+        self.unknowns = np.flatnonzero(~np.isnan(taken[-1]))
         self.start = self.values = u[self.unknowns]
-        self.end = taken[self.unknowns]
+        self.end = taken[-1, self.unknowns]
         self._turned = [
             (goal, held, self._positions(held // 3, u))
             for key, held in owner.items()
             if isinstance(goal := self._goals[key], Turn)
         ]
+        self._courses = [
+            (goal, np.searchsorted(self.unknowns, held))
+            for key, held in owner.items()
+            if isinstance(goal := self._goals[key], Course)
+        ]
+
+    @property
+    def places(self) -> Floats:
+        """Shares of the step at which it is to be looked at: its end, or places all along it."""
+        count = _PLACES if any(isinstance(g, Course) for g in self._goals.values()) else 1
+        return np.arange(1, count + 1) / count
 
     def held(self) -> list[tuple[Ints, Floats]]:
         """Nodes that are held along each axis, and the axis."""
@@ -98,6 +118,8 @@ class Supports:
             place = np.searchsorted(self.unknowns, held)
             moved = turn.path(start, factor) - start
             values[place] = self.start[place] + moved[np.arange(len(held)), held % 3]
+        for course, place in self._courses:
+            values[place] = course.at(factor, self._duration, self.start[place])
         self.values = values
 
     def violation(self, x: Vec) -> Floats:
@@ -105,30 +127,32 @@ class Supports:
         return np.asarray(x.array_r[self.unknowns] - self.values)
 
     def _take_over(self, step: Step) -> None:
+        self._duration = step.duration
         for key, goal in self._goals.items():
-            if isinstance(goal, Turn):
+            if isinstance(goal, Turn | Course):
                 self._goals[key] = None
         for group, values in step.displacement.items():
             self._model.facets(group, f"step {step.name!r}.displacement")
             for name, given in values.items():
                 self._goals.pop((group, AXES.index(name)), None)
                 if given is not None:
-                    self._goals[group, AXES.index(name)] = float(given)
+                    self._goals[group, AXES.index(name)] = given
         for group, turn in step.turned_groups().items():
             self._model.facets(group, f"step {step.name!r}.rotation")
             for axis in range(3):
                 self._goals.pop((group, axis), None)
                 self._goals[group, axis] = turn
 
-    def _end(self, goal: Goal, unknowns: Ints, u: Floats) -> Floats:
-        """Values of unknowns of one axis at the end of the step."""
-        if goal is None:
-            return np.asarray(u[unknowns])
+    def _at(self, goal: Aim, unknowns: Ints, u: Floats, share: float) -> Floats:
+        """Values of unknowns of one axis at a share of the step."""
         if isinstance(goal, Turn):
             start = self._positions(unknowns // 3, u)
-            moved = goal.path(start, 1.0) - start
+            moved = goal.path(start, share) - start
             return np.asarray(u[unknowns] + moved[np.arange(len(unknowns)), unknowns % 3])
-        return np.full(len(unknowns), goal)
+        if isinstance(goal, Course):
+            return np.asarray(goal.at(share, self._duration, u[unknowns]))
+        start = u[unknowns]
+        return start if goal is None else (1.0 - share) * start + share * np.full(start.shape, goal)
 
     def _positions(self, nodes: Ints, u: Floats) -> Floats:
         reference = np.asarray(self._model.space.tabulate_dof_coordinates())
@@ -163,14 +187,13 @@ class Supports:
         axis: int,
         owner: dict[Support, Ints],
         shared: Ints,
-        taken: Floats,
-        value: Floats,
+        values: tuple[float, float],
     ) -> InputError:
         other = next(
             g for (g, a), held in owner.items() if a == axis and np.isin(shared, held).any()
         )
         return InputError(
-            f"{other!r} prescribes {taken[shared[0]]:g} and {group!r} {value[0]:g} for "
+            f"{other!r} prescribes {values[0]:g} and {group!r} {values[1]:g} for "
             f"{AXES[axis]} on {len(shared)} shared nodes",
             f"step {step.name!r}.displacement",
         )

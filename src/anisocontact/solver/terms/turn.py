@@ -8,16 +8,22 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.amplitudes import Amplitude
+from anisocontact.base.course import Course
+from anisocontact.base.errors import InputError
 from anisocontact.mesh.placement import Rotation, check_vector
 
 Floats = npt.NDArray[np.float64]
+
+#: Places along a step at which the pace of a rotation is looked at.
+_PLACES = 64
 
 
 @dataclass(frozen=True)
 class Turn(Rotation):
     """A screw motion: a rotation about an axis that moves along the step.
 
-    At the share s of the step a point that began it at x is at
+    At the share s of it a point that began it at x is at
     `p + R(s angle) (x - p) + s move`, R the rotation about the axis through p.
 
     Attributes:
@@ -26,9 +32,12 @@ class Turn(Rotation):
         point: Where the axis is at the beginning of the step, length.
         angle_deg: The angle in degrees instead; may be many turns. None once taken over.
         move: How far the axis goes along the step, length.
+        amplitude: s over the time since the beginning of the step, 0 at the time 0; the share of
+            the step if None.
+        duration: Time the step takes; a `Step` sets its own.
 
     Raises:
-        InputError: As of `Rotation`.
+        InputError: As of `Rotation`, or the amplitude does not begin at 0.
 
     Example:
         >>> roll = Turn((0, 1, 0), np.pi / 2, point=(0, 0, 1), move=(np.pi / 2, 0, 0))
@@ -37,10 +46,28 @@ class Turn(Rotation):
     """
 
     move: Sequence[float] = (0.0, 0.0, 0.0)
+    amplitude: Amplitude | None = None
+    duration: float = 1.0
 
     def __post_init__(self) -> None:
         super().__post_init__()
         check_vector("move", self.move)
+        if self.amplitude is not None and (first := Course(self.amplitude).jump(0.0)):
+            raise InputError(f"it begins at {first:g}, must be 0", "amplitude")
+
+    def share(self, fraction: float) -> float:
+        """The share of it that is done at a fraction of the step."""
+        if self.amplitude is None:
+            return fraction
+        return float(Course(self.amplitude).at(fraction, self.duration, 0.0))
+
+    @property
+    def fastest(self) -> float:
+        """Angle along the step at its fastest pace, radian."""
+        if self.amplitude is None:
+            return abs(self.angle)
+        shares = np.array([self.share(k / _PLACES) for k in range(_PLACES + 1)])
+        return float(_PLACES * np.abs(np.diff(shares)).max() * abs(self.angle))
 
     @property
     def vector(self) -> Floats:
@@ -48,14 +75,15 @@ class Turn(Rotation):
         n = np.asarray(self.axis, dtype=float)
         return np.asarray(self.angle * n / np.linalg.norm(n))
 
-    def path(self, start: Floats, share: float) -> Floats:
-        """Positions at a share of the step, (n, 3), of points that began it at `start`, (n, 3).
+    def path(self, start: Floats, fraction: float) -> Floats:
+        """Positions at a fraction of the step, (n, 3), of points that began it at `start`, (n, 3).
 
         Args:
             start: Positions at the beginning of the step, (n, 3), length.
-            share: Share of the step.
+            fraction: Fraction of the step.
 
         Returns:
             Positions, (n, 3), length.
         """
+        share = self.share(fraction)
         return self.apply(start, share) + share * np.asarray(self.move, dtype=float)

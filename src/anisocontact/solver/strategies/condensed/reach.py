@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.course import Course
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 from anisocontact.solver.system.problem import Problem
@@ -142,7 +143,10 @@ def _prescribed_range(steps: Sequence[Step], body: str) -> Floats:
     for step in steps:
         for group, values in step.displacement.items():
             if group.partition(".")[0] == body:
-                for axis, value in values.items():
+                for axis, goal in values.items():
                     i = AXES.index(axis)
-                    extent[i] = max(extent[i], abs(value or 0.0))
+                    if isinstance(goal, Course):
+                        extent[i] = max(extent[i], goal.largest(step.duration, extent[i]))
+                    else:
+                        extent[i] = max(extent[i], abs(goal or 0.0))
     return extent

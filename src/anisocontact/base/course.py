@@ -1,0 +1,124 @@
+"""What a step prescribes beside a number: a value that follows an amplitude."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.amplitudes import Amplitude
+from anisocontact.base.errors import InputError
+from anisocontact.base.paths import Path
+from anisocontact.base.python_file import where_failed
+
+__all__ = ["Course", "courses_of"]
+
+Floats = npt.NDArray[np.float64]
+
+#: Difference between where something is and where its amplitude begins that is round-off, over
+#: the largest of the numbers.
+_SAME = 1e-9
+#: Places in an increment at which an amplitude is compared with what the increments see of it.
+_PLACES = 8
+#: Places in a step at most.
+_MOST = 20000
+#: Places in a step at which its largest value is looked for.
+_WAY = 64
+#: Departure from the straight line of an increment, over the range of the step, that is said.
+_COARSE = 0.25
+
+
+@dataclass(frozen=True)
+class Course:
+    """A value times an amplitude of the time since the beginning of the step.
+
+    What is led by it is at `value A(t)`, or with `relative` at `value (A(t) - A(0))` from where it
+    is when the step begins. A support, or load, that takes over what was free begins where that
+    is, and the difference goes to zero along the step.
+
+    Attributes:
+        amplitude: A, a number at a time.
+        value: Its factor, of the unit of what is led.
+        relative: Whether it counts from where it is.
+
+    Example:
+        >>> Course(lambda t: t**2, 3.0).at(0.5, 4.0, 0.0)
+        12.0
+        >>> Course(lambda t: 1.0 + t, 3.0, relative=True).at(1.0, 1.0, 10.0)
+        13.0
+    """
+
+    amplitude: Amplitude
+    value: float = 1.0
+    relative: bool = False
+
+    def at(self, share: float, duration: float, start: Any) -> Any:
+        """The value at a share of a step.
+
+        Args:
+            share: Share of the step, 0 to 1.
+            duration: Time the step takes.
+            start: Where it was when the step began, a number or array.
+
+        Returns:
+            The value, of the shape of `start`.
+
+        Raises:
+            InputError: The amplitude has no finite number there.
+        """
+        first, now = self._number(0.0), self._number(share * duration)
+        return now + (1.0 if self.relative else 1.0 - share) * (start - first)
+
+    def jump(self, start: float) -> float:
+        """How far the amplitude begins from a value; 0 where that is round-off."""
+        first = self._number(0.0)
+        same = _SAME * max(abs(start), abs(self.value), abs(first))
+        return 0.0 if self.relative or abs(first - start) <= same else first - start
+
+    def largest(self, duration: float, start: float) -> float:
+        """Largest size of the value along a step that begins at `start`."""
+        places = np.arange(_WAY + 1) / _WAY
+        return max(abs(float(self.at(share, duration, start))) for share in places)
+
+    def scaled(self, factor: float) -> Course:
+        """The course of a multiple."""
+        return replace(self, value=factor * self.value)
+
+    def coarse(self, duration: float, increments: int) -> bool:
+        """Whether increments are too few to follow the amplitude."""
+        places = min(_PLACES * increments, _MOST)
+        times = duration * np.arange(places + 1) / places
+        values = np.array([self._number(t) for t in times])
+        ends = duration * np.arange(increments + 1) / increments
+        seen = np.interp(times, ends, np.interp(ends, times, values))
+        return bool(np.abs(values - seen).max() > _COARSE * np.ptp(values))
+
+    def _number(self, time: float) -> float:
+        try:
+            found = float(self.amplitude(time))
+        except Exception as error:
+            raise InputError(f"amplitude at the time {time:g}: {where_failed(error)}") from None
+        if not math.isfinite(found):
+            raise InputError(f"amplitude at the time {time:g} is {found}, a finite number needed")
+        return self.value * found
+
+
+def courses_of(path: Path) -> dict[str, Course]:
+    """A path as what a step takes for the components of a displacement, motion or anchor.
+
+    Args:
+        path: The path.
+
+    Returns:
+        A course for each axis that is led, from where it is.
+
+    Example:
+        >>> from anisocontact.base.paths import make_path
+        >>> circle = courses_of(make_path("circle", radius=2.0))
+        >>> round(circle["x"].at(0.5, 1.0, 7.0), 12)
+        3.0
+    """
+    return {axis: Course(way, relative=True) for axis, way in path.components().items()}

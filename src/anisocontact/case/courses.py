@@ -1,0 +1,148 @@
+"""What steps lead: numbers and courses from the values, amplitudes and paths of a case file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from anisocontact.base.amplitudes import Amplitude, make_amplitude
+from anisocontact.base.course import Course, courses_of
+from anisocontact.base.errors import InputError
+from anisocontact.base.paths import make_path
+from anisocontact.case.amplitudes import FunctionTable, Scheduled
+from anisocontact.case.law_file import module_at
+from anisocontact.case.model import Case, StepSection
+from anisocontact.case.objects import within
+from anisocontact.case.quantity import FREE
+from anisocontact.case.section import near
+
+__all__ = ["Schedule", "check_courses", "led_axes"]
+
+
+class Schedule:
+    """Amplitudes and paths of a case.
+
+    Args:
+        case: The case.
+        resolve: From a path in the case file to where that is.
+        python: Whether Python files are run; without them their amplitudes are 0.
+    """
+
+    def __init__(self, case: Case, resolve: Callable[[str], Path], python: bool = True) -> None:
+        self._of_run = {name: table.of_run for name, table in case.amplitude.items()}
+        self._amplitudes = {
+            name: _amplitude(table, f"amplitude.{name}", resolve, python)
+            for name, table in case.amplitude.items()
+        }
+        self._paths = {
+            name: courses_of(_path(table, f"path.{name}")) for name, table in case.path.items()
+        }
+
+    def amplitude(self, name: str, begun: float) -> Amplitude:
+        """An amplitude for a step that begins at a time of the run."""
+        found = self._amplitudes[name]
+        return (lambda time: found(begun + time)) if self._of_run[name] else found
+
+    def values(self, given: Mapping[str, Any], path: str | None, begun: float) -> dict[str, Any]:
+        """What a step takes: numbers, courses, None where free.
+
+        Args:
+            given: Values as they are in the case file, by component.
+            path: Name of a path that leads components, too.
+            begun: Time of the run at which the step begins.
+        """
+        found = {component: self.value(value, begun) for component, value in given.items()}
+        return found | (self._paths[path] if path is not None else {})
+
+    def value(self, given: Any, begun: float) -> Any:
+        """One of the values."""
+        if isinstance(given, Scheduled):
+            amplitude = self.amplitude(given.amplitude, begun)
+            return Course(amplitude, given.value, given.relative)
+        return None if given == FREE else given
+
+
+def _amplitude(table: Any, place: str, resolve: Callable[[str], Path], python: bool) -> Amplitude:
+    if not isinstance(table, FunctionTable):
+        with within(place):
+            return make_amplitude(table.chosen["kind"], **table.parameters())
+    with within(place):
+        module = module_at(resolve, table.file, python)
+        if module is None:
+            return lambda time: 0.0
+        found: Any = getattr(module, table.function, None)
+        if not callable(found):
+            known = [n for n, v in vars(module).items() if callable(v) and not n.startswith("_")]
+            text = f"\"{table.function}\" given, no such function in '{table.file}'; "
+            raise InputError(text + near(table.function, known), "function")
+        return partial(found, **table.arguments)
+
+
+def _path(table: Any, place: str) -> Any:
+    with within(place):
+        return make_path(table.chosen["kind"], **table.parameters())
+
+
+def led_axes(case: Case, path: str | None) -> list[str]:
+    """Components that a path leads; none where it is not there or wrong."""
+    try:
+        return [] if path is None else list(_path(case.path[path], "").components())
+    except (InputError, KeyError):
+        return []
+
+
+def check_courses(case: Case) -> Iterator[InputError]:
+    """Amplitudes and paths that are wrong, or that steps name and there are not."""
+    led: dict[str, list[str]] = {}
+    for name, table in case.amplitude.items():
+        if not isinstance(table, FunctionTable):
+            try:
+                _amplitude(table, f"amplitude.{name}", Path, python=False)
+            except InputError as error:
+                yield error
+    for name, table in case.path.items():
+        led[name] = led_axes(case, name)
+        try:
+            _path(table, f"path.{name}")
+        except InputError as error:
+            yield error
+    for i, step in enumerate(case.step):
+        for place, value in _values(step):
+            if isinstance(value, Scheduled) and value.amplitude not in case.amplitude:
+                yield _missing(value.amplitude, list(case.amplitude), f"step[{i}].{place}")
+        for name, turn in step.rotation.items():
+            if turn.amplitude is not None and turn.amplitude not in case.amplitude:
+                place = f"step[{i}].rotation.{_key(name)}"
+                yield _missing(turn.amplitude, list(case.amplitude), place)
+        for kind in ("displacement", "motion", "anchor"):
+            for name, given in getattr(step, kind).items():
+                yield from _along_path(given, led, f"step[{i}].{kind}.{_key(name)}")
+
+
+def _along_path(given: Any, led: Mapping[str, list[str]], place: str) -> Iterator[InputError]:
+    if given.path is None:
+        return
+    if given.path not in led:
+        yield _missing(given.path, list(led), place, "path")
+        return
+    for axis in given.given():
+        if axis in led[given.path]:
+            text = f'given with path "{given.path}", which leads {axis}; one of the two is allowed'
+            yield InputError(text, f"{place}.{axis}")
+
+
+def _values(step: StepSection) -> Iterator[tuple[str, Any]]:
+    for kind in ("displacement", "motion", "load", "anchor", "traction", "force", "body_force"):
+        for name, given in getattr(step, kind).items():
+            yield from ((f"{kind}.{_key(name)}.{key}", value) for key, value in given)
+    yield from ((f"pressure.{_key(group)}", value) for group, value in step.pressure.items())
+
+
+def _key(name: str) -> str:
+    return f'"{name}"' if "." in name else name
+
+
+def _missing(name: str, known: list[str], place: str, what: str = "amplitude") -> InputError:
+    return InputError(f'"{name}" given, no such {what}; {near(name, known)}', f"{place}.{what}")

@@ -1,0 +1,68 @@
+"""Values that the steps lead: to a number, linearly, or along a course."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.course import Course
+from anisocontact.solver.terms.step import Goal
+
+Floats = npt.NDArray[np.float64]
+
+
+class Led:
+    """A vector whose components the steps lead; what a step does not name is held.
+
+    Args:
+        size: Number of components, at first 0.
+
+    Attributes:
+        start: Values when the step began, (size,).
+        end: Values at its end, (size,).
+
+    Example:
+        >>> force = Led(2)
+        >>> force.begin(1.0)
+        >>> force.lead(0, 4.0)
+        >>> force.lead(1, Course(lambda t: t**2))
+        >>> force.at(0.5).tolist(), force.end.tolist()
+        ([2.0, 0.25], [4.0, 1.0])
+    """
+
+    def __init__(self, size: int) -> None:
+        self.start, self.end = np.zeros(size), np.zeros(size)
+        self._courses: dict[int, Course] = {}
+        self._duration = 1.0
+
+    def begin(self, duration: float, start: Floats | None = None) -> None:
+        """Begin a step.
+
+        Args:
+            duration: Time it takes.
+            start: Values at its beginning; those at the end of the step before if left out.
+        """
+        self.start = (self.end if start is None else start).copy()
+        self.end = self.start.copy()
+        self._courses, self._duration = {}, duration
+
+    def lead(self, i: int, goal: Goal) -> None:
+        """Lead a component of the step that has begun."""
+        if isinstance(goal, Course):
+            self._courses[i] = goal
+            self.end[i] = goal.at(1.0, self._duration, self.start[i])
+        else:
+            self._courses.pop(i, None)
+            self.end[i] = float(goal)
+
+    @property
+    def follows(self) -> bool:
+        """Whether a component follows a course."""
+        return bool(self._courses)
+
+    def at(self, fraction: float) -> Floats:
+        """Values at a fraction of the step, (size,)."""
+        values = (1.0 - fraction) * self.start + fraction * self.end
+        for i, course in self._courses.items():
+            values[i] = course.at(fraction, self._duration, self.start[i])
+        return values

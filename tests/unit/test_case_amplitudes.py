@@ -1,0 +1,160 @@
+"""Amplitudes and paths in the case file: one line for what is wrong, a run that goes on."""
+
+from __future__ import annotations
+
+import os
+import signal
+
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import main
+from anisocontact.results.writer import Writer
+
+CASE = """
+[mesh.box.bar]
+origin = [0, 0, 0]
+size = [1, 1, 2]
+cells = [1, 1, 2]
+
+[material.bar]
+model = "linear-elastic"
+E = 10000
+nu = 0.3
+
+[amplitude.wave]
+kind = "sine"
+period = 3
+time_of = "total"
+
+[amplitude.own]
+kind = "python"
+file = "own.py"
+function = "power"
+arguments = { k = 2 }
+
+[path.round]
+kind = "circle"
+radius = 0.01
+
+[spring.pull]
+group = "bar.top"
+stiffness = [20, 20, 20]
+
+[output]
+pictures = false
+
+[[step]]
+name = "load"
+increments = 4
+displacement = { "bar.bottom" = { x = 0, y = 0, z = 0 } }
+pressure = { "bar.top" = { amplitude = "wave", value = 10 } }
+anchor = { pull = { path = "round", z = { amplitude = "own", value = 0.1 } } }
+
+[[step]]
+name = "on"
+increments = 4
+pressure = { "bar.top" = { amplitude = "wave", value = 10 } }
+anchor = { pull = { path = "round" } }
+"""
+OWN = "def power(time, k):\n    return time**k\n"
+
+
+@pytest.fixture
+def case(tmp_path):
+    """The case with its Python file."""
+    (tmp_path / "own.py").write_text(OWN)
+    path = tmp_path / "case.toml"
+    path.write_text(CASE)
+    return path
+
+
+def test_a_run_goes_on_bit_by_bit(monkeypatch, case):
+    """Requirement: a run that is stopped in a step with amplitudes ends as one that was not."""
+    keep = Writer.keep
+
+    def interrupted(self, *arguments):
+        keep(self, *arguments)
+        if self.summary["steps"] == 6:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    whole, out = case.parent / "whole", case.parent / "out"
+    assert main(["run", str(case), "-o", str(whole)]) == 0
+    with monkeypatch.context() as patch:
+        patch.setattr(Writer, "keep", interrupted)
+        assert main(["run", str(case), "-o", str(out)]) == 3
+    assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
+    assert (whole / "history.csv").read_bytes() == (out / "history.csv").read_bytes()
+
+
+def test_another_file_is_another_run(case, capsys):
+    """Requirement: a function that has changed is not gone on with."""
+    out = case.parent / "out"
+    assert main(["run", str(case), "-o", str(out)]) == 0
+    (case.parent / "own.py").write_text(OWN.replace("time**k", "time"))
+    capsys.readouterr()
+    assert main(["run", str(case), "-o", str(out), "--restart"]) == 2
+    assert capsys.readouterr().err.startswith("error: amplitude.own.file: 'own.py' has changed")
+
+
+def test_check_can_leave_the_file_alone(case, capsys):
+    """Requirement: `check --no-python` runs no file that the case names, and says so."""
+    (case.parent / "own.py").write_text("raise RuntimeError('run')")
+    assert main(["check", str(case), "--no-python"]) == 0
+    assert "not run   own.py: its amplitude is not checked" in capsys.readouterr().out
+    assert main(["check", str(case)]) == 2
+    line = "error: amplitude.own.file: 'own.py' cannot be run: own.py, line 1: RuntimeError: run\n"
+    assert capsys.readouterr().err == line
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ('"sine"', '"sin"', "amplitude.wave.kind: 'sin' given; did you mean \"sine\"?"),
+        ("period = 3", "period = 0", "amplitude.wave.period: 0 given, must be > 0"),
+        ('"total"', '"day"', "amplitude.wave.time_of: 'day' given, allowed: step, total"),
+        ('"power"', '"pow"', "amplitude.own.function: \"pow\" given, no such function in 'own.py'"),
+        (
+            "k = 2",
+            "k = 'a'",
+            "step 'load'.anchor.pull.z: amplitude at the time 0: own.py, line 2: TypeE",
+        ),
+        ("own.py", "none.py", "amplitude.own.file: 'none.py' given, no such file"),
+        ('amplitude = "own"', 'amplitude = "owl"', 'step[0].anchor.pull.z.amplitude: "owl" given'),
+        ('path = "round", z', 'path = "sound", z', 'step[0].anchor.pull.path: "sound" given, no'),
+        ('path = "round", z', 'path = "round", y', "step[0].anchor.pull.y: given with path"),
+        ('"circle"\nradius = 0.01', '"table"\nx = [0, 1]', "path.round.time: missing"),
+        ("radius = 0.01", "radius = 0.01\ntime_of = 'total'", "path.round.time_of: unknown key"),
+        (
+            'kind = "circle"\nradius = 0.01',
+            'kind = "table"\ntime = [0, 2, 1]\nx = [0, 1, 2]',
+            "path.round.time: two or more numbers that grow needed",
+        ),
+        (
+            'kind = "circle"\nradius = 0.01',
+            'kind = "polyline"\nx = [0, 1, 2]\ny = [0, 1]',
+            "path.round.y: 2 numbers given, two or more needed, as many for each axis",
+        ),
+        (
+            '"sine"\nperiod = 3',
+            '"ramp"\nstart = 2\nend = 1',
+            "amplitude.wave.end: 1 given, must be > start, 2",
+        ),
+        (
+            '"wave", value = 10 } }\nanchor = { pull = { path = "round" } }',
+            '"own", value = 10 } }',
+            "step 'on'.pressure.bar.top: the amplitude begins at 0 where 8.66025 is",
+        ),
+        ("value = 10", "value = 'a'", "step[0].pressure.\"bar.top\".value: 'a' given, a number"),
+        ("value = 10", "valeu = 10", 'step[0].pressure."bar.top".valeu: unknown key'),
+    ],
+)
+def test_wrong_amplitudes_are_one_line(case, capsys, old, new, line):
+    """Requirement: place, what was given, and what is allowed."""
+    assert old in CASE
+    case.write_text(CASE.replace(old, new, 1))
+    assert main(["check", str(case)]) == 2
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 1, lines
+    assert line in lines[0]
