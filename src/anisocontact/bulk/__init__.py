@@ -25,6 +25,7 @@ from anisocontact.bulk.point_law import (
     PointState,
 )
 from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
+from anisocontact.bulk.viscoelastic import Viscoelastic
 
 __all__ = [
     "AtPoints",
@@ -49,6 +50,7 @@ __all__ = [
     "TransverselyIsotropic",
     "UserEnergy",
     "UserStress",
+    "Viscoelastic",
     "Yeoh",
     "cauchy_stress",
     "deformation_gradient",

@@ -16,6 +16,7 @@ from anisocontact.bulk.materials import LinearElastic, Material
 from anisocontact.bulk.ogden import Ogden
 from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
 from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
+from anisocontact.bulk.viscoelastic import Viscoelastic
 
 _MATERIALS: dict[str, type[Any]] = {
     model.entry.name: model
@@ -29,6 +30,7 @@ _MATERIALS: dict[str, type[Any]] = {
         MooneyRivlin,
         Yeoh,
         Ogden,
+        Viscoelastic,
     )
 }
 

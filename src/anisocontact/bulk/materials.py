@@ -55,6 +55,7 @@ class Isotropic:
         E: Young's modulus at rest, > 0, stress.
         nu: Poisson's ratio at rest, -1 < nu < 0.5.
         field: Where the material was written, for messages.
+        **others: Other parameters of the entry.
 
     Raises:
         InputError: A value is out of range.
@@ -62,12 +63,13 @@ class Isotropic:
 
     entry: Entry
 
-    def __init__(self, *, E: float, nu: float, field: str = "") -> None:
-        given = registry.values(self.entry, {"E": E, "nu": nu}, field)
+    def __init__(self, *, E: float, nu: float, field: str = "", **others: Any) -> None:
+        given = registry.values(self.entry, {"E": E, "nu": nu, **others}, field)
         (self.young,), (self.nu,) = given["E"], given["nu"]
         if not -1.0 < self.nu < 0.5:
             path = f"{field}.nu" if field else "nu"
             raise InputError(f"{nu!r} given, must be > -1 and < 0.5", field=path)
+        self._given = given
 
     @property
     def shear(self) -> float:
@@ -78,6 +80,11 @@ class Isotropic:
     def lame(self) -> float:
         """First Lame constant lambda, stress."""
         return self.young * self.nu / ((1.0 + self.nu) * (1.0 - 2.0 * self.nu))
+
+    @property
+    def bulk_modulus(self) -> float:
+        """Bulk modulus K, stress."""
+        return self.lame + 2.0 / 3.0 * self.shear
 
     def constants(self, u: Any) -> tuple[Any, Any]:
         """Both as constants of a form, so that one compiled form serves all values.

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import ufl
+from anisocontact.base.registry import Parameter
 
 Floats = npt.NDArray[np.float64]
 
@@ -133,6 +134,16 @@ STRAINS: Mapping[str, Callable[[Floats], Strain]] = {
     "small": SmallStrain,
     "logarithmic": LogarithmicStrain,
 }
+#: The parameter of a law that holds in each of them.
+STRAIN = Parameter(
+    "strain",
+    "choice",
+    "1",
+    "strain the law is written in: small, or logarithmic for bodies that turn or are strained far",
+    required=False,
+    default=(0.0,),
+    choices=tuple(STRAINS),
+)
 
 
 def symmetric(tensor: Floats) -> Floats:

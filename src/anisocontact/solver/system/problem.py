@@ -382,6 +382,7 @@ class Problem(AssembledSystem):
             what is left of "external" less all others: first order in the size of the increments.
         """
         stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": self.reduction.elastic()}
+        stored |= self.assembly.bodies.dissipated()
         stored |= self.assembly.acting.energies(self._bodies.nodal)
         work = self._accepted.work
         return {"external": work} | stored | {"residual": work - sum(stored.values())}

@@ -55,10 +55,13 @@ class Bodies(Term):
         """Elastic energy over all ranks, force times length."""
         return self.bulk.energy(self._owned(u))
 
+    def dissipated(self) -> dict[str, float]:
+        """What materials with a history have dissipated, where there are any."""
+        return {"inelastic": self.bulk.dissipated()} if self.bulk.histories else {}
+
     @override
     def energies(self, u: Floats) -> dict[str, float]:
-        found = {"elastic": self.energy(u)}
-        return found | ({"inelastic": self.bulk.dissipated()} if self.bulk.histories else {})
+        return {"elastic": self.energy(u)} | self.dissipated()
 
     @override
     def accept(self, u: Floats) -> float:
