@@ -226,6 +226,21 @@ def test_format_of_the_page_is_read(tmp_path):
     assert done.stdout == "['cube'] ['cube.lower'] 1\n"
 
 
+CHOOSE = """
+from anisocontact.mesh import Body, build_mesh, make_selector, make_shape
+
+box = Body("box", make_shape("box", origin=(0, 0, 0), size=(1, 1, 1), cells=(2, 2, 2)))
+ball = make_selector("ball", point=(0, 0, 0), radius=1.01)
+print(build_mesh([box], {"box.corner": [ball]}).count_facets("box.corner"))
+"""
+
+
+def test_selector_of_the_page_chooses(tmp_path):
+    """Of the cells' facets at a corner, 1/2 wide, those three that end within a ball of 1.01."""
+    done = run(tmp_path, "A selector of facets", CHOOSE)
+    assert done.stdout == "3\n", done.stderr
+
+
 def test_its_groups_are_checked_as_all_are(tmp_path):
     (tmp_path / "cube.json").write_text(json.dumps(UNIT_CUBE | {"lower": [[0, 1, 2, 7]]}))
     done = run(tmp_path, "A format of meshes", READ)

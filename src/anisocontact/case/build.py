@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from anisocontact.base.errors import InputError, ModelWarning
@@ -14,14 +15,16 @@ from anisocontact.case.contacts import contact
 from anisocontact.case.courses import Schedule
 from anisocontact.case.law_file import law_of
 from anisocontact.case.model import Case, StepSection
-from anisocontact.case.read import CaseFile
+from anisocontact.case.read import CaseFile, load
 from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.merge import merge
+from anisocontact.mesh.readers import file_arrays
+from anisocontact.mesh.selectors import with_groups
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import ElasticSupport, Problem, Solver, Spring, Step, Turn
 
-__all__ = ["Built", "build"]
+__all__ = ["Built", "build", "mesh_of"]
 
 
 @dataclass(frozen=True)
@@ -66,7 +69,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
         law_of(section, file.resolve, f"contact[{i}]", python)
         for i, section in enumerate(case.contact)
     ]
-    model = _model(file)
+    model = Model.from_arrays(_arrays(file, MPI.COMM_WORLD))
     _check_bodies(case, model)
     materials = {
         name: objects.material(section, f"material.{name}")
@@ -107,27 +110,52 @@ def _solver(case: Case, problem: Problem, steps: list[Step]) -> Solver:
             raise
 
 
-def _model(file: CaseFile) -> Model:
+def mesh_of(path: Path) -> MeshArrays:
+    """The mesh of a case file or of a mesh file, in one process.
+
+    Args:
+        path: A case file if its name ends with `.toml`, else a mesh file.
+
+    Raises:
+        InputError: It is missing or damaged.
+    """
+    if path.suffix == ".toml":
+        return _arrays(load(path), MPI.COMM_SELF)
+    return file_arrays(path, field="")
+
+
+def _arrays(file: CaseFile, comm: MPI.Comm) -> MeshArrays:
+    """The mesh of a case, with the groups that it names."""
     mesh = file.case.mesh
     parts: list[MeshArrays] = []
     if mesh.file is not None:
         shaped = {name for bodies in mesh.shaped().values() for name in bodies}
         wanted = [name for name in file.case.material if name not in shaped]
         source = GmshFile(file.resolve(mesh.file), None if mesh.files else wanted)
-        parts.append(source.arrays(MPI.COMM_WORLD))
+        parts.append(source.arrays(comm))
     for name, section in mesh.files.items():
         place = f"mesh.files.{name}"
         path, there = file.resolve(section.path), objects.placement(section)
         with objects.within(place):
             source = GmshFile(path, section.bodies, section.rename, there, "path")
-            parts.append(source.arrays(MPI.COMM_WORLD))
+            parts.append(source.arrays(comm))
     for shape, bodies in mesh.shaped().items():
         for name, table in bodies.items():
             place = f"mesh.{shape}.{name}"
             body = objects.body(table, name, place)
             with objects.within(place):
-                parts.append(body.arrays(MPI.COMM_WORLD))
-    return Model.from_arrays(merge(parts))
+                parts.append(body.arrays(comm))
+    return _grouped(file.case, merge(parts))
+
+
+def _grouped(case: Case, mesh: MeshArrays) -> MeshArrays:
+    """The mesh with the facet groups that the case names."""
+    chosen = {
+        name: [objects.selector(table, f'group."{name}"') for table in tables]
+        for name, tables in case.group.items()
+    }
+    with objects.within("group"):
+        return with_groups(mesh, chosen)
 
 
 def _attached(case: Case) -> list[ElasticSupport | Spring]:

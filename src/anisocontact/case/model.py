@@ -12,6 +12,7 @@ from typing import Annotated, Any
 
 from pydantic import (
     AfterValidator,
+    BeforeValidator,
     Field,
     ValidationError,
     ValidatorFunctionWrapHandler,
@@ -245,6 +246,7 @@ class Case(Section):
 
     title: str = Field("", description="heading of the report")
     mesh: Mesh
+    group: dict[str, Any] = Field(default_factory=dict)
     material: dict[str, Any]
     surface: dict[str, Any] = Field(default_factory=dict)
     rigid: dict[str, Rigid] = Field(
@@ -280,6 +282,7 @@ class Registries:
     evolution_forms: tuple[Entry, ...]
     materials: tuple[Entry, ...]
     shapes: tuple[Entry, ...] = ()
+    group_selectors: tuple[Entry, ...] = ()
     output_quantities: tuple[Entry, ...] = ()
     amplitudes: tuple[Entry, ...] = ()
     paths: tuple[Entry, ...] = ()
@@ -288,7 +291,7 @@ class Registries:
     @classmethod
     def current(cls) -> Registries:
         """What is registered now."""
-        materials, shapes = _of_bodies()
+        materials, shapes, selectors = _of_bodies()
         written = tuple(
             Entry(q.name, q.at, f"{q.doc} [{q.unit}]; at a {q.at}, {FILES[q.at]}", ())
             for q in quantities()
@@ -297,6 +300,7 @@ class Registries:
             cls.of_points(),
             materials=materials,
             shapes=shapes,
+            group_selectors=selectors,
             output_quantities=written,
             amplitudes=(*amplitudes(), PYTHON),
             paths=paths(),
@@ -324,14 +328,14 @@ class Registries:
         )
 
 
-def _of_bodies() -> tuple[tuple[Entry, ...], tuple[Entry, ...]]:
-    """Materials and shapes of bodies; none where the finite-element level is not installed."""
+def _of_bodies() -> tuple[tuple[Entry, ...], ...]:
+    """Materials, shapes and selectors of groups; none where the finite elements are missing."""
     try:
         from anisocontact.bulk import materials
-        from anisocontact.mesh import shapes
+        from anisocontact.mesh import selectors, shapes
     except ImportError:
-        return (), ()
-    return materials(), shapes()
+        return (), (), ()
+    return materials(), shapes(), selectors()
 
 
 @cache
@@ -350,10 +354,19 @@ def case_type(known: Registries) -> type[Case]:
     contact = create_model("Contact", __base__=ContactSection, **passes, **fields)
     surface = OneOf("Surface", Key("shape", known.surfaces))
     material = OneOf("Material", Key("model", known.materials))
+    selector = OneOf("Group", Key("by", known.group_selectors))
     return create_model(
         "Case",
         __base__=Case,
         mesh=(mesh_type(known.shapes), Field(description=str(Mesh.__doc__))),
+        group=(
+            dict[str, Annotated[list[Annotated[Any, selector]], BeforeValidator(_as_list)]],
+            Field(
+                default_factory=dict,
+                description='facet groups that the mesh lacks, "body.group", or "group" for one in '
+                "every body that has such facets; of several tables all have to choose a facet",
+            ),
+        ),
         material=(
             dict[str, Annotated[Any, material]],
             Field(description="material of each body, by body name"),
@@ -377,6 +390,11 @@ def case_type(known: Registries) -> type[Case]:
         output=(_output(known.arrays), Output()),
         solver=(_solver(known.strategies), Solver()),
     )
+
+
+def _as_list(given: object) -> object:
+    """One table where several may stand."""
+    return [given] if isinstance(given, dict) else given
 
 
 def _solver(ways: tuple[Entry, ...]) -> type[Solver]:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from anisocontact.bulk import Material
     from anisocontact.case.bodies import Placed, Shaped
     from anisocontact.mesh import Body, Placement
+    from anisocontact.mesh.selectors import Selector
 
 __all__ = [
     "body",
@@ -27,6 +28,7 @@ __all__ = [
     "material",
     "normal_law",
     "placement",
+    "selector",
     "surface",
     "within",
 ]
@@ -86,6 +88,14 @@ def body(section: Shaped, name: str, place: str) -> Body:
             section.entries[0].name, cell=section.cell, order=section.order, **section.parameters()
         )
         return Body(name, shape, placement(section))
+
+
+def selector(section: Registered, place: str) -> Selector:
+    """The selector of a `group.*` table."""
+    from anisocontact.mesh import make_selector
+
+    with within(place):
+        return make_selector(section.chosen["by"], **section.parameters())
 
 
 def placement(section: Placed) -> Placement:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from anisocontact.case import load
@@ -17,11 +18,19 @@ __all__ = ["command", "contents"]
 
 def command(arguments: argparse.Namespace) -> int:
     """Build the case and say what is in it."""
-    file = load(arguments.case)
+    from anisocontact.case.build import build, mesh_of
+    from anisocontact.mesh.described import described
 
-    from anisocontact.case.build import build
-
+    path = Path(arguments.case)
+    if path.suffix != ".toml":
+        for line in described(mesh_of(path)):
+            say(line)
+        say("units     a mesh file has none: the numbers are taken as they are")
+        return 0
+    file = load(path)
     for line in contents(build(file, python=not arguments.no_python)):
+        say(line)
+    for line in described(mesh_of(path)):
         say(line)
     if arguments.no_python:
         for section in file.case.contact:

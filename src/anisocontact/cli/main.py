@@ -52,14 +52,21 @@ def build_parser() -> argparse.ArgumentParser:
     check = _command(
         commands,
         "check",
-        "read a case and its mesh, run the Python files it names, and say what it contains",
+        "read a case and its mesh, run the Python files it names, and say what it contains; "
+        "or read a mesh file, and say what is in it",
     )
-    _case_argument(check)
+    check.add_argument("case", metavar="CASE.toml", help="the case file, or a mesh file")
     check.add_argument(
         "--no-python",
         action="store_true",
         help="check all but the laws in Python, whose files are not run: for cases of others",
     )
+
+    convert = _command(
+        commands, "convert", "write a mesh in another format, with its bodies and facet groups"
+    )
+    convert.add_argument("source", metavar="IN", help="a mesh file, or a case file for its mesh")
+    convert.add_argument("target", metavar="OUT", help="file to write: .msh of gmsh, .vtu or .vtk")
 
     report = _command(commands, "report", "draw the pictures and the report of a results folder")
     report.add_argument("folder", metavar="DIR", help="results folder of `run`")

@@ -6,6 +6,7 @@ from anisocontact.mesh.inp import read_inp
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.placement import Placement, Rotation
 from anisocontact.mesh.readers import register_reader, whole_reader
+from anisocontact.mesh.selectors import make_selector, register_selector, selectors
 from anisocontact.mesh.shapes import (
     BallSpec,
     BoxSpec,
@@ -35,10 +36,13 @@ __all__ = [
     "WholeMesh",
     "build_box",
     "build_mesh",
+    "make_selector",
     "make_shape",
     "read_gmsh",
     "read_inp",
     "register_reader",
+    "register_selector",
+    "selectors",
     "shapes",
     "whole_reader",
 ]

@@ -17,6 +17,7 @@ from anisocontact.mesh.model import Model
 from anisocontact.mesh.placement import IN_PLACE, Placement
 from anisocontact.mesh.quality import check_cells
 from anisocontact.mesh.readers import file_arrays
+from anisocontact.mesh.selectors import Selector, with_groups
 from anisocontact.mesh.shapes import BoxSpec, Shape, checked_blocks
 
 
@@ -82,11 +83,15 @@ class MeshFile:
 GmshFile = MeshFile
 
 
-def build_mesh(sources: Iterable[Source]) -> Model:
+def build_mesh(
+    sources: Iterable[Source], groups: Mapping[str, Sequence[Selector]] = MappingProxyType({})
+) -> Model:
     """Model of bodies from shapes and files, in one mesh.
 
     Args:
         sources: Where the bodies come from.
+        groups: Further facet groups, "body.group" -> selectors of their facets, see
+            `make_selector`.
 
     Returns:
         The model.
@@ -105,7 +110,7 @@ def build_mesh(sources: Iterable[Source]) -> Model:
     parts = [source.arrays(MPI.COMM_WORLD) for source in sources]
     if not parts:
         raise InputError("no body given, at least one needed", "mesh")
-    return Model.from_arrays(merge(parts))
+    return Model.from_arrays(with_groups(merge(parts), groups))
 
 
 def build_box(boxes: Mapping[str, BoxSpec]) -> Model:

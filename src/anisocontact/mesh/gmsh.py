@@ -19,6 +19,7 @@ from anisocontact.mesh.msh import Block, MshFile, read_msh
 from anisocontact.mesh.quality import check_cells
 from anisocontact.mesh.split import Route, Split, arranged
 from anisocontact.mesh.stream import MshError
+from anisocontact.mesh.whole import WholeMesh
 
 Nodes = npt.NDArray[np.int64]
 
@@ -29,6 +30,9 @@ VOLUMES = {
     5: ("hexahedron", 1),
     12: ("hexahedron", 2),
 }
+#: Hexahedra of 20 nodes, and the order in which VTK has these.
+SERENDIPITY = 17
+_IN_VTK = [*range(8), *(8, 11, 13, 9), *(16, 18, 19, 17), *(10, 12, 14, 15)]
 
 
 def read_gmsh(path: str | Path, bodies: Sequence[str] | None = None) -> Model:
@@ -69,7 +73,10 @@ def gmsh_arrays(
     if not path.is_file():
         raise InputError(f"mesh file {str(path)!r} does not exist", field)
     try:
-        return _arrays(read_msh(path, comm), bodies, comm)
+        msh = read_msh(path, comm)
+        if comm.allreduce(any(block.kind == SERENDIPITY for block in msh.blocks)):
+            return _with_middles(read_msh(path, MPI.COMM_SELF), bodies).shared(comm)
+        return _arrays(msh, bodies, comm)
     except (MshError, OSError) as problem:
         raise InputError(
             f"mesh file {str(path)!r} is not a readable gmsh file: {problem}", field
@@ -105,6 +112,18 @@ def _arrays(msh: MshFile, bodies: Sequence[str] | None, comm: Any) -> MeshArrays
     return replace(mesh, facets=_facet_groups(mesh, groups))
 
 
+def _with_middles(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:
+    """Hexahedra of 20 nodes, with a node in each face and in their middle."""
+    mesh = WholeMesh(msh.points)
+    for name, block in _volumes(msh, bodies):
+        if block.kind != SERENDIPITY:
+            raise InputError("hexahedra of 20 nodes beside other cells")
+        mesh.add_cells("hexahedron", block.nodes[:, _IN_VTK], [name] * len(block.nodes))
+    for name, block in _named(msh, 2):
+        mesh.surfaces.setdefault(name, []).append(block.nodes[:, :4])
+    return mesh.arrays(bodies)
+
+
 def _volumes(msh: MshFile, bodies: Sequence[str] | None) -> list[tuple[str, Block]]:
     named = [(name, block) for name, block in _named(msh, 3) if block.count]
     if not named:
@@ -137,7 +156,7 @@ def _kind(blocks: list[Block]) -> tuple[str, int]:
     kinds = {block.kind for block in blocks}
     if not kinds <= set(VOLUMES):
         raise InputError(
-            "a cell is neither a tetrahedron of 4 or 10 nodes nor a hexahedron of 8 or 27 nodes"
+            "a cell is neither a tetrahedron of 4 or 10 nodes nor a hexahedron of 8, 20 or 27 nodes"
         )
     if len(kinds) > 1:
         found = ", ".join(f"{cell} of order {n}" for cell, n in (VOLUMES[k] for k in sorted(kinds)))

@@ -104,15 +104,25 @@ def lift(mesh: MeshArrays) -> MeshArrays:
         numbers.append(inner)
         points.append(nodes.fetch(mesh.points, corners).mean(axis=1))
         count += mesh.cell_split.total
-    facets = {name: _with_middles(mesh, cells, rows) for name, rows in mesh.facets.items()}
+    facets = {name: facet_rows(mesh, cells, rows, 2) for name, rows in mesh.facets.items()}
     (all_points,) = arranged(mesh.comm, count, _of_all(numbers), _of_all(points))
     return replace(mesh, degree=2, points=all_points, cells=cells, facets=facets)
 
 
-def _with_middles(mesh: MeshArrays, lifted: Nodes, facets: Nodes) -> Nodes:
-    """All nodes of facets of which the corners are given, (facets, nodes)."""
+def facet_rows(mesh: MeshArrays, lifted: Nodes, facets: Nodes, degree: int) -> Nodes:
+    """All nodes of facets of which the corners are given, in the order of DOLFINx.
+
+    Args:
+        mesh: The mesh, whose cells have the facets.
+        lifted: Nodes of its cells of a degree, (cells, nodes of a cell).
+        facets: Corners in any order, (facets, 3 or 4).
+        degree: The degree.
+
+    Returns:
+        Nodes, vertices first, (facets, nodes of a facet).
+    """
     owner, _ = facet_owners(mesh, facets)
     corners, nodes = (mesh.cell_split.fetch(cells, owner) for cells in (mesh.cells, lifted))
     sides = np.sort(corners[:, CELL_FACETS[mesh.cell]], axis=2)
     local = np.argmax(np.all(sides == np.sort(facets, axis=1)[:, None], axis=2), axis=1)
-    return np.take_along_axis(nodes, facet_nodes(mesh.cell, 2)[local], axis=1)
+    return np.take_along_axis(nodes, facet_nodes(mesh.cell, degree)[local], axis=1)

@@ -22,6 +22,8 @@ SUFFIXES: tuple[str, ...] = (
     *(".mesh", ".meshb", ".cgns", ".h5m", ".hmf", ".avs", ".su2", ".ugrid", ".f3grid"),
     *(".vol", ".mdpa"),
 )
+#: Beginning of the names of arrays that say which cells are in a group: 1 there, else 0.
+GROUP = "group:"
 #: Cells of meshio -> cell here; nodes are in the order of VTK.
 SOLIDS = {
     "tetra": "tetrahedron",
@@ -76,14 +78,24 @@ def read_by_meshio(path: Path) -> WholeMesh:
     return mesh
 
 
-def _read(path: Path) -> Any:
-    """The mesh of meshio; what it prints and where it exits becomes one line."""
+def needed(path: Path) -> Any:
+    """The package meshio, for a file.
+
+    Raises:
+        InputError: It is not installed.
+    """
     try:
         import meshio
     except ImportError:
         raise InputError(
             f"files that end with {path.suffix} need meshio: pip install 'anisocontact[meshes]'"
         ) from None
+    return meshio
+
+
+def _read(path: Path) -> Any:
+    """The mesh of meshio; what it prints and where it exits becomes one line."""
+    meshio = needed(path)
     said = io.StringIO()
     try:
         with redirect_stdout(said), redirect_stderr(said):
@@ -99,6 +111,11 @@ def _names(mesh: Any) -> list[list[str]]:
     found = [[""] * len(block.data) for block in mesh.cells]
     for labels, numbers in zip(found, _tags(mesh), strict=True):
         labels[:] = numbers or labels
+    for name, parts in mesh.cell_data.items():
+        if name.startswith(GROUP):
+            for labels, part in zip(found, parts, strict=True):
+                for k in np.flatnonzero(np.asarray(part)):
+                    labels[k] = name.removeprefix(GROUP)
     for name, parts in mesh.cell_sets.items():
         if name.startswith("gmsh:"):
             continue

@@ -60,6 +60,25 @@ def check_cells(mesh: MeshArrays) -> None:
         raise InputError("neighbouring cells do not have the same nodes on their common edges")
 
 
+def scaled_jacobian(mesh: MeshArrays) -> npt.NDArray[np.float64]:
+    """Least volume at a corner of each cell over the lengths of its edges, (cells,).
+
+    1 for a cube and, scaled with the square root of 2, for a regular tetrahedron [Knupp 2000].
+
+    Args:
+        mesh: The mesh, of one process; the corners are looked at.
+    """
+    points = mesh.points[mesh.cells[:, _CORNERS[mesh.cell]]]
+    lengths = [np.linalg.norm(points[:, :, k] - points[:, :, 0], axis=2) for k in (1, 2, 3)]
+    size = np.prod(lengths, axis=0)
+    if mesh.cell == "tetrahedron":  # one corner stands for all: its volume, their longest edges
+        edges = mesh.points[mesh.cells[:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]]]
+        long = np.linalg.norm(edges[:, :, 1] - edges[:, :, 0], axis=2)
+        at = [(0, 1, 2), (0, 3, 4), (1, 3, 5), (2, 4, 5)]
+        size = np.max([long[:, list(k)].prod(axis=1) for k in at], axis=0)[:, None] / np.sqrt(2.0)
+    return np.asarray((_corner_volumes(mesh) / size).min(axis=1))
+
+
 def _corner_volumes(mesh: MeshArrays) -> npt.NDArray[np.float64]:
     corners = _CORNERS[mesh.cell]
     points = mesh.points[mesh.cells[:, corners]]

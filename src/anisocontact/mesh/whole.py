@@ -234,6 +234,6 @@ class _Groups:
         for label, body in enumerate(self._names):
             own = rows[self._body[rows] == label]
             if len(own):
-                key = f"{body}.{name}"
+                key = f"{body}.{name.removeprefix(f'{body}.')}"
                 before = self.facets.get(key, np.zeros((0, self._nodes.shape[1]), dtype=np.int64))
                 self.facets[key] = np.concatenate([before, self._nodes[own]])

@@ -1,0 +1,106 @@
+"""Meshes as files of other codes, with their bodies and facet groups."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import middle_nodes
+from anisocontact.mesh.arrays import MeshArrays, Nodes
+from anisocontact.mesh.merge import facet_rows
+from anisocontact.mesh.meshio_files import GROUP, needed
+from anisocontact.mesh.whole import CORNERS, EDGES, FACES
+
+__all__ = ["FORMATS", "write_mesh"]
+
+#: Ending -> format of meshio.
+FORMATS = {".msh": "gmsh22", ".vtu": "vtu", ".vtk": "vtk"}
+#: Number of nodes -> cell of meshio.
+_CELLS = {4: "tetra", 10: "tetra10", 8: "hexahedron", 27: "hexahedron27"}
+#: Number of nodes of a facet -> its name in meshio, and its nodes in the order of VTK.
+_FACETS = {
+    3: ("triangle", [0, 1, 2]),
+    6: ("triangle6", [0, 1, 2, 5, 3, 4]),
+    4: ("quad", [0, 1, 3, 2]),
+    9: ("quad9", [0, 1, 3, 2, 4, 6, 7, 5, 8]),
+}
+
+
+def write_mesh(mesh: MeshArrays, path: str | Path) -> None:
+    """Write a mesh with its bodies and facet groups, so that reading it gives the same names.
+
+    gmsh's files have them as physical groups, the others as an array of 0 and 1 for each, called
+    `group:<name>`.
+
+    Args:
+        mesh: The mesh, of one process.
+        path: The file; the ending of its name is one of `FORMATS`.
+
+    Raises:
+        InputError: Another ending, meshio is not installed, or the file cannot be written.
+    """
+    path = Path(path)
+    kind = FORMATS.get(path.suffix.lower())
+    if kind is None:
+        raise InputError(f"'{path}' given; it has to end with one of: {', '.join(FORMATS)}")
+    meshio = needed(path)
+    cell = _CELLS[mesh.cells.shape[1]]
+    blocks = [(cell, mesh.cells[rows][:, _vtk_order(mesh)]) for rows in mesh.bodies.values()]
+    blocks += [_facets(mesh, rows) for rows in mesh.facets.values()]
+    names = [*mesh.bodies, *mesh.facets]
+    more = _numbered(mesh, blocks) if kind == "gmsh22" else _marked(names, blocks)
+    options = {"binary": False} if kind == "gmsh22" else {}
+    try:
+        meshio.Mesh(mesh.points, blocks, **more).write(path, file_format=kind, **options)
+    except OSError as problem:
+        raise InputError(f"'{path}' cannot be written: {problem.strerror or problem}") from None
+
+
+def _facets(mesh: MeshArrays, rows: Nodes) -> tuple[str, Nodes]:
+    corners = rows[:, : mesh.vertices_per_facet]
+    nodes = facet_rows(mesh, mesh.cells, corners, mesh.degree)
+    facet, order = _FACETS[nodes.shape[1]]
+    return facet, nodes[:, order]
+
+
+def _vtk_order(mesh: MeshArrays) -> list[int]:
+    """Nodes of a cell in the order of VTK."""
+    corners = CORNERS[mesh.cell]
+    if mesh.degree == 1:
+        return corners
+    between = {
+        frozenset(ends): int(place)
+        for all_ends, places in middle_nodes(mesh.cell)
+        for ends, place in zip(all_ends.tolist(), places, strict=True)
+    }
+    inside = [*EDGES[mesh.cell], *(FACES if mesh.cell == "hexahedron" else [])]
+    middles = [between[frozenset(corners[k] for k in ends)] for ends in inside]
+    return [*corners, *middles, *range(len(corners) + len(middles), mesh.cells.shape[1])]
+
+
+def _numbered(mesh: MeshArrays, blocks: list[tuple[str, Nodes]]) -> dict[str, Any]:
+    """Physical groups of gmsh."""
+    numbers = [np.full(len(rows), k, dtype=np.int64) for k, (_, rows) in enumerate(blocks, 1)]
+    dims = [3] * len(mesh.bodies) + [2] * len(mesh.facets)
+    names = [*mesh.bodies, *mesh.facets]
+    return {
+        "cell_data": {"gmsh:physical": numbers, "gmsh:geometrical": numbers},
+        "field_data": {
+            name: np.array([k, dim])
+            for k, (name, dim) in enumerate(zip(names, dims, strict=True), 1)
+        },
+    }
+
+
+def _marked(names: list[str], blocks: list[tuple[str, Nodes]]) -> dict[str, Any]:
+    """An array of 0 and 1 for each name."""
+    sizes = [len(rows) for _, rows in blocks]
+    return {
+        "cell_data": {
+            f"{GROUP}{name}": [np.full(n, k == i, dtype=np.int32) for i, n in enumerate(sizes)]
+            for k, name in enumerate(names)
+        }
+    }

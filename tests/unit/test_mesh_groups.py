@@ -1,0 +1,239 @@
+"""Groups named by where their facets are, meshes written for other codes, and what is in them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.base.errors import InputError
+from anisocontact.cli import main
+from anisocontact.mesh import (
+    Body,
+    MeshFile,
+    Placement,
+    build_mesh,
+    make_selector,
+    make_shape,
+    register_selector,
+    selectors,
+)
+from anisocontact.mesh.described import described
+from anisocontact.mesh.readers import file_arrays
+from anisocontact.mesh.selectors import _SELECTORS, Boundary, with_groups
+from anisocontact.mesh.write import write_mesh
+
+RING = {"inner": 1.0, "outer": 2.0, "length": 1.0, "cells": (2, 24, 2)}
+
+
+def box(cell="hexahedron", order=1):
+    shape = make_shape(
+        "box", origin=(0, 0, 0), size=(1, 2, 1), cells=(2, 4, 2), cell=cell, order=order
+    )
+    return Body("box", shape).arrays()
+
+
+def chosen(mesh, name, **parameters):
+    """Area of the facets that a selector chooses."""
+    boundary = Boundary.of(mesh)
+    corners = boundary.corners[make_selector(name, **parameters)(boundary)]
+    first, second = corners[:, -1] - corners[:, 0], corners[:, 2] - corners[:, 1]
+    return 0.5 * np.linalg.norm(np.cross(first, second), axis=1).sum()
+
+
+@pytest.mark.parametrize("cell", ["hexahedron", "tetrahedron"])
+@pytest.mark.parametrize(
+    ("name", "parameters", "area"),
+    [
+        ("all", {}, 10.0),
+        ("plane", {"point": (5, 5, 1), "normal": (0, 0, 3)}, 2.0),
+        ("box", {"low": (0, 0, -1), "high": (1, 1, 0.5)}, 1.0 + 0.5 + 2 * 0.5),
+        ("normal", {"direction": (0, 1, 0)}, 1.0),
+        ("normal", {"direction": (1, 1, 0), "angle_deg": 50}, 3.0),
+        ("nearest", {"point": (1.3, 0.9, 0.6)}, 2.0),
+        ("nearest", {"point": (1.3, 0.9, 0.6), "angle_deg": 100}, 10.0),
+    ],
+)
+def test_areas_of_a_box(cell, name, parameters, area):
+    """Requirement: the faces of a box 1 x 2 x 1 by their places; round-off of a sum of facets."""
+    assert chosen(box(cell), name, **parameters) == pytest.approx(area, rel=1e-12)
+
+
+def test_bore_of_a_ring():
+    """Requirement: corners lie on the cylinder, facets are chords: 24 of them, 2 n r sin(pi/n)."""
+    ring = Body("ring", make_shape("ring", **RING)).arrays()
+    bore = 2.0 * 24 * math.sin(math.pi / 24)
+    given = {"point": (0, 0, 7), "axis": (0, 0, 2), "radius": 1.0}
+    assert chosen(ring, "cylinder", **given) == pytest.approx(bore, rel=1e-12)
+    # neighbours turn by 15 degrees: the bore is one face, up to the edges at its ends
+    assert chosen(ring, "nearest", point=(0.9, 0, 0.5)) == pytest.approx(bore, rel=1e-12)
+    assert chosen(ring, "nearest", point=(0.9, 0, 0.5), angle_deg=10) == pytest.approx(bore / 24)
+
+
+def test_groups_of_several_bodies_and_selectors():
+    one, other = (
+        make_shape("box", origin=o, size=(1, 1, 1), cells=(2, 2, 2), order=2)
+        for o in ((0, 0, 0), (3, 0, 0))
+    )
+    low = make_selector("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    left = make_selector("box", low=(-1, 0, 0), high=(0.5, 1, 1))
+    bodies = [Body("a", one), Body("b", other)]
+    model = build_mesh(bodies, {"low": [low], "a.part": [low, left]})
+    assert [model.count_facets(g) for g in ("a.low", "b.low", "a.part")] == [4, 4, 2]
+    for name, said in (
+        ("c.low", "no body 'c'; there are: a, b"),
+        ("b.none", "no facet at the boundary is chosen"),
+        ("a.left", "'a.left' is a group already"),
+    ):
+        with pytest.raises(InputError, match=said) as caught:
+            build_mesh(bodies, {name: [low, left]})
+        assert caught.value.field == name
+
+
+def test_selector_from_outside():
+    @register_selector("leaning", "Facets that lean.")
+    def leaning(boundary):
+        return np.abs(boundary.normals).max(axis=1) < 0.99
+
+    try:
+        assert "leaning" in [entry.name for entry in selectors()]
+        turned = Body("box", make_shape("box", origin=(0, 0, 0), size=(1, 1, 1), cells=(1, 1, 1)))
+        assert chosen(turned.arrays(), "leaning") == 0.0
+    finally:
+        del _SELECTORS["leaning"]
+
+
+@pytest.mark.parametrize("suffix", [".msh", ".vtu", ".vtk"])
+@pytest.mark.parametrize(
+    ("shape", "order", "cell"),
+    [
+        ("ring", 1, "hexahedron"),
+        ("ring", 2, "hexahedron"),
+        ("ring", 1, "tetrahedron"),
+        ("ring", 2, "tetrahedron"),
+    ],
+)
+@pytest.mark.filterwarnings("ignore")
+def test_written_meshes_are_read_as_they_were(tmp_path, capsys, suffix, shape, order, cell):
+    """Requirement: the same bodies, groups, areas and boxes, of curved cells as well."""
+    pytest.importorskip("meshio")
+    mesh = Body("ring", make_shape(shape, cell=cell, order=order, **RING)).arrays()
+    upper = [make_selector("plane", point=(0, 0, 1), normal=(0, 0, 1))]
+    mesh = with_groups(mesh, {"upper": upper})
+    path = tmp_path / f"ring{suffix}"
+    write_mesh(mesh, path)
+    again = file_arrays(path)
+    assert sorted(described(again)) == sorted(described(mesh))
+    model = build_mesh([MeshFile(path, placement=Placement(scale=2.0))])
+    assert model.order == order
+    assert model.count_facets("ring.upper") == model.count_facets("ring.top") > 0
+
+
+def test_command(tmp_path, capsys):
+    pytest.importorskip("meshio")
+    path = tmp_path / "box.vtu"
+    write_mesh(box(order=1), path)
+    assert main(["convert", str(path), str(tmp_path / "box.msh")]) == 0
+    assert main(["check", str(tmp_path / "box.msh")]) == 0
+    said = capsys.readouterr().out
+    line = "body      box: 16 hexahedra of order 1, box (0, 0, 0) to (1, 2, 1), edges 0.5 to 0.5\n"
+    assert said.count(line) == 2
+    assert "group     box.top: 8 facets, area 2\n" in said
+    assert main(["convert", str(path), str(tmp_path / "box.stp")]) == 2
+    assert "it has to end with one of: .msh, .vtu, .vtk" in capsys.readouterr().err
+
+
+CASE = """
+[mesh.box.block]
+origin = [0, 0, 0]
+size = [1, 1, 0.5]
+cells = [4, 4, 2]
+
+[group."block.seat"]
+by = "nearest"
+point = [0.5, 0.5, 0]
+
+[[group.patch]]
+by = "plane"
+point = [0, 0, 0.5]
+normal = [0, 0, 1]
+
+[[group.patch]]
+by = "box"
+low = [0, 0, 0]
+high = [0.5, 0.5, 1]
+
+[material.block]
+model = "linear-elastic"
+E = 1000
+nu = 0.3
+
+[surface.plate]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+
+[[contact]]
+slave = "block.seat"
+master = "plate"
+friction = { coefficients = 0.3 }
+
+[[step]]
+name = "press"
+increments = 2
+displacement = { "block.patch" = { x = 0, y = 0, z = -0.01 } }
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("", "", None),
+        ('"nearest"', '"nearst"', "group.\"block.seat\"[0].by: 'nearst' given; did you mean"),
+        ("point = [0, 0, 0.5]", "point = [0, 0, 0.4]", "group.patch: no facet at the boundary"),
+        ('group."block.seat"', 'group."blok.seat"', "group.blok.seat: no body 'blok'"),
+    ],
+)
+def test_groups_of_a_case(tmp_path, capsys, old, new, said):
+    path = tmp_path / "case.toml"
+    path.write_text(CASE.replace(old, new))
+    assert main(["check", str(path)]) == (2 if said else 0)
+    found = capsys.readouterr()
+    if said:
+        (line,) = found.err.splitlines()
+        assert said in line
+    else:
+        assert "group     block.seat: 16 facets, area 1" in found.out
+        assert "group     block.patch: 4 facets, area 0.25" in found.out
+
+
+@pytest.mark.filterwarnings("ignore")
+def test_hexahedra_of_20_nodes_of_gmsh(tmp_path):
+    """Requirement: curved cells of 20 nodes have the volume of the shape functions of 20 nodes.
+
+    A quarter of a ring, of which VTK's file of 20 nodes is read by another reader.
+    """
+    meshio = pytest.importorskip("meshio")
+    shape = make_shape("ring", order=2, end_deg=90, **(RING | {"cells": (1, 2, 1)}))
+    mesh = Body("ring", shape).arrays()
+    write_mesh(mesh, tmp_path / "ring.vtu")
+    full = meshio.read(tmp_path / "ring.vtu")
+    cells = [b.data[:, :20] for b in full.cells if b.type == "hexahedron27"]
+    quads = [b.data[:, :8] for b in full.cells if b.type == "quad9"]
+    blocks = [("hexahedron20", np.concatenate(cells)), ("quad8", quads[0])]
+    numbers = [np.full(len(rows), k) for k, (_, rows) in enumerate(blocks, 1)]
+    given = meshio.Mesh(
+        full.points,
+        blocks,
+        cell_data={"gmsh:physical": numbers, "gmsh:geometrical": numbers},
+        field_data={"ring": np.array([1, 3]), "one": np.array([2, 2])},
+    )
+    given.write(tmp_path / "ring.msh", file_format="gmsh22", binary=False)
+    meshio.Mesh(full.points, blocks[:1]).write(tmp_path / "twenty.vtu")
+    found, other = file_arrays(tmp_path / "ring.msh"), file_arrays(tmp_path / "twenty.vtu")
+    assert found.degree == 2
+    assert list(found.facets) == ["ring.one"]
+    assert np.allclose(found.points[found.cells], other.points[other.cells], atol=1e-14)
