@@ -68,7 +68,91 @@ def test_polymer_bar_relaxes(cell: str, order: int) -> None:
     np.testing.assert_allclose(forces[2:], expected, rtol=1e-8)
 
 
+STEEL = {"E": 200.0, "nu": 0.3, "yield_stress": 1.0}
+HARD = STEEL | {"hardening": 9.0, "saturation": 0.4, "saturation_rate": 50.0}
+
+
+@pytest.mark.parametrize(
+    ("cell", "order"), [("hexahedron", 1), ("hexahedron", 2), ("tetrahedron", 2)]
+)
+def test_plastic_bar(cell: str, order: int) -> None:
+    """Requirement: a bar with free sides follows the flow curve, whatever the increments.
+
+    Source: `e = s/E + p`, `s = Y + H p + Q (1 - exp(-b p))`. Tolerance: 1e-8, Newton's method.
+    """
+    forces, _ = _pull(_bar("plastic", HARD, order, cell), [(0.008, 1), (0.02, 2)])
+    for z, force in zip((0.008, 0.014, 0.02), forces, strict=True):
+        p = z - force / 200.0
+        assert force == pytest.approx(1.0 + 9.0 * p - 0.4 * np.expm1(-50.0 * p), rel=1e-8)
+
+
+def test_plastic_bar_cycles() -> None:
+    """Requirement: Prager's hardening moves the elastic range of 2 Y with the stress (Bauschinger).
+
+    Source: from each turn on 2 Y elastic, then the slope `E C/(E + C)`. Tolerance: 1e-8, Newton's
+    method.
+    """
+    bar = _bar("plastic", STEEL | {"kinematic": 10.0})
+    forces, _ = _pull(bar, [(0.02, 2), (-0.02, 2), (0.0, 1)])
+    slope = 200.0 * 10.0 / 210.0
+    top = 1.0 + slope * (0.02 - 0.005)
+    bottom = top - 2.0 - slope * (0.04 - 0.01)
+    expected = [top, bottom, bottom + 2.0 + slope * (0.02 - 0.01)]
+    np.testing.assert_allclose([*forces[1::2][:2].tolist(), forces[4]], expected, rtol=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("model", "more"), [("plastic", {}), ("hill", {"lankford": [1.0, 1.0, 1.0]})]
+)
+def test_plastic_bar_at_finite_strain(model: str, more: dict[str, Any]) -> None:
+    """Requirement: to twice its length and back to pressure in logarithmic strain.
+
+    Source: `ln s = t/E + p` with t the Kirchhoff stress, force `t/s` over the area of before; on
+    the way back yield at `-t`, isotropic hardening. Hill's condition with r = 1 is that of von
+    Mises. Tolerance: 1e-8, Newton's method.
+    """
+    given = STEEL | more | {"hardening": 9.0, "strain": "logarithmic"}
+    forces, _ = _pull(_bar(model, given), [(1.0, 10), (0.5, 5)])
+    slope = 200.0 * 9.0 / 209.0
+    top = 1.0 + slope * (np.log(2.0) - 1.0 / 200.0)
+    back = -top - slope * (np.log(2.0 / 1.5) - 2.0 * top / 200.0)
+    np.testing.assert_allclose(forces[[9, 14]], [top / 2.0, back / 1.5], rtol=1e-8)
+
+
+@pytest.mark.parametrize("strain", ["small", "logarithmic"])
+def test_patch_of_plastic_cells(strain: str) -> None:
+    """Requirement: distorted cells under displacements that are linear in place are all strained
+    alike, in elastic and plastic range.
+
+    Source: patch test. Tolerance: 1e-9 of the stress, Newton's method.
+    """
+    model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (3, 3, 3), cell="tetrahedron")})
+    x = model.mesh.geometry.x
+    inside = ((x > 1e-9) & (x < 1.0 - 1e-9)).all(axis=1)
+    x[inside] += np.random.default_rng(3).uniform(-0.08, 0.08, size=(inside.sum(), 3))
+    law = make_material("plastic", **HARD, strain=strain)
+    problem = Problem(model, {"bar": law})
+    sides = {"left": 0, "right": 1, "front": 0, "back": 1, "bottom": 0, "top": 1}
+    held = {
+        f"bar.{side}": {"xyz"[i // 2]: (0.02, -0.008, 0.004)[i // 2] * end}
+        for i, (side, end) in enumerate(sides.items())
+    }
+    for _ in Solver(problem, [Step("strain", 2, held)]).run():
+        pass
+    _, stress = problem.bulk.histories["bar"].stress()
+    flat = stress.reshape(-1, 9)
+    assert np.abs(flat - flat[0]).max() < 1e-9 * np.abs(flat).max()
+    p = problem.bulk.histories["bar"].variables["equivalent_plastic_strain"].x.array
+    assert p.min() > 0.01
+
+
 MATERIALS = {
+    "plastic": 'model = "plastic"\nE = 1000\nnu = 0.3\nyield_stress = 15\nhardening = 50\n'
+    "kinematic = 100\nrecovery = 5",
+    "plastic-log": 'model = "plastic"\nE = 1000\nnu = 0.3\nstrain = "logarithmic"\n'
+    "flow_curve = [[0, 15], [0.1, 20]]",
+    "hill": 'model = "hill"\nE = 1000\nnu = 0.3\nyield_stress = 15\nhardening = 50\n'
+    'lankford = [1.8, 1.2, 2.1]\nfirst = [1, 1, 0]\nstrain = "logarithmic"',
     "viscoelastic": 'model = "viscoelastic"\nE = 1000\nnu = 0.3\ng = [0.3, 0.2]\ntau = [0.3, 2.0]',
     "viscoelastic-log": 'model = "viscoelastic"\nE = 1000\nnu = 0.3\ng = [0.3]\ntau = [0.3]\n'
     'strain = "logarithmic"',
@@ -77,6 +161,8 @@ MATERIALS = {
 BALANCED = [
     ("viscoelastic", POLYMER, 2),
     ("viscoelastic", POLYMER | {"strain": "logarithmic"}, 2),
+    ("plastic", HARD | {"kinematic": 20.0, "recovery": 5.0}, 1),
+    ("plastic", HARD | {"strain": "logarithmic"}, 1),
 ]
 CASE = """
 [mesh.box.block]
@@ -174,13 +260,13 @@ def test_strategies_agree(tmp_path: Path, material: str) -> None:
 def test_energy_balance_under_friction(tmp_path: Path, material: str) -> None:
     """Requirement: work is what is stored, dissipated in the body and by friction.
 
-    Source: balance of energy. Tolerance: 1 % of the work at ten increments: friction and materials
-    book what they dissipate to first order. What is dissipated never falls.
+    Source: balance of energy. Tolerance: 2 % of the work at twenty increments: friction and yield
+    conditions book what is dissipated to first order. What is dissipated never falls.
     """
-    case = _written(tmp_path, material, n=2)
+    case = _written(tmp_path, material, n=4)
     assert main(["run", str(case), "-o", str(tmp_path / "out")]) == 0
     history = Results(tmp_path / "out").history
-    assert abs(history["energy.residual"][-1]) < 0.01 * history["energy.external"][-1]
+    assert abs(history["energy.residual"][-1]) < 0.02 * history["energy.external"][-1]
     lost = history["energy.inelastic"]
     assert lost[-1] > 0.0
     assert np.diff(lost).min() >= -1e-12 * lost[-1]

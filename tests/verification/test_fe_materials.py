@@ -132,7 +132,10 @@ def _pulled(material: Material, cell: str, order: int) -> tuple[float, Problem]:
 def test_every_nonlinear_material_is_here() -> None:
     """A registered material is verified here, with directions or a history in a file of its own,
     or linear."""
-    directed, history = {"orthotropic", "transversely-isotropic"}, {"viscoelastic"}
+    directed, history = (
+        {"orthotropic", "transversely-isotropic"},
+        {"viscoelastic", "plastic", "hill"},
+    )
     assert {m.name for m in materials()} == {*STRESS, *directed, *history, "linear-elastic"}
 
 

@@ -17,6 +17,7 @@ from anisocontact.bulk.materials import LinearElastic, Material, small_strain
 from anisocontact.bulk.nonlinear import NonlinearBulk
 from anisocontact.bulk.ogden import Ogden
 from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
+from anisocontact.bulk.plasticity import Hill, Plastic
 from anisocontact.bulk.point_law import (
     BodyPoints,
     ElasticVolume,
@@ -33,6 +34,7 @@ __all__ = [
     "BodyHistory",
     "BodyPoints",
     "ElasticVolume",
+    "Hill",
     "HistoryMaterial",
     "LinearBulk",
     "LinearElastic",
@@ -43,6 +45,7 @@ __all__ = [
     "NonlinearBulk",
     "Ogden",
     "Orthotropic",
+    "Plastic",
     "PointLaw",
     "PointResult",
     "PointState",

@@ -15,6 +15,7 @@ from anisocontact.bulk.hyperelastic import (
 from anisocontact.bulk.materials import LinearElastic, Material
 from anisocontact.bulk.ogden import Ogden
 from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
+from anisocontact.bulk.plasticity import Hill, Plastic
 from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
 from anisocontact.bulk.viscoelastic import Viscoelastic
 
@@ -31,6 +32,8 @@ _MATERIALS: dict[str, type[Any]] = {
         Yeoh,
         Ogden,
         Viscoelastic,
+        Plastic,
+        Hill,
     )
 }
 

@@ -17,6 +17,7 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.bulk.axes import AROUND, SECOND, MaterialAxes, first_axis
 from anisocontact.bulk.hyperelastic import Hyperelastic
 from anisocontact.bulk.materials import Density
 
@@ -25,24 +26,6 @@ Floats = npt.NDArray[np.float64]
 #: Pairs of axes of the shear components, after the three normal ones.
 _SHEARS = ((0, 1), (0, 2), (1, 2))
 _STRAINS = ("small", "green-lagrange")
-_SECOND = Parameter(
-    "second",
-    "vector",
-    "1",
-    "second axis, made orthogonal to the first",
-    "nonzero",
-    False,
-    (0.0, 1.0, 0.0),
-)
-_AROUND = Parameter(
-    "around",
-    "axis",
-    "length",
-    "axis of a cylinder: the first axis is then outwards from it, the second around it, the third "
-    "along it",
-    "nonzero",
-    False,
-)
 _STRAIN = Parameter(
     "strain",
     "choice",
@@ -52,10 +35,6 @@ _STRAIN = Parameter(
     default=(0.0,),
     choices=_STRAINS,
 )
-
-
-def _first(name: str, doc: str) -> Parameter:
-    return Parameter(name, "vector", "1", doc, "nonzero", False, (1.0, 0.0, 0.0))
 
 
 def stiffness(moduli: Floats, ratios: Floats, shears: Floats) -> Floats:
@@ -107,8 +86,8 @@ class _Directed(Hyperelastic):
         #: Largest of the moduli: a penalty is to be stiff against every direction.
         self.young = float(1.0 / np.linalg.inv(self._stiffness).diagonal()[:3].min())
         self.linear = _STRAINS[int(given["strain"][0])] == "small"
-        self._around = np.array(given["around"]).reshape(-1, 3)
-        self._axes = self._constant_axes(given, field)
+        first, second = self._directions(given)
+        self._axes = MaterialAxes(first, second, given["around"], field)
 
     @abstractmethod
     def _of(self, given: dict[str, Floats]) -> Floats:
@@ -118,34 +97,9 @@ class _Directed(Hyperelastic):
     def _directions(self, given: dict[str, list[float]]) -> tuple[Floats, Floats]:
         """Two vectors that span the plane of the first two axes."""
 
-    def _constant_axes(self, given: dict[str, list[float]], field: str) -> Floats:
-        """The three axes as columns, where they are the same everywhere, (3, 3)."""
-        first, second = self._directions(given)
-        first = first / np.linalg.norm(first)
-        second = second / np.linalg.norm(second)
-        across = second - (second @ first) * first
-        if np.linalg.norm(across) < 1e-6:
-            text = "second is parallel to the first axis, another direction is needed"
-            raise InputError(text, field=f"{field}.second" if field else "second")
-        across /= np.linalg.norm(across)
-        return np.column_stack([first, across, np.cross(first, across)])
-
-    def _rotation(self, u: Any) -> Any:
-        """The axes as columns at a point of the reference configuration, UFL."""
-        domain = ufl.domain.extract_unique_domain(u)
-        if not len(self._around):
-            return fem.Constant(domain, self._axes)
-        point, axis = self._around
-        along = fem.Constant(domain, axis / np.linalg.norm(axis))
-        arm = ufl.SpatialCoordinate(domain) - fem.Constant(domain, point)
-        out = arm - ufl.dot(arm, along) * along
-        out = out / ufl.sqrt(ufl.dot(out, out))
-        around = ufl.cross(along, out)
-        return ufl.as_matrix([[out[i], around[i], along[i]] for i in range(3)])
-
     def _along_axes(self, u: Any, strain: Any) -> tuple[Any, Any]:
         """Stress in the order of `stiffness` and strain, both along the axes, UFL, (6,)."""
-        axes = self._rotation(u)
+        axes = self._axes.form(u)
         e = axes.T * strain * axes
         listed = ufl.as_vector([*(e[i, i] for i in range(3)), *(2.0 * e[i, j] for i, j in _SHEARS)])
         domain = ufl.domain.extract_unique_domain(u)
@@ -162,7 +116,7 @@ class _Directed(Hyperelastic):
         """
         s, _ = self._along_axes(u, ufl.sym(ufl.grad(u)))
         t = ufl.as_matrix([[s[0], s[3], s[4]], [s[3], s[1], s[5]], [s[4], s[5], s[2]]])
-        axes = self._rotation(u)
+        axes = self._axes.form(u)
         return axes * t * axes.T
 
     def _terms(self, u: Any, gradient: Any) -> list[Density]:
@@ -203,9 +157,9 @@ class Orthotropic(_Directed):
             Parameter("E", "vector", "stress", "Young's moduli along the three axes", "positive"),
             Parameter("nu", "vector", "1", "Poisson's ratios nu12, nu13, nu23"),
             Parameter("G", "vector", "stress", "shear moduli G12, G13, G23", "positive"),
-            _first("first", "first axis"),
-            _SECOND,
-            _AROUND,
+            first_axis("first", "first axis"),
+            SECOND,
+            AROUND,
             _STRAIN,
         ),
     )
@@ -247,7 +201,7 @@ class TransverselyIsotropic(_Directed):
             Parameter("nu_along", "scalar", "1", "strain across for one along the axis"),
             Parameter("nu_across", "scalar", "1", "Poisson's ratio in the plane across the axis"),
             Parameter("G_along", "scalar", "stress", "shear modulus along the axis", "positive"),
-            _first("along", "the axis"),
+            first_axis("along", "the axis"),
             Parameter(
                 "around",
                 "axis",
