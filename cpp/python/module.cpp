@@ -14,4 +14,5 @@ NB_MODULE(_core, m) {
   anisocontact::bindings::bind_interface(m);
   anisocontact::bindings::bind_search(m);
   anisocontact::bindings::bind_facet_interface(m);
+  anisocontact::bindings::bind_mortar(m);
 }

@@ -11,5 +11,6 @@ void bind_law(nanobind::module_& m);
 void bind_interface(nanobind::module_& m);
 void bind_search(nanobind::module_& m);
 void bind_facet_interface(nanobind::module_& m);
+void bind_mortar(nanobind::module_& m);
 
 }  // namespace anisocontact::bindings

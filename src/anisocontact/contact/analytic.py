@@ -60,7 +60,7 @@ class AnalyticAnswer:
         self.slave.quadrature.to_nodes(self.snapshot.response.traction, out, self.snapshot.areas)
 
     def couplings(self) -> list[Couplings]:
-        """As of `Answer`: a block for each facet, (m, 3 k, 3 k)."""
+        """As of `Answer`: a block for each facet, (m, 3 r, 3 k)."""
         quadrature, now, areas = (
             self.slave.quadrature,
             self.snapshot.response,
@@ -71,7 +71,8 @@ class AnalyticAnswer:
             blocks -= self.there.area_matrices(now.traction)
         if self.turned is not None:
             blocks -= quadrature.tangent_matrices(now.tangent_slave, areas)
-        return [(quadrature.nodes, quadrature.nodes, blocks)]
+        rows = quadrature.nodes[:, : quadrature.rows]
+        return [(rows, quadrature.nodes, blocks[:, : 3 * rows.shape[1]])]
 
     def by_derivative(self, other: AnalyticAnswer, stiffness: Floats) -> Self:
         """As of `Answer`."""

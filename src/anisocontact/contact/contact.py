@@ -116,6 +116,7 @@ class Contact:
         self_contact: bool = False,
         apart: float | None = None,
         overlaps: bool = False,
+        mortar: bool = False,
         name: str = "",
         **before: Unpack[Before],
     ) -> None:
@@ -130,6 +131,7 @@ class Contact:
             self_contact,
             apart,
             overlaps,
+            mortar,
         )
         self._compose(passes_of(model, slave, master, law, options), name)
 

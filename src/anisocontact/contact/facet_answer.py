@@ -200,7 +200,8 @@ class Evaluation:
             tangent: Whether derivatives are wanted.
         """
         slave, hit = self.sides.points, self.hit
-        found = self._found(law, state, dt, self.batch(state, tangent))
+        batch = self.batch(state, tangent)
+        found = found_on_all(self.sides.comm, law, state, dt, batch, self.by_points)
         lost = hit.status == FACET_STATUS.index("failed")
         response = Response(
             traction=found["traction"],
@@ -246,9 +247,22 @@ class Evaluation:
             "threads": self.sides.threads,
         }
 
-    def _found(self, law: FacetLaw, state: State, dt: float, batch: FacetBatch) -> dict[str, Any]:
-        evaluate = partial(law.evaluate, state, self.by_points, dt, batch)
-        return _on_all(self.sides.comm, evaluate) if law.in_python else evaluate()
+
+def found_on_all(
+    comm: Any, law: FacetLaw, state: State, dt: float, batch: FacetBatch, by_points: bool = True
+) -> dict[str, Any]:
+    """What a law answers for a batch; a mistake in a Python law is raised on every rank.
+
+    Args:
+        comm: Communicator of the mesh.
+        law: The law.
+        state: History of the points.
+        dt: Time increment.
+        batch: Points and facets.
+        by_points: Whether every point is to have a block, or those of one pair of facets share one.
+    """
+    evaluate = partial(law.evaluate, state, by_points, dt, batch)
+    return _on_all(comm, evaluate) if law.in_python else evaluate()
 
 
 def _on_all[T](comm: Any, ask: Callable[[], T]) -> T:

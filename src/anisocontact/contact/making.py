@@ -9,12 +9,14 @@ from typing import Any, TypedDict
 from anisocontact.base.errors import InputError
 from anisocontact.contact.analytic import AnalyticMaster
 from anisocontact.contact.facet_master import FacetMaster
-from anisocontact.contact.facet_mesh import facet_mesh
+from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
+from anisocontact.contact.mortar_master import MortarMaster
 from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import chosen_degree, facet_quadrature
 from anisocontact.contact.sides import check_sides, make_sides
+from anisocontact.contact.slave_nodes import SlaveNodes
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model
@@ -42,6 +44,7 @@ class Options:
     self_contact: bool = False
     apart: float | None = None
     overlaps: bool = False
+    mortar: bool = False
 
     def chosen_degree(self, model: Model) -> int:
         """Degree of the quadrature."""
@@ -117,10 +120,26 @@ def _on_surface(
     quadrature = facet_quadrature(model.space, facets, options.chosen_degree(model))
     comm = model.mesh.comm
     current = options.current_area is not False
-    flip = facet_mesh(model.space, facets).flip
-    points = SlavePoints(quadrature, flip, current_area=current, comm=comm)
+    if options.mortar:
+        points: SlavePoints = _slave_nodes(model, slave, facet_mesh(model.space, facets), current)
+    else:
+        flip = facet_mesh(model.space, facets).flip
+        points = SlavePoints(quadrature, flip, current_area=current, comm=comm)
     found = AnalyticMaster(interface, body, points, comm)
     return Pass(model.space, slave, points, found, interface, **options.of_pass)
+
+
+def _slave_nodes(model: Model, slave: str, mesh: FacetMesh, current_area: bool) -> SlaveNodes:
+    """Slave nodes of a mortar contact.
+
+    Raises:
+        InputError: There are several processes.
+    """
+    comm = model.mesh.comm
+    if comm.size > 1:
+        text = f"mortar given, on {comm.size} processes points are needed: mortar works on one"
+        raise InputError(text, "pass")
+    return SlaveNodes(mesh, node_positions(model.space), current_area=current_area, comm=comm)
 
 
 def _laws(law: object) -> ContactLaw:
@@ -194,6 +213,15 @@ def facet_pass(
         options.current_area is not False,
         weight,
     )
+    if options.mortar:
+        nodes = _slave_nodes(model, slave, sides.slave, sides.points.current_area)
+        met = MortarMaster(
+            replace(sides, points=nodes, excluded=None),
+            law,
+            group=master,
+            size=facet_size(model, master),
+        )
+        return Pass(model.space, slave, nodes, met, law, **options.of_pass)
     found = FacetMaster(
         sides,
         law,

@@ -76,7 +76,7 @@ def overlaps(
     planes = _Planes.of(slave, shapes, now)
     flat = planes.flat(np.arange(len(x)), x)
     border = flat[:, facet_corners(slave.topology)]
-    f, g = _facing(slave, shapes, x, surface, master, now, reach, excluded)
+    f, g = facing(slave, shapes, x, surface, master, now, reach, excluded)
     polygons = planes.flat(f, now[master.nodes[g][:, facet_corners(master.topology)]])
     counts = np.full(len(f), polygons.shape[1])
     for i in range(border.shape[1]):
@@ -130,7 +130,7 @@ def largest_radius(slave: FacetMesh, now: Floats) -> float:
     return float(_ball(now[slave.nodes])[1].max(initial=0.0))
 
 
-def _facing(
+def facing(
     slave: FacetMesh,
     shapes: FacetShapes,
     x: Floats,

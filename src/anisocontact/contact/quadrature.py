@@ -28,6 +28,7 @@ class FacetQuadrature:
         reference: Position of each point in the reference configuration, (m q, 3), length.
         gradient: Derivatives of the basis along the two coordinates of the facet, (m, q, k, 2).
         tangents: Derivatives of the position in the reference configuration, (m, q, 2, 3), length.
+        rows: Number of the first nodes whose basis functions are not all zero; all if None.
     """
 
     nodes: Ints
@@ -36,6 +37,7 @@ class FacetQuadrature:
     reference: Floats
     gradient: Floats
     tangents: Floats
+    rows: int | None = None
 
     @property
     def count(self) -> int:

@@ -1,0 +1,93 @@
+// Mortar weights of slave nodes.
+
+#include "anisocontact/kernel/parallel.hpp"
+#include "anisocontact/mortar/nodal_weights.hpp"
+#include "arrays.hpp"
+#include "rooms.hpp"
+
+#include <nanobind/stl/string.h>
+
+namespace anisocontact::bindings {
+
+namespace {
+
+using Indices = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Table = nb::ndarray<const std::int32_t, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
+using Offsets = nb::ndarray<const std::int64_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+
+surface::Topology named(const std::string& name) {
+  const auto t = surface::topology_of(name);
+  if (!t) throw std::invalid_argument("no topology " + name);
+  return *t;
+}
+
+/// Mortar weights of the nodes of slave facets, see cpp/include/anisocontact/mortar/.
+nb::dict mortar_weights(const std::string& slave_topology, const Table& slave,
+                        const std::string& master_topology, const Table& master, const Points& now,
+                        const Points& reference, const Offsets& pair_offsets,
+                        const Indices& pair_facets, const Table& patch,
+                        const Offsets& around_offsets, const Indices& around_facets,
+                        const Indices& around_local, const Offsets& more_offsets,
+                        const Indices& more_nodes, const Coordinates& rule_points,
+                        const Scalars& rule_weights, bool current_area, bool tangent,
+                        std::size_t threads) {
+  const mortar::MortarInput in{{named(slave_topology), slave.data(), slave.shape(0)},
+                               {named(master_topology), master.data(), master.shape(0)},
+                               now.data(),
+                               current_area ? nullptr : reference.data(),
+                               {rule_points.data(), rule_weights.data(), rule_weights.shape(0)},
+                               tangent};
+  const std::size_t n = patch.shape(0);
+  const mortar::ListView pairs{pair_offsets.data(), pair_facets.data()},
+      more{more_offsets.data(), more_nodes.data()};
+  const mortar::Patches patches{{around_offsets.data(), around_facets.data()},
+                                {around_offsets.data(), around_local.data()},
+                                patch.data(),
+                                patch.shape(1)};
+  std::vector<mortar::DualWeights> facets(in.slave.count);
+  std::vector<std::vector<std::int32_t>> masters(n);
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_for(in.slave.count, threads, [&](std::size_t f) {
+      facets[f] = mortar::dual_weights(in, f, pairs.begin(f), pairs.size(f));
+    });
+    kernel::parallel_for(n, threads, [&](std::size_t i) {
+      masters[i] = mortar::masters_of(facets, patches, more, i);
+    });
+  }
+  std::size_t most = 1;
+  for (const auto& m : masters) most = std::max(most, m.size());
+  const std::size_t columns = 3 * (patch.shape(1) + most), rows = tangent ? n : 0;
+  Array<std::int32_t> nodes({n, most}, unset);
+  std::fill_n(nodes.data, n * most, -1);
+  Array<double> area({n}), weight({n, most}), d_area({rows, columns}),
+      d_weight({rows, most, columns});
+  {
+    nb::gil_scoped_release free;
+    const mortar::NodalWeights out{most,        nodes.data,  area.data,
+                                   weight.data, d_area.data, d_weight.data};
+    kernel::parallel_for(n, threads, [&](std::size_t i) {
+      mortar::collect(in, facets, patches, masters[i], i, out);
+    });
+  }
+  nb::dict r;
+  r["masters"] = nodes.array;
+  r["area"] = area.array;
+  r["weight"] = weight.array;
+  r["d_area"] = d_area.array;
+  r["d_weight"] = d_weight.array;
+  return r;
+}
+
+}  // namespace
+
+void bind_mortar(nb::module_& m) {
+  m.def("mortar_weights", &mortar_weights, nb::arg("slave_topology"), nb::arg("slave"),
+        nb::arg("master_topology"), nb::arg("master"), nb::arg("now"), nb::arg("reference"),
+        nb::arg("pair_offsets"), nb::arg("pair_facets"), nb::arg("patch"),
+        nb::arg("around_offsets"), nb::arg("around_facets"), nb::arg("around_local"),
+        nb::arg("more_offsets"), nb::arg("more_nodes"), nb::arg("rule_points"),
+        nb::arg("rule_weights"), nb::arg("current_area"), nb::arg("tangent"), nb::arg("threads"));
+}
+
+}  // namespace anisocontact::bindings

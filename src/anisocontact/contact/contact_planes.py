@@ -1,0 +1,208 @@
+"""Contact planes at the slave nodes of a mortar contact: what the laws see of both bodies there.
+
+The plane of a node has the averaged normal n of the slave, towards the slave, and passes through
+the mean of the master that is opposite, with the weights of the node,
+
+    y_i = sum_k W_ik y_k / D_i ,    g_i = n . (x_i - y_i) .
+
+Material tangents of the master, at the place closest to the node, are turned from its normal to n.
+The slip of an increment is that of x_i against the material points that were opposite at its
+beginning, sum_k W_ik y_k / D_i with the weights of then, so that it is objective
+[Puso Laursen 2004; Popp Gitterle Gee Wall 2010]. To the laws the two planes are facets of three
+nodes, so that history is transported and tangents are exact as on any facet.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+#: Nodes that stand for a slave node and its planes: the slave with two tangents, the plane of now
+#: and that of the accepted increment.
+NODES = 9
+
+
+@dataclass(frozen=True)
+class Opposite:
+    """Material of the master opposite to slave nodes.
+
+    Attributes:
+        masters: Nodes, (n, k), -1 for none.
+        shares: Of each in the mean position, (n, k).
+        facet: Facet at which tangents are taken, (n,), -1 for none.
+        nodes: Its nodes, (n, j).
+        gradient: Derivatives of its shape functions there, (n, 2, j).
+    """
+
+    masters: Ints
+    shares: Floats
+    facet: Ints
+    nodes: Ints
+    gradient: Floats
+
+    def mean(self, x: Floats) -> Floats:
+        """Mean position, (n, 3), length, of nodes at x, (nodes, 3)."""
+        return np.asarray(np.einsum("nk,nki->ni", self.shares, x[np.maximum(self.masters, 0)]))
+
+    def tangents(self, x: Floats) -> Floats:
+        """Tangents, (n, 2, 3), length, of nodes at x, (nodes, 3)."""
+        found = np.einsum("nak,nki->nai", self.gradient, x[self.nodes])
+        found[self.facet < 0] = np.eye(3)[:2]
+        return np.asarray(found)
+
+    def named(self) -> Ints:
+        """All nodes of these, (n, k + j), -1 for none."""
+        facets = np.where(self.facet[:, None] >= 0, self.nodes, np.int32(-1))
+        return np.concatenate([self.masters, facets], axis=1).astype(np.int32)
+
+
+@dataclass(frozen=True)
+class Turned:
+    """Tangents of the master turned from its normal to that of the contact plane.
+
+    The turn is the least one, e = d - (d . n) / (1 + m . n) (m + n), m the normal of d_1, d_2.
+
+    Attributes:
+        tangents: d, (n, 2, 3), length.
+        normal: n, (n, 3).
+    """
+
+    tangents: Floats
+    normal: Floats
+
+    @cached_property
+    def own_normal(self) -> Floats:
+        """m, (n, 3)."""
+        cross = np.cross(self.tangents[:, 0], self.tangents[:, 1])
+        return np.asarray(cross / np.linalg.norm(cross, axis=1)[:, None])
+
+    @cached_property
+    def cosine(self) -> Floats:
+        """M . n, (n,)."""
+        return np.asarray(np.einsum("ni,ni->n", self.own_normal, self.normal))
+
+    @cached_property
+    def axes(self) -> Floats:
+        """e, (n, 2, 3), length."""
+        both = self.own_normal + self.normal
+        return np.asarray(self.tangents - self._fall[..., None] * both[:, None])
+
+    @cached_property
+    def _fall(self) -> Floats:
+        along = np.einsum("nai,ni->na", self.tangents, self.normal)
+        return np.asarray(along / (1.0 + self.cosine)[:, None])
+
+    def take(self, which: Ints) -> Turned:
+        """Those of some nodes, (p,)."""
+        return Turned(self.tangents[which], self.normal[which])
+
+    def pulled_back(self, by_axes: Floats) -> tuple[Floats, Floats]:
+        """Derivatives by d and by n from those by e.
+
+        Args:
+            by_axes: Rows of some numbers, by e_1 and e_2, (n, r, 2, 3).
+
+        Returns:
+            By d, (n, r, 2, 3), and by n, (n, r, 3).
+        """
+        m, n, share = self.own_normal, self.normal, 1.0 / (1.0 + self.cosine)
+        both = m + n
+        along = np.einsum("nrai,ni->nra", by_axes, both)  # of each fall
+        # dfall = (dd . n + d . dn) share - fall share (dm . n + m . dn)
+        by_share = -np.einsum("nra,na,n->nr", along, self._fall, -share)
+        by_d = by_axes - (along * share[:, None, None])[..., None] * n[:, None, None]
+        by_n = -np.einsum("nra,nai->nri", along * share[:, None, None], self.tangents)
+        by_n += by_share[..., None] * m[:, None]
+        by_m = by_share[..., None] * n[:, None]
+        fallen = np.einsum("nrai,na->nri", by_axes, self._fall)
+        by_n -= fallen
+        by_m -= fallen
+        # dm = - sum_a d^a (m . dd_a), d^a the dual tangents
+        metric = np.linalg.inv(self.tangents @ self.tangents.swapaxes(1, 2))
+        dual = metric @ self.tangents
+        stretch = np.einsum("nri,nai->nra", by_m, dual)
+        by_d -= stretch[..., None] * m[:, None, None]
+        return by_d, by_n
+
+
+@dataclass(frozen=True)
+class ContactPlanes:
+    """Slave nodes with their planes, of now and of the accepted increment.
+
+    Attributes:
+        slave: Positions of the slave points, (n, 3), length.
+        tangents: Tangents of the slave there, (n, 2, 3), length.
+        mean: Mean position of the master opposite, (n, 3), length.
+        now: Its tangents, turned.
+        mean_then: Mean position now of what was opposite at the accepted increment, (n, 3), length.
+        then: Tangents now at the place of then, turned.
+    """
+
+    slave: Floats
+    tangents: Floats
+    mean: Floats
+    now: Turned
+    mean_then: Floats
+    then: Turned
+
+    @property
+    def normal(self) -> Floats:
+        """Averaged normal, from the master to the slave, (n, 3)."""
+        return self.now.normal
+
+    @cached_property
+    def gap(self) -> Floats:
+        """Weighted gap over the weight, (n,), length."""
+        return np.asarray(np.einsum("ni,ni->n", self.slave - self.mean, self.normal))
+
+    @cached_property
+    def xi(self) -> Floats:
+        """Coordinates of the slave point in the axes of the plane, (n, 2)."""
+        axes = self.now.axes
+        right = np.einsum("nai,ni->na", axes, self.slave - self.mean)
+        return np.asarray(np.linalg.solve(axes @ axes.swapaxes(1, 2), right[..., None])[..., 0])
+
+    def nodes(self) -> Floats:
+        """The nodes that stand for all this, (9 n, 3), length: x and x + tangents, then the
+        same of the plane of now, and of the one of then, which the laws turn themselves.
+        """
+        parts = (
+            (self.slave, self.tangents),
+            (self.mean, self.now.axes),
+            (self.mean_then, self.then.tangents),
+        )
+        found = [np.concatenate([p[:, None], p[:, None] + t], axis=1) for p, t in parts]
+        return np.ascontiguousarray(np.concatenate(found, axis=1).reshape(-1, 3))
+
+
+def averaged_normal(tangents: Floats) -> Floats:
+    """Normal towards the slave from its tangents, which turn about the outward one, (n, 3)."""
+    cross = np.cross(tangents[:, 0], tangents[:, 1])
+    return np.asarray(-cross / np.linalg.norm(cross, axis=1)[:, None])
+
+
+def by_slave_tangents(tangents: Floats, by_normal: Floats) -> Floats:
+    """Derivatives by the tangents of the slave from those by the averaged normal.
+
+    Args:
+        tangents: Of the slave, (n, 2, 3), length.
+        by_normal: Rows of some numbers, (n, r, 3).
+
+    Returns:
+        By both tangents, (n, r, 2, 3).
+    """
+    cross = np.cross(tangents[:, 0], tangents[:, 1])
+    size = np.linalg.norm(cross, axis=1)
+    unit = cross / size[:, None]
+    # n = - unit; d unit = (1 - u u) (dt_1 x t_2 + t_1 x dt_2) / size
+    k = -(by_normal - np.einsum("nri,ni->nr", by_normal, unit)[..., None] * unit[:, None])
+    k = k / size[:, None, None]
+    first = np.cross(tangents[:, None, 1], k)
+    second = np.cross(k, tangents[:, None, 0])
+    return np.stack([first, second], axis=2)

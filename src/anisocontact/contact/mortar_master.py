@@ -1,0 +1,338 @@
+"""Facets of a mesh as a master that slave nodes meet through dual mortar weights."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any, override
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.contact_planes import (
+    NODES,
+    ContactPlanes,
+    Opposite,
+    Turned,
+    averaged_normal,
+)
+from anisocontact.contact.facet_answer import OFF, found_on_all
+from anisocontact.contact.facet_master import FacetMaster
+from anisocontact.contact.history import Snapshot
+from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
+from anisocontact.contact.mortar_reach import mortar_reachable
+from anisocontact.contact.mortar_weights import mortar_weights
+from anisocontact.contact.point_tangent import Nodes
+from anisocontact.contact.reachable import NodePairs
+from anisocontact.contact.sides import Sides
+from anisocontact.contact.slave_nodes import SlaveNodes
+from anisocontact.interface import ContactLaw, Response, State
+from anisocontact.interface.contact_law import FacetBatch, FacetLaw
+from anisocontact.interface.failed_point import OnFacets, one_point
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.surfaces.facets import FACET_STATUS, TOPOLOGIES, FacetProjections
+
+Mask = npt.NDArray[np.bool_]
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+#: Gap up to which a node may be in contact, as a share of the size of the facets: rounding.
+NEAR = 1e-6
+#: Share of its weight that has to be covered for a node to carry traction.
+COVERED = 1e-4
+#: Least cosine between the averaged normal and that of the master below a node.
+OPPOSED = 0.1
+
+
+class MortarMaster(FacetMaster):
+    """Facets of the master below slave nodes, where both are now, see `Master`.
+
+    Laws are evaluated in contact planes at the slave nodes, `ContactPlanes`; forces act with the
+    mortar weights.
+
+    Args:
+        sides: Slave nodes and facets.
+        law: Laws of the interface.
+        group: Facet group of the master.
+        size: Length of its facets.
+    """
+
+    def __init__(self, sides: Sides, law: ContactLaw, *, group: str, size: float) -> None:
+        assert isinstance(sides.points, SlaveNodes)
+        self._points: SlaveNodes = sides.points
+        n = len(sides.points.facet)
+        none = np.full((n, 1), -1, dtype=np.int32)
+        width = sides.master.nodes.shape[1]
+        self._then = Opposite(
+            none,
+            np.zeros((n, 1)),
+            none[:, 0],
+            np.zeros((n, width), dtype=np.int32),
+            np.zeros((n, 2, width)),
+        )
+        super().__init__(sides, law, group=group, size=size, mirrored=False, overlaps=False)
+        self._at = self._placed()
+
+    def _placed(self) -> MortarState:
+        """The slave nodes, their weights and planes where the nodes are."""
+        sides, points, now = self.sides, self._points, self._nodes.now
+        opposite = self._tangent_places()
+        more = np.concatenate([opposite.named(), self._then.named()], axis=1)
+        weights = mortar_weights(sides, points.around, now, more, current_area=points.current_area)
+        opposite = Opposite(
+            weights.masters, weights.shares, opposite.facet, opposite.nodes, opposite.gradient
+        )
+        tangents = points.at(now).tangents[:, 0]
+        normal = averaged_normal(tangents)
+        planes = ContactPlanes(
+            points.positions(now),
+            tangents,
+            opposite.mean(now),
+            Turned(opposite.tangents(now), normal),
+            self._then.mean(now),
+            Turned(self._then.tangents(now), normal),
+        )
+        return MortarState(points.quadrature, weights, planes, (opposite, self._then), now)
+
+    def _tangent_places(self) -> Opposite:
+        """Places on the master that are closest to the slave nodes."""
+        hit, nodes = self._hint, self.sides.master.nodes
+        there = hit.status <= FACET_STATUS.index("off")
+        facet = np.where(there, hit.facet, -1).astype(np.int32)
+        which = np.maximum(facet, 0)
+        _, gradient, _ = self.sides.surface.shapes(which, np.nan_to_num(hit.xi))
+        none = np.zeros((len(facet), 0))
+        return Opposite(
+            none.astype(np.int32),
+            none,
+            facet,
+            nodes[which],
+            np.ascontiguousarray(gradient[:, : nodes.shape[1]].swapaxes(1, 2)),
+        )
+
+    @property
+    def _located(self) -> Mask:
+        """Slave nodes with a master opposite."""
+        at = self._at
+        covered = at.weights.area > COVERED * self._points.quadrature.areas
+        opposed = at.planes.now.cosine > OPPOSED
+        return np.asarray(covered & opposed & (at.opposite[0].facet >= 0))
+
+    @override
+    def initial_state(self) -> State:
+        state = np.zeros(len(self._points.facet), dtype=self._dtype)
+        located = self._located
+        state["facet"] = np.where(located, np.arange(len(state)), -1)
+        state["xi"][located] = self._at.planes.xi[located]
+        state["origin"] = state["xi"]
+        state["gap"][located] = self._at.planes.gap[located]
+        self._then = self._at.opposite[0]
+        self._count_as_then(state)
+        self._at = self._placed()
+        return state
+
+    def _count_as_then(self, state: State) -> None:
+        """Let states refer to the planes of the accepted increment."""
+        count = len(state)
+        state["facet"] = np.where(state["facet"] >= 0, state["facet"] % count + count, -1)
+
+    @override
+    def place(self, u: Floats, *histories: State) -> bool:
+        self._nodes = Nodes(self.sides.reference + u, u.copy())
+        self._hint = self.sides.project(self._nodes.now, self._hint)
+        self._at = self._placed()
+        return False
+
+    @override
+    def answer(
+        self,
+        state: State,
+        dt: float,
+        *,
+        tangent: bool = True,
+        derivative: bool = False,
+        separate: bool = False,
+    ) -> Any:
+        law = self._derivative if derivative else self._law
+        return self._answer(law, state, dt, tangent)
+
+    def _answer(self, law: FacetLaw, state: State, dt: float, tangent: bool) -> MortarAnswer:
+        at = self._at
+        batch = self._batch(state, tangent)
+        found = found_on_all(self._comm, law, state, dt, batch)
+        failed = self._hint.status == FACET_STATUS.index("failed")
+        response = Response(
+            traction=found["traction"],
+            tangent=np.empty((0, 3, 3)),
+            state=found["state"],
+            normal=found["normal"],
+            directions_adhesion=found["adhesion_axes"],
+            directions_friction=found["friction_axes"],
+            failure=np.where(failed, np.int8(1), found["failure"]),
+        )
+        which = np.flatnonzero(response.status != 0).astype(np.int32)
+        snapshot = Snapshot(at.planes.slave, at.weights.area, response)
+        by_nodes = -found["tangent"][which, :3] if tangent else np.zeros((len(which), 3, 27))
+        return MortarAnswer(at, snapshot, found["stiffness"] * at.weights.area, which, by_nodes)
+
+    def _batch(self, state: State, tangent: bool = True) -> FacetBatch:
+        """Slave nodes and planes as the core takes them."""
+        at, n = self._at, len(state)
+        located = self._located
+        first = NODES * np.arange(n, dtype=np.int32)[:, None]
+        three = np.arange(3, dtype=np.int32)
+        touches = at.planes.gap - state["offset"] <= NEAR * self._points.size
+        unit = np.tile([1.0, 0.0, 0.0], (n, 1))
+        edges = np.tile([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]], (n, 1, 1))
+        kinds = np.full(2 * n, list(TOPOLOGIES).index("tri3"), dtype=np.int8)
+        return {
+            "slave_nodes": first + three,
+            "slave_shape": unit,
+            "slave_gradient": edges,
+            "weight": np.ones(n),
+            "current_area": False,
+            "now": at.planes.nodes(),
+            "reference": self._reference_nodes(),
+            "connectivity": np.concatenate([first + 3 + three, first + 6 + three]),
+            "topology": kinds,
+            "flip": np.zeros(2 * n, dtype=bool),
+            "facet": np.arange(n, dtype=np.int32),
+            "xi": np.where(located[:, None], at.planes.xi, 0.0),
+            "feature": np.where(located, np.int8(0), np.int8(OFF)),
+            "edge": np.zeros((n, 2)),
+            "near": located & (touches | (state["multiplier"] > 0.0)),
+            "tangent": tangent,
+            "threads": self.sides.threads,
+        }
+
+    def _reference_nodes(self) -> Floats:
+        """The nodes of slave and planes in the reference configuration, where directions are."""
+        x, quadrature = self.sides.reference, self._points.quadrature
+        opposite = self._at.opposite[0]
+        parts = (
+            (quadrature.reference, quadrature.tangents[:, 0]),
+            (opposite.mean(x), opposite.tangents(x)),
+        )
+        found = [np.concatenate([p[:, None], p[:, None] + t], axis=1) for p, t in parts]
+        found.append(np.zeros_like(found[0]))
+        return np.ascontiguousarray(np.concatenate(found, axis=1).reshape(-1, 3))
+
+    @override
+    def failed_point(self, i: int, state: State, dt: float, **of_point: Any) -> OnFacets:
+        batch, own = one_point(self._batch(state), i, state)
+        return OnFacets(
+            **of_point,
+            position=self._at.planes.slave[i],
+            dt=dt,
+            state=own,
+            law=self._given,
+            mirrored=False,
+            batch=batch,
+        )
+
+    @override
+    def settled(self, answer: Any) -> Any:
+        return answer
+
+    @override
+    def linear(self, answer: Any) -> Any:
+        return MortarLinear(lambda: self._nodes.moved, answer)
+
+    @override
+    def here(self, state: State, dt: float) -> State:
+        there = state.copy()
+        located = self._located
+        there["facet"] = np.where(located, np.arange(len(state)), -1)
+        there["xi"] = np.where(located[:, None], self._at.planes.xi, 0.0)
+        return there
+
+    @override
+    def at(self, state: State) -> tuple[Floats, Floats]:
+        planes, count = self._at.planes, len(state)
+        then = (state["facet"] >= count)[:, None]
+        tangents = np.where(then[:, :, None], planes.then.axes, planes.now.axes)
+        tangents[state["facet"] < 0] = np.eye(3)[:2]
+        places = np.where(then, planes.mean_then, planes.mean)
+        return places + np.einsum("na,nai->ni", state["xi"], tangents), tangents
+
+    @override
+    def feet(self) -> Ints:
+        named = self._at.weights.masters
+        return np.unique(named[named >= 0])
+
+    @override
+    def probe(
+        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
+    ) -> npt.NDArray[np.int8]:
+        law = ContactLaw(*laws).pairs(False)
+        failure = self._answer(law, state, 1.0, False).snapshot.response.failure
+        return np.asarray(failure, dtype=np.int8)
+
+    @override
+    def reachable(self, way: Floats, margin: float, hops: int) -> list[NodePairs]:
+        return mortar_reachable(self.sides, self._points, self._nodes.now, way, margin)
+
+    @override
+    def slid(self, state: State) -> Floats:
+        planes = self._at.planes
+        before = planes.mean_then + np.einsum("na,nai->ni", state["xi"], planes.then.axes)
+        way = planes.slave - planes.gap[:, None] * planes.normal - before
+        way[~(self._located & (state["facet"] >= 0))] = 0.0
+        return np.asarray(way)
+
+    @override
+    def footing(self, count: int) -> npt.NDArray[np.int64]:
+        return np.zeros(count, dtype=np.int64)
+
+    @override
+    def hold(self, points: Mask) -> None:
+        return
+
+    @override
+    def strayed(self, count: int) -> Floats:
+        return np.zeros(count)
+
+    @override
+    def let_go(self) -> bool:
+        return False
+
+    @override
+    def hold_again(self) -> bool:
+        return False
+
+    @override
+    def commit(self, before: Snapshot, state: State, now: Snapshot | None) -> Floats:
+        if now is None:
+            return np.zeros((0, 3))
+        self._then = self._at.opposite[0]
+        self._count_as_then(now.response.state)
+        self._accepted = (self._nodes.now, self._hint)
+        self._at = self._placed()
+        lost = (state["facet"] >= 0) & (now.response.state["facet"] < 0)
+        return np.asarray(now.points[lost & (self._at.weights.area <= 0.0)])
+
+    @override
+    def roll_back(self, tried: bool) -> None:
+        if tried:
+            super().roll_back(tried)
+            self._at = self._placed()
+
+    @override
+    def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
+        hint, then = self._accepted[1], self._then
+        kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
+        kept |= {f"opposite.{f.name}": getattr(then, f.name).copy() for f in fields(then)}
+        return kept | {"reference": self._points.quadrature.reference.copy()}
+
+    @override
+    def restore(
+        self, kept: Mapping[str, npt.NDArray[Any]], u: Floats
+    ) -> Mapping[str, npt.NDArray[Any]]:
+        names = [f.name for f in fields(FacetProjections)]
+        self._hint = FacetProjections(*(np.array(kept[f"projection.{n}"]) for n in names))
+        self._then = Opposite(*(np.array(kept[f"opposite.{f.name}"]) for f in fields(Opposite)))
+        self._go_to(self.sides.reference + u)
+        self._nodes = Nodes(self._nodes.now, u.copy())
+        self._accepted = (self._nodes.now, self._hint)
+        self._at = self._placed()
+        return kept

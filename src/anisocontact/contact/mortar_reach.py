@@ -1,0 +1,65 @@
+"""Nodes that a mortar contact can couple where bodies move past each other."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+from scipy.sparse import csr_array
+
+from anisocontact.contact.reachable import NodePairs
+from anisocontact.contact.sides import Sides
+from anisocontact.contact.slave_nodes import SlaveNodes
+from anisocontact.surfaces.facets import FACET_STATUS
+
+Floats = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.int64]
+
+
+def mortar_reachable(
+    sides: Sides, points: SlaveNodes, now: Floats, way: Floats, margin: float
+) -> list[NodePairs]:
+    """Nodes that a tangent can couple where slave nodes go along a way.
+
+    A slave node couples the nodes around it with those of all facets of the master that these
+    facets may lie on, and the latter with each other.
+
+    Args:
+        sides: Slave and master; the surface is where the nodes are.
+        points: The slave nodes.
+        now: Positions of the nodes, (nodes, 3), length.
+        way: Displacement of each slave node against the master at places along the way, or one
+            for all, (w, n or 1, 3), length.
+        margin: How far beside the way a node can be, length.
+    """
+    nodes = points.nodes
+    own = nodes[:, : points.quadrature.rows]
+    if not (len(nodes) and len(sides.master.nodes)):
+        return [(own, nodes)]
+    x = points.positions(now)
+    radius = np.linalg.norm(now[nodes] - x[:, None], axis=2).max()
+    limit = sides.reach + float(np.linalg.norm(way, axis=2).max())
+    places = (x + way).reshape(-1, 3)
+    hit = sides.surface.project(places, max_distance=limit)
+    found = np.flatnonzero(hit.status <= FACET_STATUS.index("off"))
+    near = sides.surface.within(hit.position[found], margin + radius)
+    point = np.repeat(found, np.diff(near.offsets)) % len(x)
+    count = len(sides.master.nodes)
+    point, facet = np.divmod(np.unique(point * count + near.facets), count)
+    below = _incidence(point, sides.master.nodes[facet], len(x))
+    first, second = below.nonzero()
+    both = (below.T @ below).nonzero()
+    own_rows, own_masters = own[first], second[:, None].astype(np.int32)
+    around = nodes[first]
+    return [
+        (own, nodes),
+        (own_rows, own_masters),
+        (own_masters, around),
+        (both[0][:, None].astype(np.int32), both[1][:, None].astype(np.int32)),
+    ]
+
+
+def _incidence(point: Numbers, nodes: npt.NDArray[np.int32], count: int) -> csr_array:
+    """Which nodes of the master are near each point: a matrix (points, nodes)."""
+    rows = np.repeat(point, nodes.shape[1])
+    shape = (count, int(nodes.max(initial=-1)) + 1)
+    return csr_array((np.ones(len(rows)), (rows, nodes.reshape(-1))), shape=shape)

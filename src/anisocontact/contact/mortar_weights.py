@@ -1,0 +1,106 @@
+"""Mortar weights of slave nodes: dual functions integrated over the overlaps with the master."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact import _core
+from anisocontact.base.fenicsx import basix
+from anisocontact.contact.facet_mesh import FacetMesh, FacetShapes
+from anisocontact.contact.overlap import facing, largest_radius
+from anisocontact.contact.sides import Sides
+from anisocontact.contact.slave_nodes import Patches
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+#: Degree of the rule on each triangle of an overlap, by topology: products of two shape functions
+#: on triangles and parallelograms, and more on other quadrilaterals, where these are not polynomials.
+DEGREES = {"tri3": 2, "quad4": 6, "tri6": 4, "quad9": 8}
+
+
+@dataclass(frozen=True)
+class MortarWeights:
+    """Weights of slave nodes on the nodes of the master that their dual functions reach.
+
+    Attributes:
+        masters: Nodes, (n, k), ascending, -1 behind the last.
+        area: D_i, integral of the dual function over what is covered, (n,), length^2.
+        weight: W_ik, integral of it with the shape functions of the master, (n, k), length^2.
+        d_area: Derivative of D_i by the nodes of the patch, then by `masters`, (n, 3 c), length.
+        d_weight: That of W_ik, (n, k, 3 c), length.
+    """
+
+    masters: Ints
+    area: Floats
+    weight: Floats
+    d_area: Floats
+    d_weight: Floats
+
+    @property
+    def shares(self) -> Floats:
+        """W_ik / D_i, (n, k); zero where nothing is covered."""
+        area = self.area[:, None]
+        return np.divide(self.weight, area, out=np.zeros_like(self.weight), where=area > 0.0)
+
+
+def mortar_weights(
+    sides: Sides,
+    around: Patches,
+    now: Floats,
+    more: Ints,
+    *,
+    current_area: bool,
+    tangent: bool = True,
+) -> MortarWeights:
+    """Weights where the nodes are; the surface of the master has to be there already.
+
+    Args:
+        sides: Slave and master.
+        around: The facets around each slave node.
+        now: Positions of the nodes, (nodes, 3), length.
+        more: Nodes of the master to have as well, (n, j), -1 for none.
+        current_area: Whether areas are those of now or of the reference configuration.
+        tangent: Whether derivatives are needed.
+    """
+    slave, master = sides.slave, sides.master
+    shapes = FacetShapes(slave.topology)
+    far = sides.reach + largest_radius(slave, now)
+    f, g = facing(slave, shapes, now[slave.nodes], sides.surface, master, now, far, sides.near)
+    order = np.lexsort((g, f))
+    offsets = np.searchsorted(f[order], np.arange(len(slave.nodes) + 1)).astype(np.int64)
+    there = more >= 0
+    starts = np.append(0, np.cumsum(there.sum(axis=1))).astype(np.int64)
+    points, weights = _rule(slave, master)
+    found = _core.mortar_weights(
+        slave_topology=slave.topology,
+        slave=slave.nodes,
+        master_topology=master.topology,
+        master=master.nodes,
+        now=now,
+        reference=sides.reference,
+        pair_offsets=offsets,
+        pair_facets=g[order].astype(np.int32),
+        patch=around.nodes,
+        around_offsets=around.offsets,
+        around_facets=around.facets,
+        around_local=around.local,
+        more_offsets=starts,
+        more_nodes=np.ascontiguousarray(more[there]),
+        rule_points=points,
+        rule_weights=weights,
+        current_area=current_area,
+        tangent=tangent,
+        threads=sides.threads,
+    )
+    return MortarWeights(**found)
+
+
+def _rule(slave: FacetMesh, master: FacetMesh) -> tuple[Floats, Floats]:
+    """Points and weights on a triangle for products of the functions of both."""
+    degree = max(DEGREES[slave.topology], DEGREES[master.topology])
+    points, weights = basix.make_quadrature(basix.CellType.triangle, degree)
+    return np.ascontiguousarray(points), np.ascontiguousarray(weights)

@@ -1,0 +1,235 @@
+"""Where a mortar contact evaluates the law: slave nodes, with the weight of their dual functions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.fenicsx import basix
+from anisocontact.contact.facet_mesh import (
+    FacetMesh,
+    FacetShapes,
+    facet_corners,
+    facet_rule,
+    isoparametric,
+)
+from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.quadrature import FacetQuadrature
+
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+#: Share of the nodes of the edges that the vertices of a tri6 take, whose own functions have no
+#: mass [Popp Wohlmuth Gitterle Wall 2012, sec. 3.2]; as in cpp/include/anisocontact/mortar.
+EDGE_SHARE = 0.2
+#: Vertices beside the edges of a tri6.
+_ENDS = ((1, 2), (0, 2), (0, 1))
+
+
+@dataclass(frozen=True)
+class Patches:
+    """The facets around slave nodes, and the nodes of these.
+
+    Attributes:
+        offsets: Where the facets of each node begin, (n + 1,).
+        facets: Facets around the nodes, one list after the other.
+        local: Number of the node in each of these facets.
+        nodes: Nodes of the facets around each, (n, k): those of its support first, itself at the
+            end where there are fewer.
+        support: Values at the first nodes whose combination is the slave point, (n, r).
+    """
+
+    offsets: npt.NDArray[np.int64]
+    facets: Ints
+    local: Ints
+    nodes: Ints
+    support: Floats
+
+
+def patches(mesh: FacetMesh) -> Patches:
+    """The facets around the nodes of a surface, nodes in ascending order.
+
+    Args:
+        mesh: The facets.
+    """
+    m, k = mesh.nodes.shape
+    flat = mesh.nodes.reshape(-1)
+    order = np.argsort(flat, kind="stable")
+    nodes, first = np.unique(flat[order], return_index=True)
+    offsets = np.append(first, len(flat)).astype(np.int64)
+    facets, local = np.divmod(order, k)
+    support = [_support(mesh, int(facets[a]), int(local[a])) for a in offsets[:-1]]
+    lists = []
+    for node, a, b, (own, _) in zip(nodes, offsets[:-1], offsets[1:], support, strict=True):
+        around = np.setdiff1d(mesh.nodes[facets[a:b]], own)
+        lists.append([*own, *around, node])
+    width = max((len(one) - 1 for one in lists), default=1)
+    rows = max((len(one) for one, _ in support), default=1)
+    padded = np.array([[*one[:-1], *[one[-1]] * (width + 1 - len(one))] for one in lists])
+    values = np.zeros((len(nodes), rows))
+    for i, (_, value) in enumerate(support):
+        values[i, : len(value)] = value
+    return Patches(
+        offsets,
+        facets.astype(np.int32),
+        local.astype(np.int32),
+        padded.astype(np.int32).reshape(len(nodes), width),
+        values,
+    )
+
+
+def _support(mesh: FacetMesh, facet: int, local: int) -> tuple[list[int], list[float]]:
+    """Nodes whose displacements make that of a slave point, and their shares."""
+    nodes = mesh.nodes[facet]
+    if mesh.topology != "tri6" or local < 3:
+        return [int(nodes[local])], [1.0]
+    scale = 1.0 / (1.0 - 2.0 * EDGE_SHARE)
+    ends = [int(nodes[v]) for v in _ENDS[local - 3]]
+    return [int(nodes[local]), *ends], [scale, -EDGE_SHARE * scale, -EDGE_SHARE * scale]
+
+
+def transformed(topology: str, shape: Floats) -> Floats:
+    """Shape functions that the multipliers are dual to, (..., k), from those of the facet."""
+    if topology != "tri6":
+        return shape
+    out = shape.copy()
+    for e, ends in enumerate(_ENDS):
+        for v in ends:
+            out[..., v] += EDGE_SHARE * shape[..., 3 + e]
+        out[..., 3 + e] = (1.0 - 2.0 * EDGE_SHARE) * shape[..., 3 + e]
+    return out
+
+
+def nodal_quadrature(mesh: FacetMesh, around: Patches, reference: Floats) -> FacetQuadrature:
+    """Slave nodes as points of a quadrature, each with the nodes around it.
+
+    The weight of a node is the integral of its dual function, that of the shape function. Tangents
+    are means of those of the facets around it in the directions of a plane, weighted with the
+    angles of the facets at the node: their normal is the averaged normal.
+
+    Args:
+        mesh: The facets.
+        around: The facets around each node.
+        reference: Positions of the local nodes in the reference configuration, (nodes, 3), length.
+    """
+    n, k = around.nodes.shape
+    rule = facet_rule(mesh.topology, 2 * FacetShapes(mesh.topology).order)
+    facets = isoparametric(mesh, rule, reference)
+    mass = np.einsum("mq,mqa->ma", facets.weights, transformed(mesh.topology, facets.basis))
+    owner = np.repeat(np.arange(n), np.diff(around.offsets))
+    weights = np.bincount(owner, mass[around.facets, around.local], minlength=n)
+    basis = np.zeros((n, 1, k))
+    basis[:, 0, : around.support.shape[1]] = around.support
+    axes, gradient = _plane_gradients(mesh, around, owner, reference)
+    tangents = gradient.swapaxes(1, 2) @ reference[around.nodes]
+    return FacetQuadrature(
+        nodes=around.nodes,
+        basis=basis,
+        weights=weights[:, None],
+        reference=np.einsum("nqk,nki->ni", basis, reference[around.nodes]),
+        gradient=gradient[:, None],
+        tangents=tangents[:, None],
+        rows=around.support.shape[1],
+    )
+
+
+def _plane_gradients(
+    mesh: FacetMesh, around: Patches, owner: npt.NDArray[np.int64], reference: Floats
+) -> tuple[Floats, Floats]:
+    """Axes of a plane at each node, (n, 2, 3), and the mean gradients along these, (n, k, 2)."""
+    n, k = around.nodes.shape
+    shapes = FacetShapes(mesh.topology)
+    corners = np.asarray(basix.geometry(shapes.cell))
+    local = _node_coordinates(mesh.topology, corners)
+    by_facet = shapes.at(local)[1][around.local]  # (pairs, facet nodes, 2)
+    x = reference[mesh.nodes[around.facets]]
+    t = by_facet.swapaxes(1, 2) @ x
+    cross = np.cross(t[:, 0], t[:, 1])
+    sign = np.where(mesh.flip[around.facets], -1.0, 1.0)[:, None]
+    normal = sign * cross / np.linalg.norm(cross, axis=1)[:, None]
+    share = _angles(mesh.topology, around.local, t)
+    total = np.zeros((n, 3))
+    np.add.at(total, owner, share[:, None] * normal)
+    axes = _axes(total)
+    # derivative along an axis: gradient on the facet, contracted with the dual tangents
+    metric = np.linalg.inv(t @ t.swapaxes(1, 2))
+    dual = metric @ t
+    along = by_facet @ (dual @ axes[owner].swapaxes(1, 2))
+    sums = np.zeros(n)
+    np.add.at(sums, owner, share)
+    along *= (share / sums[owner])[:, None, None]
+    gradient = np.zeros((n, k, 2))
+    place = (around.nodes[owner][:, None] == mesh.nodes[around.facets][:, :, None]).argmax(axis=2)
+    np.add.at(gradient, (owner[:, None], place), along)
+    return axes, gradient
+
+
+def _angles(topology: str, local: Ints, t: Floats) -> Floats:
+    """Angle of each facet at its node: between the tangents at a corner, else a half or whole turn."""
+    size = np.linalg.norm(t, axis=2)
+    cosine = np.einsum("pi,pi->p", t[:, 0], t[:, 1]) / (size[:, 0] * size[:, 1])
+    between = np.arccos(np.clip(cosine, -1.0, 1.0))
+    if topology.startswith("tri"):
+        third = t[:, 1] - t[:, 0]
+        length = np.linalg.norm(third, axis=1)
+        first = np.einsum("pi,pi->p", -t[:, 0], third) / (size[:, 0] * length)
+        second = np.einsum("pi,pi->p", t[:, 1], third) / (size[:, 1] * length)
+        at = [between, np.arccos(np.clip(first, -1.0, 1.0)), np.arccos(np.clip(second, -1.0, 1.0))]
+        corner = np.choose(np.minimum(local, 2), at)
+    else:
+        corner = np.where((local == 1) | (local == 2), np.pi - between, between)
+    count = len(facet_corners(topology))
+    return np.where(local < count, corner, np.where(local == 8, 2.0 * np.pi, np.pi))
+
+
+def _axes(normal: Floats) -> Floats:
+    """Two axes across each vector, right-handed with it, (n, 2, 3)."""
+    n = normal / np.linalg.norm(normal, axis=1)[:, None]
+    least = np.eye(3)[np.abs(n).argmin(axis=1)]
+    first = np.cross(least, n)
+    first /= np.linalg.norm(first, axis=1)[:, None]
+    return np.stack([first, np.cross(n, first)], axis=1)
+
+
+def _node_coordinates(topology: str, corners: Floats) -> Floats:
+    """Coordinates of the nodes on the reference facet, (k, 2)."""
+    ends = {"tri": _ENDS, "quad": ((0, 1), (0, 2), (1, 3), (2, 3))}[topology.rstrip("0123456789")]
+    if topology in {"tri3", "quad4"}:
+        return corners
+    middles = [corners[list(pair)].mean(axis=0) for pair in ends]
+    return np.array([*corners, *middles, *[corners.mean(axis=0)] * (topology == "quad9")])
+
+
+class SlaveNodes(SlavePoints):
+    """Slave nodes of one pass: one point each, with the averaged normal of the facets around it.
+
+    Args:
+        mesh: Facets of the slave.
+        reference: Positions of the local nodes in the reference configuration, (nodes, 3), length.
+        current_area: Whether the area of a node is that of now or of the reference.
+        comm: Communicator of the mesh.
+        share: Share of the area that counts.
+
+    Attributes:
+        around: The facets around each node.
+    """
+
+    def __init__(
+        self,
+        mesh: FacetMesh,
+        reference: Floats,
+        *,
+        current_area: bool,
+        comm: Any,
+        share: float = 1.0,
+    ) -> None:
+        self.around = patches(mesh)
+        quadrature = nodal_quadrature(mesh, self.around, reference)
+        flip = np.zeros(len(quadrature.nodes), dtype=bool)
+        super().__init__(quadrature, flip, current_area=current_area, comm=comm, share=share)
+        self.facet = self.around.facets[self.around.offsets[:-1]].astype(np.int64)
+        area, facets = comm.allreduce(np.array([quadrature.weights.sum(), len(mesh.nodes)]))
+        self.size = float(np.sqrt(area / max(facets, 1.0)))
