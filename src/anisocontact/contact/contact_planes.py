@@ -37,14 +37,18 @@ class Opposite:
         shares: Of each in the mean position, (n, k).
         facet: Facet at which tangents are taken, (n,), -1 for none.
         nodes: Its nodes, (n, j).
-        gradient: Derivatives of its shape functions there, (n, 2, j).
+        shape: Its shape functions at the place of the tangents, (n, j).
+        gradient: Their derivatives, (n, 2, j).
+        second: Their second derivatives, (n, 2, 2, j); zero where the place does not move.
     """
 
     masters: Ints
     shares: Floats
     facet: Ints
     nodes: Ints
+    shape: Floats
     gradient: Floats
+    second: Floats
 
     def mean(self, x: Floats) -> Floats:
         """Mean position, (n, 3), length, of nodes at x, (nodes, 3)."""
@@ -55,6 +59,19 @@ class Opposite:
         found = np.einsum("nak,nki->nai", self.gradient, x[self.nodes])
         found[self.facet < 0] = np.eye(3)[:2]
         return np.asarray(found)
+
+    def place(self, x: Floats) -> Floats:
+        """Place of the tangents, (n, 3), length, of nodes at x, (nodes, 3)."""
+        return np.asarray(np.einsum("nk,nki->ni", self.shape, x[self.nodes]))
+
+    def bend(self, x: Floats) -> Floats:
+        """Derivatives of the tangents there, (n, 2, 2, 3), length, of nodes at x, (nodes, 3)."""
+        return np.asarray(np.einsum("nabk,nki->nabi", self.second, x[self.nodes]))
+
+    def dual_tangents(self, x: Floats) -> Floats:
+        """Dual tangents, (n, 2, 3), 1/length, of nodes at x, (nodes, 3)."""
+        tangents = self.tangents(x)
+        return np.asarray(np.linalg.solve(tangents @ tangents.swapaxes(1, 2), tangents))
 
     def named(self) -> Ints:
         """All nodes of these, (n, k + j), -1 for none."""

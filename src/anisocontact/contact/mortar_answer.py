@@ -30,6 +30,7 @@ class MortarState:
         planes: Contact planes.
         opposite: Material opposite to the nodes, now and at the accepted increment.
         now: Positions of the nodes, (nodes, 3), length.
+        reference: The same in the reference configuration.
     """
 
     quadrature: FacetQuadrature
@@ -37,6 +38,7 @@ class MortarState:
     planes: ContactPlanes
     opposite: tuple[Opposite, Opposite]
     now: Floats
+    reference: Floats
 
     @cached_property
     def columns(self) -> Ints:
@@ -65,19 +67,42 @@ class MortarState:
 
     @cached_property
     def moving(self) -> Floats:
-        """How slave point, tangents and planes are made of the nodes of the columns, (n, 9, c).
+        """How slave point, tangents and planes are made of the nodes of the columns, (n, 10, c).
 
-        The slave point and its tangents, the mean of the master and the tangents there, and these
-        of the accepted increment.
+        The slave point and its tangents, the mean of the master and the tangents there, these of
+        the accepted increment, and the place where the tangents are taken now.
         """
         n, k = self.quadrature.nodes.shape
-        out = np.zeros((n, 9, self.columns.shape[1]))
+        out = np.zeros((n, 10, self.columns.shape[1]))
         out[:, 0, :k] = self.quadrature.basis[:, 0]
         out[:, 1:3, :k] = self.quadrature.gradient[:, 0].swapaxes(1, 2)
         for first, one in zip((3, 6), self.opposite, strict=True):
             self._put(one.masters, one.shares[:, None], out[:, first : first + 1, k:])
             self._put(one.nodes, one.gradient, out[:, first + 1 : first + 3, k:])
+        now = self.opposite[0]
+        self._put(now.nodes, now.shape[:, None], out[:, 9:, k:])
         return out
+
+    @cached_property
+    def _place_slopes(self) -> tuple[Floats, Floats, Floats]:
+        """How the tangents follow the place where they are taken, and it the slave point.
+
+            d d_a = (d_ab - d_c (D^c . D_ab)) d xi^b,
+            d xi^b = w^bc [(dx - dy) . d_c + (x - y) . d d_c],  w = (d_b . d_c - (x - y) . d_bc)^-1,
+
+        the part in the plane less what the reference turns, in which directions are taken.
+
+        Returns:
+            The bracket of the first line, (n, 2, 2, 3), w times the tangents, (n, 2, 3), and w
+            times x - y, (n, 2, 2, 3).
+        """
+        one, now = self.opposite[0], self.planes.now.tangents
+        bend = one.bend(self.now)
+        turn = one.bend(self.reference) @ one.dual_tangents(self.reference).swapaxes(1, 2)[:, None]
+        apart = self.planes.slave - one.place(self.now)
+        w = now @ now.swapaxes(1, 2) - np.einsum("nabi,ni->nab", bend, apart)
+        w = np.linalg.inv(w)
+        return bend - turn @ now[:, None], w @ now, w[..., None] * apart[:, None, None]
 
     def _put(self, nodes: Ints, values: Floats, out: Floats) -> None:
         """Add values (n, v, j) of nodes (n, j) to the columns (n, v, masters) of those nodes."""
@@ -85,14 +110,21 @@ class MortarState:
         out += values @ same
 
     @cached_property
-    def lift(self) -> Floats:
-        """Derivative of n . y_i by the weights alone, (n, 3 c)."""
-        there = self.now[np.maximum(self.weights.masters, 0)] - self.planes.mean[:, None]
-        height = np.einsum("nki,ni->nk", there, self.planes.normal)
-        height[self.weights.masters < 0] = 0.0
-        area = self.weights.area[:, None]
-        share = np.divide(height, area, out=np.zeros_like(height), where=area > 0.0)
-        return np.asarray((share[:, None] @ self.weights.d_weight)[:, 0])
+    def shift(self) -> Floats:
+        """Derivative of the mean of the master by the weights alone, (n, 3, 3 c).
+
+        What it moves along the plane is less what the point of the reference moves there, at which
+        directions are taken: on a master that keeps its shape both are the same.
+        """
+        planes, opposite, masters = self.planes, self.opposite[0], self.weights.masters
+        named = np.maximum(masters, 0)
+        way = self.now[named] - planes.mean[:, None]
+        material = self.reference[named] - opposite.mean(self.reference)[:, None]
+        way -= (material @ opposite.dual_tangents(self.reference).swapaxes(1, 2)) @ planes.now.axes
+        area = self.weights.area[:, None, None]
+        there = (masters >= 0)[:, :, None] & (area > 0.0)
+        share = np.divide(way, area, out=np.zeros_like(way), where=there)
+        return np.asarray(share.swapaxes(1, 2) @ self.weights.d_weight)
 
     def by_columns(self, by_nodes: Floats, which: Ints) -> Floats:
         """Derivative of tractions by the nodes of the columns.
@@ -107,15 +139,19 @@ class MortarState:
         planes = self.planes
         by = by_nodes.reshape(-1, 3, 3, 3, 3).copy()  # (p, i, part, node of it, j)
         by[:, :, :, 0] = by.sum(axis=3)
-        now, normal = planes.now.take(which), planes.normal[which]
-        by_now, by_normal = now.pulled_back(by[:, :, 1, 1:])
+        by_now, by_normal = planes.now.take(which).pulled_back(by[:, :, 1, 1:])
         by[:, :, 1, 1:] = by_now
         by[:, :, 0, 1:] += by_slave_tangents(planes.tangents[which], by_normal)
         p = len(which)
-        flat = by.reshape(p, 3, 9, 3).swapaxes(2, 3).reshape(p, 9, 9)
+        turn, along, lean = (one[which] for one in self._place_slopes)
+        by_place = np.einsum("piaj,pabj->pib", by[:, :, 1, 1:], turn)
+        by[:, :, 1, 1:] += np.einsum("pib,pbaj->piaj", by_place, lean)
+        by_foot = by_place @ along
+        by[:, :, 0, 0] += by_foot
+        flat = np.concatenate([by.reshape(p, 3, 9, 3), -by_foot[:, :, None]], axis=2)
+        flat = flat.swapaxes(2, 3).reshape(p, 9, 10)
         out = (flat @ self.moving[which]).reshape(p, 3, 3, -1).swapaxes(2, 3).reshape(p, 3, -1)
-        along = np.einsum("pij,pj->pi", by[:, :, 1, 0], normal)
-        return np.asarray(out + along[:, :, None] * self.lift[which][:, None])
+        return np.asarray(out + by[:, :, 1, 0] @ self.shift[which])
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields
+from dataclasses import fields, replace
 from typing import Any, override
 
 import numpy as np
@@ -30,7 +30,7 @@ from anisocontact.interface import ContactLaw, Response, State
 from anisocontact.interface.contact_law import FacetBatch, FacetLaw
 from anisocontact.interface.failed_point import OnFacets, one_point
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.surfaces.facets import FACET_STATUS, TOPOLOGIES, FacetProjections
+from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, TOPOLOGIES, FacetProjections
 
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]
@@ -68,7 +68,9 @@ class MortarMaster(FacetMaster):
             np.zeros((n, 1)),
             none[:, 0],
             np.zeros((n, width), dtype=np.int32),
+            np.zeros((n, width)),
             np.zeros((n, 2, width)),
+            np.zeros((n, 2, 2, width)),
         )
         super().__init__(sides, law, group=group, size=size, mirrored=False, overlaps=False)
         self._at = self._placed()
@@ -79,9 +81,7 @@ class MortarMaster(FacetMaster):
         opposite = self._tangent_places()
         more = np.concatenate([opposite.named(), self._then.named()], axis=1)
         weights = mortar_weights(sides, points.around, now, more, current_area=points.current_area)
-        opposite = Opposite(
-            weights.masters, weights.shares, opposite.facet, opposite.nodes, opposite.gradient
-        )
+        opposite = replace(opposite, masters=weights.masters, shares=weights.shares)
         tangents = points.at(now).tangents[:, 0]
         normal = averaged_normal(tangents)
         planes = ContactPlanes(
@@ -92,7 +92,8 @@ class MortarMaster(FacetMaster):
             self._then.mean(now),
             Turned(self._then.tangents(now), normal),
         )
-        return MortarState(points.quadrature, weights, planes, (opposite, self._then), now)
+        both = opposite, self._then
+        return MortarState(points.quadrature, weights, planes, both, now, sides.reference)
 
     def _tangent_places(self) -> Opposite:
         """Places on the master that are closest to the slave nodes."""
@@ -100,14 +101,20 @@ class MortarMaster(FacetMaster):
         there = hit.status <= FACET_STATUS.index("off")
         facet = np.where(there, hit.facet, -1).astype(np.int32)
         which = np.maximum(facet, 0)
-        _, gradient, _ = self.sides.surface.shapes(which, np.nan_to_num(hit.xi))
+        found = self.sides.surface.shapes(which, np.nan_to_num(hit.xi))
+        shape, gradient, second = (one[:, : nodes.shape[1]] for one in found)
+        second = np.moveaxis(second[:, :, [[0, 1], [1, 2]]], 1, 3)
+        # on an edge the place does not follow the node
+        second[hit.feature != FEATURES.index("interior")] = 0.0
         none = np.zeros((len(facet), 0))
         return Opposite(
             none.astype(np.int32),
             none,
             facet,
             nodes[which],
-            np.ascontiguousarray(gradient[:, : nodes.shape[1]].swapaxes(1, 2)),
+            np.ascontiguousarray(shape),
+            np.ascontiguousarray(gradient.swapaxes(1, 2)),
+            np.ascontiguousarray(second),
         )
 
     @property
