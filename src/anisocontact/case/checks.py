@@ -11,6 +11,7 @@ from anisocontact.case import law_file, objects
 from anisocontact.case.courses import check_courses
 from anisocontact.case.model import (
     AUGMENTED,
+    MORTAR,
     PENALTY,
     SINGLE,
     TWO_HALF,
@@ -188,6 +189,9 @@ def _meshed(case: Case, contact: ContactSection, place: str) -> Iterator[InputEr
             yield InputError(text, field=f"{place}.master")
         if contact.half_passes:
             text = f'"{TWO_HALF}" given, "{SINGLE}" needed: self-contact has both sides in one pass'
+            yield InputError(text, field=f"{place}.pass")
+        elif contact.mortar:
+            text = f'"{MORTAR}" given, "{SINGLE}" needed: self-contact has integration points'
             yield InputError(text, field=f"{place}.pass")
     elif contact.master == contact.slave:
         text = (

@@ -78,6 +78,7 @@ def _made(
             augmentation=_augmentation(section),
             adjust=section.adjust_gap if section.adjust else None,
             two_half=section.half_passes,
+            mortar=section.mortar,
             self_contact=section.self_contact,
             apart=section.apart,
             name=f"{section.slave} on {on}",

@@ -61,8 +61,11 @@ _DIRECTIONS_SECOND = "directions of the second surface, for a friction model of 
 
 
 PENALTY, AUGMENTED = "penalty", "augmented"
-SINGLE, TWO_HALF = "single", "two-half"
-_PASSES = "whether the slave alone is integrated over or, between bodies, both with half the weight"
+SINGLE, TWO_HALF, MORTAR = "single", "two-half", "mortar"
+_PASSES = (
+    "where the law is evaluated: at integration points of the slave alone, or, between bodies, "
+    "of both with half the weight; or at the slave nodes, with dual mortar weights"
+)
 
 
 class StepSection(Loading):
@@ -240,6 +243,11 @@ class ContactSection(Section):
         """Whether each of two bodies is slave and master for half of the work."""
         return bool(getattr(self, "pass") == TWO_HALF)
 
+    @property
+    def mortar(self) -> bool:
+        """Whether the law is evaluated at slave nodes with mortar weights."""
+        return bool(getattr(self, "pass") == MORTAR)
+
 
 class Case(Section):
     """A whole case file; `case_type()` adds the tables made from the registries."""
@@ -349,7 +357,7 @@ def case_type(known: Registries) -> type[Case]:
         A subclass of `Case`.
     """
     # "pass" is no name for an attribute in a class body
-    passes: dict[str, Any] = {"pass": (Annotated[str, _word(_PASSES, SINGLE, TWO_HALF)], SINGLE)}
+    passes: dict[str, Any] = {"pass": (Annotated[str, _word(_PASSES, SINGLE, TWO_HALF, MORTAR)], SINGLE)}
     fields = _or_in_python(laws(known), known)
     contact = create_model("Contact", __base__=ContactSection, **passes, **fields)
     surface = OneOf("Surface", Key("shape", known.surfaces))

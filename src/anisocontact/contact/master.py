@@ -165,6 +165,10 @@ class Master(Protocol):
         """Local nodes of the master below points of the trial."""
         return np.zeros(0, dtype=np.int32)
 
+    def below(self, state: State) -> Ints:
+        """Local nodes of the master below points of a state."""
+        return np.zeros(0, dtype=np.int32)
+
     def reachable(self, way: Floats, margin: float, hops: int) -> list[NodePairs]:
         """Nodes that couplings can name where the slave goes along a way, see `reachable`.
 

@@ -150,7 +150,9 @@ class MortarState:
         by[:, :, 0, 0] += by_foot
         flat = np.concatenate([by.reshape(p, 3, 9, 3), -by_foot[:, :, None]], axis=2)
         flat = flat.swapaxes(2, 3).reshape(p, 9, 10)
-        out = (flat @ self.moving[which]).reshape(p, 3, 3, -1).swapaxes(2, 3).reshape(p, 3, -1)
+        count = self.columns.shape[1]
+        out = (flat @ self.moving[which]).reshape(p, 3, 3, count).swapaxes(2, 3)
+        out = out.reshape(p, 3, 3 * count)
         return np.asarray(out + by[:, :, 1, 0] @ self.shift[which])
 
 
@@ -223,7 +225,7 @@ class MortarLinear:
         # the tangent is so stiff that the rounding of positions would be felt in the difference
         way = (now - self._then)[np.maximum(columns, 0)]
         way[columns < 0] = 0.0
-        found = answer.by_columns @ way.reshape(len(way), -1, 1)
+        found = answer.by_columns @ way.reshape(len(way), 3 * columns.shape[1], 1)
         return self._everywhere(found[..., 0])
 
     def slipped(self, slip: Floats) -> Floats:

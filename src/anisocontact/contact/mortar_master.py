@@ -268,6 +268,11 @@ class MortarMaster(FacetMaster):
         return np.unique(named[named >= 0])
 
     @override
+    def below(self, state: State) -> Ints:
+        named = self._then.named()[self.located(state)]
+        return np.unique(named[named >= 0])
+
+    @override
     def probe(
         self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
     ) -> npt.NDArray[np.int8]:

@@ -30,7 +30,10 @@ class SlavePoints:
         facet: Number of the facet of each point, (n,).
         current_area: As given, until `take_area`.
         size: Length of a facet: square root of the mean area, over all ranks.
+        spread: How far from a point its traction acts, length.
     """
+
+    spread = 0.0
 
     def __init__(
         self,

@@ -233,3 +233,5 @@ class SlaveNodes(SlavePoints):
         self.facet = self.around.facets[self.around.offsets[:-1]].astype(np.int64)
         area, facets = comm.allreduce(np.array([quadrature.weights.sum(), len(mesh.nodes)]))
         self.size = float(np.sqrt(area / max(facets, 1.0)))
+        away = reference[quadrature.nodes] - quadrature.reference[:, None]
+        self.spread = float(np.linalg.norm(away, axis=2).max(initial=0.0))

@@ -103,7 +103,7 @@ class Reach:
         """Motion of slave and master that is allowed for, length."""
         bodies = [self._ranges[name.partition(".")[0]] for name in half.groups]
         planned = sum(float(np.linalg.norm(extent)) for extent in bodies)
-        return float(self._factor * (planned + _SLACK * half.slave_points.size))
+        return float(self._factor * (planned + _SLACK * half.slave_points.size) + half.slave_points.spread)
 
     def _select_pass(self, half: Any, x: Floats) -> None:
         from scipy.spatial import cKDTree  # slow to import, and not needed for analytic masters
@@ -115,7 +115,7 @@ class Reach:
         tree = cKDTree(0.5 * (low + high))
         radius = 0.5 * float(np.linalg.norm(high - low, axis=1).max())
         nearest, _ = tree.query(points)
-        near = half.state["facet"] >= 0
+        near = half.master.located(half.state)
         nearest = np.where(near, np.minimum(nearest, np.abs(half.state["gap"])), nearest)
         able = np.flatnonzero(nearest <= half.master.reach + motion + radius)
         self.nodes[half.slave_points.nodes[able]] = True
@@ -127,7 +127,7 @@ class Reach:
         away = np.maximum(0.0, np.maximum(low[facet] - at, at - high[facet]))
         kept = facet[np.linalg.norm(away, axis=1) <= limit[point]]
         self.nodes[facets[kept]] = True
-        self.nodes[facets[half.state["facet"][near]]] = True
+        self.nodes[half.master.below(half.state)] = True
 
 
 def contact_unknowns(problem: Problem, steps: Sequence[Step]) -> int:
