@@ -282,3 +282,25 @@ class FacetInterface:
         threads: int,
         outputs: NDArray[numpy.float64] | None = None,
     ) -> dict[str, NDArray[Any]]: ...
+
+def mortar_weights(
+    slave_topology: str,
+    slave: NDArray[numpy.int32],
+    master_topology: str,
+    master: NDArray[numpy.int32],
+    now: NDArray[numpy.float64],
+    reference: NDArray[numpy.float64],
+    pair_offsets: NDArray[numpy.int64],
+    pair_facets: NDArray[numpy.int32],
+    patch: NDArray[numpy.int32],
+    around_offsets: NDArray[numpy.int64],
+    around_facets: NDArray[numpy.int32],
+    around_local: NDArray[numpy.int32],
+    more_offsets: NDArray[numpy.int64],
+    more_nodes: NDArray[numpy.int32],
+    rule_points: NDArray[numpy.float64],
+    rule_weights: NDArray[numpy.float64],
+    current_area: bool,
+    tangent: bool,
+    threads: int,
+) -> dict[str, NDArray[Any]]: ...

@@ -357,7 +357,9 @@ def case_type(known: Registries) -> type[Case]:
         A subclass of `Case`.
     """
     # "pass" is no name for an attribute in a class body
-    passes: dict[str, Any] = {"pass": (Annotated[str, _word(_PASSES, SINGLE, TWO_HALF, MORTAR)], SINGLE)}
+    passes: dict[str, Any] = {
+        "pass": (Annotated[str, _word(_PASSES, SINGLE, TWO_HALF, MORTAR)], SINGLE)
+    }
     fields = _or_in_python(laws(known), known)
     contact = create_model("Contact", __base__=ContactSection, **passes, **fields)
     surface = OneOf("Surface", Key("shape", known.surfaces))

@@ -61,6 +61,9 @@ class Contact:
             do not meet, length; in self-contact three facet sizes if not given.
         overlaps: Whether forces on facets of a single pass are integrated over the overlaps too
             (see `Transfer`), or act at the feet of the slave points.
+        mortar: Whether the law is evaluated at the slave nodes, with dual mortar weights, see
+            `MortarMaster`; against a surface at the slave nodes with the integrals of their shape
+            functions.
         name: Name in output; the slave if not given.
 
     Attributes:

@@ -39,7 +39,9 @@ class Opposite:
         nodes: Its nodes, (n, j).
         shape: Its shape functions at the place of the tangents, (n, j).
         gradient: Their derivatives, (n, 2, j).
-        second: Their second derivatives, (n, 2, 2, j); zero where the place does not move.
+        second: Their second derivatives, (n, 2, 2, j).
+        edge: Direction of the edge on which the place is, in coordinates, (n, 2); not a number
+            inside a facet, zero at a vertex.
     """
 
     masters: Ints
@@ -49,6 +51,7 @@ class Opposite:
     shape: Floats
     gradient: Floats
     second: Floats
+    edge: Floats
 
     def mean(self, x: Floats) -> Floats:
         """Mean position, (n, 3), length, of nodes at x, (nodes, 3)."""
@@ -67,6 +70,22 @@ class Opposite:
     def bend(self, x: Floats) -> Floats:
         """Derivatives of the tangents there, (n, 2, 2, 3), length, of nodes at x, (nodes, 3)."""
         return np.asarray(np.einsum("nabk,nki->nabi", self.second, x[self.nodes]))
+
+    def moves(self, x: Floats, apart: Floats) -> Floats:
+        """How the coordinates of the place follow a point that it is closest to, (n, 2, 2).
+
+        w in d xi^a = w^ab [(dx - dy) . d_b + (x - y) . d d_b], `apart` x - y, (n, 3), length:
+        (d_a . d_b - (x - y) . d_ab)^-1, or along an edge e e / of this matrix by e.
+        """
+        tangents = self.tangents(x)
+        metric = tangents @ tangents.swapaxes(1, 2) - np.einsum("nabi,ni->nab", self.bend(x), apart)
+        out = np.linalg.inv(metric)
+        on = ~np.isnan(self.edge[:, 0])
+        e = self.edge[on]
+        slope = np.einsum("na,nab,nb->n", e, metric[on], e)
+        slope[slope == 0.0] = 1.0
+        out[on] = e[:, :, None] * e[:, None] / slope[:, None, None]
+        return np.asarray(out)
 
     def dual_tangents(self, x: Floats) -> Floats:
         """Dual tangents, (n, 2, 3), 1/length, of nodes at x, (nodes, 3)."""
@@ -186,8 +205,10 @@ class ContactPlanes:
         return np.asarray(np.linalg.solve(axes @ axes.swapaxes(1, 2), right[..., None])[..., 0])
 
     def nodes(self) -> Floats:
-        """The nodes that stand for all this, (9 n, 3), length: x and x + tangents, then the
-        same of the plane of now, and of the one of then, which the laws turn themselves.
+        """The nodes that stand for all this, (9 n, 3), length.
+
+        The slave point and with its tangents added, the same of the plane of now and of that of
+        then, whose tangents the laws turn themselves.
         """
         parts = (
             (self.slave, self.tangents),

@@ -94,6 +94,8 @@ def passes_of(
     if not isinstance(master, str):
         return (_on_surface(model, slave, master, law, options),)
     laws = _laws(law)
+    if options.mortar and (options.two_half or options.self_contact):
+        raise InputError("given, but two sides that are slaves have integration points", "mortar")
     both_sides = options.two_half or options.self_contact
     if both_sides and options.augmentation is not None:
         raise InputError("given, but both sides are slaves: they need penalties", "augmentation")

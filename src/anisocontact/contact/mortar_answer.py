@@ -1,4 +1,4 @@
-"""What laws answer at the slave nodes of a mortar contact, as forces on the nodes of both bodies."""
+"""What laws answer at the slave nodes of a mortar contact, as forces on nodes of both bodies."""
 
 from __future__ import annotations
 
@@ -87,10 +87,9 @@ class MortarState:
     def _place_slopes(self) -> tuple[Floats, Floats, Floats]:
         """How the tangents follow the place where they are taken, and it the slave point.
 
-            d d_a = (d_ab - d_c (D^c . D_ab)) d xi^b,
-            d xi^b = w^bc [(dx - dy) . d_c + (x - y) . d d_c],  w = (d_b . d_c - (x - y) . d_bc)^-1,
+            d d_a = (d_ab - d_c (D^c . D_ab)) d xi^b ,
 
-        the part in the plane less what the reference turns, in which directions are taken.
+        less what the reference turns, in which directions are taken; d xi as of `Opposite.moves`.
 
         Returns:
             The bracket of the first line, (n, 2, 2, 3), w times the tangents, (n, 2, 3), and w
@@ -100,8 +99,7 @@ class MortarState:
         bend = one.bend(self.now)
         turn = one.bend(self.reference) @ one.dual_tangents(self.reference).swapaxes(1, 2)[:, None]
         apart = self.planes.slave - one.place(self.now)
-        w = now @ now.swapaxes(1, 2) - np.einsum("nabi,ni->nab", bend, apart)
-        w = np.linalg.inv(w)
+        w = one.moves(self.now, apart)
         return bend - turn @ now[:, None], w @ now, w[..., None] * apart[:, None, None]
 
     def _put(self, nodes: Ints, values: Floats, out: Floats) -> None:
@@ -151,8 +149,8 @@ class MortarState:
         flat = np.concatenate([by.reshape(p, 3, 9, 3), -by_foot[:, :, None]], axis=2)
         flat = flat.swapaxes(2, 3).reshape(p, 9, 10)
         count = self.columns.shape[1]
-        out = (flat @ self.moving[which]).reshape(p, 3, 3, count).swapaxes(2, 3)
-        out = out.reshape(p, 3, 3 * count)
+        found = (flat @ self.moving[which]).reshape(p, 3, 3, count).swapaxes(2, 3)
+        out = found.reshape(p, 3, 3 * count)
         return np.asarray(out + by[:, :, 1, 0] @ self.shift[which])
 
 

@@ -39,7 +39,7 @@ Floats = npt.NDArray[np.float64]
 #: Gap up to which a node may be in contact, as a share of the size of the facets: rounding.
 NEAR = 1e-6
 #: Share of its weight that has to be covered for a node to carry traction.
-COVERED = 1e-4
+COVERED = 1e-8
 #: Least cosine between the averaged normal and that of the master below a node.
 OPPOSED = 0.1
 
@@ -71,6 +71,7 @@ class MortarMaster(FacetMaster):
             np.zeros((n, width)),
             np.zeros((n, 2, width)),
             np.zeros((n, 2, 2, width)),
+            np.zeros((n, 2)),
         )
         super().__init__(sides, law, group=group, size=size, mirrored=False, overlaps=False)
         self._at = self._placed()
@@ -104,8 +105,7 @@ class MortarMaster(FacetMaster):
         found = self.sides.surface.shapes(which, np.nan_to_num(hit.xi))
         shape, gradient, second = (one[:, : nodes.shape[1]] for one in found)
         second = np.moveaxis(second[:, :, [[0, 1], [1, 2]]], 1, 3)
-        # on an edge the place does not follow the node
-        second[hit.feature != FEATURES.index("interior")] = 0.0
+        inside = hit.feature == FEATURES.index("interior")
         none = np.zeros((len(facet), 0))
         return Opposite(
             none.astype(np.int32),
@@ -115,6 +115,7 @@ class MortarMaster(FacetMaster):
             np.ascontiguousarray(shape),
             np.ascontiguousarray(gradient.swapaxes(1, 2)),
             np.ascontiguousarray(second),
+            np.where(inside[:, None], np.nan, hit.edge),
         )
 
     @property

@@ -17,8 +17,8 @@ from anisocontact.contact.slave_nodes import Patches
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
-#: Degree of the rule on each triangle of an overlap, by topology: products of two shape functions
-#: on triangles and parallelograms, and more on other quadrilaterals, where these are not polynomials.
+#: Degree of the rule on each triangle of an overlap, by topology: that of products of two shape
+#: functions, and more on quadrilaterals, where these are polynomials on parallelograms alone.
 DEGREES = {"tri3": 2, "quad4": 6, "tri6": 4, "quad9": 8}
 
 

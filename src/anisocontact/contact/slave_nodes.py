@@ -1,4 +1,4 @@
-"""Where a mortar contact evaluates the law: slave nodes, with the weight of their dual functions."""
+"""Where a mortar contact evaluates the law: slave nodes, weighted by their dual functions."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def patches(mesh: FacetMesh) -> Patches:
     Args:
         mesh: The facets.
     """
-    m, k = mesh.nodes.shape
+    k = mesh.nodes.shape[1]
     flat = mesh.nodes.reshape(-1)
     order = np.argsort(flat, kind="stable")
     nodes, first = np.unique(flat[order], return_index=True)
@@ -123,7 +123,7 @@ def nodal_quadrature(mesh: FacetMesh, around: Patches, reference: Floats) -> Fac
     weights = np.bincount(owner, mass[around.facets, around.local], minlength=n)
     basis = np.zeros((n, 1, k))
     basis[:, 0, : around.support.shape[1]] = around.support
-    axes, gradient = _plane_gradients(mesh, around, owner, reference)
+    gradient = _plane_gradients(mesh, around, owner, reference)
     tangents = gradient.swapaxes(1, 2) @ reference[around.nodes]
     return FacetQuadrature(
         nodes=around.nodes,
@@ -138,8 +138,8 @@ def nodal_quadrature(mesh: FacetMesh, around: Patches, reference: Floats) -> Fac
 
 def _plane_gradients(
     mesh: FacetMesh, around: Patches, owner: npt.NDArray[np.int64], reference: Floats
-) -> tuple[Floats, Floats]:
-    """Axes of a plane at each node, (n, 2, 3), and the mean gradients along these, (n, k, 2)."""
+) -> Floats:
+    """Mean gradients along two axes of a plane at each node, (n, k, 2)."""
     n, k = around.nodes.shape
     shapes = FacetShapes(mesh.topology)
     corners = np.asarray(basix.geometry(shapes.cell))
@@ -164,11 +164,11 @@ def _plane_gradients(
     gradient = np.zeros((n, k, 2))
     place = (around.nodes[owner][:, None] == mesh.nodes[around.facets][:, :, None]).argmax(axis=2)
     np.add.at(gradient, (owner[:, None], place), along)
-    return axes, gradient
+    return gradient
 
 
 def _angles(topology: str, local: Ints, t: Floats) -> Floats:
-    """Angle of each facet at its node: between the tangents at a corner, else a half or whole turn."""
+    """Angle of each facet at its node: that of a corner, else a half or a whole turn, (pairs,)."""
     size = np.linalg.norm(t, axis=2)
     cosine = np.einsum("pi,pi->p", t[:, 0], t[:, 1]) / (size[:, 0] * size[:, 1])
     between = np.arccos(np.clip(cosine, -1.0, 1.0))

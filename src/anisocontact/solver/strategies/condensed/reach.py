@@ -103,7 +103,9 @@ class Reach:
         """Motion of slave and master that is allowed for, length."""
         bodies = [self._ranges[name.partition(".")[0]] for name in half.groups]
         planned = sum(float(np.linalg.norm(extent)) for extent in bodies)
-        return float(self._factor * (planned + _SLACK * half.slave_points.size) + half.slave_points.spread)
+        return float(
+            self._factor * (planned + _SLACK * half.slave_points.size) + half.slave_points.spread
+        )
 
     def _select_pass(self, half: Any, x: Floats) -> None:
         from scipy.spatial import cKDTree  # slow to import, and not needed for analytic masters
