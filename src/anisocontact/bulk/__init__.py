@@ -17,7 +17,7 @@ from anisocontact.bulk.materials import LinearElastic, Material, small_strain
 from anisocontact.bulk.nonlinear import NonlinearBulk
 from anisocontact.bulk.ogden import Ogden
 from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
-from anisocontact.bulk.plasticity import Hill, Plastic
+from anisocontact.bulk.plasticity import PLASTIC_STRAIN, Hill, Plastic
 from anisocontact.bulk.point_law import (
     BodyPoints,
     ElasticVolume,
@@ -29,6 +29,7 @@ from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
 from anisocontact.bulk.viscoelastic import Viscoelastic
 
 __all__ = [
+    "PLASTIC_STRAIN",
     "AtPoints",
     "Before",
     "BodyHistory",

@@ -58,6 +58,11 @@ class AtPoints:
         values = self._read(self._stress)
         return self._cells, values.reshape(len(self._cells), len(self.points), 3, 3)
 
+    def means(self, name: str) -> tuple[npt.NDArray[np.int32], Floats]:
+        """Cells of the body on this rank, (n,), and means over their points of a number."""
+        values = self._read(self.variables[name])
+        return self._cells, values.reshape(len(self._cells), len(self.points)).mean(axis=1)
+
     def persistent(self) -> dict[str, Floats]:
         """Values at the points of cells this rank owns, (points, ...), and where these are."""
         owned = self._owned * len(self.points)

@@ -25,6 +25,8 @@ from anisocontact.bulk.materials import Isotropic
 from anisocontact.bulk.point_law import ElasticVolume, PointResult, PointState
 from anisocontact.bulk.strain import STRAIN, STRAINS
 
+#: Name of the equivalent plastic strain p among what points remember.
+PLASTIC_STRAIN = "equivalent_plastic_strain"
 #: Share of the yield stress by which a trial stress has to be beyond it.
 _BEYOND = 1e-12
 #: Share of the yield stress to which the condition is met, and the most iterations for it.
@@ -89,7 +91,7 @@ class Plastic(ElasticVolume, Isotropic):
     history: Mapping[str, tuple[int, ...]] = {
         "plastic_strain": (3, 3),
         "back_stress": (3, 3),
-        "equivalent_plastic_strain": (),
+        PLASTIC_STRAIN: (),
     }
     entry = Entry(
         "plastic",
@@ -131,7 +133,7 @@ class Plastic(ElasticVolume, Isotropic):
             (basis @ t.reshape(n, 9, 1))[..., 0]
             for t in (state.strain, state.before["plastic_strain"], state.before["back_stress"])
         )
-        p = state.before["equivalent_plastic_strain"]
+        p = state.before[PLASTIC_STRAIN]
         trial = g * (strain - plastic)
         size = np.sqrt(((trial - back) ** 2 * self._weights).sum(1))
         flows = np.flatnonzero(size > self._yield.at(p)[0] * (1.0 + _BEYOND))
@@ -147,7 +149,7 @@ class Plastic(ElasticVolume, Isotropic):
         after = {
             "plastic_strain": _tensor(plastic + added, basis),
             "back_stress": _tensor(new_back, basis),
-            "equivalent_plastic_strain": new_p,
+            PLASTIC_STRAIN: new_p,
         }
         return PointResult(
             stress=_tensor(stress, basis),

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import compiled_expression, dolfinx, fem, scalar_element, ufl
-from anisocontact.bulk import cauchy_stress
+from anisocontact.bulk import PLASTIC_STRAIN, cauchy_stress
 from anisocontact.contact import Contact
 from anisocontact.results.dataset import DataSet, vertices
 from anisocontact.results.quantities import CELL, NODE, POINT, SlavePoints, arrays
@@ -125,6 +125,17 @@ class _BodiesNow:
     def numbers(self) -> npt.NDArray[np.int32]:
         """Number of the body of each cell, (cells,)."""
         return self._bodies.numbers
+
+    @property
+    def plastic_strain(self) -> Floats:
+        """Mean equivalent plastic strain of each cell, (cells,)."""
+        found: Floats = np.zeros(len(self.numbers))
+        for history in self.problem.bulk.histories.values():
+            if PLASTIC_STRAIN in history.variables:
+                cells, means = history.means(PLASTIC_STRAIN)
+                here = cells < len(found)
+                found[cells[here]] = means[here]
+        return found
 
 
 def slave_points(contacts: Iterable[Contact], chosen: Collection[str] = ()) -> DataSet | None:

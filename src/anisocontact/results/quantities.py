@@ -229,7 +229,16 @@ _TABLE = {
             ),
             ("von_mises", "stress", "equivalent stress", lambda b: von_mises(b.stress)),
         ),
-        *_rows(CELL, ("body", "1", "number of the body in `summary.json`", lambda b: b.numbers)),
+        *_rows(
+            CELL,
+            ("body", "1", "number of the body in `summary.json`", lambda b: b.numbers),
+            (
+                "plastic_strain",
+                "1",
+                "equivalent plastic strain, mean of the cell; 0 where the material has none",
+                lambda b: b.plastic_strain,
+            ),
+        ),
         *_rows(
             POINT,
             ("contact", "1", "number of the contact", lambda p: p.numbers),
