@@ -2,7 +2,6 @@
 // laws are compiled here and nowhere else.
 
 #include "anisocontact/kernel/core_law.hpp"
-#include "anisocontact/law/slide_batch.hpp"
 
 namespace anisocontact {
 
@@ -320,48 +319,5 @@ Reaction CoreLaw::evaluate(const PointState& state, const ContactFrame& in,
 }
 
 }  // namespace kernel
-
-namespace law {
-
-namespace {
-
-template <bool with_tangent, class Rule>
-void slide_one(const Rule& rule, const SlideInput& in, const SlideOutput& out,
-               std::size_t i) noexcept {
-  const auto p = in.problem(i);
-  SlideResult<double> r{p.trial, p.trial, {}, true};
-  SlideTangent t{unit<double, Place::co>(), {}};
-  out.slides[i] = friction_norm(p.friction, p.trial) > p.pressure;
-  if (out.slides[i]) {
-    r = rule.slide(p);
-    if constexpr (with_tangent) t = rule.tangent(p, r);
-  }
-  for (std::size_t k = 0; k < 2; ++k) {
-    out.traction[2 * i + k] = r.traction[k];
-    out.stored[2 * i + k] = r.stored[k];
-    out.slip[2 * i + k] = r.slip[k];
-  }
-  out.converged[i] = r.converged;
-  if constexpr (with_tangent)
-    for (std::size_t k = 0; k < 2; ++k) {
-      out.d_pressure[2 * i + k] = t.d_pressure[k];
-      for (std::size_t j = 0; j < 2; ++j) out.d_trial[4 * i + 2 * k + j] = t.d_trial(k, j);
-    }
-}
-
-}  // namespace
-
-void slide(const AnyRule& any, const SlideBatch& batch, std::size_t first, std::size_t last,
-           bool with_tangent) noexcept {
-  std::visit(
-      [&](const auto& rule) {
-        for (std::size_t i = first; i < last; ++i)
-          with_tangent ? slide_one<true>(rule, batch.in, batch.out, i)
-                       : slide_one<false>(rule, batch.in, batch.out, i);
-      },
-      any);
-}
-
-}  // namespace law
 
 }  // namespace anisocontact
