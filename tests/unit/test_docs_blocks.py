@@ -112,6 +112,7 @@ materials = {"block": make_material("linear-elastic", E=100.0, nu=0.3)}
 #: What the Python blocks of a page suppose, by page.
 BEFORE = {
     "amplitudes": BLOCK,
+    "two-dimensions": "",
     "own-script": BLOCK
     + """
 import ufl
@@ -186,6 +187,7 @@ for one in (on_plane, on_base):
     "no-convergence": "from anisocontact.interface.failed_point import read_failed_point\n"
     "assert read_failed_point(Path('failed_point.json')).evaluate().failure == point.failure",
     "meshes": "assert model.body_names() == ['wheel', 'plate']",
+    "two-dimensions": "assert model.idealisation.lateral",
     "point-loads": "",
     "direction-fields": "assert friction.directions_second is milled",
     "adhesion-domain": "import os; assert os.path.getsize('domain.png') > 1000",

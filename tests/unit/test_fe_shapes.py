@@ -18,9 +18,12 @@ from anisocontact.mesh import (
     Body,
     BoxSpec,
     CylinderSpec,
+    DiscSpec,
     DomeSpec,
     GmshFile,
     Placement,
+    PlaneStrain,
+    RectangleSpec,
     RingSpec,
     Rotation,
     build_mesh,
@@ -72,6 +75,35 @@ ROUND = {
         PI - (PI * CAP - PI * CAP**2 * (6.0 - CAP) / 3.0),
         {"outer": 2.0 * PI * (1.0 - CAP), "top": PI, "bottom": 4.0 * PI * CAP},
     ),
+    "half cylinder": (
+        lambda fine, **kind: CylinderSpec(1.0, 2.0, (8 * fine, 2 * fine, 1), part="half", **kind),
+        PI,
+        {"outer": 2.0 * PI, "bottom": PI / 2.0, "top": PI / 2.0, "left": 4.0},
+    ),
+    "quarter cylinder": (
+        lambda fine, **kind: CylinderSpec(1.0, 2.0, (8 * fine, fine, 1), part="quarter", **kind),
+        PI / 2.0,
+        {"outer": PI, "bottom": PI / 4.0, "top": PI / 4.0, "left": 2.0, "front": 2.0},
+    ),
+}
+# The same in the plane: area and lengths.
+FLAT = {
+    "disc": (lambda fine, **kind: DiscSpec(1.0, (8 * fine, fine), **kind), PI, {"outer": 2.0 * PI}),
+    "half": (
+        lambda fine, **kind: DiscSpec(1.0, (8 * fine, fine), part="half", **kind),
+        PI / 2.0,
+        {"outer": PI, "left": 2.0},
+    ),
+    "quarter": (
+        lambda fine, **kind: DiscSpec(1.0, (8 * fine, fine), part="quarter", **kind),
+        PI / 4.0,
+        {"outer": PI / 2.0, "left": 1.0, "top": 1.0},
+    ),
+    "rectangle": (
+        lambda fine, **kind: RectangleSpec((0, 1), (2, 3), (fine, fine), **kind),
+        6.0,
+        {"left": 3.0, "right": 3.0, "bottom": 2.0, "top": 2.0},
+    ),
 }
 
 
@@ -98,11 +130,24 @@ def test_round_shapes_converge_to_the_exact_ones(name, order, cell):
     divides the error by 4 with straight and by about 16 with curved edges; demanded are 3 and 8,
     because the first mesh is coarse. Exact values have no error to divide.
     """
-    make, volume, areas = ROUND[name]
+    _converges(ROUND[name], cell, order)
+
+
+@pytest.mark.parametrize("cell", ["quadrilateral", "triangle"])
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("name", list(FLAT))
+def test_shapes_in_the_plane_converge_to_the_exact_ones(name, order, cell):
+    """Area, and length of every group: requirement and bounds as of the round shapes in space."""
+    _converges(FLAT[name], cell, order, idealisation=PlaneStrain())
+
+
+def _converges(shape, cell, order, **taken_for):
+    make, volume, areas = shape
     exact = {"volume": volume} | areas
     errors = []
     for fine in (1, 2):
-        found = measures(build_mesh([Body("b", make(fine, cell=cell, order=order))]))
+        body = Body("b", make(fine, cell=cell, order=order))
+        found = measures(build_mesh([body], **taken_for))
         assert set(found) == set(exact)
         errors.append({k: abs(found[k] / exact[k] - 1.0) for k in exact})
     coarse, fine = errors
@@ -114,7 +159,7 @@ def test_round_shapes_converge_to_the_exact_ones(name, order, cell):
 
 def test_every_registered_shape_is_tested():
     """A new shape needs a test of its volume and areas here."""
-    tested = {make(1).entry.name for make, _, _ in ROUND.values()}
+    tested = {make(1).entry.name for make, _, _ in (*ROUND.values(), *FLAT.values())}
     assert tested | {"box"} == {entry.name for entry in shapes()}
 
 

@@ -191,7 +191,7 @@ def create_mesh(comm: MPI.Comm, cell: str, degree: int, cells: Nodes, points: Fl
 
     Args:
         comm: Communicator; ranks without data pass arrays of length zero.
-        cell: "tetrahedron" or "hexahedron".
+        cell: "tetrahedron" or "hexahedron"; "triangle" or "quadrilateral" of a mesh in the plane.
         degree: Degree of the geometry.
         cells: Node numbers of each cell in DOLFINx order, (cells, nodes).
         points: Coordinates of the nodes, (nodes, 3), length.
@@ -229,7 +229,7 @@ def cell_nodes(cell: str, degree: int) -> Nodes:
 
 def facet_nodes(cell: str, degree: int) -> Nodes:
     """Local nodes of each facet of a Lagrange cell, vertices first, (facets, nodes)."""
-    return np.array(_lagrange(cell, degree).entity_closure_dofs[2], dtype=np.int64)
+    return np.array(_lagrange(cell, degree).entity_closure_dofs[-2], dtype=np.int64)
 
 
 def curved_gradients(cell: str) -> Floats:
@@ -267,8 +267,9 @@ def locate_entities(mesh: Any, dim: int, nodes: Nodes, values: Ints) -> tuple[In
 def facet_sides(mesh: Any, facets: Ints) -> tuple[Ints, Ints]:
     """Cell and local number of each boundary facet this rank owns, in the order given."""
     topology = mesh.topology
-    topology.create_connectivity(2, 3)
-    topology.create_connectivity(3, 2)
+    dim = topology.dim
+    topology.create_connectivity(dim - 1, dim)
+    topology.create_connectivity(dim, dim - 1)
     pairs = fem.compute_integration_domains(fem.IntegralType.exterior_facet, topology, facets)
     sides = np.asarray(pairs, dtype=np.int32).reshape(-1, 2)
     return sides[:, 0], sides[:, 1]
@@ -280,7 +281,7 @@ def facet_keys(mesh: Any, facets: Ints) -> Nodes:
     It tells the cell by its place in the input, and the side of the cell.
     """
     cells, local = facet_sides(mesh, facets)
-    sides = len(basix.topology(basix.CellType[mesh.topology.cell_type.name])[2])
+    sides = len(basix.topology(basix.CellType[mesh.topology.cell_type.name])[-2])
     original = np.asarray(mesh.topology.original_cell_index, dtype=np.int64)
     return np.asarray(original[cells] * sides + local)
 
@@ -301,10 +302,16 @@ def scalar_element(space: Any) -> Any:
     return space.element.basix_element
 
 
-def body_shares(space: Any, cells: Ints) -> Floats:
-    """Integral of the basis function of each local node over cells, (nodes,), length^3."""
+def body_shares(space: Any, cells: Ints, weight: Any = 1.0) -> Floats:
+    """Integral of the basis function of each local node over cells, (nodes,), length^3.
+
+    Args:
+        space: Vector Lagrange space.
+        cells: The cells.
+        weight: What the basis is multiplied with, UFL: the length across a mesh of two dimensions.
+    """
     dx = ufl.Measure("dx", domain=space.mesh, subdomain_data=[(1, np.sort(cells))])
-    form = compiled(ufl.TestFunction(space)[0] * dx(1), space.mesh.comm)
+    form = compiled(weight * ufl.TestFunction(space)[0] * dx(1), space.mesh.comm)
     return np.array(fem.assemble_vector(form).array[::3])
 
 

@@ -40,7 +40,9 @@ class AtPoints:
     ) -> None:
         self._mesh = model.mesh
         self._cells = np.sort(model.cells(body))
-        self._owned = int(np.searchsorted(self._cells, model.mesh.topology.index_map(3).size_local))
+        self._ideal = model.idealisation
+        owned = model.mesh.topology.index_map(self._ideal.dim).size_local
+        self._owned = int(np.searchsorted(self._cells, owned))
         cell = model.mesh.basix_cell()
         self._degree = degree
         self.points: Floats = np.asarray(basix.make_quadrature(cell, degree)[0], dtype=np.float64)

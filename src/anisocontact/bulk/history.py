@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol
 
 from anisocontact.base.errors import InputError
@@ -81,13 +82,18 @@ class BodyHistory(AtPoints):
         if after.keys() != self.variables.keys():
             text = f"advance gives {', '.join(after)}, history has {', '.join(self.variables)}"
             raise InputError(text, f"material.{body}")
-        self._updates = [(v, self._at_points(after[name])) for name, v in self.variables.items()]
-        self._updates.append((self._stress, self._at_points(cauchy_stress(self, u))))
+        # in the plane grad(u) has more than the derivatives along it
+        seen = partial(model.idealisation.seen, u=u)
+        self._updates = [
+            (v, self._at_points(seen(after[name]))) for name, v in self.variables.items()
+        ]
+        self._updates.append((self._stress, self._at_points(seen(cauchy_stress(self, u)))))
         told: Any = material
         self.stores = hasattr(told, "stored")
         if self.stores:
-            lost = self.dissipated + told.dissipated(u, self.before)
-            self._updates.append((self.stored, self._at_points(told.stored(u, self.before))))
+            lost = self.dissipated + seen(told.dissipated(u, self.before))
+            stored = seen(told.stored(u, self.before))
+            self._updates.append((self.stored, self._at_points(stored)))
             self._updates.append((self.dissipated, self._at_points(lost)))
 
     def piola(self, u: Any) -> Any:

@@ -63,8 +63,8 @@ def volumetric(u: Any, bulk: Any, change: Any) -> Density:
         The term and the degree of its quadrature.
     """
     element = u.function_space.element.basix_element
-    second_order_hexahedra = element.degree == 2 and element.cell_type.name == "hexahedron"
-    return 0.5 * bulk * change**2, 2 if second_order_hexahedra else 1
+    tensor = element.cell_type.name in ("hexahedron", "quadrilateral")
+    return 0.5 * bulk * change**2, 2 if tensor and element.degree == 2 else 1
 
 
 class Hyperelastic(ABC):

@@ -92,13 +92,14 @@ class LinearBulk:
 
 def _bilinear_form(model: Model, materials: Mapping[str, Material]) -> Any:
     u, v = ufl.TrialFunction(model.space), ufl.TestFunction(model.space)
-    dx = body_measure(model)
-    if model.mesh.topology.cell_name() == "hexahedron":
+    dx, ideal = body_measure(model), model.idealisation
+    if model.mesh.topology.cell_name() in ("hexahedron", "quadrilateral") or ideal.turn.any():
         # full integration; UFL's own estimate counts the bending of the cell's sides, three times
         # the points
         dx = dx(metadata={"quadrature_degree": 2 * model.order})
     law: Mapping[str, Any] = materials
+    weight, strain = ideal.weight(model.mesh), ufl.sym(ideal.gradient(v))
     return sum(
-        ufl.inner(law[name].stress(u), ufl.sym(ufl.grad(v))) * dx(i)
+        weight * ufl.inner(ideal.stress(law[name].stress(u), u), strain) * dx(i)
         for i, name in enumerate(model.body_names())
     )

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from anisocontact.base.fenicsx import (
     Mat,
     Vec,
@@ -21,7 +19,7 @@ from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure
 from anisocontact.bulk.point_law import BodyPoints
-from anisocontact.mesh import Model
+from anisocontact.mesh import Idealisation, Model
 
 
 class NonlinearBulk:
@@ -131,11 +129,11 @@ class NonlinearBulk:
 
 
 def _cell_size(model: Model) -> float:
-    """Cube root of the mean volume of a cell."""
-    comm, cells = model.mesh.comm, model.mesh.topology.index_map(3)
+    """Edge of a cube, or of a square, of the mean size of a cell."""
+    comm, cells = model.mesh.comm, model.mesh.topology.index_map(model.mesh.topology.dim)
     one = compiled(fem.Constant(model.mesh, 1.0) * ufl.dx(domain=model.mesh), comm)
     volume = comm.allreduce(fem.assemble_scalar(one))
-    return float(np.cbrt(volume / cells.size_global))
+    return float((volume / cells.size_global) ** (1.0 / model.mesh.topology.dim))
 
 
 class _Forms:
@@ -151,30 +149,34 @@ class _Forms:
     def __init__(
         self, model: Model, laws: Mapping[str, Any], u: Any, v: Any, du: Any, full: int
     ) -> None:
-        dx = body_measure(model)
+        dx, ideal = body_measure(model), model.idealisation
+        weight = ideal.weight(model.mesh)
         work, energy, slope, self.dissipated = 0, 0, 0, 0
         told = True
         for i, name in enumerate(model.body_names()):
             law, here = laws[name], dx(i, degree=full)
-            for density, degree in _stored(law, u):
-                part = density * dx(i, degree=full if degree is None else degree)
+            for density, degree in _stored(ideal, law, u):
+                part = weight * density * dx(i, degree=full if degree is None else degree)
                 energy += part
                 work += ufl.derivative(part, u, v)
             if isinstance(law, BodyPoints):
-                work += law.work(v) * here
-                slope += law.slope(du, v) * here
+                work += weight * law.work(v) * here
+                slope += weight * law.slope(du, v) * here
             elif not (law.linear or hasattr(law, "energy")):
-                work += ufl.inner(law.piola(u), ufl.grad(v)) * here
+                stress = ideal.seen(law.piola(u), u)
+                work += weight * ufl.inner(stress, ideal.gradient(v)) * here
                 told &= getattr(law, "stores", False)
             if isinstance(law, AtPoints):
-                energy += law.stored * here
-                self.dissipated += law.dissipated * here
+                energy += weight * law.stored * here
+                self.dissipated += weight * law.dissipated * here
         self.work, self.energy = work, energy if told else None
         self.tangent = ufl.derivative(work, u, du) + slope
 
 
-def _stored(law: Any, u: Any) -> Sequence[Density]:
+def _stored(ideal: Idealisation, law: Any, u: Any) -> Sequence[Density]:
     """Terms of the energy of a material from which its stress follows."""
     if law.linear:
-        return [(0.5 * ufl.inner(law.stress(u), ufl.sym(ufl.grad(u))), None)]
-    return law.energy(u) if hasattr(law, "energy") else []
+        stress = ideal.stress(law.stress(u), u)
+        return [(0.5 * ufl.inner(stress, ufl.sym(ideal.gradient(u))), None)]
+    terms = law.energy(u) if hasattr(law, "energy") else []
+    return [(ideal.seen(density, u), degree) for density, degree in terms]

@@ -130,9 +130,9 @@ class BodyPoints(AtPoints):
         self._law, self._dt = law, dt
         self.small_strain = law.strain == "small"
         self._elastic: Any = law if hasattr(law, "energy") else None
-        self._gradient = self._at_points(ufl.grad(u))
+        self._gradient = self._at_points(self._ideal.gradient(u))
         self._piola, self._slope = self._zero((3, 3)), self._zero((3, 3, 3, 3))
-        self._true_stress = self._at_points(cauchy_stress(self, u))
+        self._true_stress = self._at_points(self._ideal.seen(cauchy_stress(self, u), u))
         self._last: tuple[Strain, PointResult]
         self.evaluate()
         self.write_tangent()
@@ -147,12 +147,13 @@ class BodyPoints(AtPoints):
 
     def work(self, v: Any) -> Any:
         """Virtual work of the stress of the law per reference volume, UFL."""
-        return ufl.inner(self._piola, ufl.grad(v))
+        return ufl.inner(self._piola, self._ideal.gradient(v))
 
     def slope(self, du: Any, v: Any) -> Any:
         """Derivative of `work` along a displacement, UFL."""
         i, j, k, m = ufl.indices(4)
-        return self._slope[i, j, k, m] * ufl.grad(du)[k, m] * ufl.grad(v)[i, j]
+        gradient = self._ideal.gradient
+        return self._slope[i, j, k, m] * gradient(du)[k, m] * gradient(v)[i, j]
 
     def evaluate(self) -> None:
         """Bring the stress to where the displacement and the time increment are now."""

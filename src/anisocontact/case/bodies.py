@@ -6,6 +6,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, create_model
 
+from anisocontact.base.cells import CELLS
 from anisocontact.base.registry import Entry
 from anisocontact.case.quantity import number, word
 from anisocontact.case.registered import Registered, table_of
@@ -39,7 +40,7 @@ class Placed(Registered):
 class Shaped(Placed):
     """A body of a built-in shape."""
 
-    cell: Annotated[str, word("shape of the cells", "hexahedron", "tetrahedron")] = "hexahedron"
+    cell: str = ""
     order: Annotated[
         int, number("integer", "1", "order of the displacement", "positive", most=2)
     ] = 1
@@ -84,7 +85,9 @@ def mesh_type(shapes: tuple[Entry, ...]) -> type[Mesh]:
     """The table `mesh` with a key for every built-in shape."""
     tables: dict[str, Any] = {}
     for entry in shapes:
-        body = table_of(f"Mesh{entry.name.title()}", (entry,), Shaped)
+        cells = CELLS[entry.kind]
+        cell = {"cell": (Annotated[str, word("shape of the cells", *cells)], cells[0])}
+        body = table_of(f"Mesh{entry.name.title()}", (entry,), Shaped, cell)
         about: Any = Field(
             default_factory=dict, description=f"bodies of the shape {entry.name} by name"
         )

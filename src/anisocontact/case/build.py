@@ -69,7 +69,9 @@ def build(file: CaseFile, python: bool = True) -> Built:
         law_of(section, file.resolve, f"contact[{i}]", python)
         for i, section in enumerate(case.contact)
     ]
-    model = Model.from_arrays(_arrays(file, MPI.COMM_WORLD))
+    model = Model.from_arrays(
+        _arrays(file, MPI.COMM_WORLD), idealisation=objects.idealisation(case)
+    )
     _check_bodies(case, model)
     materials = {
         name: objects.material(section, f"material.{name}")

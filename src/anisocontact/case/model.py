@@ -255,6 +255,7 @@ class Case(Section):
     title: str = Field("", description="heading of the report")
     mesh: Mesh
     group: dict[str, Any] = Field(default_factory=dict)
+    idealisation: Any = None
     material: dict[str, Any]
     surface: dict[str, Any] = Field(default_factory=dict)
     rigid: dict[str, Rigid] = Field(
@@ -295,11 +296,12 @@ class Registries:
     amplitudes: tuple[Entry, ...] = ()
     paths: tuple[Entry, ...] = ()
     strategies: tuple[Entry, ...] = ()
+    idealisations: tuple[Entry, ...] = ()
 
     @classmethod
     def current(cls) -> Registries:
         """What is registered now."""
-        materials, shapes, selectors = _of_bodies()
+        materials, shapes, selectors, idealisations = _of_bodies()
         written = tuple(
             Entry(q.name, q.at, f"{q.doc} [{q.unit}]; at a {q.at}, {FILES[q.at]}", ())
             for q in quantities()
@@ -313,6 +315,7 @@ class Registries:
             amplitudes=(*amplitudes(), PYTHON),
             paths=paths(),
             strategies=strategies(),
+            idealisations=idealisations,
         )
 
     @property
@@ -337,13 +340,13 @@ class Registries:
 
 
 def _of_bodies() -> tuple[tuple[Entry, ...], ...]:
-    """Materials, shapes and selectors of groups; none where the finite elements are missing."""
+    """Materials, shapes, selectors of groups, idealisations; none without finite elements."""
     try:
         from anisocontact.bulk import materials
-        from anisocontact.mesh import selectors, shapes
+        from anisocontact.mesh import idealisations, selectors, shapes
     except ImportError:
-        return (), (), ()
-    return materials(), shapes(), selectors()
+        return (), (), (), ()
+    return materials(), shapes(), selectors(), idealisations()
 
 
 @cache
@@ -365,10 +368,15 @@ def case_type(known: Registries) -> type[Case]:
     surface = OneOf("Surface", Key("shape", known.surfaces))
     material = OneOf("Material", Key("model", known.materials))
     selector = OneOf("Group", Key("by", known.group_selectors))
+    idealisation = OneOf("Idealisation", Key("kind", known.idealisations))
     return create_model(
         "Case",
         __base__=Case,
         mesh=(mesh_type(known.shapes), Field(description=str(Mesh.__doc__))),
+        idealisation=(
+            Annotated[Any, idealisation],
+            Field(None, description="what a mesh in the plane z = 0 is taken for"),
+        ),
         group=(
             dict[str, Annotated[list[Annotated[Any, selector]], BeforeValidator(_as_list)]],
             Field(

@@ -17,13 +17,14 @@ from anisocontact.surfaces import Surface, make_surface
 if TYPE_CHECKING:
     from anisocontact.bulk import Material
     from anisocontact.case.bodies import Placed, Shaped
-    from anisocontact.mesh import Body, Placement
+    from anisocontact.mesh import Body, Idealisation, Placement
     from anisocontact.mesh.selectors import Selector
 
 __all__ = [
     "body",
     "contact_law",
     "directions",
+    "idealisation",
     "interface",
     "material",
     "normal_law",
@@ -65,6 +66,17 @@ def material(section: Registered, place: str) -> Material:
 
     with within(place):
         return make_material(section.chosen["model"], **section.parameters())
+
+
+def idealisation(case: Any) -> Idealisation:
+    """What the `idealisation` table takes the mesh for; a body in space without one."""
+    from anisocontact.mesh.idealisation import SOLID, make_idealisation
+
+    section: Registered | None = case.idealisation
+    if section is None:
+        return SOLID
+    with within("idealisation"):
+        return make_idealisation(section.chosen["kind"], **section.parameters())
 
 
 def body(section: Shaped, name: str, place: str) -> Body:

@@ -48,7 +48,8 @@ def contents(built: Built) -> list[str]:
 
     case, problem = built.file.case, built.problem
     model = problem.model
-    cells = model.mesh.topology.index_map(3).size_global
+    topology = model.mesh.topology
+    cells = topology.index_map(topology.dim).size_global
     nodes = model.space.dofmap.index_map.size_global
     lines = [f"case      {case.title or built.file.name}"]
     for body in model.body_names():

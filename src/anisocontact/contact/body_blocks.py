@@ -74,6 +74,9 @@ def body_blocks(
         pull = now.areas[:, None, None, None] * now.response.tangent_slave
         both = np.concatenate([pull, arms[:, None] @ pull], axis=2).reshape(m, q, 2, 6, 3)
         body_node += np.einsum("mqdij,mqbd->mibj", both, quadrature.gradient)
+        if quadrature.turn is not None:
+            across = both[:, :, 1] @ quadrature.turn
+            body_node += np.einsum("mqij,mqb->mibj", across, quadrature.basis)
     if moved is not None:
         wrench = np.concatenate([traction, np.einsum("nij,nj->ni", arms, traction)], axis=1)
         body_node += np.einsum("mqi,mqbj->mibj", wrench.reshape(m, q, 6), moved.area_changes)

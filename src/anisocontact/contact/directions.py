@@ -62,7 +62,7 @@ def facet_directions(
     facets = np.sort(model.facets(group, "group"))
     if model.count_facets(group) == 0:
         raise InputError(f"facet group {group!r} has no facets", "group")
-    quadrature = facet_quadrature(model.space, facets, SAMPLES)
+    quadrature = facet_quadrature(model.space, facets, SAMPLES, model.idealisation)
     x = quadrature.reference
     if isinstance(f, DirectionField):
         f = _on_surface(f, surface)

@@ -14,9 +14,10 @@ from anisocontact.contact.mortar_master import MortarMaster
 from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.points import SlavePoints
-from anisocontact.contact.quadrature import chosen_degree, facet_quadrature
+from anisocontact.contact.quadrature import chosen_degree, facet_quadrature, inward
 from anisocontact.contact.sides import check_sides, make_sides
 from anisocontact.contact.slave_nodes import SlaveNodes
+from anisocontact.contact.symmetric import check_symmetry
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model
@@ -119,14 +120,17 @@ def _on_surface(
     moving = isinstance(master, MovingSurface)
     body, surface = (master.body, master.surface) if moving else (None, master)
     interface = _with_laws(surface, law)
-    quadrature = facet_quadrature(model.space, facets, options.chosen_degree(model))
+    degree = options.chosen_degree(model)
+    quadrature = facet_quadrature(model.space, facets, degree, model.idealisation)
     comm = model.mesh.comm
     current = options.current_area is not False
     if options.mortar:
+        _check_in_space(model, "mortar")
         points: SlavePoints = _slave_nodes(model, slave, facet_mesh(model.space, facets), current)
     else:
-        flip = facet_mesh(model.space, facets).flip
+        flip = inward(model.space, facets, quadrature)
         points = SlavePoints(quadrature, flip, current_area=current, comm=comm)
+    check_symmetry(model.idealisation, interface, points, comm)
     found = AnalyticMaster(interface, body, points, comm)
     return Pass(model.space, slave, points, found, interface, **options.of_pass)
 
@@ -142,6 +146,13 @@ def _slave_nodes(model: Model, slave: str, mesh: FacetMesh, current_area: bool) 
         text = f"mortar given, on {comm.size} processes points are needed: mortar works on one"
         raise InputError(text, "pass")
     return SlaveNodes(mesh, node_positions(model.space), current_area=current_area, comm=comm)
+
+
+def _check_in_space(model: Model, field: str) -> None:
+    """Refuse what bodies of two dimensions do not have: they meet surfaces at points of edges."""
+    if model.idealisation.dim == 2:
+        text = "given; contact of a mesh of two dimensions is with a surface, point by point"
+        raise InputError(text, field)
 
 
 def _laws(law: object) -> ContactLaw:
@@ -205,6 +216,7 @@ def facet_pass(
             master: the other way round.
         overlaps: Whether forces on the master are integrated over overlaps whatever was asked for.
     """
+    _check_in_space(model, "master")
     check_sides(model, slave, master, options.apart)
     sides = make_sides(
         model,

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from anisocontact.bulk import Material
-from anisocontact.contact.quadrature import facet_quadrature
+from anisocontact.contact.quadrature import facet_quadrature, mean_size
 from anisocontact.mesh import Model
 
 #: Penalty in units of Young's modulus over the facet size: a pressure p lets the surfaces overlap
@@ -14,7 +12,7 @@ PENALTY_FACTOR = 10.0
 
 
 def facet_size(model: Model, facet_group: str) -> float:
-    """Length of a facet: square root of the mean facet area of a group.
+    """Length of a facet of a group: square root of the mean area, or in the plane mean length.
 
     Args:
         model: Mesh with the group.
@@ -29,10 +27,9 @@ def facet_size(model: Model, facet_group: str) -> float:
         >>> round(facet_size(model, "a.top"), 12)
         0.5
     """
-    quadrature = facet_quadrature(model.space, model.facets(facet_group), degree=2)
-    local = np.array([quadrature.areas.sum(), len(quadrature.nodes)])
-    area, count = model.mesh.comm.allreduce(local)
-    return float(np.sqrt(area / count))
+    facets = model.facets(facet_group)
+    quadrature = facet_quadrature(model.space, facets, 2, model.idealisation)
+    return mean_size(quadrature, model.mesh.comm)
 
 
 def auto_penalty(

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.quadrature import FacetQuadrature, Surfaced
+from anisocontact.contact.quadrature import FacetQuadrature, Surfaced, mean_size
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
@@ -29,7 +29,7 @@ class SlavePoints:
         quadrature: The points, with the share of their area that counts.
         facet: Number of the facet of each point, (n,).
         current_area: As given, until `take_area`.
-        size: Length of a facet: square root of the mean area, over all ranks.
+        size: Length of a facet over all ranks, see `mean_size`.
         spread: How far from a point its traction acts, length.
     """
 
@@ -49,8 +49,7 @@ class SlavePoints:
         self.facet = np.repeat(np.arange(count), each)
         self.current_area = current_area
         self._sign = np.where(np.repeat(flip, each), -1.0, 1.0)
-        area, facets = comm.allreduce(np.array([quadrature.weights.sum(), count]))
-        self.size = float(np.sqrt(area / max(facets, 1.0)))
+        self.size = mean_size(quadrature, comm)
 
     def take_area(self, current: bool) -> None:
         """Take the area of now, or that of the reference."""

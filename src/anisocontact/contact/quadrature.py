@@ -12,6 +12,7 @@ import scipy
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import basix, facet_sides, geometry, scalar_element
+from anisocontact.mesh.idealisation import SOLID, Idealisation
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
@@ -29,6 +30,8 @@ class FacetQuadrature:
         gradient: Derivatives of the basis along the two coordinates of the facet, (m, q, k, 2).
         tangents: Derivatives of the position in the reference configuration, (m, q, 2, 3), length.
         rows: Number of the first nodes whose basis functions are not all zero; all if None.
+        turn: Of edges of a mesh in the plane: change of the second tangent, which is that across
+            the plane, with the position of the point, (3, 3); None of facets in space.
     """
 
     nodes: Ints
@@ -38,6 +41,7 @@ class FacetQuadrature:
     gradient: Floats
     tangents: Floats
     rows: int | None = None
+    turn: Floats | None = None
 
     @property
     def count(self) -> int:
@@ -75,8 +79,11 @@ class FacetQuadrature:
 
     def moved(self, nodal: Floats) -> Surfaced:
         """The facets with displaced nodes, (local nodes, 3), length."""
-        own = nodal[self.nodes][:, None]
-        return Surfaced(self, self.tangents + self.gradient.swapaxes(2, 3) @ own)
+        own = nodal[self.nodes]
+        tangents = self.tangents + self.gradient.swapaxes(2, 3) @ own[:, None]
+        if self.turn is not None:
+            tangents[:, :, 1] += self.basis @ own @ self.turn.T
+        return Surfaced(self, tangents)
 
     def to_nodes(self, traction: Floats, out: Floats, areas: Floats | None = None) -> None:
         """Add `integral of basis * traction` to the nodal vectors `out`, (local nodes, 3).
@@ -123,6 +130,9 @@ class FacetQuadrature:
         blocks = np.einsum(
             "mqa,mqdij,mqbd->maibj", self.basis, weighted, self.gradient, optimize=True
         )
+        if self.turn is not None:
+            across = weighted[:, :, 1] @ self.turn
+            blocks += np.einsum("mqa,mqij,mqb->maibj", self.basis, across, self.basis)
         return np.asarray(blocks.reshape(m, 3 * k, 3 * k))
 
 
@@ -177,7 +187,11 @@ class Surfaced:
         sides = np.stack(
             [_cross(self.tangents[:, :, 1], unit), _cross(unit, self.tangents[:, :, 0])], axis=2
         )
-        return np.asarray(self._weights[..., None, None] * (self.quadrature.gradient @ sides))
+        one = self.quadrature
+        changes = one.gradient @ sides
+        if one.turn is not None:
+            changes += one.basis[..., None] * (sides[:, :, 1] @ one.turn)[:, :, None]
+        return np.asarray(self._weights[..., None, None] * changes)
 
     @property
     def vector_areas(self) -> Floats:
@@ -196,6 +210,9 @@ class Surfaced:
         g = self.quadrature.gradient[..., None]
         arm = g[..., 1, :] * first - g[..., 0, :] * second
         turned = np.cross(arm[..., None, :], np.eye(3))
+        if (turn := self.quadrature.turn) is not None:
+            across = np.cross(self.tangents[:, :, 0, None], turn.T)
+            turned += self.quadrature.basis[..., None, None] * across[:, :, None]
         weighted = self._weights[..., None] * self.quadrature.basis
         blocks = np.einsum("mqa,mqbji->maibj", weighted, turned, optimize=True)
         return np.asarray(blocks.reshape(m, 3 * k, 3 * k))
@@ -242,28 +259,61 @@ def chosen_degree(given: int | None, order: int, augmented: bool) -> int:
     return given
 
 
-def facet_quadrature(space: Any, facets: Ints, degree: int) -> FacetQuadrature:
+def mean_size(quadrature: FacetQuadrature, comm: Any) -> float:
+    """Length of a facet: square root of the mean area, or in the plane mean length; collective."""
+    line, extent = quadrature.turn is not None, quadrature.areas
+    if line:
+        extent = quadrature.of_rule * _norm(quadrature.tangents[:, :, 0])
+    total, facets = comm.allreduce(np.array([extent.sum(), len(quadrature.nodes)]))
+    mean = total / max(facets, 1.0)
+    return float(mean if line else np.sqrt(mean))
+
+
+def inward(space: Any, facets: Ints, quadrature: FacetQuadrature) -> npt.NDArray[np.bool_]:
+    """Whether the first tangent cross the second points into the body, of each facet, (m,).
+
+    Args:
+        space: Space of the displacement.
+        facets: As of `facet_quadrature`.
+        quadrature: What it gave.
+    """
+    cells, _ = facet_sides(space.mesh, np.sort(facets))
+    _, nodes, points = geometry(space.mesh)
+    area = quadrature.at_rest.vector_areas.sum(axis=1)
+    middle = quadrature.reference.reshape(*quadrature.weights.shape, 3).mean(axis=1)
+    away = middle - points[nodes[cells]].mean(axis=1)
+    return np.asarray(np.einsum("mi,mi->m", away, area) < 0.0)
+
+
+def facet_quadrature(
+    space: Any, facets: Ints, degree: int, idealisation: Idealisation = SOLID
+) -> FacetQuadrature:
     """Quadrature of the given degree on boundary facets.
 
     Args:
         space: Vector Lagrange space of order 1 or 2.
         facets: Local facets on the boundary; those of other ranks are left out.
         degree: Polynomials up to this degree are integrated exactly on flat facets.
+        idealisation: What the mesh is taken for; areas are those of the thickness, or of the
+            circumference.
 
     Returns:
         Points, areas and basis.
     """
+    dim = space.mesh.topology.dim
+    if idealisation.dim != dim:
+        raise ValueError(f"a mesh of {dim} dimensions taken for one of {idealisation.dim}")
     cells, local = facet_sides(space.mesh, np.sort(facets))
     element = scalar_element(space)
     shape_element, shape_nodes, shape_points = geometry(space.mesh)
     rule, weights = _facet_rule(element.cell_type, degree)
     corners = basix.geometry(element.cell_type)
-    topology = basix.topology(element.cell_type)[2]
-    closure = element.entity_closure_dofs[2]
+    topology = basix.topology(element.cell_type)[-2]
+    closure = element.entity_closure_dofs[-2]
     basis, gradient, position, jacobian = [], [], [], []
     for side, vertices in enumerate(topology):
         origin = corners[vertices[0]]
-        edges = corners[vertices[1:3]] - origin
+        edges = corners[vertices[1:dim]] - origin
         at = origin + rule @ edges
         shape = element.tabulate(1, at)[..., 0][:, :, closure[side]]
         basis.append(shape[0])
@@ -274,19 +324,24 @@ def facet_quadrature(space: Any, facets: Ints, degree: int) -> FacetQuadrature:
     nodes = shape_points[shape_nodes[cells]]
     tangents = np.einsum("mtqb,mbi->mtqi", np.stack(jacobian)[local], nodes)
     tangents = tangents.swapaxes(1, 2)
+    places = np.einsum("mqb,mbi->mqi", np.stack(position)[local], nodes)
+    gradients = np.stack(gradient)[local]
+    if dim == 2:
+        tangents = np.concatenate([tangents, idealisation.across(places)[:, :, None]], axis=2)
+        gradients = np.concatenate([gradients, np.zeros_like(gradients)], axis=3)
     area = _norm(np.cross(tangents[:, :, 0], tangents[:, :, 1]))
     return FacetQuadrature(
         nodes=space.dofmap.list[cells[:, None], np.array(closure)[local]],
         basis=np.stack(basis)[local],
         weights=weights * area,
-        reference=np.einsum("mqb,mbi->mqi", np.stack(position)[local], nodes).reshape(-1, 3),
-        gradient=np.stack(gradient)[local],
+        reference=places.reshape(-1, 3),
+        gradient=gradients,
         tangents=tangents,
+        turn=idealisation.turn if dim == 2 else None,
     )
 
 
 def _facet_rule(cell: Any, degree: int) -> tuple[Floats, Floats]:
-    simplex = cell == basix.CellType.tetrahedron
-    facet = basix.CellType.triangle if simplex else basix.CellType.quadrilateral
+    (facet,) = set(basix.cell.subentity_types(cell)[-2])
     points, weights = basix.make_quadrature(facet, degree)
     return np.asarray(points), np.asarray(weights)

@@ -2,6 +2,14 @@
 
 from anisocontact.mesh.build import Body, GmshFile, MeshFile, Source, build_box, build_mesh
 from anisocontact.mesh.gmsh import read_gmsh
+from anisocontact.mesh.idealisation import (
+    Axisymmetric,
+    Idealisation,
+    PlaneStrain,
+    PlaneStress,
+    idealisations,
+    make_idealisation,
+)
 from anisocontact.mesh.inp import read_inp
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.placement import Placement, Rotation
@@ -11,7 +19,9 @@ from anisocontact.mesh.shapes import (
     BallSpec,
     BoxSpec,
     CylinderSpec,
+    DiscSpec,
     DomeSpec,
+    RectangleSpec,
     RingSpec,
     Shape,
     make_shape,
@@ -20,15 +30,21 @@ from anisocontact.mesh.shapes import (
 from anisocontact.mesh.whole import WholeMesh
 
 __all__ = [
+    "Axisymmetric",
     "BallSpec",
     "Body",
     "BoxSpec",
     "CylinderSpec",
+    "DiscSpec",
     "DomeSpec",
     "GmshFile",
+    "Idealisation",
     "MeshFile",
     "Model",
     "Placement",
+    "PlaneStrain",
+    "PlaneStress",
+    "RectangleSpec",
     "RingSpec",
     "Rotation",
     "Shape",
@@ -36,6 +52,8 @@ __all__ = [
     "WholeMesh",
     "build_box",
     "build_mesh",
+    "idealisations",
+    "make_idealisation",
     "make_selector",
     "make_shape",
     "read_gmsh",

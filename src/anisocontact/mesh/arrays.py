@@ -30,6 +30,8 @@ CELL_FACETS: dict[str, Nodes] = {
             [4, 5, 6, 7],
         ]
     ),
+    "triangle": np.array([[1, 2], [0, 2], [0, 1]]),
+    "quadrilateral": np.array([[0, 1], [0, 2], [1, 3], [2, 3]]),
 }
 
 
@@ -41,7 +43,7 @@ class MeshArrays:
     first process first, and some of the facets. Nodes are numbered over all processes.
 
     Attributes:
-        cell: "tetrahedron" or "hexahedron".
+        cell: "tetrahedron" or "hexahedron", of a mesh in the plane "triangle" or "quadrilateral".
         degree: Degree of the geometry, 1 or 2.
         points: Coordinates, (nodes, 3), length.
         cells: Node numbers in DOLFINx order, (cells, nodes of a cell).
@@ -64,7 +66,7 @@ class MeshArrays:
 
     @property
     def vertices_per_facet(self) -> int:
-        """Corners of a facet: 3 or 4."""
+        """Corners of a facet: 2, 3 or 4."""
         return int(CELL_FACETS[self.cell].shape[1])
 
     @cached_property
@@ -122,7 +124,7 @@ def facet_owners(mesh: MeshArrays, facets: Nodes) -> tuple[Nodes, Nodes]:
 
     Args:
         mesh: The cells.
-        facets: Vertex numbers of the facets, (facets, 3 or 4).
+        facets: Vertex numbers of the facets, (facets, 2, 3 or 4).
 
     Returns:
         A cell of each facet, numbered over all processes (-1: none), and the number of cells that
@@ -191,3 +193,33 @@ def rename_bodies(mesh: MeshArrays, names: Mapping[str, str]) -> MeshArrays:
         body, _, group = name.partition(".")
         facets[f"{names.get(body, body)}.{group}"] = nodes
     return replace(mesh, bodies=bodies, facets=facets)
+
+
+def face_mesh(mesh: MeshArrays, group: str, cell: str) -> MeshArrays:
+    """Facets of one group as a mesh of two dimensions; where others meet them are its facets.
+
+    Args:
+        mesh: The cells of one body, all on this process.
+        group: Facet group "body.group".
+        cell: Cell that the facets are.
+    """
+    cells = mesh.facets[group]
+    used, local = np.unique(cells, return_inverse=True)
+    number = np.full(len(mesh.points), -1, dtype=np.int64)
+    number[used] = np.arange(len(used))
+    facets = {}
+    for name, nodes in mesh.facets.items():
+        rows = number[nodes]
+        # those that share an edge, and of these the nodes on it, corners first
+        edge = (rows >= 0).sum(axis=1) == mesh.degree + 1
+        if name != group and edge.any():
+            rows = rows[edge]
+            facets[name] = rows[rows >= 0].reshape(-1, mesh.degree + 1)
+    return replace(
+        mesh,
+        cell=cell,
+        points=mesh.points[used],
+        cells=local.reshape(cells.shape),
+        bodies={name: np.arange(len(cells)) for name in mesh.bodies},
+        facets=facets,
+    )

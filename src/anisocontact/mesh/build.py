@@ -10,8 +10,9 @@ from typing import Any, Protocol
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
-from anisocontact.mesh.arrays import MeshArrays, rename_bodies
+from anisocontact.mesh.arrays import MeshArrays, face_mesh, rename_bodies
 from anisocontact.mesh.blocks import mesh_blocks
+from anisocontact.mesh.idealisation import SOLID, Idealisation
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.placement import IN_PLACE, Placement
@@ -19,6 +20,7 @@ from anisocontact.mesh.quality import check_cells
 from anisocontact.mesh.readers import file_arrays
 from anisocontact.mesh.selectors import Selector, with_groups
 from anisocontact.mesh.shapes import BoxSpec, Shape, checked_blocks
+from anisocontact.mesh.shapes.shape import FACE, FLAT
 
 
 class Source(Protocol):
@@ -48,7 +50,12 @@ class Body:
         shape = self.shape
         degree = shape.order if shape.curved else 1
         blocks = checked_blocks(shape)
-        mesh = mesh_blocks(self.name, blocks, shape.cell, degree, shape.order, comm)
+        solid = FLAT.get(shape.cell)
+        if solid is None:
+            mesh = mesh_blocks(self.name, blocks, shape.cell, degree, shape.order, comm)
+        else:
+            thick = mesh_blocks(self.name, blocks, solid, degree, shape.order)
+            mesh = face_mesh(thick, f"{self.name}.{FACE}", shape.cell).shared(comm)
         check_cells(mesh)
         return self.placement.apply(mesh)
 
@@ -84,7 +91,9 @@ GmshFile = MeshFile
 
 
 def build_mesh(
-    sources: Iterable[Source], groups: Mapping[str, Sequence[Selector]] = MappingProxyType({})
+    sources: Iterable[Source],
+    groups: Mapping[str, Sequence[Selector]] = MappingProxyType({}),
+    idealisation: Idealisation = SOLID,
 ) -> Model:
     """Model of bodies from shapes and files, in one mesh.
 
@@ -92,6 +101,7 @@ def build_mesh(
         sources: Where the bodies come from.
         groups: Further facet groups, "body.group" -> selectors of their facets, see
             `make_selector`.
+        idealisation: What a mesh of two dimensions is taken for.
 
     Returns:
         The model.
@@ -110,7 +120,7 @@ def build_mesh(
     parts = [source.arrays(MPI.COMM_WORLD) for source in sources]
     if not parts:
         raise InputError("no body given, at least one needed", "mesh")
-    return Model.from_arrays(with_groups(merge(parts), groups))
+    return Model.from_arrays(with_groups(merge(parts), groups), idealisation=idealisation)
 
 
 def build_box(boxes: Mapping[str, BoxSpec]) -> Model:

@@ -32,7 +32,7 @@ def described(mesh: MeshArrays) -> list[str]:
         quality   block: worst 1, mean 1
     """
     lines = []
-    many = {"tetrahedron": "tetrahedra", "hexahedron": "hexahedra"}.get(mesh.cell, mesh.cell)
+    many = {"tetrahedron": "tetrahedra", "hexahedron": "hexahedra"}.get(mesh.cell, f"{mesh.cell}s")
     shapes, edges = scaled_jacobian(mesh), _edge_lengths(mesh)
     for name, cells in mesh.bodies.items():
         points = mesh.points[np.unique(mesh.cells[cells])]
@@ -46,7 +46,8 @@ def described(mesh: MeshArrays) -> list[str]:
         ]
     for name, facets in mesh.facets.items():
         area = _area(mesh.points[facets[:, : mesh.vertices_per_facet]])
-        lines.append(f"group     {name}: {len(facets)} facets, area {area:.6g}")
+        word = "length" if mesh.vertices_per_facet == 2 else "area"
+        lines.append(f"group     {name}: {len(facets)} facets, {word} {area:.6g}")
     return lines
 
 
@@ -55,9 +56,9 @@ def _place(x: Floats) -> str:
 
 
 def _edge_lengths(mesh: MeshArrays) -> Floats:
-    """Between the corners that two facets of a cell share, (cells, edges)."""
+    """Between the corners that two facets of a cell share, or of its facets, (cells, edges)."""
     corners = CELL_FACETS[mesh.cell].tolist()
-    pairs = {
+    pairs = {tuple(pair) for pair in corners if len(pair) == 2} or {
         tuple(sorted(both))
         for i, first in enumerate(corners)
         for second in corners[:i]
@@ -68,7 +69,9 @@ def _edge_lengths(mesh: MeshArrays) -> Floats:
 
 
 def _area(corners: Floats) -> float:
-    """Of facets with straight edges, their corners in any order."""
+    """Of facets with straight edges, their corners in any order; the length of those in a plane."""
+    if corners.shape[1] == 2:
+        return float(np.linalg.norm(corners[:, 1] - corners[:, 0], axis=1).sum())
     if corners.shape[1] == 3:
         sides = [((0, 1), (0, 2))]
     else:  # of the three ways to pair them the one of the diagonals gives the largest product

@@ -1,4 +1,7 @@
-"""A gmsh file as a model: volume groups are bodies, surface groups are facet groups."""
+"""A gmsh file as a model: volume groups are bodies, surface groups are facet groups.
+
+Where a file has no volumes, surface groups are bodies in the plane and curve groups their facets.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +17,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, cell_permutation
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays, check_boundary, facet_owners
+from anisocontact.mesh.idealisation import SOLID, Idealisation
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.msh import Block, MshFile, read_msh
 from anisocontact.mesh.quality import check_cells
@@ -24,26 +28,36 @@ from anisocontact.mesh.whole import WholeMesh
 Nodes = npt.NDArray[np.int64]
 
 # gmsh element type -> cell, degree
-VOLUMES = {
+CELLS = {
     4: ("tetrahedron", 1),
     11: ("tetrahedron", 2),
     5: ("hexahedron", 1),
     12: ("hexahedron", 2),
+    2: ("triangle", 1),
+    9: ("triangle", 2),
+    3: ("quadrilateral", 1),
+    10: ("quadrilateral", 2),
 }
 #: Hexahedra of 20 nodes, and the order in which VTK has these.
 SERENDIPITY = 17
 _IN_VTK = [*range(8), *(8, 11, 13, 9), *(16, 18, 19, 17), *(10, 12, 14, 15)]
 
 
-def read_gmsh(path: str | Path, bodies: Sequence[str] | None = None) -> Model:
+def read_gmsh(
+    path: str | Path,
+    bodies: Sequence[str] | None = None,
+    idealisation: Idealisation = SOLID,
+) -> Model:
     """Model of a gmsh file.
 
     A surface group "block.bottom" belongs to body "block"; a group "bottom" gets the name of the
-    body its facets bound (one group for each body where it bounds several).
+    body its facets bound (one group for each body where it bounds several). In a file without
+    volumes the same holds of surface groups, which are bodies, and of curve groups.
 
     Args:
         path: File in format 4.1 or 2.2, text or binary, coordinates in length.
         bodies: Volume groups to take; all of them if not given.
+        idealisation: What a mesh of two dimensions is taken for.
 
     Returns:
         The model; the displacement has the order of the cells.
@@ -57,7 +71,8 @@ def read_gmsh(path: str | Path, bodies: Sequence[str] | None = None) -> Model:
         Traceback (most recent call last):
         anisocontact.base.errors.InputError: mesh.file: mesh file 'no-such-file.msh' does not exist
     """
-    return Model.from_arrays(gmsh_arrays(Path(path), bodies, comm=MPI.COMM_WORLD))
+    arrays = gmsh_arrays(Path(path), bodies, comm=MPI.COMM_WORLD)
+    return Model.from_arrays(arrays, idealisation=idealisation)
 
 
 def gmsh_arrays(
@@ -86,7 +101,8 @@ def gmsh_arrays(
 
 
 def _arrays(msh: MshFile, bodies: Sequence[str] | None, comm: Any) -> MeshArrays:
-    volumes = _volumes(msh, bodies)
+    dim = 3 if any(block.dim == 3 for block in msh.blocks) else 2
+    volumes = _volumes(msh, dim, bodies)
     cell, degree = _kind([block for _, block in volumes])
     names = list(dict.fromkeys(name for name, _ in volumes))
     firsts = np.cumsum([0] + [block.count for _, block in volumes])
@@ -106,7 +122,7 @@ def _arrays(msh: MshFile, bodies: Sequence[str] | None, comm: Any) -> MeshArrays
     mesh = MeshArrays(cell, degree, msh.points[used], cells, places, {}, degree, comm=comm)
     check_cells(mesh)
     surfaces: dict[str, list[Nodes]] = {}
-    for name, block in _named(msh, 2):
+    for name, block in _named(msh, dim - 1):
         surfaces.setdefault(name, []).append(block.nodes)
     groups = {name: known.fetch(compact, np.concatenate(parts)) for name, parts in surfaces.items()}
     return replace(mesh, facets=_facet_groups(mesh, groups))
@@ -115,7 +131,7 @@ def _arrays(msh: MshFile, bodies: Sequence[str] | None, comm: Any) -> MeshArrays
 def _with_middles(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:
     """Hexahedra of 20 nodes, with a node in each face and in their middle."""
     mesh = WholeMesh(msh.points)
-    for name, block in _volumes(msh, bodies):
+    for name, block in _volumes(msh, 3, bodies):
         if block.kind != SERENDIPITY:
             raise InputError("hexahedra of 20 nodes beside other cells")
         mesh.add_cells("hexahedron", block.nodes[:, _IN_VTK], [name] * len(block.nodes))
@@ -124,8 +140,8 @@ def _with_middles(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:
     return mesh.arrays(bodies)
 
 
-def _volumes(msh: MshFile, bodies: Sequence[str] | None) -> list[tuple[str, Block]]:
-    named = [(name, block) for name, block in _named(msh, 3) if block.count]
+def _volumes(msh: MshFile, dim: int, bodies: Sequence[str] | None) -> list[tuple[str, Block]]:
+    named = [(name, block) for name, block in _named(msh, dim) if block.count]
     if not named:
         raise InputError("no named volume group; give each body a physical volume with a name")
     if bodies is not None and not len(bodies):
@@ -137,7 +153,8 @@ def _volumes(msh: MshFile, bodies: Sequence[str] | None) -> list[tuple[str, Bloc
     for name in bodies or ():
         if name not in known:
             raise InputError(f"no volume group {name!r}; {hint(name, known)}")
-    loose = [b for b in msh.blocks if b.dim == 3 and not any((3, g) in msh.names for g in b.groups)]
+    of_bodies = (b for b in msh.blocks if b.dim == dim)
+    loose = [b for b in of_bodies if not any((dim, g) in msh.names for g in b.groups)]
     if loose and bodies is None:
         count = sum(b.count for b in loose)
         raise InputError(f"{count} cells are in no named volume group")
@@ -154,14 +171,15 @@ def _named(msh: MshFile, dim: int) -> Iterator[tuple[str, Block]]:
 
 def _kind(blocks: list[Block]) -> tuple[str, int]:
     kinds = {block.kind for block in blocks}
-    if not kinds <= set(VOLUMES):
+    if not kinds <= set(CELLS):
         raise InputError(
-            "a cell is neither a tetrahedron of 4 or 10 nodes nor a hexahedron of 8, 20 or 27 nodes"
+            "a cell is neither a tetrahedron of 4 or 10 nodes nor a hexahedron of 8, 20 or 27 "
+            "nodes, nor in the plane a triangle of 3 or 6 or a quadrilateral of 4 or 9"
         )
     if len(kinds) > 1:
-        found = ", ".join(f"{cell} of order {n}" for cell, n in (VOLUMES[k] for k in sorted(kinds)))
+        found = ", ".join(f"{cell} of order {n}" for cell, n in (CELLS[k] for k in sorted(kinds)))
         raise InputError(f"cells of one kind only, not {found}")
-    return VOLUMES[kinds.pop()]
+    return CELLS[kinds.pop()]
 
 
 def _check_single(cells: Nodes, nodes: Split, comm: Any) -> None:

@@ -13,6 +13,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, create_mesh, locate_entities, vector_space
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays
+from anisocontact.mesh.idealisation import SOLID, Idealisation
 from anisocontact.mesh.own_space import check_space, named_facets
 
 Ints = npt.NDArray[np.int32]
@@ -22,15 +23,17 @@ class Model:
     """Mesh, names and the displacement space on it.
 
     Args:
-        mesh: DOLFINx mesh of tetrahedra or hexahedra in space.
+        mesh: DOLFINx mesh of tetrahedra or hexahedra in space, or of triangles or quadrilaterals
+            in the plane z = 0 of space.
         bodies: Body name -> local cells.
         facets: "body.group" -> local facets on the boundary of that body.
         order: Order of the displacement, 1 or 2.
         linear: Bodies whose displacement is of order 1 in a space of order 2; `Problem` ties
             their middle nodes to the corners.
+        idealisation: What a mesh of two dimensions is taken for; a body in space if not given.
 
     Raises:
-        InputError: The order is not 1 or 2.
+        InputError: The order is not 1 or 2, or mesh and idealisation do not go together.
 
     Example:
         >>> from anisocontact.mesh import BoxSpec, build_box
@@ -46,59 +49,73 @@ class Model:
         facets: Mapping[str, Ints],
         order: int = 1,
         linear: Sequence[str] = (),
+        idealisation: Idealisation = SOLID,
     ) -> None:
         if order not in (1, 2):
             raise InputError(f"order: got {order!r}, allowed: 1, 2", "order")
+        _check_dimension(mesh, idealisation)
         self.mesh = mesh
+        self.idealisation = idealisation
         self.order = order
         self.linear = tuple(linear)
         self._bodies = dict(bodies)
         self._facets = dict(facets)
 
     @classmethod
-    def from_arrays(cls, arrays: MeshArrays, comm: MPI.Comm = MPI.COMM_WORLD) -> Model:
+    def from_arrays(
+        cls,
+        arrays: MeshArrays,
+        comm: MPI.Comm = MPI.COMM_WORLD,
+        idealisation: Idealisation = SOLID,
+    ) -> Model:
         """Distribute plain arrays and name what is in them.
 
         Args:
             arrays: The mesh: a share of it on every process of `comm`, or all of it on each.
             comm: Communicator of the mesh.
+            idealisation: As of `Model`.
 
         Returns:
             The names on a mesh that is distributed.
         """
         own = arrays.shared(comm)
         mesh = create_mesh(comm, own.cell, own.degree, own.cells, own.points)
-        bodies = _located(mesh, 3, {name: own.cells[cells] for name, cells in own.bodies.items()})
-        facets = _located(mesh, 2, own.facets)
-        return cls(mesh, bodies, facets, arrays.order, arrays.linear)
+        dim = mesh.topology.dim
+        bodies = _located(mesh, dim, {name: own.cells[cells] for name, cells in own.bodies.items()})
+        facets = _located(mesh, dim - 1, own.facets)
+        return cls(mesh, bodies, facets, arrays.order, arrays.linear, idealisation)
 
     @classmethod
-    def of(cls, space: Any, facets: Mapping[str, Ints]) -> Model:
+    def of(
+        cls, space: Any, facets: Mapping[str, Ints], idealisation: Idealisation = SOLID
+    ) -> Model:
         """Names on the facets of a user's own displacement space.
 
         Args:
             space: Vector Lagrange space of order 1 or 2, `fem.functionspace(mesh, ("P", 1, (3,)))`.
             facets: "body.group" -> local boundary facets, as of `MeshTags.find`.
+            idealisation: As of `Model`.
 
         Returns:
             The names on that space; every cell belongs to the body of the first group.
 
         Raises:
-            InputError: Not a vector Lagrange space of order 1 or 2 on tetrahedra or hexahedra, or
-                facets that are none of its mesh.
+            InputError: Not a vector Lagrange space of order 1 or 2 on cells that `Model` takes,
+                or facets that are none of its mesh.
         """
         order = check_space(space)
         named = named_facets(facets)
         body = next(iter(named), "body").partition(".")[0]
-        cells = np.arange(space.mesh.topology.index_map(3).size_local, dtype=np.int32)
-        space.mesh.topology.create_entities(2)
-        index_map = space.mesh.topology.index_map(2)
+        topology = space.mesh.topology
+        cells = np.arange(topology.index_map(topology.dim).size_local, dtype=np.int32)
+        topology.create_entities(topology.dim - 1)
+        index_map = topology.index_map(topology.dim - 1)
         count = index_map.size_local + index_map.num_ghosts
         for name, found in named.items():
             outside = found[(found < 0) | (found >= count)]
             if len(outside):
                 raise InputError(f"facet {outside[0]} given, the mesh has 0 to {count - 1}", name)
-        model = cls(space.mesh, {body: cells}, named, order)
+        model = cls(space.mesh, {body: cells}, named, order, (), idealisation)
         model.space = space
         return model
 
@@ -207,7 +224,7 @@ class Model:
         Raises:
             InputError: No such group.
         """
-        index_map = self.mesh.topology.index_map(2)
+        index_map = self.mesh.topology.index_map(self.mesh.topology.dim - 1)
         owned = int(np.sum(self.facets(name) < index_map.size_local))
         return int(self.mesh.comm.allreduce(owned))
 
@@ -229,9 +246,27 @@ def _located(mesh: Any, dim: int, groups: Mapping[str, npt.NDArray[np.int64]]) -
 def _with_two_cells(mesh: Any, facets: Ints) -> int:
     """How many of the facets that this rank owns have a cell on either side."""
     topology = mesh.topology
-    topology.create_connectivity(2, 3)
-    owned = facets[facets < topology.index_map(2).size_local]
-    return int((np.diff(topology.connectivity(2, 3).offsets)[owned] > 1).sum())
+    dim = topology.dim
+    topology.create_connectivity(dim - 1, dim)
+    owned = facets[facets < topology.index_map(dim - 1).size_local]
+    return int((np.diff(topology.connectivity(dim - 1, dim).offsets)[owned] > 1).sum())
+
+
+def _check_dimension(mesh: Any, idealisation: Idealisation) -> None:
+    """Refuse a mesh that is not of what it is taken for; collective."""
+    dim = mesh.topology.dim
+    if dim != idealisation.dim:
+        given = idealisation.entry.name
+        text = (
+            f"{given} given, but the mesh has three dimensions"
+            if dim == 3
+            else "missing; a mesh of two dimensions needs one, such as plane-strain"
+        )
+        raise InputError(text, "idealisation")
+    x, comm = mesh.geometry.x, mesh.comm
+    low = np.min(comm.allgather(x.min(axis=0, initial=np.inf)), axis=0)
+    high = np.max(comm.allgather(x.max(axis=0, initial=-np.inf)), axis=0)
+    idealisation.check_points(np.array([low, high]))
 
 
 def _looked_up(known: dict[str, Ints], name: str, kind: str, field: str) -> Ints:

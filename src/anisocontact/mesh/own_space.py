@@ -12,7 +12,7 @@ from anisocontact.base.errors import InputError
 
 Ints = npt.NDArray[np.int32]
 
-_CELLS = ("tetrahedron", "hexahedron")
+_CELLS = ("tetrahedron", "hexahedron", "triangle", "quadrilateral")
 _NEEDED = '("Lagrange", 1 or 2, (3,)) needed'
 
 
@@ -26,14 +26,14 @@ def check_space(space: Any) -> int:
         Its order.
 
     Raises:
-        InputError: No function space, cells other than tetrahedra or hexahedra, or no vector
-            Lagrange space of order 1 or 2.
+        InputError: No function space, cells other than tetrahedra, hexahedra, triangles and
+            quadrilaterals, or no vector Lagrange space of order 1 or 2.
     """
     if not (hasattr(space, "element") and hasattr(space, "dofmap")):
         raise InputError(f"{type(space).__name__} given, a function space, {_NEEDED}", "space")
     types = [cell.name for cell in space.mesh.topology.entity_types[-1]]
     if len(types) != 1 or types[0] not in _CELLS:
-        text = f"a mesh of {' and '.join(types)} cells given, {' or '.join(_CELLS)} cells needed"
+        text = f"a mesh of {' and '.join(types)} cells given, {' or '.join(_CELLS)} needed"
         raise InputError(text, "space")
     try:
         element = space.element.basix_element

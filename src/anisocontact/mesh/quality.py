@@ -25,6 +25,8 @@ _CORNERS = {
             [7, 5, 6, 3],
         ]
     ),
+    "triangle": np.array([[0, 1, 2]]),
+    "quadrilateral": np.array([[0, 1, 2], [1, 3, 0], [2, 0, 3], [3, 2, 1]]),
 }
 #: Volume at a corner over the largest in the body, below which a cell is flat.
 FLAT = 1e-12
@@ -63,33 +65,46 @@ def check_cells(mesh: MeshArrays) -> None:
 def scaled_jacobian(mesh: MeshArrays) -> npt.NDArray[np.float64]:
     """Least volume at a corner of each cell over the lengths of its edges, (cells,).
 
-    1 for a cube and, scaled with the square root of 2, for a regular tetrahedron [Knupp 2000].
+    1 for a cube or a square and, scaled, for a regular tetrahedron or triangle [Knupp 2000].
 
     Args:
         mesh: The mesh, of one process; the corners are looked at.
     """
     points = mesh.points[mesh.cells[:, _CORNERS[mesh.cell]]]
-    lengths = [np.linalg.norm(points[:, :, k] - points[:, :, 0], axis=2) for k in (1, 2, 3)]
+    arms = points[:, :, 1:] - points[:, :, :1]
+    lengths = np.moveaxis(np.linalg.norm(arms, axis=3), 2, 0)
     size = np.prod(lengths, axis=0)
     if mesh.cell == "tetrahedron":  # one corner stands for all: its volume, their longest edges
         edges = mesh.points[mesh.cells[:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]]]
         long = np.linalg.norm(edges[:, :, 1] - edges[:, :, 0], axis=2)
         at = [(0, 1, 2), (0, 3, 4), (1, 3, 5), (2, 4, 5)]
         size = np.max([long[:, list(k)].prod(axis=1) for k in at], axis=0)[:, None] / np.sqrt(2.0)
+    if mesh.cell == "triangle":
+        third = np.linalg.norm(points[:, :, 2] - points[:, :, 1], axis=2)
+        longest = np.sort([*lengths, third], axis=0)[1:]
+        size = longest.prod(axis=0) * np.sqrt(0.75)
     return np.asarray((_corner_volumes(mesh) / size).min(axis=1))
 
 
 def _corner_volumes(mesh: MeshArrays) -> npt.NDArray[np.float64]:
     corners = _CORNERS[mesh.cell]
+    dim = corners.shape[1] - 1
     points = mesh.points[mesh.cells[:, corners]]
-    edges = points[:, :, 1:] - points[:, :, :1]
-    return np.asarray(np.linalg.det(edges))
+    edges = points[:, :, 1:, :dim] - points[:, :, :1, :dim]
+    return _either_side(np.linalg.det(edges), dim)
+
+
+def _either_side(volumes: npt.NDArray[np.float64], dim: int) -> npt.NDArray[np.float64]:
+    """Cells in the plane may be seen from either side."""
+    return volumes * np.sign(volumes[:, :1]) if dim == 2 else volumes
 
 
 def _inner_volumes(mesh: MeshArrays) -> npt.NDArray[np.float64]:
-    points = np.ascontiguousarray(mesh.points[mesh.cells].swapaxes(1, 2))
+    dim = _CORNERS[mesh.cell].shape[1] - 1
+    points = np.ascontiguousarray(mesh.points[mesh.cells][..., :dim].swapaxes(1, 2))
     # One point after the other: all at once would be many times the mesh.
-    return np.column_stack([np.linalg.det(points @ g) for g in curved_gradients(mesh.cell)])
+    volumes = [np.linalg.det(points @ g) for g in curved_gradients(mesh.cell)]
+    return _either_side(np.column_stack(volumes), dim)
 
 
 def _facets_of_more_than_two(mesh: MeshArrays) -> int:

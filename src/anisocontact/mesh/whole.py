@@ -23,7 +23,12 @@ Nodes = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 
 #: Corners of a cell in VTK's order -> DOLFINx's, which goes along one axis after the other.
-CORNERS = {"tetrahedron": [0, 1, 2, 3], "hexahedron": [0, 1, 3, 2, 4, 5, 7, 6]}
+CORNERS = {
+    "tetrahedron": [0, 1, 2, 3],
+    "hexahedron": [0, 1, 3, 2, 4, 5, 7, 6],
+    "triangle": [0, 1, 2],
+    "quadrilateral": [0, 1, 3, 2],
+}
 #: Corners that the middle nodes of VTK's quadratic cells lie between, in their order.
 EDGES = {
     "tetrahedron": [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
@@ -31,6 +36,8 @@ EDGES = {
         *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
         *((0, 4), (1, 5), (2, 6), (3, 7)),
     ],
+    "triangle": [(0, 1), (1, 2), (2, 0)],
+    "quadrilateral": [(0, 1), (1, 2), (2, 3), (3, 0)],
 }
 #: Corners of the faces that have a middle node in VTK's hexahedra of 27 nodes, in their order.
 FACES = [(0, 3, 7, 4), (1, 2, 6, 5), (0, 1, 5, 4), (3, 2, 6, 7), (0, 1, 2, 3), (4, 5, 6, 7)]

@@ -18,14 +18,25 @@ __all__ = ["FORMATS", "write_mesh"]
 
 #: Ending -> format of meshio.
 FORMATS = {".msh": "gmsh22", ".vtu": "vtu", ".vtk": "vtk"}
-#: Number of nodes -> cell of meshio.
-_CELLS = {4: "tetra", 10: "tetra10", 8: "hexahedron", 27: "hexahedron27"}
-#: Number of nodes of a facet -> its name in meshio, and its nodes in the order of VTK.
+#: Cell and degree -> cell of meshio.
+_CELLS = {
+    ("tetrahedron", 1): "tetra",
+    ("tetrahedron", 2): "tetra10",
+    ("hexahedron", 1): "hexahedron",
+    ("hexahedron", 2): "hexahedron27",
+    ("triangle", 1): "triangle",
+    ("triangle", 2): "triangle6",
+    ("quadrilateral", 1): "quad",
+    ("quadrilateral", 2): "quad9",
+}
+#: Corners of a facet and its degree -> its name in meshio, and its nodes in the order of VTK.
 _FACETS = {
-    3: ("triangle", [0, 1, 2]),
-    6: ("triangle6", [0, 1, 2, 5, 3, 4]),
-    4: ("quad", [0, 1, 3, 2]),
-    9: ("quad9", [0, 1, 3, 2, 4, 6, 7, 5, 8]),
+    (2, 1): ("line", [0, 1]),
+    (2, 2): ("line3", [0, 1, 2]),
+    (3, 1): ("triangle", [0, 1, 2]),
+    (3, 2): ("triangle6", [0, 1, 2, 5, 3, 4]),
+    (4, 1): ("quad", [0, 1, 3, 2]),
+    (4, 2): ("quad9", [0, 1, 3, 2, 4, 6, 7, 5, 8]),
 }
 
 
@@ -47,7 +58,7 @@ def write_mesh(mesh: MeshArrays, path: str | Path) -> None:
     if kind is None:
         raise InputError(f"'{path}' given; it has to end with one of: {', '.join(FORMATS)}")
     meshio = needed(path)
-    cell = _CELLS[mesh.cells.shape[1]]
+    cell = _CELLS[mesh.cell, mesh.degree]
     blocks = [(cell, mesh.cells[rows][:, _vtk_order(mesh)]) for rows in mesh.bodies.values()]
     blocks += [_facets(mesh, rows) for rows in mesh.facets.values()]
     names = [*mesh.bodies, *mesh.facets]
@@ -62,7 +73,7 @@ def write_mesh(mesh: MeshArrays, path: str | Path) -> None:
 def _facets(mesh: MeshArrays, rows: Nodes) -> tuple[str, Nodes]:
     corners = rows[:, : mesh.vertices_per_facet]
     nodes = facet_rows(mesh, mesh.cells, corners, mesh.degree)
-    facet, order = _FACETS[nodes.shape[1]]
+    facet, order = _FACETS[mesh.vertices_per_facet, mesh.degree]
     return facet, nodes[:, order]
 
 
@@ -84,7 +95,8 @@ def _vtk_order(mesh: MeshArrays) -> list[int]:
 def _numbered(mesh: MeshArrays, blocks: list[tuple[str, Nodes]]) -> dict[str, Any]:
     """Physical groups of gmsh."""
     numbers = [np.full(len(rows), k, dtype=np.int64) for k, (_, rows) in enumerate(blocks, 1)]
-    dims = [3] * len(mesh.bodies) + [2] * len(mesh.facets)
+    dim = 2 if mesh.vertices_per_facet == 2 else 3
+    dims = [dim] * len(mesh.bodies) + [dim - 1] * len(mesh.facets)
     names = [*mesh.bodies, *mesh.facets]
     return {
         "cell_data": {"gmsh:physical": numbers, "gmsh:geometrical": numbers},

@@ -85,7 +85,8 @@ class Bodies:
         """Sum over the cells at each node of values at the nodes of each cell."""
         rows = self._stress.function_space.dofmap.list
         nodes = self._mean.function_space.dofmap.list
-        owned = self.problem.model.mesh.topology.index_map(3).size_local
+        topology = self.problem.model.mesh.topology
+        owned = topology.index_map(topology.dim).size_local
         width = len(_SYMMETRIC)
         self._mean.x.array[:] = 0.0
         target = self._mean.x.array.reshape(-1, width)
@@ -153,7 +154,8 @@ def slave_points(contacts: Iterable[Contact], chosen: Collection[str] = ()) -> D
 
 
 def _stress_at(problem: Problem, body: str, space: Any) -> Any:
-    stress = cauchy_stress(problem.materials[body], problem.u)
+    ideal, u = problem.model.idealisation, problem.u
+    stress = ideal.stress(cauchy_stress(problem.materials[body], u), u)
     components = ufl.as_vector([stress[i, j] for i, j in _SYMMETRIC])
     points = space.element.interpolation_points
     return compiled_expression(components, points, problem.model.mesh.comm)

@@ -286,7 +286,7 @@ class Writer:
             "wall_time_s": 0.0,
             "unknowns": self._problem.unknowns,
             "nodes": model.space.dofmap.index_map.size_global,
-            "cells": topology.index_map(3).size_global,
+            "cells": topology.index_map(topology.dim).size_global,
             "bodies": model.body_names(),
             "ranks": model.mesh.comm.size,
             "steps": 0,

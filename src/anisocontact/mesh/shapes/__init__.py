@@ -10,15 +10,17 @@ from anisocontact.mesh.shapes.ball import BallSpec
 from anisocontact.mesh.shapes.box import BoxSpec
 from anisocontact.mesh.shapes.cylinder import CylinderSpec
 from anisocontact.mesh.shapes.dome import DomeSpec
+from anisocontact.mesh.shapes.plane import DiscSpec, RectangleSpec
 from anisocontact.mesh.shapes.ring import RingSpec
-from anisocontact.mesh.shapes.shape import CELLS, Shape, checked_blocks
+from anisocontact.mesh.shapes.shape import Shape, checked_blocks
 
 __all__ = [
-    "CELLS",
     "BallSpec",
     "BoxSpec",
     "CylinderSpec",
+    "DiscSpec",
     "DomeSpec",
+    "RectangleSpec",
     "RingSpec",
     "Shape",
     "checked_blocks",
@@ -26,7 +28,10 @@ __all__ = [
     "shapes",
 ]
 
-_SHAPES = {s.entry.name: s for s in (BoxSpec, CylinderSpec, RingSpec, BallSpec, DomeSpec)}
+_SHAPES: dict[str, type[Any]] = {
+    s.entry.name: s
+    for s in (BoxSpec, CylinderSpec, RingSpec, BallSpec, DomeSpec, RectangleSpec, DiscSpec)
+}
 
 
 def shapes() -> tuple[Entry, ...]:
@@ -42,12 +47,13 @@ def shapes() -> tuple[Entry, ...]:
     return tuple(shape.entry for shape in _SHAPES.values())
 
 
-def make_shape(name: str, *, cell: str = "hexahedron", order: int = 1, **parameters: Any) -> Shape:
+def make_shape(name: str, *, cell: str = "", order: int = 1, **parameters: Any) -> Shape:
     """Built-in shape by name.
 
     Args:
         name: Name of a registered shape.
-        cell: "hexahedron" or "tetrahedron" (six to each hexahedron).
+        cell: "hexahedron" or "tetrahedron" (six to each hexahedron), in the plane "quadrilateral"
+            or "triangle"; the first of them if not given.
         order: Order of the displacement, 1 or 2; where the shape is curved cells of order 2 are.
         **parameters: Its parameters; angles in radian, or in degrees by `<name>_deg`.
 
@@ -64,6 +70,8 @@ def make_shape(name: str, *, cell: str = "hexahedron", order: int = 1, **paramet
     entry = registry.entry(shapes(), name, "shape")
     registry.values(entry, parameters)
     of_shape: dict[str, Any] = registry.in_radian(entry.parameters, parameters)
-    shape: Shape = _SHAPES[name](cell=cell, order=order, **of_shape)
+    if cell:
+        of_shape["cell"] = cell
+    shape: Shape = _SHAPES[name](order=order, **of_shape)
     checked_blocks(shape)
     return shape

@@ -18,6 +18,7 @@ from anisocontact.mesh.shapes.shape import (
     check_core,
     check_shape,
     core_parameter,
+    part_parameter,
     ratio_parameter,
 )
 
@@ -77,15 +78,7 @@ class BallSpec:
             cells_parameter(
                 "around (a multiple of 4, of 8 for parts)", "from the inner cube outwards"
             ),
-            Parameter(
-                "part",
-                "choice",
-                "1",
-                "how much of the ball",
-                required=False,
-                default=(0.0,),
-                choices=tuple(PARTS),
-            ),
+            part_parameter(PARTS),
             ratio_parameter("outwards"),
             core_parameter(),
         ),

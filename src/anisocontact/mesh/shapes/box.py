@@ -25,7 +25,8 @@ FACES: dict[Side, str] = {
 }
 
 
-def _planes(axis: str) -> Parameter:
+def planes_parameter(axis: str) -> Parameter:
+    """Parameter `planes_<axis>`: where the planes of nodes along an axis are."""
     doc = (
         f"planes of nodes along {axis} as shares of the size, rising from 0 to 1, for uneven cells"
     )
@@ -77,7 +78,7 @@ class BoxSpec:
             Parameter("size", "vector", "length", "edge lengths", "positive"),
             cells_parameter("along x", "along y", "along z"),
             ratio_parameter("along x", "along y", "along z"),
-            *map(_planes, AXES),
+            *map(planes_parameter, AXES),
         ),
     )
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.lattice import Block
-from anisocontact.mesh.shapes.disc import check_disc, disc_blocks, disc_parameters
+from anisocontact.mesh.shapes.disc import PARTS, check_disc, disc_blocks, disc_parameters
 
 
 @dataclass(frozen=True)
@@ -20,11 +20,13 @@ class CylinderSpec:
     Attributes:
         radius: Radius, > 0, length.
         length: Length along z, > 0, length.
-        cells: Number around (a multiple of 4), from the inner square to the rim, along z.
+        cells: Number around the whole (a multiple of 4, of 8 for parts), from the inner square to
+            the rim, along z.
         cell: "hexahedron" or "tetrahedron".
         order: Order of the displacement, 1 or 2; cells of order 2 are curved.
         ratio: Size of the last cell over the first, to the rim and along z, > 0.
         core: Distance of the corners of the inner square from the axis over the radius, < 1.
+        part: "whole", "half" (x >= 0) or "quarter" (also y >= 0).
 
     Raises:
         InputError: A value is out of range.
@@ -43,13 +45,14 @@ class CylinderSpec:
     order: int = 1
     ratio: Sequence[float] = (1.0, 1.0)
     core: float = 0.5
+    part: str = "whole"
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
         "cylinder",
         "shape",
         "A solid cylinder along z, its lower end around the origin; facet groups outer, bottom "
-        "and top.",
+        "and top, of a half (x >= 0) also left, of a quarter (y >= 0) also front.",
         (
             Parameter("radius", "scalar", "length", "radius", "positive"),
             Parameter("length", "scalar", "length", "length along z", "positive"),
@@ -58,9 +61,10 @@ class CylinderSpec:
     )
 
     def __post_init__(self) -> None:
-        check_disc(self, self.cells, self.core)
+        check_disc(self, self.cells, self.core, self.part)
 
     def blocks(self) -> list[Block]:
         """A square and four blocks around it; see `Shape`."""
         size = np.array([self.radius, self.radius, self.length])
-        return disc_blocks(self.cells, self.ratio, self.core, lambda p: p * size)
+        part = PARTS[self.part]
+        return disc_blocks(self.cells, self.ratio, self.core, lambda p: p * size, part)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 import numpy as np
 
 from anisocontact.base.registry import Parameter
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.lattice import Block, even, graded
+from anisocontact.mesh.lattice import Block, Side, even, graded
 from anisocontact.mesh.shapes.shape import (
     Shape,
     cells_parameter,
@@ -17,61 +17,108 @@ from anisocontact.mesh.shapes.shape import (
     check_core,
     check_shape,
     core_parameter,
+    part_parameter,
     ratio_parameter,
 )
 
+#: How far a part of a disc goes along x and y, from -1 to 1.
+type Ranges = tuple[tuple[int, int], tuple[int, int]]
+
+AROUND = "around a whole disc (a multiple of 4, of 8 for parts)"
 #: Facet groups of bodies made of discs.
-ENDS = {(2, 0): "bottom", (2, 1): "top"}
+ENDS: dict[Side, str] = {(2, 0): "bottom", (2, 1): "top"}
+#: Parts of a disc: how far it goes along x and y, and the groups of cuts at x = 0 and y = 0.
+PARTS: dict[str, Ranges] = {
+    "whole": ((-1, 1), (-1, 1)),
+    "half": ((0, 1), (-1, 1)),
+    "quarter": ((0, 1), (0, 1)),
+}
+CUTS = ("left", "front")
 
 
 def disc_parameters() -> tuple[Parameter, ...]:
-    """Parameters of the cells of bodies made of discs: `cells`, `ratio` and `core`."""
+    """Parameters of the cells of bodies made of discs: `cells`, `ratio`, `core` and `part`."""
     return (
-        cells_parameter("around (a multiple of 4)", "from the inner square outwards", "along z"),
+        cells_parameter(AROUND, "from the inner square outwards", "along z"),
         ratio_parameter("outwards", "along z"),
         core_parameter(),
+        part_parameter(PARTS),
     )
 
 
-def check_disc(shape: Shape, cells: Sequence[int], core: float) -> None:
+def check_disc(shape: Shape, cells: Sequence[int], core: float, part: str) -> None:
     """Check the parameters of a body made of discs.
 
     Args:
         shape: The body.
-        cells: Number around, and others.
+        cells: Number around a whole disc, and others.
         core: Size of the square in the middle.
+        part: How much of the disc.
 
     Raises:
         InputError: A value is of the wrong form or out of range.
     """
     check_shape(shape)
-    check_around(cells, 4)
+    check_around(cells, 4 if part == "whole" else 8)
     check_core(core)
 
 
 def disc_blocks(
-    cells: Sequence[int], ratio: Sequence[float], core: float, place: Callable[[Floats], Floats]
+    cells: Sequence[int],
+    ratio: Sequence[float],
+    core: float,
+    place: Callable[[Floats], Floats],
+    part: Ranges = PARTS["whole"],
+    cuts: Sequence[str] = CUTS,
+    ends: Mapping[Side, str] = ENDS,
 ) -> list[Block]:
-    """Blocks of a cylinder of radius 1 and height 1, each point taken to its place.
+    """Blocks of a cylinder of radius 1 and height 1, or a part; each point taken to its place.
 
     Args:
-        cells: Number around (a multiple of 4), between the square and the rim, along the axis.
+        cells: Number around a whole disc, between the square and the rim, along the axis.
         ratio: Growth of the cells from the square to the rim, and along the axis.
         core: Distance of the corners of the square from the axis.
         place: Takes points of that cylinder to points in space, (n, 3).
+        part: How far it goes along x and y.
+        cuts: Facet groups of cuts at x = 0 and at y = 0.
+        ends: Facet groups of the ends.
 
     Returns:
-        The blocks, with the facet groups outer, bottom and top.
+        The blocks, with the facet groups outer and those of cuts and ends.
     """
-    side, along = even(cells[0] // 4), graded(cells[2], ratio[1])
-    out = graded(cells[1], ratio[0])
+    along, out = graded(cells[2], ratio[1]), graded(cells[1], ratio[0])
     half = core / np.sqrt(2.0)
-    blocks = [Block((side, side, along), lambda p: place(_square(p, half)), ENDS)]
+    shares = [((1 + low) / 2.0, (1 + high) / 2.0) for low, high in part]
+    square = partial(_part, partial(_square, half=half), shares[0], shares[1])
+    sides = {(axis, end): cuts[axis] for axis in (0, 1) for end in (0, 1) if not part[axis][end]}
+    x, y = (_planes(cells[0], share) for share in shares)
+    blocks = [Block((x, y, along), partial(_through, square, place), {**sides, **ends})]
     for quarter in range(4):
-        to_rim = partial(_rim, half=half, start=(quarter - 0.5) * np.pi / 2.0)
-        sides = {(0, 1): "outer", **ENDS}
-        blocks.append(Block((out, side, along), partial(_through, to_rim, place), sides))
+        axis, end = quarter % 2, int(quarter < 2)
+        if not part[axis][end]:
+            continue
+        # along the rim, against the clock: y, -x, -y, x
+        first, last = shares[1 - axis]
+        around = (first, last) if quarter in (0, 3) else (1.0 - last, 1.0 - first)
+        rim = partial(_rim, half=half, start=(quarter - 0.5) * np.pi / 2.0)
+        cut = {(1, e): cuts[1 - axis] for e in (0, 1) if around[e] == 0.5}
+        to_rim = partial(_through, partial(_part, rim, (0.0, 1.0), around), place)
+        planes = out, _planes(cells[0], around), along
+        blocks.append(Block(planes, to_rim, {(0, 1): "outer", **cut, **ends}))
     return blocks
+
+
+def _planes(around: int, share: tuple[float, float]) -> Floats:
+    """Planes of the cells along a share of a side of the square."""
+    return even(round(around / 4 * (share[1] - share[0])))
+
+
+def _part(
+    then: Callable[[Floats], Floats], x: tuple[float, float], y: tuple[float, float], p: Floats
+) -> Floats:
+    """Of a part of a block: shares of the part to shares of the whole."""
+    low, high = np.array([x, y, (0.0, 1.0)]).T
+    return then(low + p * (high - low))
 
 
 def _through(

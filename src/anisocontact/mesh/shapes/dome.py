@@ -13,7 +13,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block
-from anisocontact.mesh.shapes.disc import check_disc, disc_blocks, disc_parameters
+from anisocontact.mesh.shapes.disc import PARTS, check_disc, disc_blocks, disc_parameters
 
 
 @dataclass(frozen=True)
@@ -26,11 +26,13 @@ class DomeSpec:
         radius: Radius of the ball, > rim, length.
         rim: Radius of the wall, > 0, length.
         height: Height on the axis, more than the segment is high; length.
-        cells: Number around (a multiple of 4), from the inner square to the wall, along z.
+        cells: Number around the whole (a multiple of 4, of 8 for parts), from the inner square to
+            the wall, along z.
         cell: "hexahedron" or "tetrahedron".
         order: Order of the displacement, 1 or 2; cells of order 2 are curved.
         ratio: Size of the last cell over the first, to the wall and along z, > 0.
         core: Distance of the corners of the inner square from the axis over the rim, < 1.
+        part: "whole", "half" (x >= 0) or "quarter" (also y >= 0).
 
     Raises:
         InputError: A value is out of range.
@@ -48,13 +50,15 @@ class DomeSpec:
     order: int = 1
     ratio: Sequence[float] = (1.0, 1.0)
     core: float = 0.5
+    part: str = "whole"
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
         "dome",
         "shape",
         "A round block along z whose lower end is a segment of a ball with its lowest point in the "
-        "origin; facet groups bottom (the sphere), outer (the wall) and top.",
+        "origin; facet groups bottom (the sphere), outer (the wall) and top, of a half (x >= 0) "
+        "also left, of a quarter (y >= 0) also front.",
         (
             Parameter("radius", "scalar", "length", "radius of the ball", "positive"),
             Parameter("rim", "scalar", "length", "radius of the wall", "positive"),
@@ -64,7 +68,7 @@ class DomeSpec:
     )
 
     def __post_init__(self) -> None:
-        check_disc(self, self.cells, self.core)
+        check_disc(self, self.cells, self.core, self.part)
         if not self.rim < self.radius:
             raise InputError(f"{self.rim:g} given, must be < radius, {self.radius:g}", "rim")
         segment = self.radius - math.sqrt(self.radius**2 - self.rim**2)
@@ -74,7 +78,7 @@ class DomeSpec:
 
     def blocks(self) -> list[Block]:
         """A square and four blocks around it; see `Shape`."""
-        return disc_blocks(self.cells, self.ratio, self.core, self._place)
+        return disc_blocks(self.cells, self.ratio, self.core, self._place, PARTS[self.part])
 
     def _place(self, p: Floats) -> Floats:
         plane = self.rim * p[:, :2]

@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import ClassVar, Protocol
 
 from anisocontact.base import registry
+from anisocontact.base.cells import CELLS, IN_PLANE, IN_SPACE
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.blocks import check_count
 from anisocontact.mesh.lattice import Block
 
-CELLS = ("hexahedron", "tetrahedron")
+#: Cells of shapes in the plane, and those of bodies whose facets they are.
+FLAT = dict(zip(CELLS[IN_PLANE], CELLS[IN_SPACE], strict=True))
+#: Facet group of their blocks that is the body.
+FACE = "face"
 
 
 class Shape(Protocol):
     """A body that is meshed block by block.
+
+    One in the plane has blocks in space, one cell thick, of which the facet group `FACE` is meshed.
 
     Attributes:
         entry: Name, one line of text, parameters; they are attributes of the same names.
@@ -28,7 +34,7 @@ class Shape(Protocol):
 
     @property
     def cell(self) -> str:
-        """Cells: "hexahedron" or "tetrahedron" (six to each hexahedron)."""
+        """Cells: "hexahedron" or "tetrahedron" (six to each hexahedron), or those of `FLAT`."""
         ...
 
     @property
@@ -61,6 +67,19 @@ def core_parameter() -> Parameter:
     return Parameter("core", "scalar", "1", doc, "positive", required=False, default=(0.5,))
 
 
+def part_parameter(parts: Iterable[str]) -> Parameter:
+    """Parameter `part`: how much of a round shape, all of it by default."""
+    return Parameter(
+        "part",
+        "choice",
+        "1",
+        "how much of it",
+        required=False,
+        default=(0.0,),
+        choices=tuple(parts),
+    )
+
+
 def check_shape(shape: Shape) -> None:
     """Check the parameters of a shape one by one; one number in the place of a pair is made two.
 
@@ -71,8 +90,9 @@ def check_shape(shape: Shape) -> None:
         numbers = registry.check(p, getattr(shape, p.name))
         if p.alike:
             object.__setattr__(shape, p.name, tuple(numbers))
-    if shape.cell not in CELLS:
-        raise InputError(f"{shape.cell!r} given, allowed: {', '.join(CELLS)}", "cell")
+    cells = CELLS[shape.entry.kind]
+    if shape.cell not in cells:
+        raise InputError(f"{shape.cell!r} given, allowed: {', '.join(cells)}", "cell")
     if shape.order not in (1, 2):
         raise InputError(f"{shape.order!r} given, allowed: 1, 2", "order")
 

@@ -25,7 +25,9 @@ class DeformedCells:
         points, _ = basix.make_quadrature(element.cell_type, 2 * element.degree)
         table = np.asarray(element.tabulate(1, points))[1:, :, :, 0]
         self._gradient: Floats = np.ascontiguousarray(np.moveaxis(table, 0, -1))
-        owned = model.mesh.topology.index_map(3).size_local
+        self._shape: Floats = np.asarray(element.tabulate(0, points))[0, :, :, 0]
+        self._idealisation = model.idealisation
+        owned = model.mesh.topology.index_map(model.idealisation.dim).size_local
         cells = np.concatenate([np.zeros(0, dtype=np.int32), *map(model.cells, bodies)])
         self._nodes: Ints = model.space.dofmap.list[np.sort(cells[cells < owned])]
         self._reference = np.asarray(model.space.tabulate_dof_coordinates())
@@ -51,7 +53,11 @@ class DeformedCells:
         # columns of the Jacobian, (d, i, cells, points): a product of large matrices, and a sum of
         # six products takes a tenth of the time of an elimination for every small matrix
         table = self._gradient.transpose(2, 1, 0)[:, None]
-        a, b, c = at[self._nodes].transpose(2, 0, 1) @ table
+        nodes = at[self._nodes]
+        columns = list(nodes.transpose(2, 0, 1) @ table)
+        if len(columns) == 2:  # in the plane: the tangent across it
+            columns.append(self._idealisation.across(self._shape @ nodes).transpose(2, 0, 1))
+        a, b, c = columns
         return np.asarray(
             a[0] * (b[1] * c[2] - b[2] * c[1])
             + a[1] * (b[2] * c[0] - b[0] * c[2])

@@ -76,6 +76,8 @@ def make_parts(
         InputError: A body without material, a material without body, or two contacts of one name.
     """
     _check(model, materials, contacts)
+    for name, material in materials.items():
+        model.idealisation.check_material(material, f"material.{name}")
     linear = all(material.linear for material in materials.values())
     bulk = LinearBulk(model, materials) if linear else NonlinearBulk(model, materials)
     bodies, rigid = Bodies(bulk), RigidBodies(contacts, model.mesh.comm)

@@ -234,8 +234,9 @@ class _Cells:
     def __init__(self, model: Model, name: str) -> None:
         comm = model.mesh.comm
         cells = np.sort(model.cells(name))
-        cells = cells[cells < model.mesh.topology.index_map(3).size_local]
+        cells = cells[cells < model.mesh.topology.index_map(model.idealisation.dim).size_local]
         self._nodes = model.space.dofmap.list[cells]
+        self._flat = model.idealisation.dim == 2
         self._reference = np.asarray(model.space.tabulate_dof_coordinates())
         element = scalar_element(model.space)
         rule: tuple[Floats, Floats]
@@ -250,7 +251,7 @@ class _Cells:
         own = self._reference[self._own]
         lowest = np.min(comm.allgather(own.min(axis=0, initial=np.inf)), axis=0)
         highest = np.max(comm.allgather(own.max(axis=0, initial=-np.inf)), axis=0)
-        self._size = float((highest - lowest).min())
+        self._size = float((highest - lowest)[: model.idealisation.dim].min())
 
     def turned(self, u: Floats) -> tuple[float, float]:
         """Cells of this rank that turn by more than they are strained.
@@ -290,7 +291,10 @@ class _Cells:
             yield self._nodes[start : start + _CHUNK]
 
     def _jacobian(self, nodes: npt.NDArray[np.int32], gradients: Floats) -> Floats:
-        return np.asarray(np.swapaxes(self._reference[nodes], 1, 2) @ gradients)
+        jacobian = np.asarray(np.swapaxes(self._reference[nodes], 1, 2) @ gradients)
+        if self._flat:  # what is across the plane stays
+            jacobian[:, 2, 2] = 1.0
+        return jacobian
 
     def _means(self, gradients: Floats, weights: Floats) -> tuple[Floats, float]:
         """Integral of the gradient of the basis of each node, and the volume, of this rank."""
@@ -306,9 +310,12 @@ class _Cells:
 
 
 def _gradients(element: Any, points: Floats) -> Floats:
-    """Gradients of the basis in the reference cell, (points, nodes, 3)."""
-    table: Floats = element.tabulate(1, np.ascontiguousarray(points.reshape(-1, 3)))
-    return np.ascontiguousarray(np.moveaxis(table[1:, :, :, 0], 0, -1))
+    """Gradients of the basis in the reference cell, (points, nodes, 3), none across a plane."""
+    dim = len(basix.geometry(element.cell_type)[0])
+    table: Floats = element.tabulate(1, np.ascontiguousarray(points.reshape(-1, dim)))
+    gradients = np.zeros((*table.shape[1:3], 3))
+    gradients[..., :dim] = np.moveaxis(table[1:, :, :, 0], 0, -1)
+    return gradients
 
 
 def polar_angle(gradient: Floats) -> float:

@@ -7,10 +7,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
+from anisocontact.mesh.idealisation import Idealisation
 from anisocontact.solver.system.parts import Parts
 from anisocontact.solver.system.swallowed import check_swallowed
 from anisocontact.solver.terms.loads import Loads
-from anisocontact.solver.terms.step import Step
+from anisocontact.solver.terms.step import AXES, Step
 from anisocontact.solver.terms.supports import Supports
 
 Floats = npt.NDArray[np.float64]
@@ -63,6 +65,7 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
     """
     planes, turned = parts.planes, False
     for step, supports, loads in _rehearsed(parts, steps):
+        _check_motions(parts.model.idealisation, step)
         # Where a turn ends is not known before it has been.
         turned = turned or bool(step.rotation)
         for share in () if turned else supports.places:
@@ -70,6 +73,25 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
             planes.check(supports.unknowns, supports.values, step.name)
         held = [*supports.held(), *planes.held()]
         check_swallowed(parts.layout, step, loads.given(step), held)
+
+
+def _check_motions(idealisation: Idealisation, step: Step) -> None:
+    """Refuse rigid motions that make a plane, or a body of revolution, something else."""
+    allowed = idealisation.motions
+    said = f"{idealisation.entry.name} has no such motion; allowed: {', '.join(allowed)}"
+    for body, components in step.motion.items():
+        for name, value in components.items():
+            if name not in allowed and value != 0.0:
+                field = f"step {step.name!r}.motion.{body}.{name}"
+                raise InputError(f"{value!r} given, {said}", field)
+    for name, turn in step.rotation.items():
+        about = [f"r{axis}" for axis, share in zip(AXES, turn.axis, strict=True) if share]
+        along = [axis for axis, share in zip(AXES, turn.move, strict=True) if share]
+        if any(turn.point[i] for i, axis in enumerate(AXES) if axis not in allowed):
+            along.append("of a point beside the axis")
+        if wrong := [motion for motion in (*about, *along) if motion not in allowed]:
+            field = f"step {step.name!r}.rotation.{name}"
+            raise InputError(f"a motion {wrong[0]} given, {said}", field)
 
 
 def contact_must_hold(parts: Parts, steps: Sequence[Step]) -> bool:

@@ -165,7 +165,9 @@ class _SupportTerm(Attached):
         self.name = spec.group
         self._comm = model.mesh.comm
         facets = model.facets(spec.group, f"elastic_support.{spec.group}")
-        self._quadrature = facet_quadrature(model.space, facets, 2 * model.order)
+        self._quadrature = facet_quadrature(
+            model.space, facets, 2 * model.order, model.idealisation
+        )
         n = outward(model, spec.group, self._quadrature)
         along = n[:, :, None] * n[:, None, :]
         stiffness = spec.normal * along + spec.tangential * (np.eye(3) - along)

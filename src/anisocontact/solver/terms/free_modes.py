@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -39,6 +39,7 @@ class ConnectedBody:
         fields: The six rigid motions of unit size at these, three translations and three rotations
             (times the size of the body), (6, m, 3).
         size: Root mean square distance of its nodes from the centre, length.
+        resisted: Rows over the six motions that are zero where nothing is strained, (r, 6).
     """
 
     parts: tuple[str, ...]
@@ -48,6 +49,7 @@ class ConnectedBody:
     local: Ints
     fields: Floats
     size: float
+    resisted: Floats = field(default_factory=lambda: np.zeros((0, 6)))
 
     @property
     def name(self) -> str:
@@ -67,7 +69,8 @@ def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[Connecte
     names = list(model.body_names())
     local, nodes = {}, {}
     for name in names:
-        found = fem.locate_dofs_topological(space, 3, model.cells(name)).astype(np.int64)
+        found = fem.locate_dofs_topological(space, model.idealisation.dim, model.cells(name))
+        found = found.astype(np.int64)
         local[name], nodes[name] = found, found[found < owned]
     pairs = [(names.index(a), names.index(b)) for a, b in links]
     for i, a in enumerate(names):
@@ -114,7 +117,10 @@ def _body(model: Model, parts: list[str], local: list[Ints]) -> ConnectedBody:
     arms = x - centre
     size = np.sqrt(comm.allreduce(float((arms**2).sum())) / count)
     fields = _fields((places[here] - centre) / size)
-    return ConnectedBody(tuple(parts), nodes, arms / size, count, here, fields, float(size))
+    resisted = model.idealisation.resisted(centre / size)
+    return ConnectedBody(
+        tuple(parts), nodes, arms / size, count, here, fields, float(size), resisted
+    )
 
 
 def _fields(arms: Floats) -> Floats:
@@ -137,7 +143,7 @@ def free_modes(body: ConnectedBody, held: Iterable[Held], comm: Any) -> Floats:
     Returns:
         Translation t and rotation w (times the size of the body) of each, (k, 6).
     """
-    sums = np.zeros((6, 6))
+    sums = body.count * body.resisted.T @ body.resisted
     for nodes, direction in held:
         here, _, at = np.intersect1d(nodes, body.nodes, return_indices=True)
         along = np.broadcast_to(direction, (len(here), 3))

@@ -77,7 +77,8 @@ class DeadLoads(Term):
 
 def area_shares(model: Model, group: str, field: str) -> Floats:
     """Area of a facet group that belongs to each local node, (nodes,), length^2."""
-    quadrature = facet_quadrature(model.space, model.boundary(group, field), 2 * model.order)
+    facets = model.boundary(group, field)
+    quadrature = facet_quadrature(model.space, facets, 2 * model.order, model.idealisation)
     index_map = model.space.dofmap.index_map
     nodal = np.zeros((index_map.size_local + index_map.num_ghosts, 3))
     quadrature.to_nodes(np.ones((quadrature.count, 3)), nodal)
@@ -91,7 +92,8 @@ def mean_shares(model: Model, group: str, field: str) -> Floats:
 
 
 def _volume_shares(model: Model, body: str, field: str) -> Floats:
-    return body_shares(model.space, model.cells(body, field))
+    weight = model.idealisation.weight(model.mesh)
+    return body_shares(model.space, model.cells(body, field), weight)
 
 
 # Kind of a dead load, a field of `Step` -> shares of the nodes.

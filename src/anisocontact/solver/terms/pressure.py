@@ -9,10 +9,9 @@ from typing import override
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.fenicsx import facet_sides, geometry
 from anisocontact.bulk import Material, small_strain
 from anisocontact.contact import FacetQuadrature, facet_quadrature
-from anisocontact.contact.quadrature import Surfaced
+from anisocontact.contact.quadrature import Surfaced, inward
 from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.led import Led
@@ -104,10 +103,11 @@ class _Surface:
     def __init__(self, model: Model, group: str, fixed: bool) -> None:
         facets = model.facets(group)
         # N_a and each of the tangents are of the order of the displacement.
-        self._quadrature = facet_quadrature(model.space, facets, 3 * model.order)
+        self._quadrature = facet_quadrature(
+            model.space, facets, 3 * model.order, model.idealisation
+        )
         self._sign = _sides(model, group, self._quadrature)
-        count = len(model.space.tabulate_dof_coordinates())
-        self._rest = self._quadrature.moved(np.zeros((count, 3)))
+        self._rest = self._quadrature.at_rest
         self.fixed = fixed
         self._moved: Surfaced = self._rest
 
@@ -125,8 +125,7 @@ class _Surface:
 
 def outward(model: Model, group: str, quadrature: FacetQuadrature) -> Floats:
     """Outward unit normals at the points of a quadrature of a group, reference, (m q, 3)."""
-    count = len(model.space.tabulate_dof_coordinates())
-    areas = quadrature.moved(np.zeros((count, 3))).vector_areas
+    areas = quadrature.at_rest.vector_areas
     areas = _sides(model, group, quadrature)[:, None, None] * areas
     flat = areas.reshape(-1, 3)
     return np.asarray(flat / np.linalg.norm(flat, axis=1)[:, None])
@@ -134,10 +133,4 @@ def outward(model: Model, group: str, quadrature: FacetQuadrature) -> Floats:
 
 def _sides(model: Model, group: str, quadrature: FacetQuadrature) -> Floats:
     """1 where the first tangent cross the second points out of the body, else -1, (m,)."""
-    cells, _ = facet_sides(model.mesh, np.sort(model.facets(group)))
-    _, nodes, points = geometry(model.mesh)
-    count = len(model.space.tabulate_dof_coordinates())
-    area = quadrature.moved(np.zeros((count, 3))).vector_areas.sum(axis=1)
-    middle = quadrature.reference.reshape(*quadrature.weights.shape, 3).mean(axis=1)
-    away = middle - points[nodes[cells]].mean(axis=1)
-    return np.asarray(np.sign(np.einsum("mi,mi->m", away, area)))
+    return np.where(inward(model.space, model.facets(group), quadrature), -1.0, 1.0)

@@ -43,6 +43,7 @@ class Supports:
         x = np.abs(model.space.tabulate_dof_coordinates()).max(initial=0.0)
         # Two values for a node are one if they differ by round-off of a rotation.
         self._same = SAME * float(model.mesh.comm.allreduce(x, MPI.MAX))
+        self._fixed = _fixed(model)
         self._nodes: dict[str, Ints] = {}
         self._goals: dict[Support, Aim] = {}
         self._owner: dict[Support, Ints] = {}
@@ -68,6 +69,7 @@ class Supports:
         """
         self._take_over(step)
         taken = np.full((len(self.places), len(u)), np.nan)
+        taken[:, self._fixed] = 0.0
         owner: dict[Support, Ints] = {}
         for (group, axis), goal in self._goals.items():
             unknowns = 3 * self._owned_nodes(group) + axis
@@ -175,7 +177,9 @@ class Supports:
     def _owned_nodes(self, group: str) -> Ints:
         if group not in self._nodes:
             space = self._model.space
-            nodes = fem.locate_dofs_topological(space, 2, self._model.facets(group))
+            nodes = fem.locate_dofs_topological(
+                space, self._model.idealisation.dim - 1, self._model.facets(group)
+            )
             owned = nodes[nodes < space.dofmap.index_map.size_local]
             self._nodes[group] = owned.astype(np.int64)
         return self._nodes[group]
@@ -189,11 +193,18 @@ class Supports:
         shared: Ints,
         values: tuple[float, float],
     ) -> InputError:
-        other = next(
-            g for (g, a), held in owner.items() if a == axis and np.isin(shared, held).any()
-        )
+        found = (g for (g, a), held in owner.items() if a == axis and np.isin(shared, held).any())
+        other = next(found, self._model.idealisation.entry.name)
         return InputError(
             f"{other!r} prescribes {values[0]:g} and {group!r} {values[1]:g} for "
             f"{AXES[axis]} on {len(shared)} shared nodes",
             f"step {step.name!r}.displacement",
         )
+
+
+def _fixed(model: Model) -> Ints:
+    """Unknowns this rank owns that what the mesh is taken for holds at zero."""
+    owned = model.space.dofmap.index_map.size_local
+    x = np.asarray(model.space.tabulate_dof_coordinates())[:owned]
+    held = [3 * nodes + axis for nodes, axis in model.idealisation.held(x)]
+    return np.concatenate([np.zeros(0, dtype=np.int64), *held])

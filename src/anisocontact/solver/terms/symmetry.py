@@ -73,8 +73,9 @@ class SymmetryPlanes:
         self._normals = np.array([_normal(model, group) for group in groups]).reshape(-1, 3)
         owned = model.space.dofmap.index_map.size_local
         on = np.zeros((owned, len(self.groups)), dtype=bool)
+        dim = model.idealisation.dim - 1
         for i, group in enumerate(groups):
-            nodes = fem.locate_dofs_topological(model.space, 2, model.facets(group))
+            nodes = fem.locate_dofs_topological(model.space, dim, model.facets(group))
             on[nodes[nodes < owned], i] = True
         on[tied] = False
         self._on = on
@@ -174,7 +175,8 @@ class SymmetryPlanes:
 
 def _normal(model: Model, group: str) -> Floats:
     """Unit normal of a flat facet group."""
-    quadrature = facet_quadrature(model.space, model.facets(group, "symmetry"), 2 * model.order)
+    facets = model.facets(group, "symmetry")
+    quadrature = facet_quadrature(model.space, facets, 2 * model.order, model.idealisation)
     normals = outward(model, group, quadrature)
     comm = model.mesh.comm
     total = np.asarray(comm.allreduce(quadrature.areas @ normals))
