@@ -264,6 +264,31 @@ def locate_entities(mesh: Any, dim: int, nodes: Nodes, values: Ints) -> tuple[In
     return tags.indices, tags.values
 
 
+def closest_cells(mesh: Any, points: Floats) -> tuple[Ints, Floats]:
+    """The local cell nearest to each point and its distance, infinite on a rank without cells.
+
+    Args:
+        mesh: DOLFINx mesh.
+        points: The points, (n, 3), length.
+    """
+    dim = mesh.topology.dim
+    count = mesh.topology.index_map(dim).size_local
+    cells = np.arange(count, dtype=np.int32)
+    if not count:
+        return np.zeros(len(points), dtype=np.int32), np.full(len(points), np.inf)
+    tree = dolfinx.geometry.bb_tree(mesh, dim, entities=cells)
+    middles = dolfinx.geometry.create_midpoint_tree(mesh, dim, cells)
+    found = dolfinx.geometry.compute_closest_entity(tree, middles, mesh, points)
+    return found, np.sqrt(dolfinx.geometry.squared_distance(mesh, dim, found, points))
+
+
+def reference_place(mesh: Any, cell: int, point: Floats) -> Floats:
+    """Where a point of a cell is in the reference cell, (1, 3)."""
+    geometry = mesh.geometry
+    corners = geometry.x[geometry.dofmaps[0][cell]]
+    return np.asarray(geometry.cmaps[0].pull_back(point[None], corners))
+
+
 def facet_sides(mesh: Any, facets: Ints) -> tuple[Ints, Ints]:
     """Cell and local number of each boundary facet this rank owns, in the order given."""
     topology = mesh.topology

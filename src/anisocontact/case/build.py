@@ -92,6 +92,10 @@ def build(file: CaseFile, python: bool = True) -> Built:
         case.symmetry,
         stabilised=case.solver.stabilisation,
     )
+    for name, section in case.output.probe.items():
+        section.probe().places(model, f"output.probe.{name}")
+    for name, wanted in case.output.resultant.items():
+        wanted.resultant().nodes(problem, f"output.resultant.{name}")
     return Built(file, problem, steps, _solver(case, problem, steps))
 
 

@@ -18,6 +18,7 @@ from anisocontact.case.model import (
     Case,
     ContactSection,
 )
+from anisocontact.case.output import check_output
 from anisocontact.case.rigid_checks import check_rigid
 from anisocontact.case.section import near
 from anisocontact.interface.augmentation import AUTO as AUTO_MULTIPLIERS
@@ -49,6 +50,7 @@ def check(case: Case) -> Iterator[InputError]:
     yield from _held(case)
     yield from _steps(case)
     yield from check_courses(case)
+    yield from check_output(case.output, [step.name for step in case.step])
     smallest, largest = case.solver.smallest_increment, case.solver.largest_increment
     if smallest > largest:
         text = f"{smallest!r} given, must be at most solver.largest_increment, {largest!r}"

@@ -25,13 +25,14 @@ from anisocontact.base import registry
 from anisocontact.base.amplitudes import amplitudes
 from anisocontact.base.limits import Limits
 from anisocontact.base.paths import paths
-from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.registry import Entry
 from anisocontact.base.strategies import AUTO, strategies
 from anisocontact.case.amplitudes import PYTHON, amplitude_table, path_table
 from anisocontact.case.bodies import Mesh, mesh_type
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
+from anisocontact.case.output import Output
 from anisocontact.case.python_section import PythonSection
-from anisocontact.case.quantity import Quantity, line, shown
+from anisocontact.case.quantity import line, shown
 from anisocontact.case.quantity import number as _number
 from anisocontact.case.quantity import word as _word
 from anisocontact.case.registered import Key, OneOf, Registered, default_of
@@ -79,32 +80,6 @@ class StepSection(Loading):
     )
     load: dict[str, Load] = Field(
         default_factory=dict, description="forces and moments by rigid body"
-    )
-
-
-class Output(Section):
-    """What is written."""
-
-    every: Annotated[
-        int,
-        _number("integer", "1", "fields are written every so many increments", "positive"),
-    ] = 1
-    pictures: Annotated[
-        bool,
-        Quantity(
-            Parameter(
-                "",
-                "flag",
-                "1",
-                "whether report.html and its pictures are made at the end; "
-                "`anisocontact report` makes them at any time",
-            )
-        ),
-    ] = True
-    quantities: list[str] = Field(
-        default_factory=list,
-        description="arrays of the files for ParaView, all if left out; those that pictures are "
-        "made of are always there",
     )
 
 

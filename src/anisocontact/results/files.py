@@ -37,6 +37,7 @@ OWN = (
     "contact",
     "surfaces.pvd",
     "surfaces",
+    "probes",
     "pictures",
     "report.html",
     "case.toml",

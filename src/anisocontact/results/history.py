@@ -50,6 +50,7 @@ class History:
             self._columns = list(values)
             text = _line(self._columns)
         text += _line([_shown(values[column]) for column in self._columns])
+        self._path.parent.mkdir(exist_ok=True)
         with self._path.open("ab") as file:
             self._size += file.write(text.encode())
 

@@ -13,7 +13,15 @@ from anisocontact.base.fenicsx import compiled_expression, dolfinx, fem, scalar_
 from anisocontact.bulk import PLASTIC_STRAIN, cauchy_stress
 from anisocontact.contact import Contact
 from anisocontact.results.dataset import DataSet, vertices
-from anisocontact.results.quantities import CELL, NODE, POINT, SlavePoints, arrays
+from anisocontact.results.quantities import (
+    CELL,
+    NODE,
+    POINT,
+    SlavePoints,
+    arrays,
+    principal,
+    von_mises,
+)
 from anisocontact.solver import Problem
 
 __all__ = ["Bodies", "slave_points"]
@@ -62,9 +70,13 @@ class Bodies:
         }
         self.numbers = self._body_numbers(len(kinds))
 
+    def now(self) -> BodiesNow:
+        """The accepted state, as quantities are made of it."""
+        return BodiesNow(self)
+
     def grid(self) -> DataSet:
         """The accepted state of the cells of this rank."""
-        now = [_BodiesNow(self)]
+        now = [self.now()]
         cells = {"Cells": self._cells}
         at_nodes, at_cells = (arrays(at, now, self._chosen) for at in (NODE, CELL))
         return DataSet("UnstructuredGrid", self._points, cells, at_nodes, at_cells)
@@ -80,6 +92,21 @@ class Bodies:
             values[self._stress.function_space.dofmap.list[cells]] = spread @ components
         stress = self._summed(np.asarray(self._stress.x.array, dtype=np.float64)) * self._share
         return stress.reshape(-1, len(_SYMMETRIC))
+
+    def extremes(self) -> dict[str, dict[str, float]]:
+        """Largest equivalent, largest and least principal stress of each body; collective."""
+        now, model, found = self.now(), self.problem.model, {}
+        columns = np.column_stack([von_mises(now.stress), principal(now.stress)[:, [0, 2]]])
+        for name in model.body_names():
+            nodes = np.unique(model.space.dofmap.list[model.cells(name)])
+            own = columns[nodes] * (1.0, 1.0, -1.0)
+            largest = np.max(model.mesh.comm.allgather(own.max(axis=0, initial=-np.inf)), axis=0)
+            found[name] = {
+                "von_mises": float(largest[0]),
+                "largest_principal": float(largest[1]),
+                "least_principal": -float(largest[2]),
+            }
+        return found
 
     def _summed(self, at_cells: Floats) -> Floats:
         """Sum over the cells at each node of values at the nodes of each cell."""
@@ -103,7 +130,7 @@ class Bodies:
         return numbers
 
 
-class _BodiesNow:
+class BodiesNow:
     """The accepted state of all bodies, as quantities are made of it.
 
     Args:

@@ -113,7 +113,7 @@ def quantities(*at: str) -> tuple[OutputQuantity, ...]:
 
     Example:
         >>> [q.name for q in quantities("node")]
-        ['displacement', 'stress', 'von_mises']
+        ['displacement', 'stress', 'von_mises', 'principal_stress']
     """
     return tuple(q for q in _TABLE.values() if q.at in (at or FILES))
 
@@ -187,6 +187,11 @@ def von_mises(stress: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
 
 
+def principal(stress: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Principal stresses of (n, 6) components XX YY ZZ XY YZ XZ, the largest first, (n, 3)."""
+    return np.linalg.eigvalsh(stress[:, _TENSOR])[:, ::-1]
+
+
 type _Row = tuple[str, str, str, Callable[[Any], Any]]
 
 
@@ -208,6 +213,8 @@ def _axis(law: str, number: int) -> _Row:
     )
 
 
+#: Places of the components XX YY ZZ XY YZ XZ in a matrix.
+_TENSOR = [[0, 3, 5], [3, 1, 4], [5, 4, 2]]
 #: What the report is made of.
 _PICTURED = {
     *("displacement", "body", "contact", "pass", "area", "pressure", "status", "normal"),
@@ -228,6 +235,12 @@ _TABLE = {
                 lambda b: b.stress,
             ),
             ("von_mises", "stress", "equivalent stress", lambda b: von_mises(b.stress)),
+            (
+                "principal_stress",
+                "stress",
+                "principal stresses, the largest first",
+                lambda b: principal(b.stress),
+            ),
         ),
         *_rows(
             CELL,

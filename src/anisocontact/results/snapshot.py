@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy.typing as npt
 from anisocontact.contact import Contact
 from anisocontact.interface import STATUS
 from anisocontact.results.quantities import CONTACT, RIGID, SlavePoints, numbers
+from anisocontact.results.resultants import Resultant, resultant
 from anisocontact.rigid import Pose, RigidBody, rotation_vector
 from anisocontact.solver import Accepted, Problem, Step
 from anisocontact.solver.terms.loads import mean_shares
@@ -28,10 +30,23 @@ class Observer:
     Args:
         problem: The problem.
         steps: Its steps; their facet groups are the ones that are watched.
+        resultants: Forces and moments that are wanted, by name.
+
+    Raises:
+        InputError: A resultant is that of no group or body of the mesh.
     """
 
-    def __init__(self, problem: Problem, steps: Iterable[Step]) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        steps: Iterable[Step],
+        resultants: Mapping[str, Resultant] = MappingProxyType({}),
+    ) -> None:
         self._problem = problem
+        self._resultants = {
+            name: (what, what.nodes(problem, f"output.resultant.{name}"))
+            for name, what in resultants.items()
+        }
         model = problem.model
         steps = list(steps)
         self._supports = named_groups([problem.holding, *(step.led() for step in steps)])
@@ -69,10 +84,19 @@ class Observer:
                 for number, contact in enumerate(self._problem.contacts)
             ],
             "reactions": {g: reactions.get(g, zero).tolist() for g in self._supports},
+            **self._of_nodes(),
             "displacements": displacements,
             "rigid": rigid,
             "energy": accepted.energies if accepted else self._problem.energies(),
         }
+
+    def _of_nodes(self) -> dict[str, Any]:
+        """The resultants that are wanted, if there are any."""
+        found = {
+            name: resultant(what, self._problem, nodes)
+            for name, (what, nodes) in self._resultants.items()
+        }
+        return {"resultants": found} if found else {}
 
 
 @dataclass(frozen=True)

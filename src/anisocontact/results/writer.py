@@ -8,7 +8,9 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from anisocontact import __version__
@@ -22,6 +24,8 @@ from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_
 from anisocontact.results.history import History
 from anisocontact.results.no_energy import told
 from anisocontact.results.paraview import Bodies, slave_points
+from anisocontact.results.probes import Probe, ProbeTable
+from anisocontact.results.resultants import Resultant
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
 from anisocontact.results.warnings import at_end, at_start, of_models, soft, worst, worst_of_models
@@ -44,7 +48,11 @@ class Writer:
         masters: Name of the master of each contact; the name of the contact if not given.
         title: Heading of the report.
         every: Fields are written every so many increments, and at the end of each step.
+        only: Names of the steps of which they are written; all if not given.
+        times: Times from which on the next increment is written as well.
         quantities: Names of the arrays to write for ParaView; all if not given.
+        probes: Places at which values are written after each increment, by name.
+        resultants: Further forces and moments, by name.
         pictures: Whether the report with its pictures is made at the end.
         case: Text of the case file, kept beside the results.
         resumed: What `state` gave: the folder is that of a run which goes on.
@@ -66,7 +74,11 @@ class Writer:
         masters: Sequence[str] = (),
         title: str = "",
         every: int = 1,
+        only: Sequence[str] = (),
+        times: Sequence[float] = (),
         quantities: Sequence[str] = (),
+        probes: Mapping[str, Probe] = MappingProxyType({}),
+        resultants: Mapping[str, Resultant] = MappingProxyType({}),
         pictures: bool = True,
         case: str = "",
         resumed: Mapping[str, Any] | None = None,
@@ -74,7 +86,7 @@ class Writer:
         self._began = time.perf_counter()
         self._problem = problem
         self._steps = list(steps)
-        self._every = every
+        self._every, self._only, self._times = every, list(only), list(times)
         self._pictures = pictures
         self._increments = 0
         self._kept = 0
@@ -82,11 +94,15 @@ class Writer:
         self.folder = Path(folder)
         self._disk.write(lambda: self._open(case, resumed is not None))
         names = masters or [contact.name for contact in problem.contacts]
-        self._observer = Observer(problem, self._steps)
+        self._observer = Observer(problem, self._steps, resultants)
         self._constants = _constants(problem, names)
         self._history = History(self.folder / "history.csv")
         comm = problem.model.mesh.comm
-        bodies = Bodies(problem, quantities)
+        self._bodies = bodies = Bodies(problem, quantities)
+        self._probes = {
+            name: ProbeTable(self.folder / "probes" / f"{name}.csv", probe, bodies, name)
+            for name, probe in probes.items()
+        }
         surfaces = Surfaces(problem.contacts, comm, quantities)
         #: Name of each sort of fields, its files, and what is in them now.
         self._fields: dict[str, tuple[Collection, Callable[[], DataSet | None]]] = {
@@ -136,6 +152,9 @@ class Writer:
         self._increments, self._written = state["increments"], state["written"]
         self._kept = state["kept"]
         self._disk.write(lambda: self._history.resume(state["history"]))
+        for name, table in self._probes.items():
+            if name in state.get("probes", {}):
+                self._disk.write(partial(table.history.resume, state["probes"][name]))
         for name, (files, _) in self._fields.items():
             files.resume(state[name])
             self._disk.write(files.tidy)
@@ -150,6 +169,7 @@ class Writer:
             "kept": self._kept,
             "written": self._written,
             "history": self._history.state(),
+            "probes": {name: table.history.state() for name, table in self._probes.items()},
         } | {name: files.state() for name, (files, _) in self._fields.items()}
 
     def keep(self, kept: Persistent, facts: Mapping[str, Any]) -> None:
@@ -198,18 +218,33 @@ class Writer:
             "residual": accepted.residuals[-1],
         }
         self._disk.write(lambda: self._history.append(row | numbers))
+        self._write_probes({name: row[name] for name in ("step", "increment", "time")})
         self.summary["steps"] += 1
         self.summary["newton_iterations"] += accepted.iterations
-        self.summary["time"] = accepted.time
+        before, self.summary["time"] = self.summary["time"], accepted.time
         self._take(numbers)
         self.summary.update(worst_of_models(accepted, self.summary))
         if accepted.done == 1.0:
             self._increments += 1
-            last = accepted.increment == self._steps[accepted.step_index].increments
-            if last or self._increments % self._every == 0:
-                self._write_fields(accepted.time)
+        if self._is_due(accepted, before):
+            self._write_fields(accepted.time)
         self._write_summary()
         self._disk.check()
+
+    def _is_due(self, accepted: Accepted, before: float) -> bool:
+        """Whether the fields of an increment are written; `before` is the time it began."""
+        if any(before < time <= accepted.time for time in self._times):
+            return True
+        step = self._steps[accepted.step_index]
+        if accepted.done < 1.0 or (self._only and step.name not in self._only):
+            return False
+        return accepted.increment == step.increments or self._increments % self._every == 0
+
+    def _write_probes(self, when: Mapping[str, Any]) -> None:
+        for table in self._probes.values():
+            rows = table.rows(when, table.values())
+            for row in rows:
+                self._disk.write(partial(table.history.append, row))
 
     def cut(self, cut: Cut) -> None:
         """Log a cut and keep it for the summary."""
@@ -244,6 +279,7 @@ class Writer:
         """
         if self._written != self.summary["time"]:
             self._write_fields(self.summary["time"])
+        self.summary["stress"] = self._bodies.extremes()
         self.summary["status"] = status
         self.summary["message"] = message
         found = at_end(self._problem.contacts, self.summary["contacts"], self.summary["energy"])

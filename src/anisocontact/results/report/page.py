@@ -62,6 +62,10 @@ def page(
     body += ["<h2>Contacts at the end</h2>", table(_contacts(summary))]
     body += ["<h2>Laws</h2>", table(_laws(summary))]
     body += ["<h2>Supports at the end</h2>", table(_reactions(summary))]
+    if summary.get("resultants"):
+        body += ["<h2>Resultants at the end</h2>", table(_resultants(summary))]
+    if summary.get("stress"):
+        body += ["<h2>Stresses at the end</h2>", table(_stresses(summary))]
     if summary.get("rigid"):
         body += ["<h2>Rigid bodies at the end</h2>", table(_rigid(summary))]
     body += ["<h2>Energies at the end [force length]</h2>", table([summary["energy"]])]
@@ -157,6 +161,29 @@ def _reactions(summary: dict[str, Any]) -> list[dict[str, Any]]:
             **_vector("displacement", moved.get(group, _NONE), "length"),
         }
         for group, force in summary["reactions"].items()
+    ]
+
+
+def _resultants(summary: dict[str, Any]) -> list[dict[str, Any]]:
+    return [
+        {
+            "name": name,
+            **_vector("force", found["force"], "force"),
+            **_vector("moment", found["moment"], "force length"),
+        }
+        for name, found in summary["resultants"].items()
+    ]
+
+
+def _stresses(summary: dict[str, Any]) -> list[dict[str, Any]]:
+    return [
+        {
+            "body": name,
+            "largest equivalent stress (von Mises) [stress]": found["von_mises"],
+            "largest principal [stress]": found["largest_principal"],
+            "least principal [stress]": found["least_principal"],
+        }
+        for name, found in summary["stress"].items()
     ]
 
 

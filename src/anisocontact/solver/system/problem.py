@@ -360,6 +360,18 @@ class Problem(AssembledSystem):
             sums[name] = sums.get(name, 0.0) + force
         return sums
 
+    def inner_forces(self) -> Floats:
+        """Forces that the cells put on the nodes this rank owns, accepted, (nodes, 3), force."""
+        self.reduction.recover()
+        owned = self.layout.owned
+        inner = self.assembly.bodies.force(self._bodies.nodal).reshape(-1)[:owned]
+        return np.asarray(inner.reshape(-1, 3))
+
+    def support_forces(self) -> Floats:
+        """Forces of the supports on the nodes this rank owns, accepted, (nodes, 3), force."""
+        self.reduction.recover()
+        return self._accepted.reaction.reshape(-1, 3)
+
     def mean_displacement(self, group: str, weights: Floats) -> Floats:
         """Mean displacement of a facet group in the accepted state, (3,), length.
 

@@ -1,0 +1,145 @@
+"""The table `[output]`: what is written, when, and for which places."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated
+
+from pydantic import Field
+
+from anisocontact.base.errors import InputError
+from anisocontact.base.registry import Parameter
+from anisocontact.case.bodies import Point
+from anisocontact.case.quantity import Quantity, number
+from anisocontact.case.section import Section
+
+if TYPE_CHECKING:
+    from anisocontact.results.probes import Probe
+    from anisocontact.results.resultants import Resultant
+
+__all__ = ["Output", "ProbeSection", "ResultantSection", "check_output"]
+
+
+class ProbeSection(Section):
+    """Values at a point, along a line or at the nodes of a facet group, in `probes/<name>.csv`."""
+
+    point: Annotated[
+        Point | None, number("vector", "length", "a point of a body at rest, or the first one")
+    ] = None
+    to: Annotated[Point | None, number("vector", "length", "the last point of a line")] = None
+    count: Annotated[int, number("integer", "1", "points of the line", "positive")] = 11
+    group: str | None = Field(None, description='facet group in the place of `point`, "body.group"')
+    quantities: list[str] = Field(
+        default=["displacement", "stress"], description="quantities of a node"
+    )
+
+    def probe(self) -> Probe:
+        """The probe."""
+        from anisocontact.results.probes import Probe
+
+        if self.group is not None or self.point is None:
+            return Probe((), self.group or "", self.quantities)
+        if self.to is None:
+            return Probe((self.point,), "", self.quantities)
+        return Probe.along(self.point, self.to, self.count, self.quantities)
+
+    def mistakes(self) -> Iterator[tuple[str, str]]:
+        """Key and text of what does not fit together."""
+        if (self.point is None) == (self.group is None):
+            yield "point", "either a point or a group is needed"
+        if self.to is not None and self.point is None:
+            yield "to", "given without a point"
+        if self.to is not None and self.count < 2:
+            yield "count", f"{self.count} given, a line has at least 2"
+
+
+class ResultantSection(Section):
+    """Force and moment of the supports of a facet group, or through a section of a body."""
+
+    group: str | None = Field(None, description='facet group that is held or led, "body.group"')
+    body: str | None = Field(None, description="body with a section, in the place of `group`")
+    point: Annotated[Point | None, number("vector", "length", "a point of the section")] = None
+    normal: Annotated[
+        Point | None,
+        number("vector", "1", "normal of the section, towards the part in front", "nonzero"),
+    ] = None
+    about: Annotated[Point, number("vector", "length", "point of the moment")] = (0.0, 0.0, 0.0)
+
+    def resultant(self) -> Resultant:
+        """Whose force and moment."""
+        from anisocontact.results.resultants import GroupResultant, SectionResultant
+
+        if self.body is None or self.point is None or self.normal is None:
+            return GroupResultant(self.group or "", self.about)
+        return SectionResultant(self.body, self.point, self.normal, self.about)
+
+    def mistakes(self) -> Iterator[tuple[str, str]]:
+        """Key and text of what does not fit together."""
+        if (self.body is None) == (self.group is None):
+            yield "group", "either a group or a body is needed"
+        for key in ("point", "normal"):
+            if (self.body is None) != (getattr(self, key) is None):
+                yield key, "a body needs it, a group does not"
+
+
+class Output(Section):
+    """What is written."""
+
+    every: Annotated[
+        int,
+        number("integer", "1", "fields are written every so many increments", "positive"),
+    ] = 1
+    steps: list[str] = Field(
+        default_factory=list, description="steps whose fields are written, all if left out"
+    )
+    times: list[Annotated[float, number("scalar", "time", "a time")]] = Field(
+        default_factory=list,
+        description="times from which on the next increment is written as well [time]",
+    )
+    pictures: Annotated[
+        bool,
+        Quantity(
+            Parameter(
+                "",
+                "flag",
+                "1",
+                "whether report.html and its pictures are made at the end; "
+                "`anisocontact report` makes them at any time",
+            )
+        ),
+    ] = True
+    quantities: list[str] = Field(
+        default_factory=list,
+        description="arrays of the files for ParaView, all if left out; those that pictures are "
+        "made of are always there",
+    )
+    probe: dict[str, ProbeSection] = Field(
+        default_factory=dict, description="tables of values at places, by name"
+    )
+    resultant: dict[str, ResultantSection] = Field(
+        default_factory=dict,
+        description="forces and moments in `summary.json` and `history.csv`, by name",
+    )
+
+
+def check_output(output: Output, steps: list[str]) -> Iterator[InputError]:
+    """What is wrong in the table.
+
+    Args:
+        output: The table.
+        steps: Names of the steps.
+    """
+    for i, name in enumerate(output.steps):
+        if name not in steps:
+            text = f'no step "{name}"; there are: {", ".join(steps)}'
+            yield InputError(text, f"output.steps[{i}]")
+    tables: list[tuple[str, str, ProbeSection | ResultantSection]] = [
+        *(("probe", name, section) for name, section in output.probe.items()),
+        *(("resultant", name, section) for name, section in output.resultant.items()),
+    ]
+    for what, name, section in tables:
+        if not name.replace("_", "").replace("-", "").isalnum():
+            text = f'"{name}" given, a name of letters, numbers, - and _ needed'
+            yield InputError(text, f"output.{what}")
+        for key, text in section.mistakes():
+            yield InputError(text, f"output.{what}.{name}.{key}")

@@ -1,0 +1,98 @@
+"""Forces and moments about a point: of what holds a facet group, and through a section."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.fenicsx import fem
+from anisocontact.solver import Problem
+
+__all__ = ["GroupResultant", "Resultant", "SectionResultant"]
+
+Floats = npt.NDArray[np.float64]
+Nodes = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class GroupResultant:
+    """What the supports of a facet group carry: their force on the body.
+
+    Args:
+        group: The group, "body.group".
+        about: Point of the moment, length.
+    """
+
+    group: str
+    about: Sequence[float] = (0.0, 0.0, 0.0)
+
+    def nodes(self, problem: Problem, field: str) -> Nodes:
+        """Nodes of the group that this process owns."""
+        facets = problem.model.facets(self.group, f"{field}.group")
+        return _owned(problem, fem.locate_dofs_topological(problem.model.space, 2, facets))
+
+    def forces(self, problem: Problem) -> Floats:
+        """At all nodes that this process owns, (nodes, 3), force."""
+        return problem.support_forces()
+
+
+@dataclass(frozen=True)
+class SectionResultant:
+    """What goes through a section of a body: the force of the part in front of it on the rest.
+
+    The sum over the nodes in front of a plane of what balances the cells. Cells that lie wholly
+    on one side add nothing to it, so it is the mean of the traction through the layer of
+    cells that the plane cuts: with equilibrium of the nodes the exact force.
+
+    Args:
+        body: The body.
+        point: A point of the plane in the reference configuration, length.
+        normal: Normal of the plane, towards the front.
+        about: Point of the moment, length.
+    """
+
+    body: str
+    point: Sequence[float]
+    normal: Sequence[float]
+    about: Sequence[float] = (0.0, 0.0, 0.0)
+
+    def nodes(self, problem: Problem, field: str) -> Nodes:
+        """Nodes of the body in front of the plane that this process owns."""
+        space, cells = problem.model.space, problem.model.cells(self.body, f"{field}.body")
+        own = _owned(problem, fem.locate_dofs_topological(space, 3, cells))
+        away = space.tabulate_dof_coordinates()[own] - np.array(self.point)
+        return np.asarray(own[away @ np.array(self.normal) > 0.0])
+
+    def forces(self, problem: Problem) -> Floats:
+        """At all nodes that this process owns, (nodes, 3), force."""
+        return -problem.inner_forces()
+
+
+type Resultant = GroupResultant | SectionResultant
+
+
+def resultant(what: Resultant, problem: Problem, nodes: Nodes) -> dict[str, Any]:
+    """Force and moment about the point in the accepted state; collective.
+
+    Args:
+        what: Whose.
+        problem: The problem.
+        nodes: Its nodes on this process.
+
+    Returns:
+        `force` and `moment`.
+    """
+    forces = what.forces(problem)[nodes]
+    places = problem.model.space.tabulate_dof_coordinates()[nodes]
+    places = places + problem.u.x.array.reshape(-1, 3)[nodes]
+    moments = np.cross(places - np.array(what.about), forces)
+    force, moment = problem.comm.allreduce(np.stack([forces.sum(axis=0), moments.sum(axis=0)]))
+    return {"force": force.tolist(), "moment": moment.tolist()}
+
+
+def _owned(problem: Problem, nodes: Any) -> Nodes:
+    return np.asarray(nodes[nodes < problem.model.space.dofmap.index_map.size_local])

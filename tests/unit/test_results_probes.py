@@ -1,0 +1,162 @@
+"""Values at places, forces and moments, and when fields are written: against closed forms."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import main
+from anisocontact.results import Results
+from anisocontact.results.history import read_history
+from anisocontact.results.quantities import principal, von_mises
+
+CASE = """
+[mesh.box.bar]
+origin = [0, 0, 0]
+size = [1, 2, 3]
+cells = [2, 2, 3]
+order = {order}
+cell = "{cell}"
+move = [1, 0, 0]
+
+[material.bar]
+model = "linear-elastic"
+E = 1000
+nu = 0.3
+
+[[step]]
+name = "pull"
+increments = 2
+[step.displacement]
+"bar.bottom" = {{ z = 0 }}
+"bar.left" = {{ x = 0 }}
+"bar.front" = {{ y = 0 }}
+"bar.top" = {{ z = 0.03 }}
+
+[[step]]
+name = "back"
+increments = 2
+displacement = {{ "bar.top" = {{ z = 0.015 }} }}
+
+[output]
+pictures = false
+steps = ["back"]
+times = [0.4]
+
+[output.probe.line]
+point = [1.1, 0.3, 0.0]
+to = [1.9, 1.9, 3.0]
+count = 4
+quantities = ["displacement", "stress", "principal_stress", "von_mises"]
+
+[output.probe.end]
+group = "bar.top"
+quantities = ["displacement"]
+
+[output.resultant.grip]
+group = "bar.top"
+about = [1.5, 0, 0]
+
+[output.resultant.waist]
+body = "bar"
+point = [0, 0, 1.4]
+normal = [0, 0, 2]
+"""
+
+
+@pytest.fixture
+def run(tmp_path):
+    def run(order=1, cell="hexahedron", text=CASE):
+        (tmp_path / "case.toml").write_text(text.format(order=order, cell=cell))
+        code = main(["run", str(tmp_path / "case.toml"), "-o", str(tmp_path / "out")])
+        return code, tmp_path / "out"
+
+    return run
+
+
+@pytest.mark.parametrize(("order", "cell"), [(1, "tetrahedron"), (2, "hexahedron")])
+def test_a_bar_that_is_pulled(run, order, cell):
+    """Requirement: uniform tension, eps = u/L: stress E eps along z, lateral strain -nu eps.
+
+    Round-off of the solution: the exact displacement is in every space.
+    """
+    code, out = run(order, cell)
+    assert code == 0
+    table = read_history(out / "probes" / "line.csv")
+    assert table["step"].tolist() == ["pull"] * 8 + ["back"] * 8
+    place = np.linspace([1.1, 0.3, 0.0], [1.9, 1.9, 3.0], 4)
+    strain = np.repeat([0.005, 0.01, 0.0075, 0.005], 4)
+    for k, axis in enumerate("xyz"):
+        assert np.allclose(table[f"position.{axis}"].reshape(4, 4), place[:, k])
+        away = np.tile(place[:, k] - (1.0, 0.0, 0.0)[k], 4)
+        exact = away * strain * (-0.3, -0.3, 1.0)[k]
+        assert np.allclose(table[f"displacement.{axis}"], exact, atol=1e-12)
+    assert np.allclose(table["stress.ZZ"], 1000.0 * strain, rtol=1e-9)
+    assert np.allclose(table["stress.XY"], 0.0, atol=1e-9)
+    assert np.allclose(table["principal_stress.1"], 1000.0 * strain, rtol=1e-9)
+    assert np.allclose(table["principal_stress.3"], 0.0, atol=1e-8)
+    assert np.allclose(table["von_mises"], 1000.0 * strain, rtol=1e-9)
+    end = read_history(out / "probes" / "end.csv")
+    assert len(end["point"]) == 4 * (9 if order == 1 else 25)
+    assert np.allclose(end["displacement.z"][-1], 0.015)
+    assert "stress.ZZ" not in end
+
+
+def test_forces_moments_and_times(run):
+    """Requirement: F = E A eps = 10 at the end; moments of it about the axes the case names.
+
+    What holds the top pulls it upwards at (1.5, 1): M = r x F, about the origin and (1.5, 0, 0),
+    where bodies are now: narrower by nu eps. The part in front of the section does the same to
+    the rest.
+    """
+    code, out = run()
+    assert code == 0
+    history = Results(out).history
+    force = 1000.0 * 2.0 * np.array([0.005, 0.01, 0.0075, 0.005])
+    narrow = 1.0 - 0.3 * force / 2000.0
+    for name, x in (("grip", 1.0 + 0.5 * narrow - 1.5), ("waist", 1.0 + 0.5 * narrow)):
+        at = f"resultants.{name}"
+        assert np.allclose(history[f"{at}.force.z"], force, rtol=1e-9)
+        assert np.allclose(history[f"{at}.force.x"], 0.0, atol=1e-9)
+        assert np.allclose(history[f"{at}.moment.x"], narrow * force, rtol=1e-9)
+        assert np.allclose(history[f"{at}.moment.y"], -x * force, atol=1e-9)
+    assert np.allclose(history["reactions.bar.top.z"], force)
+    stress = json.loads((out / "summary.json").read_text())["stress"]["bar"]
+    assert stress["von_mises"] == pytest.approx(5.0, rel=1e-9)
+    assert stress["largest_principal"] == pytest.approx(5.0, rel=1e-9)
+    assert stress["least_principal"] == pytest.approx(0.0, abs=1e-9)
+    # the start, the increment after time 0.4, and all of the last step
+    assert Results(out).times.tolist() == [0.0, 0.5, 1.5, 2.0]
+
+
+def test_principal_stresses_of_a_shear():
+    """Requirement: pure shear t has t, 0, -t and the equivalent stress sqrt(3) t."""
+    shear = np.array([[0.0, 0.0, 0.0, 2.0, 0.0, 0.0]])
+    assert np.allclose(principal(shear), [[2.0, 0.0, -2.0]], atol=1e-15)
+    assert np.allclose(von_mises(shear), 2.0 * np.sqrt(3.0))
+    assert np.allclose(principal(np.array([[1.0, 2.0, 3.0, 0.0, 0.0, 0.0]])), [[3.0, 2.0, 1.0]])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('steps = ["back"]', 'steps = ["bak"]', 'output.steps[0]: no step "bak"'),
+        ("to = [1.9, 1.9", "to = [1.9, 2.9", "output.probe.line: (1.63333, 2.03333, 2) given, "),
+        ('group = "bar.top"\nq', 'group = "bar.tip"\nq', "output.probe.end.group: no facet group"),
+        ('["displacement"]', '["gap"]', "output.probe.end.quantities: 'gap' given, those of a"),
+        ('body = "bar"', 'body = "rod"', "output.resultant.waist.body: no body 'rod'"),
+        ("normal = [0, 0, 2]", "", "output.resultant.waist.normal: a body needs it"),
+        ("[output.probe.end]", '[output.probe."a/b"]', 'output.probe: "a/b" given, a name of'),
+    ],
+)
+def test_mistakes_are_one_line(run, capsys, old, new, said):
+    assert old in CASE
+    code, out = run(text=CASE.replace(old, new))
+    assert code == 2
+    assert not out.exists()
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
