@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from anisocontact.base.errors import InputError, ModelWarning
 from anisocontact.base.fenicsx import MPI, PETSc
 from anisocontact.base.limits import Limits
@@ -16,6 +18,7 @@ from anisocontact.case.courses import Schedule
 from anisocontact.case.law_file import law_of
 from anisocontact.case.model import Case, StepSection
 from anisocontact.case.read import CaseFile, load
+from anisocontact.case.units import doubts
 from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.merge import merge
@@ -42,6 +45,18 @@ class Built:
     problem: Problem
     steps: list[Step]
     solver: Solver
+
+    def doubts(self) -> list[str]:
+        """What is hardly meant in the units of the case, a line each; collective."""
+        case, model = self.file.case, self.problem.model
+        young = {name: material.young for name, material in self.problem.materials.items()}
+        forces = [force for step in case.step for force in step.body_force.values()]
+        densities = [force.density for force in forces if force.density != 1.0]
+        x = model.mesh.geometry.x
+        low, high = x.min(axis=0, initial=np.inf), x.max(axis=0, initial=-np.inf)
+        low = np.min(self.problem.comm.allgather(low), axis=0)
+        high = np.max(self.problem.comm.allgather(high), axis=0)
+        return doubts(case.units, young, densities, float((high - low).max()))
 
 
 def build(file: CaseFile, python: bool = True) -> Built:

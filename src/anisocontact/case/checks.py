@@ -21,6 +21,7 @@ from anisocontact.case.model import (
 from anisocontact.case.output import check_output
 from anisocontact.case.rigid_checks import check_rigid
 from anisocontact.case.section import near
+from anisocontact.case.units import check_units
 from anisocontact.interface.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.surfaces import Surface
 
@@ -50,6 +51,7 @@ def check(case: Case) -> Iterator[InputError]:
     yield from _held(case)
     yield from _steps(case)
     yield from check_courses(case)
+    yield from check_units(case.units)
     yield from check_output(case.output, [step.name for step in case.step])
     smallest, largest = case.solver.smallest_increment, case.solver.largest_increment
     if smallest > largest:

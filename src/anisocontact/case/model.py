@@ -38,6 +38,7 @@ from anisocontact.case.quantity import word as _word
 from anisocontact.case.registered import Key, OneOf, Registered, default_of
 from anisocontact.case.rigid import Load, Motion, Rigid
 from anisocontact.case.section import Section, near
+from anisocontact.case.units import Units
 from anisocontact.interface import Interface
 from anisocontact.interface.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.interface.augmentation import NEWTON, SCHEMES, UZAWA, Augmentation
@@ -228,6 +229,7 @@ class Case(Section):
     """A whole case file; `case_type()` adds the tables made from the registries."""
 
     title: str = Field("", description="heading of the report")
+    units: Units = Units()
     mesh: Mesh
     group: dict[str, Any] = Field(default_factory=dict)
     idealisation: Any = None

@@ -75,5 +75,5 @@ def contents(built: Built) -> list[str]:
     for step in built.steps:
         driven = ", ".join(step.driven()) or "nothing new"
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
-    lines += [f"warning   {text}" for text in built.solver.cautions]
+    lines += [f"warning   {text}" for text in (*built.doubts(), *built.solver.cautions)]
     return [*lines, *(f"warning   {line}" for line in coarse_slaves(problem.contacts))]

@@ -20,10 +20,9 @@ __all__ = ["LABEL", "caption", "magnification", "round_box", "surfaces"]
 
 #: Largest displacement in the picture as a share of the size of the bodies.
 VISIBLE = 0.1
-LABEL = "displacement [length]"
+LABEL = "displacement [{}]"
 #: The scale of colours.
 _BAR = {
-    "title": LABEL,
     "color": "black",
     "fmt": "%.3g",
     "n_labels": 5,
@@ -77,7 +76,7 @@ def round_box(*meshes: pyvista.PolyData) -> tuple[Any, Any, Any]:
     return low, high, np.rint((high - low) / step).astype(int) + 1
 
 
-def _main(source: str, picture: str) -> None:
+def _main(source: str, picture: str, length: str) -> None:
     import pyvista
 
     grid: Any = pyvista.read(source)
@@ -89,7 +88,7 @@ def _main(source: str, picture: str) -> None:
         skin,
         scalars="size",
         cmap="viridis",
-        scalar_bar_args=_BAR,
+        scalar_bar_args=_BAR | {"title": LABEL.format(length)},
         smooth_shading=True,
         split_sharp_edges=True,
         ambient=0.25,
@@ -103,7 +102,7 @@ def _main(source: str, picture: str) -> None:
         location="outer",
         font_size=13,
         fmt="%.6g",
-        **{f"{axis}title": f"{axis} [length]" for axis in "xyz"},
+        **{f"{axis}title": f"{axis} [{length}]" for axis in "xyz"},
         **{f"n_{axis}labels": int(n) for axis, n in zip("xyz", labels, strict=True)},
     )
     plotter.add_text(caption(scale), position="upper_edge", font_size=11, color="black")
@@ -114,4 +113,4 @@ def _main(source: str, picture: str) -> None:
 
 
 if __name__ == "__main__":
-    _main(sys.argv[1], sys.argv[2])
+    _main(*sys.argv[1:])

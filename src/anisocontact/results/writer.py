@@ -54,6 +54,7 @@ class Writer:
         probes: Places at which values are written after each increment, by name.
         resultants: Further forces and moments, by name.
         pictures: Whether the report with its pictures is made at the end.
+        units: What numbers are in, by dimension: labels of the report.
         case: Text of the case file, kept beside the results.
         resumed: What `state` gave: the folder is that of a run which goes on.
 
@@ -80,6 +81,7 @@ class Writer:
         probes: Mapping[str, Probe] = MappingProxyType({}),
         resultants: Mapping[str, Resultant] = MappingProxyType({}),
         pictures: bool = True,
+        units: Mapping[str, str] = MappingProxyType({}),
         case: str = "",
         resumed: Mapping[str, Any] | None = None,
     ) -> None:
@@ -113,7 +115,7 @@ class Writer:
                 ("surfaces", ".vtp", surfaces.mesh),
             )
         }
-        self.summary: dict[str, Any] = self._head(title)
+        self.summary: dict[str, Any] = self._head(title) | {"units": dict(units)}
         if resumed is None:
             self._begin()
         else:
@@ -143,7 +145,7 @@ class Writer:
     def _resume(self, state: Mapping[str, Any]) -> None:
         """Take up the files where they were at a checkpoint."""
         for name, value in state["summary"].items():
-            if name not in ("title", "version", "ranks", "unknowns"):
+            if name not in ("title", "version", "ranks", "unknowns", "units"):
                 self.summary[name] = value
         energy = self.summary["energy"]  # JSON has null for what is not a number
         self.summary["energy"] = {n: math.nan if v is None else v for n, v in energy.items()}

@@ -10,6 +10,7 @@ from anisocontact.base.figure_style import save
 from anisocontact.results.files import write_text
 from anisocontact.results.no_energy import told
 from anisocontact.results.report import curves, maps, shape
+from anisocontact.results.report.labels import labelled
 from anisocontact.results.report.page import Picture, page
 from anisocontact.results.report.run_data import RunData
 
@@ -98,7 +99,9 @@ class _Album:
 def _pictures(run: RunData, folder: Path, failed: list[str]) -> list[Picture]:
     folder.mkdir(exist_ok=True)
     first, others = _Album(folder), _Album(folder)
-    with shape.Drawing(run.results.fields_file(), folder / "deformed.png") as bodies:
+    with shape.Drawing(
+        run.results.fields_file(), folder / "deformed.png", run.units.get("length", "length")
+    ) as bodies:
         for number in range(len(run.summary["contacts"])):
             _of_contact(run, number, others)
         # drawn meanwhile by another process, shown first
@@ -115,7 +118,7 @@ def _of_contact(run: RunData, number: int, album: _Album) -> None:
     for name, draw, title, caption in _OF_CONTACT:
 
         def drawn(path: Path, draw: Callable[[RunData, int], Figure] = draw) -> None:
-            save(draw(run, number), path)
+            save(labelled(draw(run, number), run.units), path)
 
         # the resultants in one tangent plane mean nothing all around a master
         if name != "domain" or not _closed(run, number):

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from anisocontact.base.errors import printable
+from anisocontact.results.report.labels import in_units
 
 __all__ = ["Picture", "as_html", "document", "figure", "page", "table"]
 
@@ -69,8 +70,9 @@ def page(
     if summary.get("rigid"):
         body += ["<h2>Rigid bodies at the end</h2>", table(_rigid(summary))]
     body += ["<h2>Energies at the end [force length]</h2>", table([summary["energy"]])]
-    body += [figure(picture) for picture in pictures]
-    return document(title, body)
+    units = summary.get("units", {})
+    body = [in_units(part, units) for part in body]
+    return document(title, [*body, *(figure(picture) for picture in pictures)])
 
 
 def as_html(text: str) -> str:
@@ -119,10 +121,10 @@ def _overview(summary: dict[str, Any]) -> list[str]:
         "per increment": round(summary["newton_iterations"] / increments, 2),
         "wall time [s]": summary["wall_time_s"],
     }
-    note = (
-        "All numbers are in the units of the case: [length], [force], [stress] and so on stand for "
-        f"whatever the case file was written in. Made by anisocontact {summary['version']}."
-    )
+    note = "All numbers are in the units of the case"
+    if not summary.get("units"):
+        note += ": [length], [force], [stress] and so on stand for whatever it was written in"
+    note += f". Made by anisocontact {summary['version']}."
     return [table([row]), f"<p>{as_html(note)}</p>"]
 
 

@@ -46,6 +46,7 @@ class RunData:
     def __init__(self, folder: Path) -> None:
         self.results = Results(folder)
         self.summary: dict[str, Any] = _numbers(self.results.summary)
+        self.units: dict[str, str] = self.summary.get("units", {})
         self.history = self.results.history
         self.rows = len(self.history.get("time", ()))
 

@@ -29,12 +29,13 @@ class Drawing:
     Args:
         source: File with the bodies and their `displacement`.
         picture: PNG to write.
+        length: Unit of lengths.
     """
 
-    def __init__(self, source: Path, picture: Path) -> None:
-        self._source, self._picture = source, picture
+    def __init__(self, source: Path, picture: Path, length: str = "length") -> None:
+        self._source, self._picture, self._length = source, picture, length
         self._draft = draft_of(picture)
-        self._process = _start_vtk(source, self._draft)
+        self._process = _start_vtk(source, self._draft, length)
 
     def __enter__(self) -> Drawing:
         return self
@@ -53,14 +54,14 @@ class Drawing:
         import pyvista
 
         self._picture.unlink(missing_ok=True)
-        _by_matplotlib(pyvista.read(self._source), self._picture)
+        _by_matplotlib(pyvista.read(self._source), self._picture, self._length)
 
 
-def _start_vtk(source: Path, picture: Path) -> subprocess.Popen[bytes] | None:
+def _start_vtk(source: Path, picture: Path, length: str) -> subprocess.Popen[bytes] | None:
     environment = dict(os.environ)
     if sys.platform == "linux" and not environment.get("DISPLAY"):
         environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-    command = [sys.executable, "-m", _RENDERER, str(source), str(picture)]
+    command = [sys.executable, "-m", _RENDERER, str(source), str(picture), length]
     silent = subprocess.DEVNULL
     try:
         return subprocess.Popen(command, env=environment, stdout=silent, stderr=silent)
@@ -80,7 +81,7 @@ def _ended(process: subprocess.Popen[bytes] | None) -> bool:
         return False
 
 
-def _by_matplotlib(grid: Any, picture: Path) -> None:
+def _by_matplotlib(grid: Any, picture: Path, length: str) -> None:
     from mpl_toolkits.mplot3d.art3d import (  # type: ignore[import-untyped]
         Poly3DCollection,
     )
@@ -96,9 +97,9 @@ def _by_matplotlib(grid: Any, picture: Path) -> None:
     axes.add_collection3d(faces)
     low, high, _ = round_box(skin, before)
     for axis, start, end in zip("xyz", low, high, strict=True):
-        axes.set(**{f"{axis}lim": (start, end), f"{axis}label": f"{axis} [length]"})
+        axes.set(**{f"{axis}lim": (start, end), f"{axis}label": f"{axis} [{length}]"})
     axes.set_box_aspect(high - low)
     axes.view_init(elev=25.0, azim=-60.0)
-    figure.colorbar(faces, ax=axes, label=LABEL, shrink=0.6)
+    figure.colorbar(faces, ax=axes, label=LABEL.format(length), shrink=0.6)
     axes.set_title(caption(scale))
     save(figure, picture)
