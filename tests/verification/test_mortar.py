@@ -63,7 +63,7 @@ def _pressed(model: Model, augmented: bool) -> tuple[Contact, Floats, float]:
     held |= {f"{body}.front": {"y": 0.0} for body in ("upper", "lower")}
     overlap = 0.0 if augmented else PRESSURE / PENALTY
     held |= {"lower.bottom": {"z": 0.0}, "upper.top": {"z": -(PRESSURE / YOUNG + overlap)}}
-    for _ in Solver(problem, [Step("press", 1, held)]).run():
+    for _ in Solver(problem, [Step("press", 1, held)], options={"snes_rtol": 1e-10}).run():
         pass
     return contact, problem.u.x.array.reshape(-1, 3), overlap
 

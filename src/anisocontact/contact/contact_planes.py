@@ -132,7 +132,13 @@ class Turned:
     @cached_property
     def _fall(self) -> Floats:
         along = np.einsum("nai,ni->na", self.tangents, self.normal)
-        return np.asarray(along / (1.0 + self.cosine)[:, None])
+        return np.asarray(along * self._share[:, None])
+
+    @cached_property
+    def _share(self) -> Floats:
+        """1 / (1 + m . n), (n,); zero where both are opposite, which no node in contact has."""
+        both = 1.0 + self.cosine
+        return np.divide(1.0, both, out=np.zeros_like(both), where=both > 0.0)
 
     def take(self, which: Ints) -> Turned:
         """Those of some nodes, (p,)."""
@@ -147,7 +153,7 @@ class Turned:
         Returns:
             By d, (n, r, 2, 3), and by n, (n, r, 3).
         """
-        m, n, share = self.own_normal, self.normal, 1.0 / (1.0 + self.cosine)
+        m, n, share = self.own_normal, self.normal, self._share
         both = m + n
         along = np.einsum("nrai,ni->nra", by_axes, both)  # of each fall
         # dfall = (dd . n + d . dn) share - fall share (dm . n + m . dn)

@@ -130,7 +130,10 @@ class Semismooth(Multipliers):
         """
         given, found = self.values(step)
         shifted = given + (1.0 - self.ratio) * (found - given)
-        shifted[step.answer.pressure == 0.0] = 0.0
+        # an open point stays open, however little its gap may be closed
+        apart = step.answer.pressure == 0.0
+        shifted[apart, 0] = np.minimum(shifted[apart, 0], 0.0)
+        shifted[apart, 1:] = 0.0
         state, trial = step.start.copy(), step.answer.state
         state["multiplier"] = shifted[:, 0]
         deep = (given[:, 0] - found[:, 0]) / (self.factors[0] * self._penalties[0])
@@ -140,7 +143,7 @@ class Semismooth(Multipliers):
             kept = step.before.turned_to(step.now, step.before.moved(step.start["elastic"]))
             more = step.now.moved(trial["elastic"]) - kept
             slip += np.where(step.remembers, step.now.chord(more, trial["spin"]), 0.0)
-        slip[step.answer.pressure == 0.0] = 0.0
+        slip[apart] = 0.0
         return state, (1.0 - 1.0 / self.ratio) * slip
 
     def advance(self, start: State, traction: Floats, now: Frames, before: Frames) -> State:
