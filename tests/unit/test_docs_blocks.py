@@ -74,8 +74,8 @@ def carried(case: dict[str, Any]) -> list[dict[str, Any]]:
     masters = {contact["master"] for contact in case["contact"]}
     found = []
     for name, rigid in case["rigid"].items():
-        surfaces = rigid.get("surfaces", [name])
-        if not masters & set(surfaces):
+        surfaces = rigid.get("surfaces", [] if "faces" in rigid else [name])
+        if surfaces and not masters & set(surfaces):
             friction = {"coefficients": 0.1}
             found.append({"slave": "base.top", "master": surfaces[0], "friction": friction})
     return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,7 @@ from anisocontact.mesh.merge import merge
 from anisocontact.mesh.readers import file_arrays
 from anisocontact.mesh.selectors import with_groups
 from anisocontact.rigid import RigidBody
-from anisocontact.solver import ElasticSupport, Problem, Solver, Spring, Step, Turn
+from anisocontact.solver import CoupledFace, ElasticSupport, Problem, Solver, Spring, Step, Turn
 
 __all__ = ["Built", "build", "mesh_of"]
 
@@ -93,8 +94,13 @@ def build(file: CaseFile, python: bool = True) -> Built:
         for name, section in case.material.items()
     }
     bodies = _rigid_bodies(case)
+    carriers = {
+        surface: body
+        for body in bodies.values()
+        for surface in case.rigid[body.name].carries(body.name)
+    }
     contacts = [
-        contact(case, section, model, materials, bodies, f"contact[{i}]", law)
+        contact(case, section, model, materials, carriers, f"contact[{i}]", law)
         for i, (section, law) in enumerate(zip(case.contact, own, strict=True))
     ]
     steps = _steps(case, model, Schedule(case, file.resolve, python))
@@ -106,6 +112,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
         _attached(case),
         case.symmetry,
         stabilised=case.solver.stabilisation,
+        coupled=_faces(case, model, bodies),
     )
     for name, section in case.output.probe.items():
         section.probe().places(model, f"output.probe.{name}")
@@ -221,7 +228,7 @@ def _check_options(options: dict[str, str | int | float | bool]) -> None:
 
 
 def _rigid_bodies(case: Case) -> dict[str, RigidBody]:
-    """Rigid body that carries each surface, by name of the surface; free where a step frees it."""
+    """The rigid bodies by name; free where a step frees them or faces follow them."""
     freed = {
         name
         for step in case.step
@@ -230,12 +237,21 @@ def _rigid_bodies(case: Case) -> dict[str, RigidBody]:
     }
     bodies = {}
     for name, section in case.rigid.items():
+        free = name in freed or bool(section.faces)
         with objects.within(f"rigid.{name}"):
-            body = RigidBody(
-                name, section.reference, free=name in freed, springs=section.springs.given()
-            )
-        bodies.update(dict.fromkeys(section.carries(name), body))
+            springs = section.springs.given()
+            bodies[name] = RigidBody(name, section.reference, free=free, springs=springs)
     return bodies
+
+
+def _faces(case: Case, model: Model, bodies: Mapping[str, RigidBody]) -> list[CoupledFace]:
+    """Faces that follow rigid bodies."""
+    found = []
+    for name, section in case.rigid.items():
+        for i, group in enumerate(section.faces):
+            model.boundary(group, f"rigid.{name}.faces[{i}]")
+            found.append(CoupledFace(group, bodies[name]))
+    return found
 
 
 def _steps(case: Case, model: Model, schedule: Schedule) -> list[Step]:

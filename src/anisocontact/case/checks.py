@@ -113,6 +113,7 @@ def _named_groups(case: Case) -> Iterator[str]:
     for step in case.step:
         yield from (group for _, group in step.groups())
     yield from (*case.symmetry, *case.elastic_support)
+    yield from (group for body in case.rigid.values() for group in body.faces)
     for spring in case.spring.values():
         yield from (group for group in (spring.group, spring.to) if group is not None)
 
@@ -236,11 +237,18 @@ def _group(case: Case, name: str, field: str) -> Iterator[InputError]:
 
 
 def _held(case: Case) -> Iterator[InputError]:
-    """Symmetry planes, elastic supports and springs."""
+    """Symmetry planes, faces of rigid bodies, elastic supports and springs."""
     for i, group in enumerate(case.symmetry):
         yield from _group(case, group, f"symmetry[{i}]")
         if group in case.symmetry[:i]:
             yield InputError(f'"{group}" given twice', field=f"symmetry[{i}]")
+    followed: dict[str, str] = {}
+    for name, body in case.rigid.items():
+        for i, group in enumerate(body.faces):
+            place = f"rigid.{name}.faces[{i}]"
+            yield from _group(case, group, place)
+            if (first := followed.setdefault(group, place)) != place:
+                yield InputError(f'"{group}" given, it is {first} already', field=place)
     for group, bed in case.elastic_support.items():
         yield from _group(case, group, "elastic_support")
         if bed.normal == bed.tangential == 0.0:

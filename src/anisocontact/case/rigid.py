@@ -34,10 +34,16 @@ class Springs(Section):
 
 
 class Rigid(Section):
-    """A rigid body: surfaces that move as one. What no step moves or frees is held."""
+    """A rigid body: surfaces and faces that move as one. What no step moves or frees is held."""
 
     surfaces: list[str] | None = Field(
-        None, description="surfaces it carries; the one of its own name if left out"
+        None,
+        description="surfaces it carries; if left out the one of its own name, none if it has "
+        "faces",
+    )
+    faces: list[str] = Field(
+        default_factory=list,
+        description='facet groups that move with it, "body.group": it is their reference point',
     )
     reference: Annotated[
         Point,
@@ -47,7 +53,8 @@ class Rigid(Section):
 
     def carries(self, name: str) -> list[str]:
         """Its surfaces, `name` being its own name."""
-        return [name] if self.surfaces is None else self.surfaces
+        own = [] if self.faces else [name]
+        return own if self.surfaces is None else self.surfaces
 
 
 def _turn(axis: str) -> Any:

@@ -32,7 +32,7 @@ def _surfaces(case: Case) -> Iterator[InputError]:
     for name, section in case.rigid.items():
         place = f"rigid.{name}" + ("" if section.surfaces is None else ".surfaces")
         surfaces = section.carries(name)
-        if not surfaces:
+        if not surfaces and not section.faces:
             yield InputError("empty, at least one surface needed", field=place)
         for surface in surfaces:
             if surface not in case.surface:
@@ -42,7 +42,12 @@ def _surfaces(case: Case) -> Iterator[InputError]:
                 other = carried[surface]
                 yield InputError(f'"{surface}" belongs to rigid.{other} already', field=place)
             carried.setdefault(surface, name)
-        if surfaces and not masters.intersection(surfaces) and set(surfaces) <= set(case.surface):
+        if (
+            surfaces
+            and not section.faces
+            and not masters.intersection(surfaces)
+            and set(surfaces) <= set(case.surface)
+        ):
             yield InputError("no contact has a surface of this body as its master", field=place)
 
 

@@ -71,7 +71,9 @@ def contents(built: Built) -> list[str]:
     for rigid in problem.rigid.bodies:
         how = "free where a step frees it" if rigid.free else "moved as prescribed"
         at = ", ".join(f"{v:g}" for v in rigid.reference)
-        lines.append(f"rigid     {rigid.name}: reference point ({at}), {how}")
+        led = [face.group for face in problem.rigid.led[rigid]]
+        with_ = f", with {', '.join(led)}" if led else ""
+        lines.append(f"rigid     {rigid.name}: reference point ({at}), {how}{with_}")
     for step in built.steps:
         driven = ", ".join(step.driven()) or "nothing new"
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")

@@ -50,9 +50,10 @@ class Observer:
         model = problem.model
         steps = list(steps)
         self._supports = named_groups([problem.holding, *(step.led() for step in steps)])
+        driven = [step.driven() for step in steps]
         self._watched = {
             group: mean_shares(model, group, group)
-            for group in named_groups([*(step.driven() for step in steps), problem.holding])
+            for group in named_groups([*driven, problem.holding, problem.coupled])
             if group in model.facet_names()
         }
 

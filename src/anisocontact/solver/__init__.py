@@ -18,6 +18,7 @@ from anisocontact.solver.strategies.strategy import Strategy, Task
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
+from anisocontact.solver.terms.faces import CoupledFace
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.turn import Turn
 
@@ -25,6 +26,7 @@ __all__ = [
     "Accepted",
     "Amplitude",
     "ContactProblem",
+    "CoupledFace",
     "Course",
     "Culprit",
     "Cut",

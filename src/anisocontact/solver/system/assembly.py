@@ -152,11 +152,12 @@ class Assembly:
         given = layout.assembled(self.loads.force(u).reshape(-1))
         outside = self.constraints.tied(-(inner.reshape(-1)[:owned] + reaction))
         load = self.constraints.tied(given)
+        self.rigid.take_faces(outside - load)
         residual = self.constraints.reduce(outside - load, trial.x, self.scale)
         rows = self.conditions.unknowns
         residual[rows] = self.scale * self.conditions.violation(trial.x)
         of_bodies = self.rigid.residual(trial.rigid, self.scale)
-        held = np.concatenate([rows, self.constraints.on_planes])
+        held = np.concatenate([rows, self.constraints.holding])
         stiff = (self.bodies.stiff(u), np.array([self.terms.lever()]))
         on_nodes, *norms = layout.norms(given, outside[held], reaction, residual[rows], *stiff)
         at_work = [
@@ -183,9 +184,9 @@ class Assembly:
     def _multiplier_residual(self, u: Floats) -> Floats:
         """`Contacts.multiplier_residual` as the rows of the system have it, force."""
         forces = self.layout.assembled(self.contacts.multiplier_residual(u).reshape(-1))
+        of_bodies = self.rigid.multiplier_residual(forces)
         forces = self.constraints.handed(forces)
         forces[self.conditions.unknowns] = 0.0
-        of_bodies = self.rigid.multiplier_residual()
         return np.append(forces, of_bodies) if self.layout.last_rank else forces
 
 

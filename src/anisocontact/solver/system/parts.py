@@ -19,6 +19,7 @@ from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.bodies import Bodies
 from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
+from anisocontact.solver.terms.faces import CoupledFace, CoupledFaces
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.rigid import RigidBodies
 from anisocontact.solver.terms.stabilisation import Stabilisation
@@ -69,6 +70,7 @@ def make_parts(
     specs: Sequence[ElasticSupport | Spring],
     symmetry: Sequence[str],
     stabilised: bool,
+    coupled: Sequence[CoupledFace] = (),
 ) -> Parts:
     """Parts of a problem, from the arguments of `Problem`.
 
@@ -80,15 +82,19 @@ def make_parts(
         model.idealisation.check_material(material, f"material.{name}")
     linear = all(material.linear for material in materials.values())
     bulk = LinearBulk(model, materials) if linear else NonlinearBulk(model, materials)
-    bodies, rigid = Bodies(bulk), RigidBodies(contacts, model.mesh.comm)
+    faces = CoupledFaces(coupled, model, materials, tied_nodes(model))
+    bodies, rigid = Bodies(bulk), RigidBodies(contacts, model.mesh.comm, faces)
     layout = Layout(model.space, rigid.size)
     attached, supports, loads = Attachments(specs, model), Supports(model), Loads(model, materials)
     like = layout.new_vector()
     planes = SymmetryPlanes(model, symmetry, like, tied_nodes(model))
-    constraints = Constraints(like, tie(model, like), planes)
+    faces.check_planes(
+        np.unique(np.concatenate([np.zeros(0, int), *(n for n, _ in planes.held())]))
+    )
+    constraints = Constraints(like, tie(model, like), planes, faces)
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
     holders = {model.body_of(group) for one in specs for group in one.groups}
-    aid = Stabilisation(model, contacts, bodies.scale, attached, holders, stabilised)
+    aid = Stabilisation(model, contacts, bodies.scale, attached, holders, stabilised, faces.links)
     assembly = Assembly(
         layout,
         bodies,

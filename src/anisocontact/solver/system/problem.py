@@ -28,6 +28,7 @@ from anisocontact.solver.system.step_begin import begin_step, check_steps, conta
 from anisocontact.solver.system.tangent import Tangent
 from anisocontact.solver.system.whole import Whole
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
+from anisocontact.solver.terms.faces import CoupledFace
 from anisocontact.solver.terms.persistent import Persistent, under
 from anisocontact.solver.terms.step import Step, check_courses
 
@@ -52,6 +53,7 @@ class Problem(AssembledSystem):
         symmetry: Flat facet groups whose nodes stay in their plane.
         stabilised: Whether bodies that only contact can hold are kept in reach, see
             `Stabilisation`.
+        coupled: Facet groups that follow rigid bodies.
 
     Attributes:
         rigid: Rigid bodies of the contacts. The unknowns of free ones follow those of the mesh, on
@@ -86,8 +88,11 @@ class Problem(AssembledSystem):
         attached: Sequence[ElasticSupport | Spring] = (),
         symmetry: Sequence[str] = (),
         stabilised: bool = True,
+        coupled: Sequence[CoupledFace] = (),
     ) -> None:
-        self._parts = parts = make_parts(model, materials, contacts, attached, symmetry, stabilised)
+        self._parts = parts = make_parts(
+            model, materials, contacts, attached, symmetry, stabilised, coupled
+        )
         self.model, self.materials = model, dict(materials)
         self.contacts, self.bulk, self.rigid = parts.contacts, parts.bulk, parts.rigid
         self.layout, self.attached = parts.layout, parts.attached
@@ -144,6 +149,11 @@ class Problem(AssembledSystem):
     def holding(self) -> list[str]:
         """Names in `reactions` of what holds the bodies for the whole run."""
         return [*self.planes.groups, *self.attached.names]
+
+    @property
+    def coupled(self) -> list[str]:
+        """Facet groups that follow rigid bodies."""
+        return [face.group for faces in self.rigid.led.values() for face in faces]
 
     def new_vector(self) -> Vec:
         """Vector of the unknowns, zero."""

@@ -42,7 +42,8 @@ def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again:
     planes.begin(supports.unknowns, supports.end, step.name)
     held = [*supports.held(), *planes.held()]
     load = parts.loads.at_end(start.reshape(-1, 3)) if parts.attached else None
-    parts.stabilisation.find_free(held, step.name, load, now=not again)
+    frames = parts.rigid.held_frames()
+    parts.stabilisation.find_free(held, step.name, load, not again, frames)
 
 
 def _rehearsed(parts: Parts, steps: Sequence[Step]) -> Iterator[tuple[Step, Supports, Loads]]:
@@ -71,6 +72,8 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
         for share in () if turned else supports.places:
             supports.set_load_factor(float(share))
             planes.check(supports.unknowns, supports.values, step.name)
+        if parts.rigid.faces:
+            parts.rigid.faces.check(supports.unknowns, step.name)
         held = [*supports.held(), *planes.held()]
         check_swallowed(parts.layout, step, loads.given(step), held)
 
@@ -101,11 +104,12 @@ def contact_must_hold(parts: Parts, steps: Sequence[Step]) -> bool:
         InputError: A body is free to move and in no contact.
     """
     found = False
-    for step, supports, loads in _rehearsed(parts, steps):
+    all_frames = parts.rigid.rehearsed(steps)
+    for (step, supports, loads), frames in zip(_rehearsed(parts, steps), all_frames, strict=True):
         held = [*supports.held(), *parts.planes.held()]
         rest = np.zeros_like(parts.model.space.tabulate_dof_coordinates())
         load = loads.at_end(rest) if parts.attached else None
-        parts.stabilisation.find_free(held, step.name, load, now=False)
+        parts.stabilisation.find_free(held, step.name, load, False, frames)
         found = found or parts.stabilisation.contact_alone
     parts.stabilisation.clear()
     return found

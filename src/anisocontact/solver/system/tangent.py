@@ -86,6 +86,8 @@ class Tangent:
         if self.coupled is not None:
             couplings = assembly.rigid.body_couplings(self.coupled.first_extra)
             couplings += assembly.terms.couplings()
+            if assembly.rigid.faces:
+                couplings += assembly.rigid.faces.room(couplings, self.coupled.first_extra)
             grown = self.coupled.make_room(out, couplings, self._foreseen)
         assembly.terms.add_tangent(out)
         out.assemble()

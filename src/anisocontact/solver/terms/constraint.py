@@ -24,18 +24,27 @@ class Constraint:
         slaves: Slave of each coefficient, number over all ranks; it lives on this rank.
         masters: Master of each coefficient, number over all ranks.
         factors: The coefficients c.
+        handed: Shares of the force of a slave that its masters are handed, if they are others.
 
     Attributes:
         followers: Slaves on this rank, local numbers.
     """
 
-    def __init__(self, like: Vec, slaves: Ints, masters: Ints, factors: Floats) -> None:
+    def __init__(
+        self,
+        like: Vec,
+        slaves: Ints,
+        masters: Ints,
+        factors: Floats,
+        handed: Floats | None = None,
+    ) -> None:
         first, last = like.getOwnershipRange()
         followers = np.unique(slaves)
         self.followers: Ints = followers - first
         free = np.setdiff1d(np.arange(first, last), followers)
         alone, own = np.ones(len(free)), np.ones(len(followers))
-        self._gather = _matrix(like, (free, free, alone), (masters, slaves, factors))
+        shares = factors if handed is None else handed
+        self._gather = _matrix(like, (free, free, alone), (masters, slaves, shares))
         self._involved = like.duplicate()
         self._involved.zeroEntries()
         coupled = np.concatenate([slaves[factors != 0.0], masters[factors != 0.0]])

@@ -1,4 +1,4 @@
-"""All multi-point constraints of a problem: ties of middle nodes, then symmetry planes."""
+"""All multi-point constraints of a problem: ties of middle nodes, symmetry planes, faces."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import scipy
 
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.solver.terms.constraint import Constraint
+from anisocontact.solver.terms.faces import CoupledFaces
 from anisocontact.solver.terms.symmetry import SymmetryPlanes
 
 Floats = npt.NDArray[np.float64]
@@ -21,17 +22,25 @@ class Constraints:
         like: A vector of the unknowns; those of the mesh come first.
         ties: Ties of middle nodes, if there are any.
         planes: Symmetry planes, if there are any.
+        faces: Faces that follow rigid bodies, if there are any.
     """
 
     def __init__(
-        self, like: Vec, ties: Constraint | None = None, planes: SymmetryPlanes | None = None
+        self,
+        like: Vec,
+        ties: Constraint | None = None,
+        planes: SymmetryPlanes | None = None,
+        faces: CoupledFaces | None = None,
     ) -> None:
         self._like, self._ties, self._planes = like, ties, planes
+        self._faces = faces if faces else None
 
     @property
-    def on_planes(self) -> Ints:
-        """Unknowns of this rank that follow from others on symmetry planes, local numbers."""
-        return np.zeros(0, dtype=np.int64) if self._planes is None else self._planes.slaves
+    def holding(self) -> Ints:
+        """Unknowns of this rank on symmetry planes and faces that follow others, local numbers."""
+        found = [] if self._planes is None else [self._planes.slaves]
+        found += [] if self._faces is None else [self._faces.followers]
+        return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
     def tied(self, force: Floats) -> Floats:
         """Forces on the mesh, those of tied nodes handed to the corners they follow."""
@@ -48,18 +57,26 @@ class Constraints:
         for constraint in self._all():
             violation = constraint.violation(x).array_r[: len(residual)]
             residual = self._handed(constraint, residual) + scale * violation
+        if self._faces is not None:
+            here = np.array(x.array_r[: len(residual)])
+            residual[self._faces.followers] = 0.0
+            residual += scale * self._faces.violation(here)
         return residual
 
     def handed(self, force: Floats) -> Floats:
         """Forces on the mesh as the equations have them, without the violation of constraints."""
         for constraint in self._all():
             force = self._handed(constraint, force)
+        if self._faces is not None:
+            force[self._faces.followers] = 0.0
         return force
 
     def transform(self, matrix: Mat, scale: float) -> None:
         """The same for the tangent, in place."""
         for constraint in self._all():
             constraint.transform(matrix, scale)
+        if self._faces is not None:
+            self._faces.transform(matrix, scale, self._like)
 
     def gathering(self) -> scipy.sparse.csr_array | None:
         """R that hands the forces of slaves to their masters; None without constraints.
@@ -74,17 +91,21 @@ class Constraints:
 
     def followers(self) -> Ints:
         """Unknowns of this rank that follow from others, local numbers."""
-        return np.concatenate([np.zeros(0, dtype=np.int64), *(c.followers for c in self._all())])
+        found = [constraint.followers for constraint in self._all()]
+        found += [] if self._faces is None else [self._faces.followers]
+        return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
     def involved(self) -> npt.NDArray[np.bool_]:
         """Unknowns of this rank that follow from others, or others from them."""
         found = np.zeros(self._like.getLocalSize(), dtype=np.bool_)
         for constraint in self._all():
             found |= constraint.involved()
-        return found
+        return found if self._faces is None else found | self._faces.involved(self._like)
 
     def spread(self, columns: Mat) -> Mat:
         """Displacements in which all that is constrained follows; takes the matrix over."""
+        if self._faces is not None:
+            columns = self._faces.spread(columns, self._like)
         for constraint in reversed(self._all()):
             columns = constraint.spread(columns)
         return columns

@@ -34,7 +34,7 @@ class FreeBody:
         motions: Its motions that no support holds, (k, 6).
         left: Those of them that springs do not hold either, (j, 6).
         springs: Stiffness of springs and elastic supports in them, (k, k), force/length; None for a
-            body without.
+            body without, of which no face follows a reference point either.
         least: Stiffness that counts as none, force/length.
         nodes: Nodes of this rank that stabilisation acts on.
         count: Their number over all ranks.
@@ -84,7 +84,7 @@ class FreeBody:
 
     @property
     def sprung(self) -> bool:
-        """Whether springs or elastic supports act on it."""
+        """Whether springs, elastic supports or a reference point act on it."""
         return self.springs is not None
 
     def sticks(self) -> bool:

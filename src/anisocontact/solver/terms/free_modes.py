@@ -27,6 +27,29 @@ type Held = tuple[Ints, Floats]
 
 
 @dataclass(frozen=True)
+class HeldFrame:
+    """Nodes that move as a rigid body, some components of whose motion are held.
+
+    Attributes:
+        nodes: Nodes this rank owns.
+        point: Reference point of the body, (3,), length.
+        held: Components that are held, three translations and three turns, (6,).
+    """
+
+    nodes: Ints
+    point: Floats
+    held: npt.NDArray[np.bool_]
+
+    def rows(self, body: ConnectedBody, comm: Any) -> Floats:
+        """What is held of the motion of a body, one row of (t, w) each, (k, 6); collective."""
+        if not comm.allreduce(len(np.intersect1d(self.nodes, body.nodes))):
+            return np.zeros((0, 6))
+        shift = np.hstack([np.eye(3), np.cross((self.point - body.centre) / body.size, np.eye(3))])
+        turn = np.hstack([np.zeros((3, 3)), np.eye(3)])
+        return np.asarray(np.vstack([shift, turn])[self.held])
+
+
+@dataclass(frozen=True)
 class ConnectedBody:
     """Nodes that move together where nothing is strained: a body, or bodies that share nodes.
 
@@ -40,6 +63,7 @@ class ConnectedBody:
             (times the size of the body), (6, m, 3).
         size: Root mean square distance of its nodes from the centre, length.
         resisted: Rows over the six motions that are zero where nothing is strained, (r, 6).
+        centre: Mean of its nodes, (3,), length.
     """
 
     parts: tuple[str, ...]
@@ -50,6 +74,7 @@ class ConnectedBody:
     fields: Floats
     size: float
     resisted: Floats = field(default_factory=lambda: np.zeros((0, 6)))
+    centre: Floats = field(default_factory=lambda: np.zeros(3))
 
     @property
     def name(self) -> str:
@@ -84,7 +109,9 @@ def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[Connecte
     return [_body(model, group, [local[name] for name in group]) for group in groups]
 
 
-def joined(model: Model, contacts: Sequence[Contact]) -> list[ConnectedBody]:
+def joined(
+    model: Model, contacts: Sequence[Contact], coupled: Iterable[tuple[str, str]] = ()
+) -> list[ConnectedBody]:
     """Bodies that only supports and springs can hold, those in contact with each other as one.
 
     Contact between bodies resists what one does to the other, not what they do as one rigid body;
@@ -94,9 +121,10 @@ def joined(model: Model, contacts: Sequence[Contact]) -> list[ConnectedBody]:
     Args:
         model: Mesh of the bodies.
         contacts: The contacts.
+        coupled: Pairs of bodies that move together.
     """
     others: set[str] = set()
-    links = []
+    links = list(coupled)
     for contact in contacts:
         on, *against = (model.body_of(group) for group in contact.groups)
         if against:
@@ -118,9 +146,8 @@ def _body(model: Model, parts: list[str], local: list[Ints]) -> ConnectedBody:
     size = np.sqrt(comm.allreduce(float((arms**2).sum())) / count)
     fields = _fields((places[here] - centre) / size)
     resisted = model.idealisation.resisted(centre / size)
-    return ConnectedBody(
-        tuple(parts), nodes, arms / size, count, here, fields, float(size), resisted
-    )
+    shape = float(size), resisted, np.asarray(centre)
+    return ConnectedBody(tuple(parts), nodes, arms / size, count, here, fields, *shape)
 
 
 def _fields(arms: Floats) -> Floats:
@@ -129,7 +156,9 @@ def _fields(arms: Floats) -> Floats:
     return np.concatenate([shift, np.cross(shift, arms)])
 
 
-def free_modes(body: ConnectedBody, held: Iterable[Held], comm: Any) -> Floats:
+def free_modes(
+    body: ConnectedBody, held: Iterable[Held], comm: Any, frames: Iterable[HeldFrame] = ()
+) -> Floats:
     """Rigid motions of a body that meet no support.
 
     A support of node i along a holds `a . (t + w x r_i)`; the motions that do no work on any of
@@ -139,6 +168,7 @@ def free_modes(body: ConnectedBody, held: Iterable[Held], comm: Any) -> Floats:
         body: The body.
         held: What is held; nodes of other bodies do not count.
         comm: Communicator of the mesh.
+        frames: What is held of nodes that move as rigid bodies.
 
     Returns:
         Translation t and rotation w (times the size of the body) of each, (k, 6).
@@ -148,6 +178,9 @@ def free_modes(body: ConnectedBody, held: Iterable[Held], comm: Any) -> Floats:
         here, _, at = np.intersect1d(nodes, body.nodes, return_indices=True)
         along = np.broadcast_to(direction, (len(here), 3))
         rows = np.hstack([along, np.cross(body.arms[at], along)])
+        sums += rows.T @ rows
+    for frame in frames:
+        rows = frame.rows(body, comm)
         sums += rows.T @ rows
     values, vectors = np.linalg.eigh(comm.allreduce(sums))
     return np.asarray(vectors.T[values <= FREE * max(values[-1], np.finfo(float).tiny)])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, override
 
 import numpy as np
@@ -14,6 +14,8 @@ from anisocontact.contact.transfer import Couplings
 from anisocontact.rigid import RigidBody
 from anisocontact.rigid.body import Pose
 from anisocontact.solver.terms.drive import Drive
+from anisocontact.solver.terms.faces import CoupledFaces, FaceOnBody
+from anisocontact.solver.terms.free_modes import HeldFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import SingularError, Term
@@ -41,19 +43,30 @@ class RigidBodies(Term):
     Args:
         contacts: All contacts of the problem.
         comm: Communicator of the mesh.
+        faces: Faces of deformable bodies that follow rigid ones.
 
     Attributes:
         bodies: The bodies in the order of their contacts.
         free: Those with unknowns.
+        led: Faces that follow each of them.
 
     Raises:
         InputError: Two bodies of one name.
     """
 
-    def __init__(self, contacts: Sequence[Contact], comm: Any) -> None:
+    def __init__(
+        self, contacts: Sequence[Contact], comm: Any, faces: CoupledFaces | None = None
+    ) -> None:
         on_bodies = [p for c in contacts if c.body is not None for p in c.passes]
+        self.faces = faces
+        led = [] if faces is None else faces.faces
         self.bodies: list[RigidBody] = list(
-            dict.fromkeys(p.master.body for p in on_bodies if p.master.body is not None)
+            dict.fromkeys(
+                [
+                    *(p.master.body for p in on_bodies if p.master.body is not None),
+                    *(face.body for face in led),
+                ]
+            )
         )
         names = [body.name for body in self.bodies]
         for name in names:
@@ -61,12 +74,17 @@ class RigidBodies(Term):
                 raise InputError(f"two rigid bodies have the name {name!r}", "body")
         self.free = [body for body in self.bodies if body.free]
         self.contacts = {b: [p for p in on_bodies if p.master.body is b] for b in self.bodies}
+        self.led = {b: [face for face in led if face.body is b] for b in self.bodies}
         self._comm = comm
         self._drives = {body: Drive(body) for body in self.bodies}
         self._scales = {body: self._scale(body) for body in self.bodies}
         zero = np.zeros((len(self.bodies), 6))
         self._outside, self._accepted_outside, self._accepted_load = zero, zero, zero
+        #: What faces need from outside at the trial and in the accepted state, (bodies, 6).
+        self._of_faces, self._accepted_of_faces = zero, zero
         self._load_factor = 0.0
+        if faces is not None:
+            faces.number(self.free, self._scales)
 
     @property
     def size(self) -> int:
@@ -79,16 +97,26 @@ class RigidBodies(Term):
         Raises:
             InputError: See `begin`.
         """
+        for _ in self.rehearsed(steps):
+            pass
+
+    def rehearsed(self, steps: Iterable[Step]) -> Iterator[list[HeldFrame]]:
+        """What each of the steps holds of the motion of faces, without solving.
+
+        Raises:
+            InputError: See `begin`.
+        """
         drives = {body: Drive(body) for body in self.bodies}
         for step in steps:
             self._known(step)
             for drive in drives.values():
                 drive.begin(step, drive.values(1.0), np.zeros(6))
+            yield self._frames(drives)
 
     @override
     def begin(self, step: Step, released: Floats) -> None:
         self._known(step)
-        reactions = self._accepted_outside - self._accepted_load
+        reactions = self._accepted_outside + self._accepted_of_faces - self._accepted_load
         for body, reaction in zip(self.bodies, reactions, strict=True):
             self._drives[body].begin(step, body.accepted.values, reaction)
 
@@ -123,27 +151,42 @@ class RigidBodies(Term):
         ]
         return np.concatenate([np.zeros(0), *parts])
 
+    def take_faces(self, force: Floats) -> None:
+        """Take over what the nodes of faces need from outside; collective.
+
+        Args:
+            force: Of the unknowns this rank owns, all but what holds them, force.
+        """
+        self._of_faces = self._wrenches([face.take(force.reshape(-1, 3)) for face in self._faces()])
+
     def residual(self, unknowns: Floats, support_scale: float) -> Floats:
         """Rows of the free bodies at the trial of the contacts, (size,), force."""
         self._outside = self._forces()
         rows = np.zeros(self.size)
         for i, body in enumerate(self.free):
             drive, scale = self._drives[body], self._scales[body]
-            outside = self._outside[self.bodies.index(body)]
+            outside = (self._outside + self._of_faces)[self.bodies.index(body)]
             row = (outside - drive.load(self._load_factor)) / scale
             off = unknowns[6 * i : 6 * i + 6] - drive.values(self._load_factor) * scale
             rows[6 * i : 6 * i + 6] = np.where(drive.held, support_scale * off, row)
         return rows
 
-    def multiplier_residual(self) -> Floats:
-        """`Contacts.multiplier_residual` of the free bodies as the rows have it, (size,), force."""
+    def multiplier_residual(self, forces: Floats) -> Floats:
+        """`Contacts.multiplier_residual` of the free bodies as the rows have it, (size,), force.
+
+        Args:
+            forces: That of the unknowns of the mesh this rank owns.
+        """
         rows = np.zeros(self.size)
+        nodal = forces.reshape(-1, 3)
+        on_faces = self._wrenches([face.wrench(nodal[face.nodes]) for face in self._faces()])
         for i, body in enumerate(self.free):
             local = sum(
                 (c.trials.multiplier_wrench(body.position) for c in self.contacts[body]),
                 np.zeros(6),
             )
-            row = -np.asarray(self._comm.allreduce(local)) / self._scales[body]
+            row = on_faces[self.bodies.index(body)] - np.asarray(self._comm.allreduce(local))
+            row = row / self._scales[body]
             rows[6 * i : 6 * i + 6] = np.where(self._drives[body].held, 0.0, row)
         return rows
 
@@ -181,6 +224,8 @@ class RigidBodies(Term):
             scale = self._scales[body]
             diagonal = np.diag(body.springs / scale**2) * (self._comm.rank == 0)
             stiff = [diagonal]
+            for face in self.led[body]:
+                diagonal = diagonal + face.stiffness() / np.outer(scale, scale)
             for contact in self.contacts[body]:
                 blocks = contact.body_blocks()
                 there = np.broadcast_to(own, (len(blocks.nodes), 2))
@@ -189,7 +234,8 @@ class RigidBodies(Term):
                 diagonal = diagonal + blocks.body / np.outer(scale, scale)
                 stiff.append((blocks.held / scale).reshape(-1, 6))
             found.append((own, own, diagonal[None]))
-            self._check_support(body, np.concatenate(stiff))
+            if not self.led[body]:  # else what holds the deformable body is looked at
+                self._check_support(body, np.concatenate(stiff))
         return found
 
     @override
@@ -199,7 +245,7 @@ class RigidBodies(Term):
         work = float(np.sum(0.5 * (self._accepted_outside + self._outside) * (now - before)))
         for body in self.bodies:
             body.commit()
-        self._accepted_outside = self._outside
+        self._accepted_outside, self._accepted_of_faces = self._outside, self._of_faces
         self._accepted_load = np.array(
             [self._drives[body].load(self._load_factor) for body in self.bodies]
         ).reshape(-1, 6)
@@ -218,6 +264,7 @@ class RigidBodies(Term):
             "rigid.rotation": np.array([pose.rotation for pose in poses]).reshape(-1, 3, 3),
             "rigid.outside": self._accepted_outside.copy(),
             "rigid.load": self._accepted_load.copy(),
+            "rigid.faces": self._accepted_of_faces.copy(),
         }
 
     @override
@@ -229,6 +276,7 @@ class RigidBodies(Term):
             )
         self._accepted_outside = kept["rigid.outside"].copy()
         self._accepted_load = kept["rigid.load"].copy()
+        self._accepted_of_faces = kept["rigid.faces"].copy()
 
     @override
     def energies(self, u: Floats) -> dict[str, float]:
@@ -239,13 +287,35 @@ class RigidBodies(Term):
     def support(self, body: RigidBody) -> Floats:
         """Force and moment of what prescribes the accepted motion of a body, (6,)."""
         i = self.bodies.index(body)
-        reaction = self._accepted_outside[i] - self._accepted_load[i]
+        reaction = self._accepted_outside[i] + self._accepted_of_faces[i] - self._accepted_load[i]
         return np.where(self._drives[body].held, reaction, 0.0)
 
     def contact_force(self, body: RigidBody) -> Floats:
-        """Force of the contacts on a body and moment about its reference point, (6,), accepted."""
-        needed = self._accepted_outside[self.bodies.index(body)]
+        """Force of contacts and faces on a body, moment about its reference point, (6,)."""
+        i = self.bodies.index(body)
+        needed = self._accepted_outside[i] + self._accepted_of_faces[i]
         return np.asarray(body.springs * body.accepted.values - needed)
+
+    def held_frames(self) -> list[HeldFrame]:
+        """What this step prescribes, or springs hold, of the motion of faces."""
+        return self._frames(self._drives)
+
+    def _frames(self, drives: Mapping[RigidBody, Drive]) -> list[HeldFrame]:
+        return [
+            HeldFrame(face.nodes, body.reference, drives[body].held | (body.springs > 0.0))
+            for body, faces in self.led.items()
+            for face in faces
+        ]
+
+    def _faces(self) -> list[FaceOnBody]:
+        return [] if self.faces is None else self.faces.faces
+
+    def _wrenches(self, local: Sequence[Floats]) -> Floats:
+        """Sums over ranks and faces of forces and moments on faces, (bodies, 6)."""
+        sums = np.zeros((len(self.bodies), 6))
+        for face, wrench in zip(self._faces(), local, strict=True):
+            sums[self.bodies.index(face.body)] += wrench
+        return np.asarray(self._comm.allreduce(sums)) if local else sums
 
     def _forces(self) -> Floats:
         """What contacts and springs need from outside at the trial, (bodies, 6)."""
@@ -275,6 +345,9 @@ class RigidBodies(Term):
         local = [
             float(np.linalg.norm(c.points - body.reference, axis=1).max(initial=0.0))
             for c in self.contacts[body]
+        ]
+        local += [
+            float(np.linalg.norm(face.arms, axis=1).max(initial=0.0)) for face in self.led[body]
         ]
         reach = max(self._comm.allgather(max(local)))
         return np.repeat([1.0, reach or 1.0], 3)

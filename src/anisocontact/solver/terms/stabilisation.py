@@ -28,6 +28,7 @@ from anisocontact.solver.terms.free_body import FreeBody
 from anisocontact.solver.terms.free_modes import (
     ConnectedBody,
     Held,
+    HeldFrame,
     bodies,
     free_modes,
     joined,
@@ -66,6 +67,7 @@ class Stabilisation(Term):
         attached: Springs and elastic supports; none if left out.
         sprung: Bodies that they act on.
         enabled: Whether bodies may be stabilised; if not they have to touch.
+        coupled: Pairs of bodies that move together.
 
     Attributes:
         energy: What the springs have taken up and dissipated since the start, force times length.
@@ -84,6 +86,7 @@ class Stabilisation(Term):
         attached: Attachments | None = None,
         sprung: Iterable[str] = (),
         enabled: bool = True,
+        coupled: Sequence[tuple[str, str]] = (),
     ) -> None:
         self.enabled = enabled
         self.energy = self.released = 0.0
@@ -95,7 +98,8 @@ class Stabilisation(Term):
         self._scale = scale
         self._comm = model.mesh.comm
         self._attached, self._sprung = attached, set(sprung)
-        self._bodies, self._joined = bodies(model), joined(model, contacts)
+        self._bodies = bodies(model, coupled)
+        self._joined = joined(model, contacts, coupled)
         shape = np.shape(model.space.tabulate_dof_coordinates())
         self._springs, self._joined_springs = (
             np.zeros((6 * len(group), 6 * len(group)))
@@ -108,6 +112,7 @@ class Stabilisation(Term):
         self._where: Flags | None = None
         self._caught = False
         self._held: list[Held] = []
+        self._frames: list[HeldFrame] = []
         self._begun: Floats = np.zeros((0, 3))
         self._anchor: Floats = self._begun
         self._spent = 0.0
@@ -146,7 +151,12 @@ class Stabilisation(Term):
         return any(not free.sprung for free in self._loose)
 
     def find_free(
-        self, held: Sequence[Held], step: str, load: Floats | None = None, now: bool = True
+        self,
+        held: Sequence[Held],
+        step: str,
+        load: Floats | None = None,
+        now: bool = True,
+        frames: Sequence[HeldFrame] = (),
     ) -> None:
         """Find out what a step leaves free.
 
@@ -156,19 +166,20 @@ class Stabilisation(Term):
             load: Forces at its end, contributions of this rank to the local nodes, (nodes, 3);
                 springs are weighed against them.
             now: Whether the step begins now: what touches is known.
+            frames: What is held of faces that follow rigid bodies.
 
         Raises:
             InputError: A body is free and nothing can hold it.
         """
         self.clear()
-        self._held = list(held)
-        free = [free_modes(body, held, self._comm) for body in self._joined]
+        self._held, self._frames = list(held), list(frames)
+        free = [free_modes(body, held, self._comm, frames) for body in self._joined]
         for far in (np.inf, LOST):
             loose = self._unheld(self._joined, free, self._joined_springs, load, far)
             for body, modes in zip(self._joined, loose, strict=True):
                 if len(modes):
                     self._refuse(body, named(modes), step, weak=far == LOST)
-        free = [free_modes(body, held, self._comm) for body in self._bodies]
+        free = [free_modes(body, held, self._comm, frames) for body in self._bodies]
         loose = self._unheld(self._bodies, free, self._springs, load, FAR)
         for i, (body, modes) in enumerate(zip(self._bodies, loose, strict=True)):
             if len(modes) and self._of(body):
@@ -344,6 +355,8 @@ class Stabilisation(Term):
         """
         moved = u - self._begun
         ways = [np.abs(moved[nodes] @ axis).max(initial=0.0) for nodes, axis in self._held]
+        for frame in self._frames:
+            ways.append(np.abs(moved[frame.nodes]).max(initial=0.0))
         for contact in self._contacts:
             if contact.body is not None:
                 ways.append(contact.body.farthest(contact.current.points))
@@ -393,7 +406,9 @@ class Stabilisation(Term):
         field = f"step {step!r}"
         text = f"body {body.name!r} is free to move: {modes}"
         size = min(facet_size(self._model, c.slave) for c in contacts)
-        sprung = motions @ springs @ motions.T if self._sprung & set(body.parts) else None
+        led = any([len(frame.rows(body, self._comm)) > 0 for frame in self._frames])
+        weighed = led or bool(self._sprung & set(body.parts))
+        sprung = motions @ springs @ motions.T if weighed else None
         least = NO_STIFFNESS * self._scale
         free = FreeBody(body, modes, contacts, size, motions, left, sprung, least)
         self._loose.append(free)

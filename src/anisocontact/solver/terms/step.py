@@ -178,7 +178,9 @@ def check_courses(steps: Sequence[Step]) -> list[str]:
             name = ".".join(part for part in place if part)
             field = f"step {step.name!r}.{name}"
             try:
-                known[place] = _end(goal, known.get(place, 0.0), step.duration)
+                known[place] = after = _end(goal, known.get(place, 0.0), step.duration)
+                if place[0] == "load" and after is None:
+                    raise InputError("counts from what held it, which nobody knows beforehand")
                 if isinstance(goal, Course) and goal.coarse(step.duration, step.increments):
                     said.append(
                         f"{field}: {step.increments} increments are too few to follow its amplitude"

@@ -33,6 +33,8 @@ class CondensedStrategy:
         if not problem.linear:
             names = [name for name, law in problem.materials.items() if not law.linear]
             yield f"material.{names[0]} is not linear"
+        if problem.rigid.faces:
+            yield "a face follows a rigid body"
         yield from task.asked_solver()
 
     def costs(self, task: Task) -> Iterator[str]:

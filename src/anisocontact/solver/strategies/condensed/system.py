@@ -189,9 +189,9 @@ class ContactSystem(AssembledSystem):
 
     def _multiplier_residual(self) -> Floats:
         """`Contacts.multiplier_residual` of the unknowns of Newton's method, force."""
-        on_nodes = self.contact_term.multiplier_residual(self._nodal_now)
-        on_nodes = self.handed(on_nodes.reshape(-1))[self.bulk.contact]
-        return np.append(on_nodes, self._rigid.multiplier_residual()[~self.prescribed])
+        forces = self.contact_term.multiplier_residual(self._nodal_now).reshape(-1)
+        of_bodies = self._rigid.multiplier_residual(forces)[~self.prescribed]
+        return np.append(self.handed(forces)[self.bulk.contact], of_bodies)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Take the tangent at x; `out` multiplies with it, and has no pattern that could grow."""

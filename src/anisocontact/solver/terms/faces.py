@@ -1,0 +1,299 @@
+"""Facet groups of deformable bodies that move rigidly with a reference point."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import Mat, Vec, fem
+from anisocontact.bulk import Material, small_strain
+from anisocontact.contact.transfer import Couplings
+from anisocontact.mesh import Model
+from anisocontact.rigid import RigidBody
+from anisocontact.rigid.rotation import skew
+from anisocontact.solver.terms.constraint import Constraint
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class CoupledFace:
+    """A facet group whose nodes move with a rigid body.
+
+    `x_a = c + d + R (X_a - c)`; on a body at small strain `u_a = d + v x (X_a - c)`, v the turn.
+    What the nodes carry goes to the reference point c as force and moment.
+
+    Attributes:
+        group: Facet group, "body.group".
+        body: The rigid body, made with `free=True`. Components that no step frees are held.
+
+    Raises:
+        InputError: The body was not made free.
+
+    Example:
+        >>> CoupledFace("pin.top", RigidBody("head", (0, 0, 5), free=True)).body.name
+        'head'
+    """
+
+    group: str
+    body: RigidBody
+
+    def __post_init__(self) -> None:
+        if not self.body.free:
+            text = f"rigid body {self.body.name!r} was not made with free=True"
+            raise InputError(text, f"coupled.{self.group}")
+
+
+class FaceOnBody:
+    """The nodes of a coupled face that this rank owns.
+
+    Args:
+        spec: What is coupled.
+        model: Mesh with the group.
+        linear: Whether the body is at small strain.
+        tied: Nodes that follow from others, which are coupled.
+
+    Attributes:
+        group: Facet group.
+        body: The rigid body.
+        nodes: Local numbers of the nodes, (n,).
+        arms: Their places in the first configuration from the reference point, (n, 3), length.
+    """
+
+    def __init__(self, spec: CoupledFace, model: Model, linear: bool, tied: Ints) -> None:
+        space = model.space
+        nodes = fem.locate_dofs_topological(space, 2, model.facets(spec.group, "coupled"))
+        owned = nodes[nodes < space.dofmap.index_map.size_local].astype(np.int64)
+        self.group, self.body, self._linear = spec.group, spec.body, linear
+        self.nodes: Ints = np.setdiff1d(owned, tied)
+        self.arms: Floats = space.tabulate_dof_coordinates()[self.nodes] - spec.body.reference
+        self._force = np.zeros((len(self.nodes), 3))
+        flags = fem.Function(space)
+        flags.x.array.reshape(-1, 3)[self.nodes] = 1.0
+        flags.x.scatter_forward()
+        #: Which of the local nodes are coupled, those of other ranks too.
+        self.marked = flags.x.array.reshape(-1, 3)[:, 0] > 0.5
+
+    @property
+    def unknowns(self) -> Ints:
+        """Local numbers of the unknowns of the nodes, (3 n,)."""
+        return (3 * self.nodes[:, None] + np.arange(3)).reshape(-1)
+
+    def displacements(self) -> Floats:
+        """Where the trial of the body has the nodes, (n, 3), length."""
+        pose = self.body.trial
+        if self._linear:
+            return np.asarray(pose.translation + np.cross(pose.turn, self.arms))
+        return np.asarray(pose.translation + self._turned() - self.arms)
+
+    def wrench(self, force: Floats) -> Floats:
+        """Force and moment about the reference point of forces on these nodes, (6,)."""
+        return np.concatenate([force.sum(axis=0), np.cross(self._turned(), force).sum(axis=0)])
+
+    def take(self, force: Floats) -> Floats:
+        """The same of what the nodes need from outside, which is kept for `stiffness`."""
+        self._force = force[self.nodes]
+        return self.wrench(self._force)
+
+    def gathering(self) -> Floats:
+        """From the force on each node to force and moment, transposed, (n, 3, 6)."""
+        arms = self._turned()
+        shift = np.broadcast_to(np.eye(3), (len(arms), 3, 3))
+        return np.concatenate([shift, -skew(arms)], axis=2)
+
+    def following(self) -> Floats:
+        """Motion of each node with translation and turn of the body, (n, 3, 6)."""
+        slopes = self.gathering()
+        if not self._linear:
+            slopes[:, :, 3:] = slopes[:, :, 3:] @ self.body.trial.spin
+        return slopes
+
+    def stiffness(self) -> Floats:
+        """Change of the moment with the turn at the forces of `take`, of this rank, (6, 6).
+
+        `d(r x f) = (w x r) x f` with `w = J d(turn)`; none where arms do not turn.
+        """
+        out = np.zeros((6, 6))
+        if not self._linear:
+            by_spin = skew(self._force) @ skew(self._turned())
+            out[3:, 3:] = by_spin.sum(axis=0) @ self.body.trial.spin
+        return out
+
+    def _turned(self) -> Floats:
+        return self.arms if self._linear else self.arms @ self.body.trial.rotation.T
+
+
+class CoupledFaces:
+    """All coupled faces of a problem, as a constraint of its unknowns.
+
+    Args:
+        specs: What is coupled.
+        model: Mesh with the groups.
+        materials: Body name -> material.
+        tied: Nodes that follow from others.
+
+    Attributes:
+        faces: The faces.
+
+    Raises:
+        InputError: An unknown facet group, two that share nodes, or a mesh of two dimensions.
+    """
+
+    def __init__(
+        self,
+        specs: Sequence[CoupledFace],
+        model: Model,
+        materials: Mapping[str, Material],
+        tied: Ints,
+    ) -> None:
+        self._model, self._comm = model, model.mesh.comm
+        for one in specs:
+            if model.idealisation.dim < 3:
+                text = f"{model.idealisation.entry.name} has no faces on reference points"
+                raise InputError(text, f"coupled.{one.group}")
+        self.faces = [
+            FaceOnBody(one, model, small_strain(materials[model.body_of(one.group)]), tied)
+            for one in specs
+        ]
+        for i, face in enumerate(self.faces):
+            for other in self.faces[:i]:
+                self._refuse_shared(other.nodes, face, f"the coupled face {other.group!r}")
+        self._places: dict[str, tuple[int, Floats]] = {}
+
+    def __bool__(self) -> bool:
+        return bool(self.faces)
+
+    @property
+    def followers(self) -> Ints:
+        """Unknowns of this rank that follow from those of bodies, local numbers."""
+        return np.concatenate([np.zeros(0, dtype=np.int64), *(f.unknowns for f in self.faces)])
+
+    @property
+    def links(self) -> list[tuple[str, str]]:
+        """Pairs of deformable bodies whose faces follow one rigid body."""
+        pairs = ((a, b) for i, a in enumerate(self.faces) for b in self.faces[:i])
+        of = self._model.body_of
+        return [(of(a.group), of(b.group)) for a, b in pairs if a.body is b.body]
+
+    def number(self, bodies: Iterable[RigidBody], scales: Mapping[RigidBody, Floats]) -> None:
+        """Take over where the unknowns of the free bodies are and what they are multiplied with."""
+        first = 3 * self._model.space.dofmap.index_map.size_global
+        for i, body in enumerate(bodies):
+            self._places[body.name] = first + 6 * i, scales[body]
+
+    def check(self, prescribed: Ints, step: str) -> None:
+        """Refuse displacements of nodes that follow a body.
+
+        Args:
+            prescribed: Unknowns that a step prescribes, local numbers.
+            step: Name of the step, for messages.
+
+        Raises:
+            InputError: Names the face.
+        """
+        for face in self.faces:
+            text = f"step {step!r}.displacement"
+            self._refuse_shared(prescribed // 3, face, "a prescribed displacement", text)
+
+    def check_planes(self, on: Ints) -> None:
+        """Refuse symmetry planes at nodes that follow a body: nodes on planes, local numbers."""
+        for face in self.faces:
+            self._refuse_shared(on, face, "a symmetry plane")
+
+    def violation(self, u: Floats) -> Floats:
+        """How far unknowns are from where bodies have them, length; those of this rank.
+
+        Args:
+            u: Displacements this rank owns, (unknowns,), length.
+        """
+        out = np.zeros_like(u)
+        for face in self.faces:
+            at = face.unknowns
+            out[at] = u[at] - face.displacements().reshape(-1)
+        return out
+
+    def transform(self, matrix: Mat, scale: float, like: Vec) -> None:
+        """Make the tangent that of the constrained system, in place; see `Constraint`."""
+        constraint = self._linearised(like, moments=True)
+        constraint.transform(matrix, scale)
+        constraint.close()
+
+    def spread(self, columns: Mat, like: Vec) -> Mat:
+        """Displacements in which faces follow their bodies; takes the matrix over."""
+        constraint = self._linearised(like, moments=False)
+        out = constraint.spread(columns)
+        constraint.close()
+        return out
+
+    def involved(self, like: Vec) -> npt.NDArray[np.bool_]:
+        """Unknowns of this rank that follow from others, or others from them."""
+        found = np.zeros(like.getLocalSize(), dtype=np.bool_)
+        found[self.followers] = True
+        first, last = like.getOwnershipRange()
+        for body_first, _ in self._places.values():
+            if first <= body_first < last:
+                found[body_first - first : body_first - first + 6] = True
+        return found
+
+    def room(self, couplings: Sequence[Couplings], first: int) -> list[Couplings]:
+        """Places in the rows of bodies for all that their faces are coupled with.
+
+        Args:
+            couplings: Couplings of nodes beside those of cells.
+            first: What `CoupledTangent` calls the first node beyond those of the mesh.
+        """
+        found: list[Couplings] = []
+        cells = self._model.space.dofmap.list
+        beyond = self._model.space.dofmap.index_map.size_global
+        for face in self.faces:
+            there = first + self._places[face.body.name][0] // 3 - beyond + np.arange(2)
+            on = np.zeros(first, dtype=bool)
+            on[: len(face.marked)] = face.marked
+            reached = [cells[on[cells].any(axis=1)].ravel(), face.nodes]
+            for rows, columns, _ in couplings:
+                own = (rows >= 0) & (rows < first)
+                reached.append(columns[(on[np.where(own, rows, 0)] & own).any(axis=1)].ravel())
+            nodes = np.unique(np.concatenate(reached))
+            nodes = nodes[nodes >= 0].astype(np.int32)[:, None]
+            body = np.tile(there.astype(np.int32), (len(nodes), 1))
+            none = np.zeros((len(nodes), 3, 6))
+            found += [(nodes, body, none), (body, nodes, none.swapaxes(1, 2))]
+        return found
+
+    def _linearised(self, like: Vec, moments: bool) -> Constraint:
+        """The constraint where the bodies are.
+
+        Args:
+            like: A vector of the unknowns.
+            moments: Whether it hands over moments; else what turns of the bodies work on.
+        """
+        none = np.zeros(0, dtype=np.int64)
+        rows, columns, followed, handed = [none], [none], [np.zeros(0)], [np.zeros(0)]
+        first, _ = like.getOwnershipRange()
+        for face in self.faces:
+            at, scale = self._places[face.body.name]
+            rows.append(np.repeat(first + face.unknowns, 6))
+            columns.append(np.tile(at + np.arange(6), 3 * len(face.nodes)))
+            followed.append((face.following() / scale).reshape(-1))
+            handed.append((face.gathering() / scale).reshape(-1))
+        return Constraint(
+            like,
+            np.concatenate(rows),
+            np.concatenate(columns),
+            np.concatenate(followed),
+            np.concatenate(handed) if moments else None,
+        )
+
+    def _refuse_shared(self, nodes: Ints, face: FaceOnBody, what: str, field: str = "") -> None:
+        shared = self._comm.allreduce(len(np.intersect1d(nodes, face.nodes)))
+        if shared:
+            text = (
+                f"{shared} nodes of {face.group!r}, which follows the rigid body "
+                f"{face.body.name!r}, have {what} as well"
+            )
+            raise InputError(text, field or f"coupled.{face.group}")
