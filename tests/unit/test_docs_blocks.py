@@ -161,6 +161,7 @@ problem = Problem(model, materials, [Contact(model, "block.bottom", interface)])
 way = {"block.top": {"x": 0.05, "y": 0.0, "z": -0.01}}
 solver = Solver(problem, [Step("drag", 1, way)], limits=Limits(cuts=0))
 """,
+    "materials": "from anisocontact.bulk import PointState, user_material\n",
     "meshes": "",
     "point-loads": BLOCK + "from anisocontact.point import PrescribedPath, Push\n",
     "direction-fields": BLOCK
@@ -186,6 +187,14 @@ for one in (on_plane, on_base):
     "restart": "assert again.place == solver.place",
     "no-convergence": "from anisocontact.interface.failed_point import read_failed_point\n"
     "assert read_failed_point(Path('failed_point.json')).evaluate().failure == point.failure",
+    "materials": """
+law, e = user_material(Damage(3.0, 0.01)), np.diag([0.1, 0.02, 0.0])[None]
+assert user_material(Foam(2.0)).young == 5.0
+def stress(strain):
+    return law.update(PointState(strain, {"largest": np.zeros(1)}, 0.0, e[:, 0]))
+differences = (stress(e + 1e-5 * e).stress - stress(e - 1e-5 * e).stress) / 2e-5
+assert np.allclose(differences, np.einsum("nijkl,nkl->nij", stress(e).tangent, e), rtol=1e-8)
+""",
     "meshes": "assert model.body_names() == ['wheel', 'plate']",
     "two-dimensions": "assert model.idealisation.lateral",
     "point-loads": "",

@@ -26,6 +26,7 @@ from anisocontact.bulk.point_law import (
     PointState,
 )
 from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
+from anisocontact.bulk.user_law import UserLaw, user_material
 from anisocontact.bulk.viscoelastic import Viscoelastic
 
 __all__ = [
@@ -53,6 +54,7 @@ __all__ = [
     "StVenantKirchhoff",
     "TransverselyIsotropic",
     "UserEnergy",
+    "UserLaw",
     "UserStress",
     "Viscoelastic",
     "Yeoh",
@@ -62,4 +64,5 @@ __all__ = [
     "materials",
     "register_material",
     "small_strain",
+    "user_material",
 ]

@@ -34,6 +34,8 @@ class AtPoints:
     """
 
     linear = False
+    #: Whether the material says what it stores.
+    stores: bool
 
     def __init__(
         self, model: Model, body: str, history: Mapping[str, tuple[int, ...]], degree: int

@@ -165,8 +165,9 @@ class _Forms:
             elif not (law.linear or hasattr(law, "energy")):
                 stress = ideal.seen(law.piola(u), u)
                 work += weight * ufl.inner(stress, ideal.gradient(v)) * here
-                told &= getattr(law, "stores", False)
+                told &= isinstance(law, AtPoints)
             if isinstance(law, AtPoints):
+                told &= law.stores
                 energy += weight * law.stored * here
                 self.dissipated += weight * law.dissipated * here
         self.work, self.energy = work, energy if told else None

@@ -8,7 +8,7 @@ stresses and their derivatives, which stand in the forms as values at these poin
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 import numpy as np
@@ -46,15 +46,16 @@ class PointResult:
         stress: Stress conjugate to the strain, (n, 3, 3).
         tangent: Its derivative by the strain, (n, 3, 3, 3, 3), symmetric in the last two indices.
         after: Internal variables at the end of the increment by name, (n, ...).
-        stored: Energy per reference volume that is stored then, (n,), energy/volume.
-        dissipated: What was dissipated in the increment, (n,), energy/volume.
+        stored: Energy per reference volume that is stored then, (n,), energy/volume; without it
+            a run has no balance of energy.
+        dissipated: What was dissipated in the increment, (n,), energy/volume; nothing if left out.
     """
 
     stress: Floats
     tangent: Floats
-    after: Mapping[str, Floats]
-    stored: Floats
-    dissipated: Floats
+    after: Mapping[str, Floats] = field(default_factory=dict)
+    stored: Floats | None = None
+    dissipated: Floats | None = None
 
 
 class PointLaw(Protocol):
@@ -119,9 +120,10 @@ class BodyPoints(AtPoints):
         u: Displacement, a DOLFINx function.
         dt: Time increment, a constant of DOLFINx.
         degree: Degree of the quadrature at whose points the law is evaluated.
-    """
 
-    stores = True
+    Attributes:
+        stores: Whether the law says what it stores.
+    """
 
     def __init__(
         self, law: PointLaw, model: Model, body: str, u: Any, dt: Any, degree: int
@@ -136,6 +138,7 @@ class BodyPoints(AtPoints):
         self._last: tuple[Strain, PointResult]
         self.evaluate()
         self.write_tangent()
+        self.stores = self._last[1].stored is not None
 
     def energy(self, u: Any) -> list[Density]:
         """Terms of the energy that stand in UFL."""
@@ -181,5 +184,7 @@ class BodyPoints(AtPoints):
         self._write(self._stress, self._true_stress.eval(self._mesh, self._cells))
         for name, variable in self.variables.items():
             self._write(variable, np.asarray(result.after[name]))
-        self._write(self.stored, result.stored)
-        self._write(self.dissipated, self._read(self.dissipated) + result.dissipated)
+        if result.stored is not None:
+            self._write(self.stored, result.stored)
+        if result.dissipated is not None:
+            self._write(self.dissipated, self._read(self.dissipated) + result.dissipated)

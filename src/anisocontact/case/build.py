@@ -17,6 +17,7 @@ from anisocontact.case import objects
 from anisocontact.case.contacts import contact
 from anisocontact.case.courses import Schedule
 from anisocontact.case.law_file import law_of
+from anisocontact.case.material_file import material_of
 from anisocontact.case.model import Case, StepSection
 from anisocontact.case.read import CaseFile, load
 from anisocontact.case.units import doubts
@@ -90,7 +91,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
     )
     _check_bodies(case, model)
     materials = {
-        name: objects.material(section, f"material.{name}")
+        name: material_of(section, file.resolve, f"material.{name}", python)
         for name, section in case.material.items()
     }
     bodies = _rigid_bodies(case)

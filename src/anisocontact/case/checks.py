@@ -19,6 +19,7 @@ from anisocontact.case.model import (
     ContactSection,
 )
 from anisocontact.case.output import check_output
+from anisocontact.case.python_section import MaterialTable
 from anisocontact.case.rigid_checks import check_rigid
 from anisocontact.case.section import near
 from anisocontact.case.units import check_units
@@ -33,8 +34,9 @@ def check(case: Case) -> Iterator[InputError]:
     yield from _mesh(case)
     yield from _names(case)
     for name, section in case.material.items():
-        _, error = _tried(objects.material, section, f"material.{name}")
-        yield from error
+        if not isinstance(section, MaterialTable):  # which `build` looks at
+            _, error = _tried(objects.material, section, f"material.{name}")
+            yield from error
     surfaces: dict[str, Surface | None] = {}
     for name, section in case.surface.items():
         surfaces[name], error = _tried(objects.surface, section, f"surface.{name}")

@@ -24,7 +24,7 @@ from anisocontact.interface.python_law import (
 )
 from anisocontact.laws import SIDES
 
-__all__ = ["contact_law", "law_of", "module_at"]
+__all__ = ["contact_law", "law_of", "module_at", "object_of"]
 
 
 class _Later:
@@ -97,22 +97,38 @@ def law_of(
     if given is None:
         return None
     with objects.within(f"{place}.python"):
-        module = module_at(resolve, given.file, execute)
-        if module is None:
-            return None
-        kind = getattr(module, given.law, None)
-        if not isinstance(kind, type):
-            classes = {n: k for n, k in vars(module).items() if isinstance(k, type)}
-            known = [n for n, k in classes.items() if k.__module__ == module.__name__]
-            text = f"\"{given.law}\" given, no such class in '{given.file}'; "
-            raise InputError(text + near(given.law, known), "law")
-        try:
-            law: TangentialLaw = kind(**given.arguments)
-        except (Exception, SystemExit) as error:
-            text = f"{given.law} refuses them: {where_failed(error)}"
-            raise InputError(text, "arguments") from None
-        _check_law(law, given.law)
+        law: TangentialLaw | None = object_of(given, resolve, execute)
+        if law is not None:
+            _check_law(law, given.law)
         return law
+
+
+def object_of(given: Any, resolve: Callable[[str], Path], execute: bool = True) -> Any:
+    """The object of a table that names a class in a Python file; None if that is not to be run.
+
+    Args:
+        given: The table, with `file`, `law` (the class) and `arguments`.
+        resolve: From a path in the case file to where that is.
+        execute: Whether the file is run; if not, it only has to be there.
+
+    Raises:
+        InputError: No such file or class, a file that cannot be run, or arguments that the class
+            refuses.
+    """
+    module = module_at(resolve, given.file, execute)
+    if module is None:
+        return None
+    kind = getattr(module, given.law, None)
+    if not isinstance(kind, type):
+        classes = {n: k for n, k in vars(module).items() if isinstance(k, type)}
+        known = [n for n, k in classes.items() if k.__module__ == module.__name__]
+        text = f"\"{given.law}\" given, no such class in '{given.file}'; "
+        raise InputError(text + near(given.law, known), "law")
+    try:
+        return kind(**given.arguments)
+    except (Exception, SystemExit) as error:
+        text = f"{given.law} refuses them: {where_failed(error)}"
+        raise InputError(text, "arguments") from None
 
 
 def module_at(

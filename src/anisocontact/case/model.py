@@ -31,7 +31,7 @@ from anisocontact.case.amplitudes import PYTHON, amplitude_table, path_table
 from anisocontact.case.bodies import Mesh, mesh_type
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
 from anisocontact.case.output import Output
-from anisocontact.case.python_section import PythonSection
+from anisocontact.case.python_section import MATERIAL, MaterialTable, PythonSection
 from anisocontact.case.quantity import line, shown
 from anisocontact.case.quantity import number as _number
 from anisocontact.case.quantity import word as _word
@@ -323,7 +323,7 @@ def _of_bodies() -> tuple[tuple[Entry, ...], ...]:
         from anisocontact.mesh import idealisations, selectors, shapes
     except ImportError:
         return (), (), (), ()
-    return materials(), shapes(), selectors(), idealisations()
+    return (*materials(), MATERIAL), shapes(), selectors(), idealisations()
 
 
 @cache
@@ -343,7 +343,8 @@ def case_type(known: Registries) -> type[Case]:
     fields = _or_in_python(laws(known), known)
     contact = create_model("Contact", __base__=ContactSection, **passes, **fields)
     surface = OneOf("Surface", Key("shape", known.surfaces))
-    material = OneOf("Material", Key("model", known.materials))
+    own = {MATERIAL.name: MaterialTable}
+    material = OneOf("Material", Key("model", known.materials), bases=own)
     selector = OneOf("Group", Key("by", known.group_selectors))
     idealisation = OneOf("Idealisation", Key("kind", known.idealisations))
     return create_model(

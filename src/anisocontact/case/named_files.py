@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from anisocontact.base.errors import InputError
 from anisocontact.case.amplitudes import FunctionTable
+from anisocontact.case.python_section import MaterialTable
 
 if TYPE_CHECKING:
     from anisocontact.case.read import CaseFile
@@ -25,13 +26,16 @@ def named(file: CaseFile) -> Iterator[tuple[str, str]]:
     for i, contact in enumerate(file.case.contact):
         if contact.python is not None:
             yield f"contact[{i}].python.file", contact.python.file
+    for name, material in file.case.material.items():
+        if isinstance(material, MaterialTable):
+            yield f"material.{name}.file", material.file
     for name, amplitude in file.case.amplitude.items():
         if isinstance(amplitude, FunctionTable):
             yield f"amplitude.{name}.file", amplitude.file
 
 
 def fingerprints(file: CaseFile) -> dict[str, str]:
-    """What the files that a case names contain: meshes, laws and amplitudes in Python.
+    """What the files that a case names contain: meshes; laws, materials and amplitudes in Python.
 
     Args:
         file: The case.

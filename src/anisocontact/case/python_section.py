@@ -1,4 +1,4 @@
-"""The table of a contact that names a law in a Python file."""
+"""Tables that name a law of a contact, or a material, in a Python file."""
 
 from __future__ import annotations
 
@@ -6,11 +6,21 @@ from typing import Annotated, Any
 
 from pydantic import Field
 
+from anisocontact.base.registry import Entry
 from anisocontact.case.quantity import number
+from anisocontact.case.registered import Registered
 from anisocontact.case.section import Section
 from anisocontact.laws import SIDES
 
-__all__ = ["PythonSection"]
+__all__ = ["MATERIAL", "MaterialTable", "PythonSection"]
+
+#: The entry of a material in a Python file.
+MATERIAL = Entry(
+    "python",
+    "material",
+    "a class in a Python file of yours: an energy, a stress, or a law of points with a history",
+    (),
+)
 
 
 class PythonSection(Section):
@@ -30,3 +40,16 @@ class PythonSection(Section):
     ] = False
     directions: Any = None
     directions_on: str = SIDES[0]
+
+
+class MaterialTable(Registered):
+    """A material in a Python file."""
+
+    file: str = Field(
+        description="Python file, from the folder of the case file on; `run` and `check` run it "
+        "with all rights of whoever calls them, `check --no-python` does not"
+    )
+    law: str = Field(description="name of the class in it")
+    arguments: dict[str, Any] = Field(
+        default_factory=dict, description="what the class is made with, by name"
+    )

@@ -1,0 +1,127 @@
+"""Materials by a class of the user's: an energy, a stress, or a law of points."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, cast
+
+import numpy as np
+
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import ufl
+from anisocontact.base.python_file import where_failed
+from anisocontact.bulk.hyperelastic import UserEnergy, UserStress
+from anisocontact.bulk.materials import Material
+from anisocontact.bulk.point_law import PointLaw, PointResult, PointState
+from anisocontact.bulk.strain import STRAINS
+
+
+class UserLaw:
+    """A law of points of the user's, whose answers are looked at.
+
+    Args:
+        law: Object with `update(state)` and `young`, and `strain` and `history` if it is not at
+            small strain or remembers anything; see `PointLaw`.
+
+    Raises:
+        InputError: It has no such attributes, or fails at rest.
+    """
+
+    linear = False
+
+    def __init__(self, law: Any) -> None:
+        self._law = law
+        self.young: float = law.young
+        self.strain: str = getattr(law, "strain", "small")
+        if self.strain not in STRAINS:
+            text = f"{self.strain!r} given, allowed: {', '.join(STRAINS)}"
+            raise InputError(text, f"{type(law).__name__}.strain")
+        self.history: Mapping[str, tuple[int, ...]] = dict(getattr(law, "history", {}))
+        before = {name: np.zeros((2, *shape)) for name, shape in self.history.items()}
+        self.update(PointState(np.zeros((2, 3, 3)), before, 0.0, np.zeros((2, 3))))
+
+    def update(self, state: PointState) -> PointResult:
+        """As of `PointLaw`.
+
+        Raises:
+            InputError: The law fails, or returns something else.
+        """
+        name, n = type(self._law).__name__, len(state.strain)
+        try:
+            result = self._law.update(state)
+        except Exception as error:
+            raise InputError(f"the law {name} failed: {where_failed(error)}") from error
+        if not isinstance(result, PointResult):
+            text = f"the law {name} returned a {type(result).__name__}, a PointResult needed"
+            raise InputError(text)
+        given = {"stress": result.stress, "tangent": result.tangent, **result.after}
+        shapes = {"stress": (n, 3, 3), "tangent": (n, 3, 3, 3, 3)}
+        shapes |= {name: (n, *shape) for name, shape in self.history.items()}
+        for part in ("stored", "dissipated"):
+            if getattr(result, part) is not None:
+                given[part], shapes[part] = getattr(result, part), (n,)
+        if given.keys() != shapes.keys():
+            text = f"{', '.join(result.after) or 'none'} given, {', '.join(self.history)} needed"
+            raise InputError(f"the law {name} returned other variables: {text}", "after")
+        for part, shape in shapes.items():
+            if np.shape(given[part]) != shape:
+                text = f"an array of shape {np.shape(given[part])}, {shape} needed"
+                raise InputError(f"the law {name} returned {text}", part)
+        return result
+
+
+def user_material(given: Any) -> Material:
+    """The material that an object of the user's describes.
+
+    Args:
+        given: What it has says what it is: with `linear` it is a `Material` as it stands; with
+            `update(state)` a law of points in NumPy, `PointLaw`; with `energy(F)` an energy per
+            reference volume, with `piola(F)` a first Piola-Kirchhoff stress of the deformation
+            gradient, both in UFL. `young` is Young's modulus at rest.
+
+    Returns:
+        The material.
+
+    Raises:
+        InputError: It is none of these, or fails.
+
+    Example:
+        >>> class Rubber:
+        ...     young = 3.0
+        ...     def energy(self, F):
+        ...         return 0.5 * (ufl.inner(F, F) - 3.0 - 2.0 * ufl.ln(ufl.det(F)))
+        >>> type(user_material(Rubber())).__name__
+        'UserEnergy'
+    """
+    name = type(given).__name__
+    young = getattr(given, "young", None)
+    number = isinstance(young, int | float) and not isinstance(young, bool)
+    if not (number and math.isfinite(cast(float, young)) and cast(float, young) > 0.0):
+        text = f"{name}.young is {young!r}, Young's modulus at rest needed, > 0"
+        raise InputError(text)
+    if hasattr(given, "linear"):
+        return cast(Material, given)
+    if callable(getattr(given, "update", None)):
+        law: PointLaw = UserLaw(given)
+        return cast(Material, law)
+    kinds: dict[str, tuple[Any, tuple[int, ...]]] = {
+        "energy": (UserEnergy, ()),
+        "piola": (UserStress, (3, 3)),
+    }
+    for method, (kind, shape) in kinds.items():
+        function = getattr(given, method, None)
+        if callable(function):
+            _try(function, f"{name}.{method}", shape)
+            return cast(Material, kind(function, float(cast(float, young))))
+    raise InputError(f"{name} has no method energy(F), piola(F) or update(state)")
+
+
+def _try(function: Any, name: str, shape: tuple[int, ...]) -> None:
+    """Let a function of the deformation gradient show what it returns."""
+    try:
+        found = ufl.as_ufl(function(ufl.variable(ufl.Identity(3)))).ufl_shape
+    except Exception as error:
+        raise InputError(f"{name} failed: {where_failed(error)}") from error
+    if found != shape:
+        raise InputError(f"{name} returned something of shape {found}, {shape} needed")
