@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import numpy.typing as npt
 import pytest
 
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
+from anisocontact.mesh.merge import lift
 
 Floats = npt.NDArray[np.float64]
 
@@ -58,6 +61,8 @@ def graded_body(
     fine: float = 1.15,
     both_sides: bool = False,
     patch: float | None = None,
+    distorted: float = 0.0,
+    order: int = 1,
 ) -> MeshArrays:
     """A quarter (or half, `both_sides` of x = 0) of a block above or below z = 0.
 
@@ -72,6 +77,9 @@ def graded_body(
         fine: Where that begins.
         both_sides: Whether x goes from -`EXTENT`.
         patch: Half-length of a square of the surface about the origin.
+        distorted: Most that nodes near the contact are moved at random along each of x and y, over
+            the size of a cell.
+        order: Order of geometry and displacement.
     """
     h, depth = graded_line(n, fine, growth), graded_line(n, 0.4, growth)
     x = np.concatenate([-h[:0:-1], h]) if both_sides else h
@@ -91,17 +99,29 @@ def graded_body(
     if patch is not None:
         middle = np.abs(points[faces[contact]].mean(axis=1)[:, :2]).max(axis=1)
         groups["patch"] = faces[contact][middle < patch]
-    if np.isfinite(radius):
-        points = points + np.outer(_sag(points, radius, upper), [0.0, 0.0, 1.0])
-    return MeshArrays(
+    flat = MeshArrays(
         cell="hexahedron",
         degree=1,
-        points=points,
+        points=_distorted(points, distorted / n, seed=int(upper)) if distorted else points,
         cells=cells,
         bodies={name: np.arange(len(cells))},
         facets={f"{name}.{group}": nodes for group, nodes in groups.items()},
         order=1,
     )
+    mesh = replace(lift(flat), order=2) if order == 2 else flat
+    if np.isfinite(radius):
+        sag = _sag(mesh.points, radius, upper)
+        mesh = replace(mesh, points=mesh.points + np.outer(sag, [0.0, 0.0, 1.0]))
+    return mesh
+
+
+def _distorted(points: Floats, most: float, seed: int) -> Floats:
+    """Points near the contact moved at random along x and y, but off x = 0 and y = 0."""
+    out = points.copy()
+    near = (np.abs(points[:, 2]) < 0.3) & (np.abs(points[:, :2]).max(axis=1) < 1.1)
+    way = np.random.default_rng(seed).uniform(-most, most, (int(near.sum()), 2))
+    out[near, :2] += np.where(np.abs(points[near, :2]) < 1e-9, 0.0, way)
+    return out
 
 
 def _sag(points: Floats, radius: float, upper: bool) -> Floats:
