@@ -8,7 +8,13 @@ from itertools import product
 from pathlib import Path
 
 CASES = Path(__file__).parent / "cases"
-METHODS = ("penalty", "augmented")
+#: What is written into the contacts of a case, by name.
+METHODS = {
+    "penalty": 'method = "penalty"\n',
+    "augmented": 'method = "augmented"\n',
+    "mortar": 'pass = "mortar"\nmethod = "penalty"\n',
+    "mortar-augmented": 'pass = "mortar"\nmethod = "augmented"\n',
+}
 STRATEGIES = ("direct", "condensed", "iterative")
 
 
@@ -17,7 +23,7 @@ class Way:
     """How a case is run.
 
     Attributes:
-        method: Method of all its contacts.
+        method: What its contacts are, a name in `METHODS`.
         strategy: How the equations are solved.
     """
 
@@ -72,7 +78,7 @@ class HardCase:
 
     def written(self, way: Way) -> str:
         """The case file with the method of its contacts and the strategy."""
-        text = self.text.replace("[[contact]]\n", f'[[contact]]\nmethod = "{way.method}"\n')
+        text = self.text.replace("[[contact]]\n", f"[[contact]]\n{METHODS[way.method]}")
         return f'{text}\n[solver]\nstrategy = "{way.strategy}"\n'
 
 

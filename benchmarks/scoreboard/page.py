@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from itertools import product
 from pathlib import Path
 
 from scoreboard.case import METHODS, STRATEGIES, HardCase, Way
@@ -49,7 +50,8 @@ def cell(outcome: Outcome | None) -> str:
 
 def table(found: Found, cases: Iterable[HardCase]) -> str:
     """A row for each case: iterations and cuts of every way, the worst balance and energy."""
-    ways = [Way(method, strategy) for method in METHODS for strategy in STRATEGIES]
+    there = {(one.method, one.strategy) for one in found.values()}
+    ways = [Way(*both) for both in product(METHODS, STRATEGIES) if both in there]
     head = ["case", *map(str, ways), "balance", "energy"]
     rows = [head, ["---"] * len(head)]
     for case in cases:
@@ -75,6 +77,8 @@ def totals(found: Found, cases: Iterable[HardCase]) -> str:
             for m in METHODS
         }
         for method, outcomes in both.items():
+            if not outcomes:
+                continue
             applies = [o for o in outcomes if o.status != "refused" and o.case in by_name]
             right = [o for o in applies if not fault(o, by_name[o.case])]
             lines.append(

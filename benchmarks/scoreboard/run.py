@@ -43,7 +43,7 @@ def parsed(arguments: list[str]) -> argparse.Namespace:
 
 def chosen(words: list[str]) -> list[Way]:
     """The ways that some words allow: of methods and of strategies, all where none is named."""
-    methods = [word for word in METHODS if word in words] or METHODS
+    methods = [word for word in METHODS if word in words] or [*METHODS]
     strategies = [word for word in STRATEGIES if word in words] or STRATEGIES
     return [way for way in WAYS if way.method in methods and way.strategy in strategies]
 
@@ -73,7 +73,7 @@ def main(arguments: list[str]) -> int:
         wrong = fault(outcome, cases[outcome.case])
         faults += bool(wrong)
         print(
-            f"{outcome.case:28} {outcome.method:9} {outcome.strategy:9} {outcome.status:8}"
+            f"{outcome.case:28} {outcome.method:16} {outcome.strategy:9} {outcome.status:8}"
             f"{outcome.iterations:5} iterations {outcome.cuts:3} cuts  "
             f"balance {outcome.balance:.0e}  energy {outcome.energy:+.1e}  "
             f"{outcome.seconds:.0f} s  {wrong or outcome.said}",

@@ -28,15 +28,18 @@ nb::dict mortar_weights(const std::string& slave_topology, const Table& slave,
                         const Indices& pair_facets, const Table& patch,
                         const Offsets& around_offsets, const Indices& around_facets,
                         const Indices& around_local, const Offsets& more_offsets,
-                        const Indices& more_nodes, const Coordinates& rule_points,
-                        const Scalars& rule_weights, bool current_area, bool tangent,
+                        const Indices& more_nodes, const Coordinates& straight_points,
+                        const Scalars& straight_weights, const Coordinates& skew_points,
+                        const Scalars& skew_weights, bool current_area, bool tangent,
                         std::size_t threads) {
-  const mortar::MortarInput in{{named(slave_topology), slave.data(), slave.shape(0)},
-                               {named(master_topology), master.data(), master.shape(0)},
-                               now.data(),
-                               current_area ? nullptr : reference.data(),
-                               {rule_points.data(), rule_weights.data(), rule_weights.shape(0)},
-                               tangent};
+  const mortar::MortarInput in{
+      {named(slave_topology), slave.data(), slave.shape(0)},
+      {named(master_topology), master.data(), master.shape(0)},
+      now.data(),
+      current_area ? nullptr : reference.data(),
+      {{straight_points.data(), straight_weights.data(), straight_weights.shape(0)},
+       {skew_points.data(), skew_weights.data(), skew_weights.shape(0)}},
+      tangent};
   const std::size_t n = patch.shape(0);
   const mortar::ListView pairs{pair_offsets.data(), pair_facets.data()},
       more{more_offsets.data(), more_nodes.data()};
@@ -86,8 +89,9 @@ void bind_mortar(nb::module_& m) {
         nb::arg("master_topology"), nb::arg("master"), nb::arg("now"), nb::arg("reference"),
         nb::arg("pair_offsets"), nb::arg("pair_facets"), nb::arg("patch"),
         nb::arg("around_offsets"), nb::arg("around_facets"), nb::arg("around_local"),
-        nb::arg("more_offsets"), nb::arg("more_nodes"), nb::arg("rule_points"),
-        nb::arg("rule_weights"), nb::arg("current_area"), nb::arg("tangent"), nb::arg("threads"));
+        nb::arg("more_offsets"), nb::arg("more_nodes"), nb::arg("straight_points"),
+        nb::arg("straight_weights"), nb::arg("skew_points"), nb::arg("skew_weights"),
+        nb::arg("current_area"), nb::arg("tangent"), nb::arg("threads"));
 }
 
 }  // namespace anisocontact::bindings

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -17,9 +18,9 @@ from anisocontact.contact.slave_nodes import Patches
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
-#: Degree of the rule on each triangle of an overlap, by topology: that of products of two shape
-#: functions, and more on quadrilaterals, where these are polynomials on parallelograms alone.
-DEGREES = {"tri3": 2, "quad4": 6, "tri6": 4, "quad9": 8}
+#: Degree of the product of two shape functions of the position, by topology, on triangles and
+#: parallelograms, and of the rule on other quadrilaterals, where they are no polynomials.
+DEGREES = {"tri3": (2, 2), "quad4": (4, 6), "tri6": (4, 4), "quad9": (8, 8)}
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,7 @@ def mortar_weights(
     offsets = np.searchsorted(f[order], np.arange(len(slave.nodes) + 1)).astype(np.int64)
     there = more >= 0
     starts = np.append(0, np.cumsum(there.sum(axis=1))).astype(np.int64)
-    points, weights = _rule(slave, master)
+    straight, skew = _rules(slave, master)
     found = _core.mortar_weights(
         slave_topology=slave.topology,
         slave=slave.nodes,
@@ -90,8 +91,10 @@ def mortar_weights(
         around_local=around.local,
         more_offsets=starts,
         more_nodes=np.ascontiguousarray(more[there]),
-        rule_points=points,
-        rule_weights=weights,
+        straight_points=straight[0],
+        straight_weights=straight[1],
+        skew_points=skew[0],
+        skew_weights=skew[1],
         current_area=current_area,
         tangent=tangent,
         threads=sides.threads,
@@ -99,8 +102,13 @@ def mortar_weights(
     return MortarWeights(**found)
 
 
-def _rule(slave: FacetMesh, master: FacetMesh) -> tuple[Floats, Floats]:
-    """Points and weights on a triangle for products of the functions of both."""
-    degree = max(DEGREES[slave.topology], DEGREES[master.topology])
+def _rules(slave: FacetMesh, master: FacetMesh) -> list[tuple[Floats, Floats]]:
+    """Points and weights on a triangle for products of the functions of both, see `DEGREES`."""
+    degrees = zip(DEGREES[slave.topology], DEGREES[master.topology], strict=True)
+    return [_rule(max(both)) for both in degrees]
+
+
+@cache
+def _rule(degree: int) -> tuple[Floats, Floats]:
     points, weights = basix.make_quadrature(basix.CellType.triangle, degree)
     return np.ascontiguousarray(points), np.ascontiguousarray(weights)

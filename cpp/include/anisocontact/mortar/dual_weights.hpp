@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "anisocontact/mortar/overlap.hpp"
+#include "anisocontact/tensor/inline.hpp"
 
 namespace anisocontact::mortar {
 
@@ -112,7 +113,7 @@ struct MortarInput {
   Facets slave, master;
   const double *now,
       *reference;  ///< positions of the nodes; no reference where areas are those of now
-  TriangleRule rule;
+  Rules rules;
   bool slopes;
 };
 
@@ -125,7 +126,7 @@ inline DualWeights dual_weights(const MortarInput& in, std::size_t f,
   detail::PlaneIntegrals work;
   std::vector<Overlaps> parts;
   for (const SubFacet& part : sub_facets(slave.topology)) {
-    parts.emplace_back(slave, part, in.rule, in.slopes);
+    parts.emplace_back(slave, part, in.rules, in.slopes);
     if (!parts.back().valid()) return {};
     if (in.reference != nullptr) parts.back().scale_to(in.slave.at(f, in.reference));
   }
@@ -134,7 +135,9 @@ inline DualWeights dual_weights(const MortarInput& in, std::size_t f,
     PairIntegrals pair;
     pair.reset(ns, nm, in.slopes);
     bool any = false;
-    for (const Overlaps& part : parts) any |= part.add(master, work, pair);
+    with_longest([&]() ANISOCONTACT_INLINE_LAMBDA {
+      for (const Overlaps& part : parts) any |= part.add(master, work, pair);
+    });
     if (any) found.emplace_back(candidates[c], std::move(pair));
   }
   DualWeights out;

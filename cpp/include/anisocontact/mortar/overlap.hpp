@@ -25,6 +25,12 @@ struct TriangleRule {
   std::size_t count;
 };
 
+/// Rules for products of shape functions on parts that are triangles or parallelograms, on which these
+/// are polynomials of the position, and on other quadrilaterals.
+struct Rules {
+  TriangleRule straight, skew;
+};
+
 /// A facet: its shape and where its nodes are.
 struct Facet {
   Topology topology;
@@ -276,14 +282,15 @@ class ByNodes {
 /// Overlaps of one part of a slave facet with facets of the master.
 class Overlaps {
  public:
-  Overlaps(const Facet& slave, const SubFacet& part, const TriangleRule& rule, bool slopes)
-      : slave_(slave), part_(part), plane_(part, slave), rule_(rule), slopes_(slopes) {
+  Overlaps(const Facet& slave, const SubFacet& part, const Rules& rules, bool slopes)
+      : slave_(slave), part_(part), plane_(part, slave), rules_(rules), slopes_(slopes) {
     subject_.count = part.corners;
     for (std::size_t a = 0; a < part.corners; ++a) {
       put_corner(plane_.flat(slave.x[part.node[a]]), a, slopes, corner_[a]);
       subject_.vertex[a] = corner_[a];
     }
     area_ = subject_.area();
+    straight_ = straight(corner_, part.corners);
   }
 
   /// Counts areas as those of a reference configuration, where the facet has other positions.
@@ -338,6 +345,19 @@ class Overlaps {
     return true;
   }
 
+  /// Whether shape functions of a part are polynomials of the position, to rounding.
+  static bool straight(const std::array<Vertex, 4>& corner, std::size_t count) {
+    constexpr double rounding = 1e-9;
+    if (count == 3) return true;
+    double bent = 0.0, size = 0.0;
+    for (std::size_t i = 0; i < 2; ++i) {
+      const auto x = [&](std::size_t a) { return corner[a].x[i]; };
+      bent += std::abs(x(0) - x(1) + x(2) - x(3));
+      size += std::abs(x(2) - x(0));
+    }
+    return bent < rounding * size;
+  }
+
   bool apart(const std::array<Vertex, 4>& corner, std::size_t count) const {
     for (std::size_t i = 0; i < 2; ++i) {
       double low = std::numeric_limits<double>::infinity(), high = -low, least = low,
@@ -358,26 +378,29 @@ class Overlaps {
   bool integrate(const Polygon& p, const Facet& master, const SubFacet& part,
                  const std::array<Vertex, 4>& corner, detail::PlaneIntegrals& out) const {
     detail::InPart own(part_, corner_, 0), other(part, corner, 4);
+    const bool both = straight_ && straight(corner, part.corners);
+    const TriangleRule& rule = both ? rules_.straight : rules_.skew;
     for (std::size_t i = 1; i + 1 < p.count; ++i)
-      if (!triangle(p.vertex[0], p.vertex[i], p.vertex[i + 1], master, own, other, out))
+      if (!triangle(p.vertex[0], p.vertex[i], p.vertex[i + 1], master, rule, own, other, out))
         return false;
     return true;
   }
 
   bool triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Facet& master,
-                detail::InPart& own, detail::InPart& other, detail::PlaneIntegrals& out) const {
+                const TriangleRule& rule, detail::InPart& own, detail::InPart& other,
+                detail::PlaneIntegrals& out) const {
     const double bx = b.x[0] - a.x[0], by = b.x[1] - a.x[1], cx = c.x[0] - a.x[0],
                  cy = c.x[1] - a.x[1], twice = bx * cy - by * cx;
-    Row grown;
+    Row grown{};
     if (slopes_)
       for (std::size_t k = 0; k < plane_inputs; ++k)
         grown[k] = (b.d[0][k] - a.d[0][k]) * cy + bx * (c.d[1][k] - a.d[1][k]) -
                    (b.d[1][k] - a.d[1][k]) * cx - by * (c.d[0][k] - a.d[0][k]);
     const std::size_t ns = slave_.nodes(), nm = master.nodes();
     surface::Shape<double> N, M;
-    for (std::size_t q = 0; q < rule_.count; ++q) {
-      const double s = rule_.points[2 * q], t = rule_.points[2 * q + 1], r = 1.0 - s - t,
-                   w = rule_.weights[q];
+    for (std::size_t q = 0; q < rule.count; ++q) {
+      const double s = rule.points[2 * q], t = rule.points[2 * q + 1], r = 1.0 - s - t,
+                   w = rule.weights[q];
       std::array<double, 2> x;
       for (std::size_t i = 0; i < 2; ++i) x[i] = r * a.x[i] + s * b.x[i] + t * c.x[i];
       if (!own.locate(x) || !other.locate(x)) return false;
@@ -421,8 +444,8 @@ class Overlaps {
   const Facet& slave_;
   const SubFacet& part_;
   Plane plane_;
-  TriangleRule rule_;
-  bool slopes_, scaled_{false};
+  Rules rules_;
+  bool slopes_, straight_, scaled_{false};
   std::array<Vertex, 4> corner_;
   Polygon subject_;
   double area_;
