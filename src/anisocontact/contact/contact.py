@@ -252,6 +252,11 @@ class Contact:
             return self.passes[0].state
         return np.concatenate([half.state for half in self.passes])
 
+    def take_supports(self, fixed: Mask) -> None:
+        """As of `Pass`."""
+        for half in self.passes:
+            half.take_supports(fixed)
+
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
 

@@ -204,6 +204,10 @@ class FacetMaster(Master):
         return np.unique(self.sides.master.nodes[self._hint.facet[located(self._hint)]])
 
     @override
+    def immovable(self, fixed: Mask) -> bool:
+        return bool(fixed[np.unique(self._gathered.own.nodes)].all())
+
+    @override
     def below(self, state: State) -> Ints:
         return np.unique(self.sides.master.nodes[state["facet"][self.located(state)]])
 

@@ -14,6 +14,7 @@ from anisocontact.contact.mortar_master import MortarMaster
 from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.poles import without_poles
 from anisocontact.contact.quadrature import chosen_degree, facet_quadrature, inward
 from anisocontact.contact.sides import check_sides, make_sides
 from anisocontact.contact.slave_nodes import SlaveNodes
@@ -126,7 +127,9 @@ def _on_surface(
     current = options.current_area is not False
     if options.mortar:
         _check_in_space(model, "mortar")
-        points: SlavePoints = _slave_nodes(model, slave, facet_mesh(model.space, facets), current)
+        nodes = _slave_nodes(model, slave, facet_mesh(model.space, facets), current)
+        interface = without_poles(interface, nodes.quadrature.reference)
+        points: SlavePoints = nodes
     else:
         flip = inward(model.space, facets, quadrature)
         points = SlavePoints(quadrature, flip, current_area=current, comm=comm)

@@ -161,6 +161,10 @@ class Master(Protocol):
     def couplable(self) -> Ints:
         """Local nodes that the contact acts on; all ranks together have all of them."""
 
+    def immovable(self, fixed: Mask) -> bool:
+        """Whether it cannot give way where displacements of local nodes are fixed, (nodes, 3)."""
+        return self.body is None or not self.body.free
+
     def feet(self) -> Ints:
         """Local nodes of the master below points of the trial."""
         return np.zeros(0, dtype=np.int32)

@@ -141,6 +141,8 @@ class ContactTrial:
         now: Frames of the trial.
         before: Frames at the committed coordinates, in the configuration of the trial.
         axes: Axes of adhesion as the frames have them, (n, 2, 3); zero at open points.
+        immovable: Points that supports hold along the normal, which no multiplier can bring to no
+            gap, (n,).
     """
 
     start: State
@@ -149,6 +151,7 @@ class ContactTrial:
     now: Frames
     before: Frames
     axes: Floats
+    immovable: npt.NDArray[np.bool_]
 
     @property
     def remembers(self) -> npt.NDArray[np.bool_]:
@@ -252,6 +255,15 @@ class Multipliers:
         return None
 
     def values(self, step: ContactTrial) -> tuple[Floats, Floats]:
+        """Multipliers, and what they should be: as of `answers`, but for points that cannot move.
+
+        Supports hold these along the normal: they keep their penalty.
+        """
+        given, found = self.answers(step)
+        found[step.immovable, 0] = given[step.immovable, 0]
+        return given, found
+
+    def answers(self, step: ContactTrial) -> tuple[Floats, Floats]:
         """Multipliers, and what the trial answers to them: N and T as a vector, (n, 4) each."""
         old, force = np.zeros((2, len(step.start), 3))
         if self.tangential:

@@ -145,6 +145,15 @@ class Pass:
         self.trials.suit(self.body_stiffness)
         self._begin()
 
+    def take_supports(self, fixed: npt.NDArray[np.bool_]) -> None:
+        """Learn which displacements are prescribed from now on: such points keep their penalty.
+
+        Args:
+            fixed: Of the local nodes, (nodes, 3).
+        """
+        held = self.slave_points.held(fixed, self.last.normal)
+        self.trials.take_immovable(held & self.master.immovable(fixed))
+
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
 

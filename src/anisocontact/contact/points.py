@@ -11,6 +11,9 @@ import numpy.typing as npt
 
 from anisocontact.contact.quadrature import FacetQuadrature, Surfaced, mean_size
 
+#: Share of the normal along free displacements below which a point does not move along it.
+FREE = 0.1
+
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
@@ -50,6 +53,17 @@ class SlavePoints:
         self.current_area = current_area
         self._sign = np.where(np.repeat(flip, each), -1.0, 1.0)
         self.size = mean_size(quadrature, comm)
+
+    def held(self, fixed: npt.NDArray[np.bool_], normal: Floats) -> npt.NDArray[np.bool_]:
+        """Points that cannot move along the normal.
+
+        Args:
+            fixed: Prescribed displacements of the local nodes, (nodes, 3).
+            normal: At the points, (n, 3).
+        """
+        moving = (self.shape != 0.0)[:, :, None] & ~fixed[self.nodes]
+        free = moving.any(axis=1)
+        return np.asarray(np.linalg.norm(free * normal, axis=1) < FREE)
 
     def take_area(self, current: bool) -> None:
         """Take the area of now, or that of the reference."""

@@ -128,7 +128,7 @@ class Semismooth(Multipliers):
             State from which the law with `ratio` times the penalties answers as the trial does;
             displacement of the slave points that would make the trial exact, (n, 3), length.
         """
-        given, found = self.values(step)
+        given, found = self.answers(step)
         shifted = given + (1.0 - self.ratio) * (found - given)
         # an open point stays open, however little its gap may be closed
         apart = step.answer.pressure == 0.0
@@ -137,6 +137,7 @@ class Semismooth(Multipliers):
         state, trial = step.start.copy(), step.answer.state
         state["multiplier"] = shifted[:, 0]
         deep = (given[:, 0] - found[:, 0]) / (self.factors[0] * self._penalties[0])
+        deep[step.immovable] = 0.0
         slip = deep[:, None] * step.now.normal
         if self.tangential:
             state["stored"] = np.einsum("nid,nd->ni", step.before.tangents, shifted[:, 1:])

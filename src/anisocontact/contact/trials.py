@@ -42,6 +42,7 @@ class Trials:
         self._ways: Mapping[str, Multipliers] = {}
         self._multipliers: Multipliers | None = None
         self._layer: Layer | None = None
+        self._immovable = np.zeros(len(state), dtype=bool)
         self._linear: Linear | None = None
         self._base: Base
         self._slip: Floats
@@ -185,6 +186,15 @@ class Trials:
             self._frames(self.master.here(self.start, dt)),
             self._frames(self.start),
         )
+        self._let_go_of_immovable()
+
+    def _let_go_of_immovable(self) -> None:
+        if self._multipliers is not None:
+            self.start["multiplier"][self._immovable] = 0.0
+
+    def take_immovable(self, points: npt.NDArray[np.bool_]) -> None:
+        """Leave points to their penalty that supports hold along the normal, (n,)."""
+        self._immovable = points
 
     def add_multiplier_residual(self, out: Floats) -> None:
         """Add the condensed residual of the multipliers: what a step takes beyond the trial.
@@ -295,6 +305,7 @@ class Trials:
     def _start_from(self, start: State) -> None:
         """Let trials start from other multipliers, perhaps with other penalties."""
         self.start = start
+        self._let_go_of_immovable()
         self._stiffen()
         self._linear = None
 
@@ -307,6 +318,7 @@ class Trials:
             self._frames(trial.response.state),
             self._frames(self.start),
             self.master.axes(trial.response),
+            self._immovable,
         )
 
     def _frames(self, state: State) -> Frames:

@@ -34,6 +34,10 @@ def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again:
     supports, planes = parts.supports, parts.planes
     before = supports.unknowns
     supports.begin(step, start)
+    fixed = np.zeros(len(start), dtype=bool)
+    fixed[supports.unknowns] = True
+    for contact in parts.contacts:
+        contact.take_supports(fixed.reshape(-1, 3))
     gone = np.setdiff1d(before, supports.unknowns)
     released = np.zeros(len(start))
     _, of_supports = planes.forces(reaction)
