@@ -1,12 +1,72 @@
-"""Frictional contact of surfaces that have a direction: anisotropic adhesion and friction."""
+"""Frictional contact of surfaces that have a direction: anisotropic adhesion and friction.
 
-from importlib.metadata import version
+All that scripts use has its name here; what it is made of is imported when it is asked for.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from anisocontact.base import import_hooks
 from anisocontact.base.errors import InputError
 
-__all__ = ["InputError", "__version__"]
+if TYPE_CHECKING:
+    from anisocontact.anisotropy import *  # noqa: F403
+    from anisocontact.bulk import *  # noqa: F403
+    from anisocontact.contact import *  # noqa: F403
+    from anisocontact.interface import *  # noqa: F403
+    from anisocontact.laws import *  # noqa: F403
+    from anisocontact.mesh import *  # noqa: F403
+    from anisocontact.point import *  # noqa: F403
+    from anisocontact.results import *  # noqa: F403
+    from anisocontact.rigid import *  # noqa: F403
+    from anisocontact.solver import *  # type: ignore[assignment]  # noqa: F403
+    from anisocontact.surfaces import *  # noqa: F403
 
-__version__ = version("anisocontact")
+    __version__: str
+
+#: Room -> what scripts use of it. The same names have other meanings nowhere.
+_PUBLIC = {
+    "surfaces": "FacetSurface Geometry Projection SmoothSurface Surface make_surface",
+    "anisotropy": "DirectionField from_callable from_reparametrisation make_directions",
+    "laws": "Adhesion Friction NormalLaw adhesion_domain force_domain slide",
+    "interface": "Augmentation ContactLaw Interface LawInSeries LawKinematics LawResult LawState "
+    "PythonLaw Response State",
+    "point": "DeadLoad DraggingSpring Group History PrescribedPath Push drive",
+    "results": "Results SlavePoints register_quantity",
+    "rigid": "MovingSurface Pose RigidBody",
+    "mesh": "Axisymmetric Body MeshFile Model Placement PlaneStrain PlaneStress Rotation WholeMesh "
+    "build_mesh make_selector make_shape register_reader register_selector whole_reader",
+    "bulk": "Hill LinearElastic MooneyRivlin NeoHookean NeoHookeanIncompressible Ogden Orthotropic "
+    "Plastic PointLaw StVenantKirchhoff TransverselyIsotropic UserEnergy UserStress Viscoelastic "
+    "Yeoh cauchy_stress deformation_gradient make_material register_material small_strain",
+    "contact": "Contact facet_directions facet_size",
+    "solver": "Accepted Amplitude ContactProblem ElasticSupport Limits Newton Path Problem Solver "
+    "Spring Step Strategy Turn make_amplitude make_path register_amplitude register_path "
+    "register_strategy",
+}
+_ROOM_OF = {name: room for room, names in _PUBLIC.items() for name in names.split()}
+
+__all__ = ["InputError", "__version__", *_ROOM_OF]  # noqa: PLE0604 (strings, of the table)
+
+
+def __getattr__(name: str) -> Any:
+    """A name of the table, or the version."""
+    if name == "__version__":
+        from importlib.metadata import version
+
+        found: Any = version("anisocontact")
+    elif name in _ROOM_OF:
+        found = getattr(import_module(f"anisocontact.{_ROOM_OF[name]}"), name)
+    else:
+        raise AttributeError(f"module 'anisocontact' has no attribute {name!r}")
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
 
 import_hooks.install()

@@ -124,7 +124,8 @@ facet_tags = mesh.meshtags(model.mesh, 2, model.facets("block.bottom"), np.full(
 u, v = fem.Function(V), ufl.TestFunction(V)
 residual = 100.0 * ufl.inner(ufl.sym(ufl.grad(u)), ufl.sym(ufl.grad(v))) * ufl.dx
 top = fem.locate_dofs_topological(V, 2, model.facets("block.top"))
-bcs = [fem.dirichletbc(np.array([0.0, 0.0, -0.01]), top, V)]
+moved = fem.Constant(model.mesh, np.array([0.0, 0.0, -0.01]))
+bcs = [fem.dirichletbc(moved, top, V)]
 """,
     "own-law": BLOCK.replace(
         "build_box({", 'build_box({"base": BoxSpec((0, 0, -1), (1, 1, 1), (2, 2, 1)), '

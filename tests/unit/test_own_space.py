@@ -78,7 +78,7 @@ def test_a_space_that_does_not_fit_is_one_line(given, make, says):
 FACETS = {
     "tags": (lambda g: {"pad.sole": g.tags}, r"pad\.sole: MeshTags of facets .*find\(value\)"),
     "cells": (lambda g: {"pad.sole": g.cells}, "MeshTags of entities of dimension 3 given"),
-    "no names": (lambda g: g.tags, r'facets: MeshTags given, {"body.group": facets} needed'),
+    "no names": (lambda g: g.bottom, r'facets: ndarray given, {"body.group": facets} needed'),
     "no body": (lambda g: {"sole": g.bottom}, """'sole' given, "body.group" needed"""),
     "numbers of points": (lambda g: {"pad.sole": g.bottom / 2}, "axes of float64 given"),
     "a mask": (lambda g: {"pad.sole": g.bottom > 0}, "axes of bool given"),

@@ -87,14 +87,21 @@ class Model:
 
     @classmethod
     def of(
-        cls, space: Any, facets: Mapping[str, Ints], idealisation: Idealisation = SOLID
+        cls,
+        space: Any,
+        facets: Mapping[str, Ints | int] | Any,
+        idealisation: Idealisation = SOLID,
+        *,
+        tags: Any = None,
     ) -> Model:
         """Names on the facets of a user's own displacement space.
 
         Args:
             space: Vector Lagrange space of order 1 or 2, `fem.functionspace(mesh, ("P", 1, (3,)))`.
-            facets: "body.group" -> local boundary facets, as of `MeshTags.find`.
+            facets: "body.group" -> local boundary facets, as of `MeshTags.find`, or the value that
+                they have in `tags`; MeshTags alone make a group "body.<value>" of each value.
             idealisation: As of `Model`.
+            tags: MeshTags of facets.
 
         Returns:
             The names on that space; every cell belongs to the body of the first group.
@@ -104,7 +111,7 @@ class Model:
                 or facets that are none of its mesh.
         """
         order = check_space(space)
-        named = named_facets(facets)
+        named = named_facets(facets, space.mesh.topology.dim - 1, tags)
         body = next(iter(named), "body").partition(".")[0]
         topology = space.mesh.topology
         cells = np.arange(topology.index_map(topology.dim).size_local, dtype=np.int32)

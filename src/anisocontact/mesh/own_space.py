@@ -53,11 +53,14 @@ def check_space(space: Any) -> int:
     return int(element.degree)
 
 
-def named_facets(facets: object) -> dict[str, Ints]:
+def named_facets(facets: Any, dim: int = 2, tags: Any = None) -> dict[str, Ints]:
     """Facet groups by name, each facet once.
 
     Args:
-        facets: "body.group" -> local facets.
+        facets: "body.group" -> local facets, or their value in `tags`; MeshTags alone make a group
+            "body.<value>" of each value.
+        dim: Dimension of facets.
+        tags: MeshTags of facets.
 
     Returns:
         The same as sorted arrays.
@@ -65,13 +68,30 @@ def named_facets(facets: object) -> dict[str, Ints]:
     Raises:
         InputError: No groups by name, a name without a body, or what is no list of facets.
     """
+    if tags is None and _are_tags(facets):
+        everywhere = set().union(*facets.topology.comm.allgather(set(facets.values.tolist())))
+        facets, tags = {f"body.{value}": value for value in sorted(everywhere)}, facets
     if not isinstance(facets, Mapping):
         raise InputError(
             f'{type(facets).__name__} given, {{"body.group": facets}} needed, with facets as of '
             "MeshTags.find",
             "facets",
         )
-    return {_name(name): _numbers(name, given) for name, given in facets.items()}
+    if tags is not None and not (_are_tags(tags) and tags.dim == dim):
+        text = f"{type(tags).__name__} given, MeshTags of facets (dimension {dim}) needed"
+        raise InputError(text, "tags")
+    return {_name(name): _numbers(name, _found(name, g, tags)) for name, g in facets.items()}
+
+
+def _are_tags(given: Any) -> bool:
+    return hasattr(given, "find") and hasattr(given, "dim")
+
+
+def _found(name: str, given: Any, tags: Any) -> Any:
+    """Facets with a value in MeshTags, or what else was given."""
+    if tags is None or not isinstance(given, int | np.integer):
+        return given
+    return tags.find(int(given))
 
 
 def _name(name: object) -> str:
@@ -82,7 +102,7 @@ def _name(name: object) -> str:
 
 
 def _numbers(name: str, given: Any) -> Ints:
-    if hasattr(given, "find") and hasattr(given, "dim"):
+    if _are_tags(given):
         what = "facets" if given.dim == 2 else f"entities of dimension {given.dim}"
         text = f"MeshTags of {what} given, an array of facets needed: facet_tags.find(value)"
         raise InputError(text, name)

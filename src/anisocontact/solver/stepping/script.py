@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, override
 
 import numpy as np
@@ -10,7 +11,10 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, Vec
+from anisocontact.base.limits import Limits
+from anisocontact.base.whole_files import replacing
 from anisocontact.contact import Contact, warn_of
+from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.strategies.newton import Newton, OptionValue
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import Assembly, ForceBalance, TrialState
@@ -23,12 +27,14 @@ from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.form import Dirichlet, FormBulk
 from anisocontact.solver.terms.loose import MeshPart, loose_motions, parts
+from anisocontact.solver.terms.persistent import under
 from anisocontact.solver.terms.rigid import RigidBodies
 
 Floats = npt.NDArray[np.float64]
 
 #: Gap over the facet size up to which a point counts as touching: rounding of a mesh.
 NEAR = 1e-6
+LIMITS = Limits()
 
 
 class ContactProblem(AssembledSystem):
@@ -129,6 +135,96 @@ class ContactProblem(AssembledSystem):
         for body in self._bodies:
             body.commit()
         return result.iterations
+
+    def solve_steps(
+        self,
+        lead: Callable[[float], object],
+        increments: int = 1,
+        *,
+        duration: float = 1.0,
+        limits: Limits = LIMITS,
+        callback: Callable[[float, int], object] | None = None,
+    ) -> int:
+        """Go along a step in increments; one that fails is cut into parts, which grow again.
+
+        Args:
+            lead: Sets conditions, loads and rigid bodies for a share of the step, 0 to 1.
+            increments: How many; the end of each is met exactly.
+            duration: Time the step takes.
+            limits: How far increments may be cut.
+            callback: Is told of each accepted part: the share of the step that is done, and its
+                Newton iterations; what it returns, if true, ends the step.
+
+        Returns:
+            Newton iterations of the accepted parts.
+
+        Raises:
+            RuntimeError: The smallest part failed; `u`, the history and what `lead` sets are as
+                after the last accepted one.
+            InputError: No increments, or as of `solve`.
+
+        Example:
+            See `examples/dolfinx_script/rubber_pad.py`.
+        """
+        if increments < 1:
+            raise InputError(f"{increments!r} given, at least 1 needed", "increments")
+        pace, total = Pace(limits, limits.largest), 0
+        while pace.increment <= increments:
+            before, share = ((pace.increment - 1 + s) / increments for s in (pace.done, pace.end))
+            lead(share)
+            try:
+                iterations = self.solve(duration * (share - before))
+            except RuntimeError:
+                if pace.cut():
+                    continue
+                lead(before)
+                raise
+            pace.advance(iterations)
+            total += iterations
+            if callback is not None and callback(share, iterations):
+                break
+        return total
+
+    def save(self, path: str | Path) -> None:
+        """Write what the next steps depend on: `u` and the history of the contacts.
+
+        Args:
+            path: The file (.npz); each of several processes writes one with its number.
+        """
+        arrays = {"u": self.u.x.array}
+        for i, history in enumerate(self._assembly.terms.histories()):
+            arrays |= {f"{i}/{name}": values for name, values in history.items()}
+        with replacing(self._own_file(path)) as draft, draft.open("wb") as file:
+            np.savez(file, allow_pickle=False, **arrays)
+
+    def restore(self, path: str | Path) -> None:
+        """Go on from what `save` has written, with the same mesh, contacts and processes.
+
+        Args:
+            path: The file.
+
+        Raises:
+            InputError: It cannot be read, or is that of another problem.
+        """
+        file = self._own_file(path)
+        try:
+            with np.load(file) as found:
+                kept = dict(found)
+        except (OSError, ValueError) as problem:
+            raise InputError(f"'{file}' cannot be read: {problem}", "path") from None
+        now = self._assembly.terms.histories()
+        histories = [under(f"{i}/", kept) for i in range(len(now))]
+        shapes = [{name: v.shape for name, v in h.items()} for h in (*now, {"u": self.u.x.array})]
+        given = [*histories, {"u": kept.get("u", np.zeros(0))}]
+        if shapes != [{name: v.shape for name, v in h.items()} for h in given]:
+            raise InputError(f"'{file}' is that of another problem, or of other processes", "path")
+        self.u.x.array[:] = kept["u"]
+        self._assembly.terms.take_histories(iter(histories), self.nodal)
+
+    def _own_file(self, path: str | Path) -> Path:
+        """The file of this process."""
+        path = Path(path)
+        return path.with_suffix(f".{self.comm.rank}{path.suffix}") if self.comm.size > 1 else path
 
     def close(self) -> None:
         """Give back the objects of PETSc."""
