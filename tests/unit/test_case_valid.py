@@ -18,7 +18,8 @@ from anisocontact.surfaces import make_surface
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.case import json_schema, load, objects, validate
-from anisocontact.case.model import Registries, case_type
+from anisocontact.case.model import case_type
+from anisocontact.case.registries import Registries
 
 
 def test_values_and_defaults(case_text):

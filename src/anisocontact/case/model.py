@@ -6,7 +6,6 @@ that a new entry can be written in a case file without a change here.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from functools import cache
 from typing import Annotated, Any
 
@@ -21,46 +20,25 @@ from pydantic import (
     create_model,
 )
 
-from anisocontact.base import registry
-from anisocontact.base.amplitudes import amplitudes
 from anisocontact.base.limits import Limits
-from anisocontact.base.paths import paths
 from anisocontact.base.registry import Entry
-from anisocontact.base.strategies import AUTO, strategies
-from anisocontact.case.amplitudes import PYTHON, amplitude_table, path_table
+from anisocontact.base.strategies import AUTO
+from anisocontact.case.amplitudes import amplitude_table, path_table
 from anisocontact.case.bodies import Mesh, mesh_type
+from anisocontact.case.contact_laws import laws_or_python
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
 from anisocontact.case.output import Output
-from anisocontact.case.python_section import MATERIAL, MaterialTable, PythonSection
+from anisocontact.case.python_section import MATERIAL, MaterialTable
 from anisocontact.case.quantity import line, shown
 from anisocontact.case.quantity import number as _number
 from anisocontact.case.quantity import word as _word
-from anisocontact.case.registered import Key, OneOf, Registered, default_of
+from anisocontact.case.registered import Key, OneOf
+from anisocontact.case.registries import Registries
 from anisocontact.case.rigid import Load, Motion, Rigid
 from anisocontact.case.section import Section, near
 from anisocontact.case.units import Units
-from anisocontact.interface import Interface
 from anisocontact.interface.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.interface.augmentation import NEWTON, SCHEMES, UZAWA, Augmentation
-from anisocontact.laws import SIDES, Adhesion, Friction, NormalLaw
-from anisocontact.results.quantities import CONTACT, FILES, RIGID, quantities
-
-__all__ = [
-    "Case",
-    "ContactSection",
-    "Directed",
-    "Mesh",
-    "Output",
-    "Registries",
-    "Solver",
-    "StepSection",
-    "case_type",
-    "laws",
-]
-
-_DIRECTIONS = "direction field of the axes; needed where the two values of a pair differ"
-_DIRECTIONS_SECOND = "directions of the second surface, for a friction model of two surfaces"
-
 
 PENALTY, AUGMENTED = "penalty", "augmented"
 SINGLE, TWO_HALF, MORTAR = "single", "two-half", "mortar"
@@ -125,13 +103,6 @@ class Solver(Section):
     cuts: Annotated[
         int, _number("integer", "1", "most cuts within an increment", "non-negative")
     ] = Limits.cuts
-
-
-class Directed(Registered):
-    """A law whose axes follow a direction field."""
-
-    directions: Any = None
-    directions_on: str = SIDES[0]
 
 
 class ContactSection(Section):
@@ -255,77 +226,6 @@ class Case(Section):
     solver: Solver = Solver()
 
 
-@dataclass(frozen=True)
-class Registries:
-    """Everything that can be named in a case file."""
-
-    surfaces: tuple[Entry, ...]
-    direction_fields: tuple[Entry, ...]
-    normal_laws: tuple[Entry, ...]
-    adhesion_models: tuple[Entry, ...]
-    friction_models: tuple[Entry, ...]
-    sliding_rules: tuple[Entry, ...]
-    evolution_forms: tuple[Entry, ...]
-    materials: tuple[Entry, ...]
-    shapes: tuple[Entry, ...] = ()
-    group_selectors: tuple[Entry, ...] = ()
-    output_quantities: tuple[Entry, ...] = ()
-    amplitudes: tuple[Entry, ...] = ()
-    paths: tuple[Entry, ...] = ()
-    strategies: tuple[Entry, ...] = ()
-    idealisations: tuple[Entry, ...] = ()
-
-    @classmethod
-    def current(cls) -> Registries:
-        """What is registered now."""
-        materials, shapes, selectors, idealisations = _of_bodies()
-        written = tuple(
-            Entry(q.name, q.at, f"{q.doc} [{q.unit}]; at a {q.at}, {FILES[q.at]}", ())
-            for q in quantities()
-        )
-        return replace(
-            cls.of_points(),
-            materials=materials,
-            shapes=shapes,
-            group_selectors=selectors,
-            output_quantities=written,
-            amplitudes=(*amplitudes(), PYTHON),
-            paths=paths(),
-            strategies=strategies(),
-            idealisations=idealisations,
-        )
-
-    @property
-    def arrays(self) -> list[str]:
-        """Names of the quantities of the files for ParaView."""
-        numbers = (CONTACT, RIGID)
-        return list(dict.fromkeys(q.name for q in self.output_quantities if q.kind not in numbers))
-
-    @classmethod
-    def of_points(cls) -> Registries:
-        """What is registered now, without materials and shapes of bodies."""
-        return cls(
-            registry.surfaces(),
-            registry.direction_fields(),
-            registry.normal_laws(),
-            registry.adhesion_models(),
-            registry.friction_models(),
-            registry.sliding_rules(),
-            registry.evolution_forms(),
-            (),
-        )
-
-
-def _of_bodies() -> tuple[tuple[Entry, ...], ...]:
-    """Materials, shapes, selectors of groups, idealisations; none without finite elements."""
-    try:
-        from anisocontact.bulk import materials
-        from anisocontact.mesh import idealisations, selectors, shapes
-    except ImportError:
-        return (), (), (), ()
-    return (*materials(), MATERIAL), shapes(), selectors(), idealisations()
-
-
 @cache
 def case_type(known: Registries) -> type[Case]:
     """The type of a case file that can name what is in the registries.
@@ -340,7 +240,7 @@ def case_type(known: Registries) -> type[Case]:
     passes: dict[str, Any] = {
         "pass": (Annotated[str, _word(_PASSES, SINGLE, TWO_HALF, MORTAR)], SINGLE)
     }
-    fields = _or_in_python(laws(known), known)
+    fields = laws_or_python(known)
     contact = create_model("Contact", __base__=ContactSection, **passes, **fields)
     surface = OneOf("Surface", Key("shape", known.surfaces))
     own = {MATERIAL.name: MaterialTable}
@@ -414,74 +314,3 @@ def _output(names: list[str]) -> type[Output]:
     return create_model(
         "Output", __base__=Output, __doc__=Output.__doc__, quantities=(list[name], of_base)
     )
-
-
-def _or_in_python(fields: dict[str, Any], known: Registries) -> dict[str, Any]:
-    """Fields of a contact, with a law in Python that may stand in place of those of the core."""
-    friction, about = fields["friction"]
-    python = _directed("Python", PythonSection, known, "direction field of the law's first axis")
-    text = f"{about.description}; needed unless there is a law in Python"
-    return fields | {
-        "friction": (friction, Field(None, description=text)),
-        "python": (python | None, Field(None, description=str(PythonSection.__doc__))),
-    }
-
-
-@cache
-def _field(known: Registries) -> Any:
-    """A table of a direction field."""
-    return Annotated[Any, OneOf("Directions", Key("kind", known.direction_fields))]
-
-
-def _directed(name: str, base: type[Section], known: Registries, about: str) -> Any:
-    """A table with a direction field and the body that carries it."""
-    return create_model(
-        name,
-        __base__=base,
-        directions=(_field(known), Field(None, description=about)),
-        directions_on=_on("master"),
-    )
-
-
-def _on(default: str) -> tuple[Any, str]:
-    """A key for the body that carries a direction field."""
-    return Annotated[str, _word("body that carries these directions", *SIDES)], default
-
-
-def laws(known: Registries) -> dict[str, Any]:
-    """Fields of a contact that come from the registries."""
-    directed = _directed("Directed", Directed, known, _DIRECTIONS)
-    twice_directed = create_model(
-        "TwiceDirected",
-        __base__=directed,
-        directions_second=(_field(known), Field(None, description=_DIRECTIONS_SECOND)),
-        directions_second_on=_on("slave"),
-    )
-    normal = OneOf("Normal", Key("model", known.normal_laws, default_of(NormalLaw, "model")))
-    adhesion = OneOf(
-        "Adhesion",
-        Key("model", known.adhesion_models, default_of(Adhesion, "model")),
-        base=directed,
-    )
-    friction = OneOf(
-        "Friction",
-        Key("model", known.friction_models, default_of(Friction, "model")),
-        Key("sliding_rule", known.sliding_rules, default_of(Friction, "sliding_rule")),
-        base=twice_directed,
-    )
-    return {
-        "normal": (Annotated[Any, normal], Field(normal.validate({}), description="pressure law")),
-        "adhesion": (
-            Annotated[Any, adhesion],
-            Field(adhesion.validate({}), description="tangential law inside the yield ellipse"),
-        ),
-        "friction": (Annotated[Any, friction], Field(description="yield ellipse and sliding rule")),
-        "evolution": (
-            Annotated[str, _word("how the history enters a step", *_names(known.evolution_forms))],
-            default_of(Interface, "evolution"),
-        ),
-    }
-
-
-def _names(entries: tuple[Entry, ...]) -> list[str]:
-    return [entry.name for entry in entries]

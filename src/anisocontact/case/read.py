@@ -13,7 +13,8 @@ from pydantic import ValidationError
 
 from anisocontact.base.errors import InputError
 from anisocontact.case.checks import check
-from anisocontact.case.model import Case, Registries, case_type
+from anisocontact.case.model import Case, case_type
+from anisocontact.case.registries import Registries
 
 __all__ = [
     "CaseError",

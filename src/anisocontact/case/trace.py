@@ -13,10 +13,11 @@ from pydantic import Field, ValidationError, create_model
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Parameter
 from anisocontact.case import objects
-from anisocontact.case.model import Registries, laws
+from anisocontact.case.contact_laws import laws
 from anisocontact.case.quantity import AUTO, Quantity
 from anisocontact.case.read import CaseError, as_input, read_table, without_null
 from anisocontact.case.registered import Key, OneOf, Registered
+from anisocontact.case.registries import Registries
 from anisocontact.case.section import Section
 from anisocontact.case.trace_load import LOADS, GroupSection
 from anisocontact.interface import Interface

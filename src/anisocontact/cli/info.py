@@ -10,8 +10,8 @@ from typing import Any
 
 from anisocontact import __version__
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.case.model import Registries
 from anisocontact.case.quantity import Quantity, key_of
+from anisocontact.case.registries import Registries
 
 __all__ = ["command", "facts"]
 
