@@ -2,14 +2,16 @@
 
 from anisocontact.anisotropy.fields import (
     BY_COORDINATES,
-    PLACEMENTS,
     DirectionField,
-    components,
     from_callable,
     from_reparametrisation,
     make_directions,
-    oblique_principal,
     require_regular,
+)
+from anisocontact.anisotropy.tensors import (
+    PLACEMENTS,
+    components,
+    oblique_principal,
     tensor,
     tensor_derivative,
 )

@@ -6,19 +6,17 @@ from anisocontact.laws.core import (
     Carried,
     Friction,
     NormalLaw,
-    Slide,
     carried,
-    slide,
 )
 from anisocontact.laws.domain import (
     Ellipse,
     Strip,
     adhesion_domain,
     domain_from_tensors,
-    draw_force_plane,
-    draw_tangent_plane,
     force_domain,
 )
+from anisocontact.laws.domain_figures import draw_force_plane, draw_tangent_plane
+from anisocontact.laws.sliding import Slide, slide
 
 __all__ = [
     "SIDES",

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
@@ -18,7 +17,7 @@ from anisocontact.anisotropy import (
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry
-from anisocontact.surfaces import Floats, Surface, default_threads, points
+from anisocontact.surfaces import Floats, Surface, points
 
 Named = tuple[str, dict[str, list[float]]]
 
@@ -319,98 +318,3 @@ def carried(adhesion: Adhesion, friction: Friction) -> tuple[Carried, Carried, C
             friction.directions_second_on,
         ),
     )
-
-
-@dataclass(frozen=True)
-class Slide:
-    """Forces of a batch of n points.
-
-    Args:
-        traction: T_i, (n, 2) [stress].
-        stored: Elastic force the next trial starts from, (n, 2) [stress].
-        slip: Sliding increment, (n, 2) [length]; zero where the point sticks.
-        d_trial: dT_i/dT_tr,j, (n, 2, 2); empty where it was not asked for.
-        d_pressure: dT_i/dN, (n, 2); empty where it was not asked for.
-        slides: Whether the trial force was outside the ellipse, (n,).
-        converged: Whether the rule found its force, (n,).
-    """
-
-    traction: Floats
-    stored: Floats
-    slip: Floats
-    d_trial: Floats
-    d_pressure: Floats
-    slides: npt.NDArray[np.bool_]
-    converged: npt.NDArray[np.bool_]
-
-
-def slide(
-    stiffness: npt.ArrayLike,
-    friction: npt.ArrayLike,
-    trial: npt.ArrayLike,
-    pressure: npt.ArrayLike,
-    sliding_rule: str = "maximum-dissipation",
-    *,
-    metric: npt.ArrayLike | None = None,
-    axes: npt.ArrayLike | None = None,
-    increment: npt.ArrayLike | None = None,
-    tangent: bool = True,
-    threads: int | None = None,
-    **parameters: object,
-) -> Slide:
-    """The sliding rule by itself: trial force to force, with the consistent tangent.
-
-    Components are those of any basis rho_1, rho_2 of the tangent plane; without a metric the basis
-    is orthonormal, without axes its first vector lies along the first friction axis.
-
-    Args:
-        stiffness: S_ij = -b_ij, (n, 2, 2) [stress/length].
-        friction: f^ij of the yield ellipse T.FT = N^2, (n, 2, 2).
-        trial: T_tr,i, (n, 2) [stress].
-        pressure: N > 0, (n,) [stress].
-        sliding_rule: Name in `registry.sliding_rules()`.
-        metric: a_ij, (n, 2, 2); the unit matrix if left out.
-        axes: Components e_a^i of the unit vectors along the two friction axes, row a, (n, 2, 2).
-        increment: Increment of displacement dxi^i that led to the trial force, (n, 2) [length]; if
-            left out, the one that leads there from no force.
-        tangent: Whether the tangent is wanted.
-        threads: Number of threads; all processors if left out.
-        **parameters: Parameters of the rule.
-
-    Returns:
-        Force, slip and tangent of every point.
-
-    Raises:
-        InputError: Unknown rule or parameter, or arrays that do not fit.
-
-    Example:
-        >>> s = slide(np.eye(2)[None], np.eye(2)[None] / 0.09, [[1.0, 0.0]], [1.0])
-        >>> s.traction.round(12).tolist()
-        [[0.3, 0.0]]
-    """
-    rule = registry.entry(registry.sliding_rules(), sliding_rule, "sliding_rule")
-    core = _core.SlidingRule(sliding_rule, registry.values(rule, parameters))
-    n = np.size(pressure)
-    return Slide(
-        **core.slide(
-            _checked(stiffness, "stiffness", (n, 2, 2)),
-            _checked(friction, "friction", (n, 2, 2)),
-            _checked(trial, "trial", (n, 2)),
-            _checked(pressure, "pressure", (n,)),
-            None if metric is None else _checked(metric, "metric", (n, 2, 2)),
-            None if axes is None else _checked(axes, "axes", (n, 2, 2)),
-            None if increment is None else _checked(increment, "increment", (n, 2)),
-            tangent,
-            threads or default_threads(),
-        )
-    )
-
-
-def _checked(given: npt.ArrayLike, name: str, shape: tuple[int, ...]) -> Floats:
-    try:
-        a = np.ascontiguousarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError("an array of numbers is needed", field=name) from None
-    if a.shape != shape:
-        raise InputError(f"an array of shape {a.shape} given, {shape} needed", field=name)
-    return a

@@ -12,32 +12,23 @@ the first attempt goes without, and those with springs follow where it fails.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import NoReturn, override
+from typing import override
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import PETSc
-from anisocontact.contact import Contact, NotHeldError, facet_size
+from anisocontact.contact import Contact, NotHeldError
 from anisocontact.contact.transfer import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.flow import Flow
 from anisocontact.solver.terms.free_body import FreeBody
-from anisocontact.solver.terms.free_modes import (
-    ConnectedBody,
-    Held,
-    HeldFrame,
-    bodies,
-    free_modes,
-    joined,
-    named,
-)
-from anisocontact.solver.terms.holding import NOTHING as NO_STIFFNESS
-from anisocontact.solver.terms.holding import stiffness, unheld, work
+from anisocontact.solver.terms.free_modes import Held, HeldFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
+from anisocontact.solver.terms.unheld_bodies import UnheldBodies
 
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
@@ -52,9 +43,6 @@ WITHOUT_LOADS, LEAST = 1e-6, 1e-11
 NOTHING = 1e-9
 #: Equilibria after which a body counts as one that flies off.
 MOST = 60
-#: Sizes of a body by which the loads may carry it on its springs: beyond, contact is to hold it, or
-#: where there is none the springs count as none.
-FAR, LOST = 2.0, 100.0
 
 
 class Stabilisation(Term):
@@ -93,20 +81,11 @@ class Stabilisation(Term):
         self.careful = False
         self.notes: list[str] = []
         self.flow = Flow(model, scale)
-        self._model = model
         self._contacts = list(contacts)
         self._scale = scale
         self._comm = model.mesh.comm
-        self._attached, self._sprung = attached, set(sprung)
-        self._bodies = bodies(model, coupled)
-        self._joined = joined(model, contacts, coupled)
-        shape = np.shape(model.space.tabulate_dof_coordinates())
-        self._springs, self._joined_springs = (
-            np.zeros((6 * len(group), 6 * len(group)))
-            if attached is None or not attached
-            else stiffness(attached, group, shape, self._comm)
-            for group in (self._bodies, self._joined)
-        )
+        self._attached = attached
+        self._unheld = UnheldBodies(model, contacts, scale, attached, sprung, coupled)
         self._free: list[FreeBody] = []
         self._loose: list[FreeBody] = []
         self._where: Flags | None = None
@@ -173,34 +152,8 @@ class Stabilisation(Term):
         """
         self.clear()
         self._held, self._frames = list(held), list(frames)
-        free = [free_modes(body, held, self._comm, frames) for body in self._joined]
-        for far in (np.inf, LOST):
-            loose = self._unheld(self._joined, free, self._joined_springs, load, far)
-            for body, modes in zip(self._joined, loose, strict=True):
-                if len(modes):
-                    self._refuse(body, named(modes), step, weak=far == LOST)
-        free = [free_modes(body, held, self._comm, frames) for body in self._bodies]
-        loose = self._unheld(self._bodies, free, self._springs, load, FAR)
-        for i, (body, modes) in enumerate(zip(self._bodies, loose, strict=True)):
-            if len(modes) and self._of(body):
-                own = self._springs[6 * i : 6 * i + 6, 6 * i : 6 * i + 6]
-                self._add(body, modes, free[i], own, step, now)
-
-    def _unheld(
-        self,
-        group: list[ConnectedBody],
-        free: list[Floats],
-        springs: Floats,
-        load: Floats | None,
-        far: float,
-    ) -> list[Floats]:
-        """Motions of bodies that neither supports nor springs hold, see `unheld`."""
-        if not springs.any():
-            return free
-        force = np.zeros(len(springs))
-        if load is not None:
-            force = self._comm.allreduce(work(group, load))
-        return unheld(group, free, springs, force, NO_STIFFNESS * self._scale, far)
+        for free in self._unheld.found(held, step, load, frames):
+            self._add(free, step, now)
 
     def told(self) -> list[str]:
         """`notes`, each of them once."""
@@ -393,54 +346,13 @@ class Stabilisation(Term):
         energy, released, careful = kept["stabilisation"].tolist()
         self.energy, self.released, self.careful = energy, released, bool(careful)
 
-    def _add(
-        self,
-        body: ConnectedBody,
-        left: Floats,
-        motions: Floats,
-        springs: Floats,
-        step: str,
-        now: bool,
-    ) -> None:
-        contacts, modes = self._of(body), named(left)
-        field = f"step {step!r}"
-        text = f"body {body.name!r} is free to move: {modes}"
-        size = min(facet_size(self._model, c.slave) for c in contacts)
-        led = any([len(frame.rows(body, self._comm)) > 0 for frame in self._frames])
-        weighed = led or bool(self._sprung & set(body.parts))
-        sprung = motions @ springs @ motions.T if weighed else None
-        least = NO_STIFFNESS * self._scale
-        free = FreeBody(body, modes, contacts, size, motions, left, sprung, least)
+    def _add(self, free: FreeBody, step: str, now: bool) -> None:
+        text = f"body {free.body.name!r} is free to move: {free.modes}"
         self._loose.append(free)
         if not self.enabled:
             if now and not free.touched():
-                raise InputError(f"{text}; nothing touches it and stabilisation is off", field)
+                text += "; nothing touches it and stabilisation is off"
+                raise InputError(text, f"step {step!r}")
             return
         self._free.append(free)
         self.notes.append(f"{text}; stabilised until contact holds it")
-
-    def _refuse(self, body: ConnectedBody, modes: str, step: str, weak: bool) -> NoReturn:
-        several = len(body.parts) > 1
-        if not self._of(body):
-            why = "it is in no contact"
-        elif several:
-            why = "its parts touch nothing but each other"
-        else:
-            why = "it touches nothing but itself"
-        if weak:
-            why += (
-                f", and its springs give way to the loads by more than {LOST:g} times its size: it"
-            )
-        elif self._sprung & set(body.parts):
-            why += ", and its springs do not hold that: it"
-        else:
-            why += ", it" if several else " and"
-        text = f"body {body.name!r} is free to move: {modes}; {why} needs a support"
-        raise InputError(text, f"step {step!r}")
-
-    def _of(self, body: ConnectedBody) -> list[Contact]:
-        """Contacts of a body."""
-        return [c for c in self._contacts if set(body.parts) & self._sides(c)]
-
-    def _sides(self, contact: Contact) -> set[str]:
-        return {self._model.body_of(group) for group in contact.groups}
