@@ -241,6 +241,26 @@ def corrugated(folder: Path) -> Path:
     return scene.save("corrugated", (-0.5, -1.0, 1.0), zoom=1.0)
 
 
+def tribometer(folder: Path) -> Path:
+    """The pin on its track, the brush lines, and the friction on the pin round the turn."""
+    scene = Scene(folder)
+    disc = pv.Disc(center=(-10, 0, -0.05), inner=0.0, outer=15, normal=(0, 0, 1), c_res=120)
+    scene.rigid(disc, color="#eef0f2")
+    for y in np.arange(-14.0, 14.5, 1.0):
+        half = np.sqrt(225.0 - y * y)
+        scene.lines([np.array([[-10 - half, y, 0], [-10 + half, y, 0]])], "#a3aab5", 1.0)
+    history = scene.history
+    place = np.column_stack([history[f"rigid.head.translation.{axis}"] for axis in "xy"])
+    force = np.column_stack([history[f"contacts.0.force.{axis}"] for axis in "xy"])
+    turn = slice(len(place) - 64, None, 4)
+    scene.lines([np.column_stack([place[2:], 0 * place[2:, 0] + 0.02])], INK, 3)
+    for at, pull in zip(place[turn], force[turn], strict=True):
+        scene.arrow((*at, 0.3), (*(0.4 * pull), 0.0))
+    scene.body("pin", color=TEAL)
+    scene.label((-16, 0, 0), "friction on the pin", ACCENT)
+    return scene.save("tribometer", (-0.3, -1.0, 1.1), zoom=1.15)
+
+
 PICTURES: dict[str, Callable[[Path], Path]] = {
     "ironing": ironing,
     "belt": belt,
@@ -248,6 +268,7 @@ PICTURES: dict[str, Callable[[Path], Path]] = {
     "polar_plate": polar_plate,
     "ball_on_sheet": ball_on_sheet,
     "corrugated": corrugated,
+    "tribometer": tribometer,
 }
 
 
