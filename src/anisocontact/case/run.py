@@ -175,21 +175,40 @@ def _writer(built: Built, folder: str | Path, text: str, checkpoint: Stored | No
     )
 
 
+@dataclass(frozen=True)
+class _Told:
+    """Tells log and listener what a run does.
+
+    Attributes:
+        writer: Writer of the results.
+        asked: Who listens.
+    """
+
+    writer: Writer
+    asked: _Asked
+
+    def iteration(self, progress: Progress) -> None:
+        self.writer.log(_iteration_line(progress))
+        self.asked.listener.iteration(progress)
+        self.asked.tell()
+
+    def cut(self, cut: Cut) -> None:
+        self.writer.cut(cut)
+        self.asked.listener.cut(cut)
+
+    def warning(self, text: str) -> None:
+        self.writer.log(f"warning: {text}")
+        self.asked.listener.warning(text)
+
+    def accepted(self, accepted: Accepted) -> None:
+        self.asked.listener.accepted(accepted, self.writer.summary)
+        self.writer.log(accepted_line(accepted, self.writer.summary))
+        for said in ran_off_lines(accepted):
+            self.writer.log(said)
+
+
 def _solve(built: Built, writer: Writer, asked: _Asked, facts: dict[str, Any]) -> tuple[str, str]:
-    listener = asked.listener
-
-    def on_iteration(progress: Progress) -> None:
-        writer.log(_iteration_line(progress))
-        listener.iteration(progress)
-        asked.tell()
-
-    def on_cut(cut: Cut) -> None:
-        writer.cut(cut)
-        listener.cut(cut)
-
-    def on_warning(text: str) -> None:
-        writer.log(f"warning: {text}")
-        listener.warning(text)
+    told = _Told(writer, asked)
 
     def keep() -> None:
         place = built.solver.place
@@ -201,13 +220,10 @@ def _solve(built: Built, writer: Writer, asked: _Asked, facts: dict[str, Any]) -
         keep()
         if comm.allreduce(bool(asked.why())):
             return "stopped", asked.why()
-        for accepted in built.solver.run(on_iteration, on_cut, writer.log, on_warning):
+        for accepted in built.solver.run(told.iteration, told.cut, writer.log, told.warning):
             writer.accept(accepted)
             keep()
-            listener.accepted(accepted, writer.summary)
-            writer.log(accepted_line(accepted, writer.summary))
-            for said in ran_off_lines(accepted):
-                writer.log(said)
+            told.accepted(accepted)
             if comm.allreduce(bool(asked.why())):
                 where = f"step {accepted.step!r}, increment {accepted.increment}"
                 return "stopped", f"{asked.why() or 'interrupted'} after {where}"

@@ -29,6 +29,9 @@ because something does not converge or the machine lacks something; what converg
 """
 
 
+type Commands = argparse._SubParsersAction[argparse.ArgumentParser]
+
+
 def build_parser() -> argparse.ArgumentParser:
     """The parser of the command; the reference page is made from it."""
     parser = argparse.ArgumentParser(
@@ -41,6 +44,13 @@ def build_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"anisocontact {__version__}")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND", required=True)
 
+    for add in (_add_cases, _add_points, _add_lists):
+        add(commands)
+    return parser
+
+
+def _add_cases(commands: Commands) -> None:
+    """What is done with cases, their meshes and their results."""
     run = _command(commands, "run", "solve a case and write its results")
     _case_argument(run)
     _output_arguments(run).add_argument(
@@ -71,6 +81,9 @@ def build_parser() -> argparse.ArgumentParser:
     report = _command(commands, "report", "draw the pictures and the report of a results folder")
     report.add_argument("folder", metavar="DIR", help="results folder of `run`")
 
+
+def _add_points(commands: Commands) -> None:
+    """What is done with points alone."""
     trace = _command(commands, "trace", "move a point over a surface and write what it meets")
     _case_argument(trace)
     _output_arguments(trace)
@@ -83,6 +96,9 @@ def build_parser() -> argparse.ArgumentParser:
     )
     replay.add_argument("file", metavar="FILE.json", help="failed_point.json of a results folder")
 
+
+def _add_lists(commands: Commands) -> None:
+    """What says what there is."""
     schema = _command(commands, "schema", "print the JSON Schema of the case file")
     schema.add_argument("--trace", action="store_true", help="of the case file of `trace`")
 
@@ -90,7 +106,6 @@ def build_parser() -> argparse.ArgumentParser:
         commands, "info", "print versions and the surfaces, laws, rules and materials there are"
     )
     info.add_argument("--json", action="store_true", help="print it as JSON")
-    return parser
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -168,9 +183,7 @@ def _told(error: BaseException) -> int:
     return INTERNAL
 
 
-def _command(
-    commands: argparse._SubParsersAction[argparse.ArgumentParser], name: str, text: str
-) -> argparse.ArgumentParser:
+def _command(commands: Commands, name: str, text: str) -> argparse.ArgumentParser:
     description = f"{text[0].upper()}{text[1:]}."
     made = commands.add_parser(name, help=text, description=description, allow_abbrev=False)
     made.add_argument(
