@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from anisocontact.results.dataset import DataSet, polygons, read_points, vertices
+from anisocontact.results.dataset import DataSet, polygons, read_data_set, vertices
 
 
 def read(path, content):
@@ -24,7 +24,7 @@ def test_points_come_back_to_the_last_bit(tmp_path):
     assert found.n_cells == 3001
     assert np.array_equal(found.point_data["status"], status)
     assert found.point_data["status"].dtype == np.int32
-    again = read_points(tmp_path / "cloud.vtp")
+    again = read_data_set(tmp_path / "cloud.vtp")
     assert np.array_equal(again.points, points)
     assert np.array_equal(again.point_data["status"], status)
     assert again.point_data["status"].dtype == np.int32
@@ -42,7 +42,7 @@ def test_polygons(tmp_path):
 def test_no_points_at_all(tmp_path):
     empty = DataSet("PolyData", np.zeros((0, 3)), vertices(0), {"gap": np.zeros(0)})
     assert read(tmp_path / "none.vtp", empty.encoded()).n_points == 0
-    assert len(read_points(tmp_path / "none.vtp").points) == 0
+    assert len(read_data_set(tmp_path / "none.vtp").points) == 0
 
 
 def test_more_than_one_block(tmp_path):
@@ -50,7 +50,7 @@ def test_more_than_one_block(tmp_path):
     points = np.random.default_rng(4).normal(size=(100_000, 3))
     cloud = DataSet("PolyData", points, vertices(len(points)), {})
     assert np.array_equal(read(tmp_path / "cloud.vtp", cloud.encoded()).points, points)
-    assert np.array_equal(read_points(tmp_path / "cloud.vtp").points, points)
+    assert np.array_equal(read_data_set(tmp_path / "cloud.vtp").points, points)
 
 
 def test_pieces_are_joined(tmp_path):
@@ -63,4 +63,7 @@ def test_pieces_are_joined(tmp_path):
     found = read(tmp_path / "all.pvtu", piece.summary(["0.vtu", "1.vtu"]))
     assert found.points[:, 0].tolist() == [0, 0, 1, 1]
     assert found.point_data["gap"].tolist() == [0, 0, 1, 1]
-    assert read_points(tmp_path / "all.pvtu").points[:, 0].tolist() == [0, 0, 1, 1]
+    again = read_data_set(tmp_path / "all.pvtu")
+    assert again.points[:, 0].tolist() == [0, 0, 1, 1]
+    assert again.cells["Cells"]["connectivity"].tolist() == [0, 1, 2, 3]
+    assert again.cells["Cells"]["offsets"].tolist() == [0, 1, 2, 3, 4]

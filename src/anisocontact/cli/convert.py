@@ -5,13 +5,23 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from anisocontact.base.errors import InputError
 from anisocontact.cli.output import say
 
 __all__ = ["command"]
 
 
 def command(arguments: argparse.Namespace) -> int:
-    """Read a mesh, or the mesh of a case, and write it in another format."""
+    """Read a mesh, that of a case, or a results folder, and write it in another format."""
+    if Path(arguments.source).is_dir():
+        from anisocontact.results import Results
+        from anisocontact.results.vtkhdf import write_vtkhdf
+
+        if Path(arguments.target).suffix != ".vtkhdf":
+            raise InputError(f"'{arguments.target}' given; results are written as .vtkhdf")
+        write_vtkhdf(Results(arguments.source), arguments.target)
+        say(f"written   {arguments.target}")
+        return 0
     from anisocontact.case.build import mesh_of
     from anisocontact.mesh.described import described
     from anisocontact.mesh.write import write_mesh

@@ -75,8 +75,14 @@ def _add_cases(commands: Commands) -> None:
     convert = _command(
         commands, "convert", "write a mesh in another format, with its bodies and facet groups"
     )
-    convert.add_argument("source", metavar="IN", help="a mesh file, or a case file for its mesh")
-    convert.add_argument("target", metavar="OUT", help="file to write: .msh of gmsh, .vtu or .vtk")
+    convert.add_argument(
+        "source", metavar="IN", help="a mesh file, a case file for its mesh, or a results folder"
+    )
+    convert.add_argument(
+        "target",
+        metavar="OUT",
+        help="file to write: .msh of gmsh, .vtu or .vtk; .vtkhdf of a results folder",
+    )
 
     report = _command(commands, "report", "draw the pictures and the report of a results folder")
     report.add_argument("folder", metavar="DIR", help="results folder of `run`")

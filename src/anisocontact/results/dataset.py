@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64decode, b64encode
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from itertools import pairwise
@@ -15,7 +15,7 @@ from zlib import compress, decompress
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["DataSet", "polygons", "read_points", "vertices"]
+__all__ = ["DataSet", "polygons", "read_data_set", "vertices"]
 
 type Arrays = Mapping[str, npt.NDArray[Any]]
 
@@ -94,28 +94,57 @@ class DataSet:
         return "\n".join([*rows, f"  </{kind}>", "</VTKFile>", ""]).encode()
 
 
-def read_points(path: Path) -> DataSet:
-    """Points and what is known at them, of a file of this kind or of one that names pieces.
+def read_data_set(path: Path) -> DataSet:
+    """Points, cells of a grid, and what is known of them, also of a file that names pieces.
 
     Args:
         path: What `DataSet` has written.
 
     Returns:
-        The data set without its cells.
+        The data set; without cells if it is no grid.
 
     Raises:
         ValueError, OSError: The file is damaged, or there is none.
     """
     tree = ElementTree.parse(path).getroot()
-    kind, sources = tree.attrib["type"], [one.get("Source") for one in tree.iter("Piece")]
-    if kind.startswith("P") and kind != "PolyData":
-        parts = [read_points(path.parent / source) for source in sources if source]
-        names = parts[0].point_data if parts else ()
-        joined = {name: np.concatenate([p.point_data[name] for p in parts]) for name in names}
-        return DataSet(kind[1:], np.concatenate([p.points for p in parts]), {}, joined)
-    data = {str(a.get("Name")): _read(a) for a in tree.iterfind(f"{kind}/Piece/PointData/*")}
-    (points,) = (_read(a) for a in tree.iterfind(f"{kind}/Piece/Points/DataArray"))
-    return DataSet(kind, points, {}, data)
+    kind = tree.attrib["type"]
+    if kind.startswith(("PP", "PU")):
+        sources = (one.get("Source") for one in tree.iter("Piece"))
+        return _put_together([read_data_set(path.parent / name) for name in sources if name])
+
+    def arrays(part: str) -> dict[str, npt.NDArray[Any]]:
+        return {str(a.get("Name")): _read(a) for a in tree.iterfind(f"{kind}/Piece/{part}/*")}
+
+    cells = arrays("Cells")
+    if cells:
+        cells["offsets"] = np.append(0, cells["offsets"]).astype(cells["offsets"].dtype)
+    (points,) = arrays("Points").values()
+    named: dict[str, Arrays] = {"Cells": cells} if cells else {}
+    return DataSet(kind, points, named, arrays("PointData"), arrays("CellData"))
+
+
+def _put_together(parts: Sequence[DataSet]) -> DataSet:
+    """Pieces as one data set."""
+    first = np.cumsum([0] + [len(p.points) for p in parts])
+    cells: dict[str, Arrays] = {}
+    if "Cells" in parts[0].cells:
+        own = [p.cells["Cells"] for p in parts]
+        ends = np.cumsum([0] + [len(c["connectivity"]) for c in own])
+        cells["Cells"] = {
+            "connectivity": np.concatenate(
+                [c["connectivity"] + n for c, n in zip(own, first, strict=False)]
+            ),
+            "offsets": np.concatenate(
+                [[0], *(c["offsets"][1:] + n for c, n in zip(own, ends, strict=False))]
+            ),
+            "types": np.concatenate([c["types"] for c in own]),
+        }
+    at_points, at_cells = (
+        {n: np.concatenate([getattr(p, what)[n] for p in parts]) for n in getattr(parts[0], what)}
+        for what in ("point_data", "cell_data")
+    )
+    points = np.concatenate([p.points for p in parts])
+    return DataSet(parts[0].kind, points, cells, at_points, at_cells)
 
 
 def vertices(count: int) -> dict[str, Arrays]:

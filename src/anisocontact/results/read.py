@@ -7,6 +7,7 @@ import json
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
@@ -15,13 +16,37 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.results.dataset import DataSet, read_points
+from anisocontact.results.dataset import DataSet, read_data_set
 from anisocontact.results.history import read_history
 
 if TYPE_CHECKING:
     import pyvista
 
 __all__ = ["Results"]
+
+
+#: Number of components -> their dimension, and what they are called.
+_DIMENSIONS = {2: "axis_of_friction", 3: "axis", 6: "component"}
+_COMPONENTS = {"axis": list("xyz"), "component": ["XX", "YY", "ZZ", "XY", "YZ", "XZ"]}
+
+
+def needed(package: str) -> Any:
+    """A package that only few need.
+
+    Raises:
+        InputError: It is not installed.
+    """
+    try:
+        return import_module(package)
+    except ImportError:
+        raise InputError(f"needs {package}: pip install {package}") from None
+
+
+def _over_time(states: list[npt.NDArray[Any]], of: str) -> tuple[tuple[str, ...], Any]:
+    """An array with its dimensions, time first."""
+    values = np.stack(states)
+    inner = [_DIMENSIONS.get(n, f"component_of_{n}") for n in values.shape[2:]]
+    return ("time", of, *inner), values
 
 
 class Results:
@@ -100,9 +125,61 @@ class Results:
         Returns:
             Points, where they are at that time, and what is known at them.
         """
-        path = self._file("contact.pvd", index)
+        return self._data_set("contact.pvd", index)
+
+    def grid(self, index: int = -1) -> DataSet:
+        """What `fields` gives, as arrays without pyvista.
+
+        Args:
+            index: Which of `times`, the last one if not given.
+        """
+        return self._data_set("fields.pvd", index)
+
+    def frame(self, table: str = "history") -> Any:
+        """A table of the folder for pandas.
+
+        Args:
+            table: "history", or "probes/<name>".
+
+        Returns:
+            A `pandas.DataFrame`.
+
+        Raises:
+            InputError: pandas is not installed, or there is no such table.
+        """
+        pandas = needed("pandas")
+        path = self.folder / f"{table}.csv"
         with _whole(path):
-            return read_points(path)
+            return pandas.DataFrame(read_history(path))
+
+    def arrays(self, kind: str = "fields") -> Any:
+        """All states that were written for xarray.
+
+        Args:
+            kind: "fields", "contact" or "surfaces".
+
+        Returns:
+            An `xarray.Dataset` with the dimensions `time`, `point` or `cell`, and the components.
+
+        Raises:
+            InputError: xarray is not installed, or nothing was written.
+        """
+        xarray = needed("xarray")
+        listed = self._listed(f"{kind}.pvd")
+        if not listed:
+            raise InputError(f"{kind!r} given, of which nothing was written", "kind")
+        states = [self._data_set(f"{kind}.pvd", i) for i in range(len(listed))]
+        first, found = states[0], {"position": _over_time([s.points for s in states], "point")}
+        for name in first.point_data:
+            found[name] = _over_time([s.point_data[name] for s in states], "point")
+        for name in first.cell_data:
+            found[name] = _over_time([s.cell_data[name] for s in states], "cell")
+        return xarray.Dataset(found, {"time": [time for time, _ in listed]} | _COMPONENTS)
+
+    def _data_set(self, name: str, index: int) -> DataSet:
+        path = self._file(name, index)
+        with _whole(path):
+            return read_data_set(path)
 
     def surfaces(self, index: int = -1) -> pyvista.PolyData:
         """Patches of the analytic masters.
