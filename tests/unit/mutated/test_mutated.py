@@ -15,8 +15,8 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 #: Seeds of the slow tests and what each makes: 600 cases, 300 meshes and 100 texts in all.
 SEEDS = range(1, 21)
 EACH = {"case": 30, "mesh": 15, "text": 5}
-#: What the fast tests make of seed 0.
-FEW = {"case": 24, "mesh": 12, "text": 8}
+#: What the fast tests make of seed 0, and the tests that share it.
+FEW, PARTS = {"case": 24, "mesh": 12, "text": 8}, 4
 
 
 @pytest.fixture(params=EACH)
@@ -30,8 +30,9 @@ def test_the_whole_ones_are_done(mutated):
         assert mutated.run(mutated.whole_case(name)) == 0, name
 
 
-def test_a_few(mutated, kind):
-    for number in range(FEW[kind]):
+@pytest.mark.parametrize("part", range(PARTS))
+def test_a_few(mutated, kind, part):
+    for number in range(part, FEW[kind], PARTS):
         mutated.check(kind, 0, number)
 
 
