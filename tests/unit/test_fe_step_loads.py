@@ -25,6 +25,7 @@ cells = [1, 1, 2]
 model = "linear-elastic"
 E = 10000
 nu = 0
+density = 0.5
 
 [[step]]
 name = "load"
@@ -118,6 +119,12 @@ def loaded(tmp_path, line):
         ('pressure = { "bar.left" = 3 }', [-6, 0, 0]),
         ("body_force = { bar = { x = 1, z = -2 } }", [-2, 0, 4]),
         ("body_force = { bar = { z = -10, density = 0.5 } }", [0, 0, 10]),
+        ("gravity = { x = 2, z = -10 }", [-2, 0, 10]),
+        (
+            'gravity = { z = { amplitude = "on", value = -5 } }\n'
+            '[amplitude.on]\nkind = "ramp"\nend = 0.5',
+            [0, 0, 5],
+        ),
     ],
 )
 def test_loads_of_a_case(tmp_path, line, reaction):
@@ -152,6 +159,11 @@ def test_rotation_of_a_case(tmp_path):
             "step[0].body_force.bar.density: -2 given, must be > 0",
         ),
         ('pressure = { "bra.top" = 1 }', 'step[0].pressure: "bra.top" given, no such body'),
+        ("gravity = {}", "step[0].gravity: nothing given, at least one of x, y, z needed"),
+        (
+            "gravity = { z = 1 }\nbody_force = { bar = { z = 1 } }",
+            "step[0].body_force.bar: given with gravity, which acts on the body",
+        ),
         ('pressure = { "bar.tpo" = 1 }', "step[0].pressure: no facet group 'bar.tpo'"),
         ('pressure = { "bar.top" = "x" }', "'x' given, a number needed"),
         ('force = { "bar.top" = 3 }', "a table needed"),
@@ -173,3 +185,16 @@ def test_wrong_load_of_a_case(tmp_path, capsys, line, says):
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1
     assert says in lines[0]
+
+
+def test_gravity_wants_a_density(tmp_path, capsys):
+    """Requirement: a body of unknown weight is no body without weight."""
+    path = tmp_path / "case.toml"
+    heavy = CASE.replace("LINE", "gravity = { z = -10 }")
+    path.write_text(heavy.replace("density = 0.5\n", ""))
+    assert main(["check", str(path)]) == 2
+    line = "error: material.bar.density: missing; gravity acts on the body in step[0], 0 if it has"
+    assert capsys.readouterr().err.startswith(line)
+    path.write_text(heavy.replace("density = 0.5", "density = -0.5"))
+    assert main(["check", str(path)]) == 2
+    assert "material.bar.density: -0.5 given, must be >= 0" in capsys.readouterr().err

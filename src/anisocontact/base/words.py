@@ -72,8 +72,8 @@ _STEPS = (
 )
 #: Word -> where what it stands for is said here, where it is no key of the same table.
 _ELSEWHERE = {
-    "gravity": "a step has it: body_force = { <body> = { z = -9.81, density = ... } }",
-    "density": "body_force of a step takes it; inertia is left out",
+    "gravity": "a step has it: gravity = { z = -9.81 }, with density in the table of each material",
+    "density": "the table of the material has it, for gravity; inertia is left out",
     "mu": "friction = { coefficients = ... } of a contact",
     "displacement": 'a step has it: displacement = { "body.group" = { x = ... } }',
     "force": 'a step has it: force = { "body.group" = { x = ... } } on the group, or traction',

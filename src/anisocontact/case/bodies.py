@@ -12,7 +12,7 @@ from anisocontact.case.quantity import number, word
 from anisocontact.case.registered import Registered, table_of
 from anisocontact.case.section import Section
 
-__all__ = ["Mesh", "MeshFile", "Placed", "Point", "Rotate", "Shaped", "mesh_type"]
+__all__ = ["Mesh", "MeshFile", "Placed", "Point", "Rotate", "Shaped", "Weighed", "mesh_type"]
 
 Point = tuple[float, float, float]
 
@@ -23,6 +23,14 @@ class Rotate(Section):
     axis: Annotated[Point, number("vector", "1", "direction of the axis", "nonzero")]
     angle_deg: Annotated[float, number("scalar", "angle", "angle")]
     point: Annotated[Point, number("vector", "length", "point on the axis")] = (0.0, 0.0, 0.0)
+
+
+class Weighed(Registered):
+    """A material with what gravity needs of it."""
+
+    density: Annotated[
+        float | None, number("scalar", "mass/length^3", "density, for gravity", "non-negative")
+    ] = None
 
 
 class Placed(Registered):

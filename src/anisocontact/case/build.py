@@ -14,6 +14,7 @@ from anisocontact.base.errors import InputError, ModelWarning
 from anisocontact.base.fenicsx import MPI, PETSc
 from anisocontact.base.limits import Limits
 from anisocontact.case import objects
+from anisocontact.case.amplitudes import times
 from anisocontact.case.contacts import contact
 from anisocontact.case.courses import Schedule
 from anisocontact.case.law_file import law_of
@@ -54,6 +55,7 @@ class Built:
         young = {name: material.young for name, material in self.problem.materials.items()}
         forces = [force for step in case.step for force in step.body_force.values()]
         densities = [force.density for force in forces if force.density != 1.0]
+        densities += [table.density for table in case.material.values() if table.density]
         x = model.mesh.geometry.x
         low, high = x.min(axis=0, initial=np.inf), x.max(axis=0, initial=-np.inf)
         low = np.min(self.problem.comm.allgather(low), axis=0)
@@ -262,12 +264,25 @@ def _steps(case: Case, model: Model, schedule: Schedule) -> list[Step]:
         for what, group in section.groups():
             model.facets(group, f"{place}.{what}")
         with objects.within(place):
-            steps.append(_step(section, schedule, begun))
+            steps.append(_step(section, schedule, begun, _weights(case, section)))
         begun += section.duration
     return steps
 
 
-def _step(section: StepSection, schedule: Schedule, begun: float) -> Step:
+def _weights(case: Case, section: StepSection) -> dict[str, dict[str, Any]]:
+    """Forces per volume of gravity, by body; bodies without weight have none."""
+    given = {} if section.gravity is None else section.gravity.given()
+    heavy = {name: table.density for name, table in case.material.items() if table.density}
+    return {
+        name: {axis: times(value, density) for axis, value in given.items()}
+        for name, density in heavy.items()
+        if given
+    }
+
+
+def _step(
+    section: StepSection, schedule: Schedule, begun: float, weights: Mapping[str, Any]
+) -> Step:
     def led(kind: str) -> dict[str, dict[str, Any]]:
         return {
             name: schedule.values(given.given(), getattr(given, "path", None), begun)
@@ -281,12 +296,14 @@ def _step(section: StepSection, schedule: Schedule, begun: float) -> Step:
             given["amplitude"] = schedule.amplitude(table.amplitude, begun)
         with objects.within(f"rotation.{name}"):
             turns[name] = Turn(**given)
-    kinds = ("displacement", "motion", "load", "traction", "force", "body_force", "anchor")
+    kinds = ("displacement", "motion", "load", "traction", "force", "anchor")
+    weights = {name: schedule.values(given, None, begun) for name, given in weights.items()}
     return Step(
         section.name,
         section.increments,
         duration=section.duration,
         pressure={group: schedule.value(v, begun) for group, v in section.pressure.items()},
         rotation=turns,
+        body_force=led("body_force") | weights,
         **{kind: led(kind) for kind in kinds},
     )

@@ -17,6 +17,7 @@ from anisocontact.case.model import (
     TWO_HALF,
     Case,
     ContactSection,
+    StepSection,
 )
 from anisocontact.case.output import check_output
 from anisocontact.case.python_section import MaterialTable
@@ -285,10 +286,23 @@ def _steps(case: Case) -> Iterator[InputError]:
             if name not in grounded:
                 text = f'"{name}" given, no such spring to ground; {near(name, grounded)}'
                 yield InputError(text, field=f"step[{i}].anchor")
+        yield from _gravity(case, step, f"step[{i}]")
         for body in step.body_force:
             if body not in (bodies := _bodies(case)):
                 text = f'"{body}" given, no such body; {near(body, bodies)}'
                 yield InputError(text, field=f"step[{i}].body_force")
+
+
+def _gravity(case: Case, step: StepSection, place: str) -> Iterator[InputError]:
+    if step.gravity is None:
+        return
+    for name, section in case.material.items():
+        if section.density is None:
+            text = f"missing; gravity acts on the body in {place}, 0 if it has no weight"
+            yield InputError(text, f"material.{name}.density")
+        if name in step.body_force:
+            text = "given with gravity, which acts on the body; one of the two is allowed"
+            yield InputError(text, f"{place}.body_force.{name}")
 
 
 def _tried(make: Callable[..., Any], *arguments: Any) -> tuple[Any, tuple[InputError, ...]]:

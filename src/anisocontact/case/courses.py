@@ -137,6 +137,7 @@ def _values(step: StepSection) -> Iterator[tuple[str, Any]]:
     for kind in ("displacement", "motion", "load", "anchor", "traction", "force", "body_force"):
         for name, given in getattr(step, kind).items():
             yield from ((f"{kind}.{_key(name)}.{key}", value) for key, value in given)
+    yield from ((f"gravity.{axis}", value) for axis, value in step.gravity or ())
     yield from ((f"pressure.{_key(group)}", value) for group, value in step.pressure.items())
 
 

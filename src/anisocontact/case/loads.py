@@ -83,6 +83,14 @@ class BodyForce(Components):
         return {axis: times(value, self.density) for axis, value in super().given().items()}
 
 
+class Gravity(Components):
+    """Acceleration of all bodies, times `density` of the material a force per volume."""
+
+    x: Annotated[float | Scheduled | None, led("length/time^2", "along x")] = None
+    y: Annotated[float | Scheduled | None, led("length/time^2", "along y")] = None
+    z: Annotated[float | Scheduled | None, led("length/time^2", "along z")] = None
+
+
 class Anchor(Components):
     """Displacement of a spring's end on ground at the end of the step."""
 
@@ -155,6 +163,7 @@ class Loading(Section):
         default_factory=dict, description="forces per volume by body"
     )
 
+    gravity: Gravity | None = Field(None, description=str(Gravity.__doc__))
     anchor: dict[str, Anchor] = Field(
         default_factory=dict, description="displacements of the ends of springs on ground, by name"
     )

@@ -7,8 +7,8 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from anisocontact.base.registry import Entry
+from anisocontact.case.bodies import Weighed
 from anisocontact.case.quantity import number
-from anisocontact.case.registered import Registered
 from anisocontact.case.section import Section
 from anisocontact.laws import SIDES
 
@@ -42,7 +42,7 @@ class PythonSection(Section):
     directions_on: str = SIDES[0]
 
 
-class MaterialTable(Registered):
+class MaterialTable(Weighed):
     """A material in a Python file."""
 
     file: str = Field(
