@@ -212,6 +212,97 @@ def test_plane_strain_is_a_slice():
     assert np.abs(forces[0] - forces[1]).max() < 1e-8 * np.abs(forces[0]).max()
 
 
+def _stacked(ideal: Idealisation | None, order: int = 1) -> Any:
+    """A block on a block, in the plane or as a slice 0.4 thick, with facets that do not match."""
+    sizes = {"a": ((0.0, 0.0), (2.0, 1.0), (6, 2)), "b": ((0.0, 1.0), (1.3, 1.0), (5, 2))}
+    bodies = []
+    for name, (origin, size, cells) in sizes.items():
+        if ideal is None:
+            given = {"origin": (*origin, 0.0), "size": (*size, 0.4), "cells": (*cells, 1)}
+            bodies.append(Body(name, make_shape("box", order=order, **given)))
+        else:
+            given = {"origin": origin, "size": size, "cells": cells}
+            bodies.append(Body(name, make_shape("rectangle", order=order, **given)))
+    return build_mesh(bodies) if ideal is None else build_mesh(bodies, idealisation=ideal)
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_pair_in_plane_strain_is_a_slice(order):
+    """Requirement: bodies in contact with each other as in a slice of one layer, to rounding.
+
+    Source: as of `test_plane_strain_is_a_slice`; the points of a facet of the slice lie above each
+    other with equal tractions, and these are of one order less than their number integrates.
+    """
+    forces = []
+    names = {"bottom": "front", "top": "back"}
+    for ideal in (PlaneStrain(thickness=0.4), None):
+        model, planes, of = _stacked(ideal, order), {}, (lambda name: name)
+        if ideal is None:
+            of = names.__getitem__
+            planes = {f"{body}.{side}": {"z": 0.0} for body in "ab" for side in names}
+        contact = Contact(model, f"b.{of('bottom')}", f"a.{of('top')}", _law())
+        problem = Problem(model, {"a": RUBBER, "b": STEEL}, [contact])
+        low, high = f"a.{of('bottom')}", f"b.{of('top')}"
+        press = {low: {"x": 0.0, "y": 0.0}, high: {"x": 0.0, "y": -0.05}, **planes}
+        run(problem, Step("press", 1, press), Step("drag", 2, {high: {"x": 0.1, "y": -0.05}}))
+        forces.append(contact.resultant()[0])
+    assert np.abs(forces[0] - forces[1]).max() < 1e-8 * np.abs(forces[0]).max()
+
+
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("ideal", [PlaneStrain(thickness=0.4, lateral=True), Axisymmetric()])
+def test_tangent_of_a_pair_by_order(ideal, order):
+    """Halving the step quarters the error of central differences (asserted 3.5 to 4.5).
+
+    Requirement: exact tangents of facets that are swept out of edges, areas of now included.
+    """
+    contact = Contact(model := _stacked(ideal, order), "b.bottom", "a.top", _law(0.1))
+    problem = Problem(model, {"a": RUBBER, "b": RUBBER}, [contact])
+    led = {"x": 0.0, "y": -0.05} | ({"z": 0.05} if ideal.lateral else {})
+    run(problem, Step("press", 2, {"a.bottom": dict.fromkeys(led, 0.0), "b.top": led}))
+    rng = np.random.default_rng(4)
+    x = problem.accepted()
+    x.array[:] += rng.normal(0.0, 1e-3, x.getLocalSize())
+    problem.set_load_factor(1.0, 1.0)
+    problem.evaluate(x)
+    assert contact.counts()["slip"] > 1
+    direction = x.duplicate()
+    direction.array[:] = rng.normal(size=x.getLocalSize())
+    errors = difference_errors(problem, x, direction, (1e-6, 5e-7))
+    assert 3.5 < errors[0] / errors[1] < 4.5
+
+
+def test_shrink_fit_converges_to_lame():
+    """Requirement: contact of two bodies of revolution.
+
+    Source: Lame in plane strain, a tube from 1 to 2 in one from 2 - d to 3, p of the sum of both
+    displacements at 2 = d. The error falls with h^2, asked is 0.9 of that rate; penalties of 1000
+    layers of cells leave less.
+    """
+    gap, errors = 1e-4, []
+    young, nu = E / (1.0 - NU**2), NU / (1.0 - NU)
+    exact = gap * young / (2.0 * ((9.0 + 4.0) / 5.0 + nu + (4.0 + 1.0) / 3.0 - nu))
+    for n in (4, 8):
+        inner = make_shape("rectangle", origin=(1.0, 0.0), size=(1.0, 0.5), cells=(n, 2))
+        outer = make_shape("rectangle", origin=(2.0 - gap, 0.0), size=(1.0, 0.5), cells=(n, 3))
+        bodies = [Body("inner", inner), Body("outer", outer)]
+        model = build_mesh(bodies, idealisation=Axisymmetric())
+        law = ContactLaw(
+            NormalLaw(penalty=1e3 * E * n), Adhesion(stiffness=1.0), Friction(coefficients=0)
+        )
+        contact = Contact(model, "outer.left", "inner.right", law)
+        problem = Problem(model, {"inner": STEEL, "outer": STEEL}, [contact])
+        ends = {
+            f"{one}.{end}": {"y": 0.0} for one in ("inner", "outer") for end in ("bottom", "top")
+        }
+        run(problem, Step("fit", 1, ends))
+        errors.append(
+            abs(contact.areas @ contact.last.pressure / contact.areas.sum() / exact - 1.0)
+        )
+    assert np.log2(errors[0] / errors[1]) > 1.8
+    assert errors[1] < 0.01
+
+
 def _half_space(ideal: Idealisation, n: int, half: float, far: int) -> Any:
     """A quarter plane below y = 0: n cells of one size up to x = `half`, `far` that grow to 400."""
     extent = 400.0
@@ -324,6 +415,11 @@ def test_mistakes_are_one_line():
         build_mesh([box], idealisation=PlaneStrain())
     with pytest.raises(InputError, match="the mesh goes to x = -1"):
         rectangle(Axisymmetric(), start=-1.0)
+    twisted = _stacked(Axisymmetric(lateral=True))
+    with pytest.raises(InputError, match="facets given with twist"):
+        Contact(twisted, "b.bottom", "a.top", _law())
+    with pytest.raises(InputError, match="two_half: given; a mesh of two dimensions has one pass"):
+        Contact(_stacked(PlaneStrain()), "b.bottom", "a.top", _law(), two_half=True)
     with pytest.raises(InputError, match="plane stress needs a linear material"):
         Problem(rectangle(PlaneStress()), {"b": RUBBER})
     problem = Problem(rectangle(Axisymmetric()), {"b": STEEL})

@@ -12,8 +12,7 @@ from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Master
 from anisocontact.contact.points import SlavePoints
-from anisocontact.contact.quadrature import Surfaced
-from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.quadrature import Couplings, Surfaced
 from anisocontact.contact.whereabouts import Seen, Whereabouts
 from anisocontact.interface import Interface, SlaveSurface, State
 from anisocontact.interface.failed_point import OnSurface

@@ -13,8 +13,9 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
+from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.sides import Sides, located
-from anisocontact.contact.transfer import Couplings, Transfer
+from anisocontact.contact.transfer import Transfer
 from anisocontact.interface import Response, State
 from anisocontact.interface.contact_law import FacetBatch, FacetLaw
 from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
@@ -148,9 +149,8 @@ class FacetAnswer[F: Forces]:
             Each with nodes of the rows (p, r) and of the columns (p, c), numbered as
             `CoupledTangent` has them, -1 for none, and p blocks, (p, r, c, 3, 3) or (p, 3 r, 3 c).
         """
-        named = self.gathered.coupled
         found = self.forces.couplings(self.snapshot.response.status != 0)
-        return [(named(rows), named(columns), k) for rows, columns, k in found]
+        return [self.gathered.couplings(one) for one in found]
 
     def by_derivative(
         self: FacetAnswer[ByPoints], other: FacetAnswer[ByPoints], stiffness: Floats

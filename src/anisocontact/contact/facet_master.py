@@ -76,7 +76,11 @@ class FacetMaster(Master):
     @property
     def facets(self) -> Ints:
         """Nodes of the facets that this rank has, (m, k)."""
-        return self.sides.master.nodes
+        return self._gathered.local_names(self.sides.master.nodes)
+
+    @override
+    def local_names(self, nodes: Ints) -> Ints:
+        return self._gathered.local_names(nodes)
 
     @property
     def numbers(self) -> npt.NDArray[np.int64]:
@@ -94,6 +98,7 @@ class FacetMaster(Master):
 
     @override
     def place(self, u: Floats, *histories: State) -> bool:
+        u = self._gathered.moved(u)
         anew = self._gather(u, histories)
         moved = np.array(self._gathered.everywhere(u))
         self._nodes = Nodes(self.sides.reference + moved, moved)
@@ -197,19 +202,20 @@ class FacetMaster(Master):
 
     @override
     def couplable(self) -> Ints:
-        return np.union1d(self.sides.slave.nodes, self._gathered.own.nodes).astype(np.int32)
+        named = self._gathered.local_names
+        return np.union1d(named(self.sides.slave.nodes), named(self._gathered.own.nodes))
 
     @override
     def feet(self) -> Ints:
-        return np.unique(self.sides.master.nodes[self._hint.facet[located(self._hint)]])
+        return np.unique(self.facets[self._hint.facet[located(self._hint)]])
 
     @override
     def immovable(self, fixed: Mask) -> bool:
-        return bool(fixed[np.unique(self._gathered.own.nodes)].all())
+        return bool(fixed[self._gathered.local_names(self._gathered.own.nodes)].all())
 
     @override
     def below(self, state: State) -> Ints:
-        return np.unique(self.sides.master.nodes[state["facet"][self.located(state)]])
+        return np.unique(self.facets[state["facet"][self.located(state)]])
 
     @override
     def look(self, x: Floats) -> Seen:
@@ -218,7 +224,7 @@ class FacetMaster(Master):
     @override
     def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
         sides = self.sides
-        there = sides.reference + self._gathered.everywhere(u)
+        there = sides.reference + self._gathered.everywhere(self._gathered.moved(u))
         then = self._gathered.everywhere(self._accepted[0])
         nodes = np.unique(sides.master.nodes)
         return Whereabouts(
@@ -339,6 +345,7 @@ class FacetMaster(Master):
     ) -> Mapping[str, npt.NDArray[Any]]:
         kept = {name: values.copy() for name, values in kept.items()}
         named = kept["state"]["facet"], kept["projection.facet"]
+        u = self._gathered.moved(u)
         now = self._gathered.local(self.sides.reference) + u
         self._number_anew(now, named)
         ends = [v.max(initial=0.0) for v in (kept["transferred"], -kept["transferred"])]

@@ -10,17 +10,23 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import basix, facet_sides, scalar_element
 from anisocontact.contact.quadrature import FacetQuadrature
+from anisocontact.contact.sweep import Sweep
 from anisocontact.surfaces.facets import FacetSets, FacetSurface, outward_flips
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
-#: Facet of a cell by the type of the cell and the order of the displacement.
+#: Facet of a cell by the type of the cell and the order of the displacement; in the plane that
+#: which is swept out of an edge.
 TOPOLOGY = {
     ("tetrahedron", 1): "tri3",
     ("tetrahedron", 2): "tri6",
     ("hexahedron", 1): "quad4",
     ("hexahedron", 2): "quad9",
+    ("triangle", 1): "quad4",
+    ("triangle", 2): "quad9",
+    ("quadrilateral", 1): "quad4",
+    ("quadrilateral", 2): "quad9",
 }
 
 
@@ -32,31 +38,41 @@ class FacetMesh:
         topology: "tri3", "tri6", "quad4" or "quad9".
         nodes: Local nodes of each facet in the order of its reference facet, (m, k).
         flip: Whether the normal of the node order points into the body, (m,).
+        sweep: How they are swept out of edges; None of facets in space.
     """
 
     topology: str
     nodes: Ints
     flip: npt.NDArray[np.bool_]
+    sweep: Sweep | None = None
+
+    @property
+    def share(self) -> float:
+        """Share of the area that counts."""
+        return 1.0 if self.sweep is None else self.sweep.share
 
 
-def facet_mesh(space: Any, facets: Ints) -> FacetMesh:
+def facet_mesh(space: Any, facets: Ints, sweep: Sweep | None = None) -> FacetMesh:
     """Boundary facets that this rank owns, with outward orientation.
 
     Args:
         space: Vector Lagrange space of order 1 or 2.
         facets: Local facets on the boundary.
+        sweep: Of a mesh in the plane.
 
     Returns:
         Nodes and orientation.
     """
     cells, local = facet_sides(space.mesh, np.sort(facets))
     element = scalar_element(space)
-    closure = np.array(element.entity_closure_dofs[2])
+    closure = np.array(element.entity_closure_dofs[-2])
     nodes = space.dofmap.list[cells[:, None], closure[local]].astype(np.int32)
     x = node_positions(space)
     middle = x[space.dofmap.list[cells]].mean(axis=1)
     topology = TOPOLOGY[element.cell_type.name, element.degree]
-    return FacetMesh(topology, nodes, outward_flips(x, nodes, topology, middle))
+    if sweep is not None:
+        x, nodes = sweep.positions(x), sweep.facets(nodes)
+    return FacetMesh(topology, nodes, outward_flips(x, nodes, topology, middle), sweep)
 
 
 def near_facets(
@@ -111,7 +127,7 @@ def group_area(mesh: FacetMesh, x: Floats) -> float:
     """
     corners = x[mesh.nodes[:, facet_corners(mesh.topology)]]
     fan = np.cross(corners[:, 1:-1] - corners[:, :1], corners[:, 2:] - corners[:, :1])
-    return float(0.5 * np.linalg.norm(fan, axis=2).sum())
+    return float(0.5 * mesh.share * np.linalg.norm(fan, axis=2).sum())
 
 
 class FacetShapes:
@@ -180,12 +196,13 @@ class FacetRule:
     gradient: Floats
 
 
-def facet_rule(topology: str, degree: int) -> FacetRule:
+def facet_rule(topology: str, degree: int, across: float | None = None) -> FacetRule:
     """Quadrature of the given degree on a facet.
 
     Args:
         topology: "tri3", "tri6", "quad4" or "quad9".
         degree: Polynomials up to this degree are integrated exactly on flat facets.
+        across: Of a facet swept out of an edge, with points on that edge: share of its area.
 
     Returns:
         Weights and shape functions.
@@ -193,6 +210,10 @@ def facet_rule(topology: str, degree: int) -> FacetRule:
     shapes = FacetShapes(topology)
     rule: Any = basix.make_quadrature(shapes.cell, degree)
     points, weights = np.asarray(rule[0]), np.asarray(rule[1])
+    if across is not None:
+        line: Any = basix.make_quadrature(basix.CellType.interval, degree)
+        points = np.column_stack([line[0], np.full(len(line[0]), 0.5)])
+        weights = across * np.asarray(line[1])
     return FacetRule(points, weights, degree, *shapes.at(points))
 
 
@@ -216,4 +237,5 @@ def isoparametric(facets: FacetMesh, rule: FacetRule, reference: Floats) -> Face
         reference=(rule.shape @ corners).reshape(-1, 3),
         gradient=gradient,
         tangents=tangents,
+        turn=None if facets.sweep is None else np.zeros((3, 3)),  # the images have it
     )

@@ -152,10 +152,25 @@ def _slave_nodes(model: Model, slave: str, mesh: FacetMesh, current_area: bool) 
 
 
 def _check_in_space(model: Model, field: str) -> None:
-    """Refuse what bodies of two dimensions do not have: they meet surfaces at points of edges."""
+    """Refuse what bodies of two dimensions do not have: they meet others at points of edges."""
     if model.idealisation.dim == 2:
-        text = "given; contact of a mesh of two dimensions is with a surface, point by point"
-        raise InputError(text, field)
+        raise InputError("given; a mesh of two dimensions has one pass, at points of edges", field)
+
+
+def _check_pair(model: Model, options: Options) -> None:
+    """Refuse what pairs of bodies of two dimensions do not have."""
+    ideal, comm = model.idealisation, model.mesh.comm
+    if ideal.dim == 3:
+        return
+    for name in ("two_half", "self_contact", "overlaps", "mortar"):
+        if getattr(options, name):
+            _check_in_space(model, name)
+    if ideal.lateral and ideal.turn.any():
+        text = "facets given with twist; a surface is needed, or lateral = false"
+        raise InputError(text, "master")
+    if comm.size > 1:
+        text = f"facets given on {comm.size} processes: in two dimensions they need a single one"
+        raise InputError(text, "master")
 
 
 def _laws(law: object) -> ContactLaw:
@@ -219,7 +234,7 @@ def facet_pass(
             master: the other way round.
         overlaps: Whether forces on the master are integrated over overlaps whatever was asked for.
     """
-    _check_in_space(model, "master")
+    _check_pair(model, options)
     check_sides(model, slave, master, options.apart)
     sides = make_sides(
         model,

@@ -9,8 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact.history import Snapshot
+from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.reachable import NodePairs
-from anisocontact.contact.transfer import Couplings
 from anisocontact.contact.whereabouts import Seen, Whereabouts
 from anisocontact.interface import Response, State
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -164,6 +164,10 @@ class Master(Protocol):
     def immovable(self, fixed: Mask) -> bool:
         """Whether it cannot give way where displacements of local nodes are fixed, (nodes, 3)."""
         return self.body is None or not self.body.free
+
+    def local_names(self, nodes: Ints) -> Ints:
+        """Nodes of the slave points as those of the mesh, of which they may be images."""
+        return nodes
 
     def feet(self) -> Ints:
         """Local nodes of the master below points of the trial."""

@@ -9,6 +9,8 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import facet_keys
 from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
+from anisocontact.contact.quadrature import Couplings
+from anisocontact.contact.sweep import Sweep
 from anisocontact.mesh.split import Route, Split, arranged
 
 Ints = npt.NDArray[np.int32]
@@ -27,6 +29,7 @@ class MasterSurface:
     Args:
         space: Vector Lagrange space of the displacement.
         facets: Local facets on the boundary.
+        sweep: Of a mesh in the plane, on one process: "nodes" are then images of its nodes.
 
     Attributes:
         own: Facets of the group on this process, with its local nodes.
@@ -38,11 +41,13 @@ class MasterSurface:
         distributed: Whether there are several processes.
     """
 
-    def __init__(self, space: Any, facets: Ints) -> None:
-        self.own = own = facet_mesh(space, facets)
+    def __init__(self, space: Any, facets: Ints, sweep: Sweep | None = None) -> None:
+        self.own = own = facet_mesh(space, facets, sweep)
         self.comm = comm = space.mesh.comm
         self.distributed = bool(comm.size > 1)
-        self._start = self.reference = node_positions(space)
+        self._sweep, x = sweep, node_positions(space)
+        #: Positions of the local nodes in the reference configuration, of all images of them.
+        self.start = self.reference = x if sweep is None else sweep.positions(x)
         self._keys = facet_keys(space.mesh, np.sort(facets))
         self._own_numbers = _ranked(comm, self._keys)
         self._order = np.argsort(self._keys)
@@ -58,7 +63,7 @@ class MasterSurface:
         else:
             self.numbers = np.arange(len(own.nodes))
             nodes = np.ascontiguousarray(own.nodes[self._order])
-            self.facets = FacetMesh(own.topology, nodes, own.flip[self._order])
+            self.facets = FacetMesh(own.topology, nodes, own.flip[self._order], sweep)
 
     def gather(self, numbers: Keys) -> None:
         """Have these facets instead of those before; collective.
@@ -72,9 +77,9 @@ class MasterSurface:
         #: Local nodes that other processes have gathered.
         self._asked = self._route.there(self._ids) - self._owners.first
         self.numbers = numbers
-        named = (len(self._start) + node.reshape(nodes.shape)).astype(np.int32)
+        named = (len(self.start) + node.reshape(nodes.shape)).astype(np.int32)
         self.facets = FacetMesh(self.own.topology, named, flip)
-        self.reference = self.everywhere(self._start)
+        self.reference = self.everywhere(self.start)
 
     def within(self, low: Floats, high: Floats, now: Floats) -> Keys:
         """Facets that may reach into a box; collective.
@@ -138,11 +143,12 @@ class MasterSurface:
 
     def local(self, nodal: Floats) -> Floats:
         """Of what `everywhere` gave, that of the local nodes."""
-        return nodal[: len(self._start)]
+        return nodal[: len(self.start)]
 
     def zeros(self, out: Floats) -> Floats:
         """Where to add forces, numbered as `reference`; on one process `out` itself."""
-        return np.zeros(self.reference.shape) if self.distributed else out
+        own = self.distributed or self._sweep is not None
+        return np.zeros(self.reference.shape) if own else out
 
     def hand_back(self, forces: Floats, out: Floats) -> None:
         """Add forces that all processes have for nodes they gathered where these nodes live.
@@ -151,10 +157,12 @@ class MasterSurface:
             forces: What `zeros` gave, with forces of this process, (nodes, 3).
             out: Forces of the local nodes, whose sum over the processes counts, (local nodes, 3).
         """
+        if self._sweep is not None:
+            self._sweep.fold(forces, out)
         if not self.distributed:
             return
         out += self.local(forces)
-        np.add.at(out, self._asked, self._route.there(forces[len(self._start) :]))
+        np.add.at(out, self._asked, self._route.there(forces[len(self.start) :]))
 
     def coupled(self, nodes: Ints) -> Ints:
         """Nodes as `Couplings` name them: gathered ones by their number in the whole mesh.
@@ -165,13 +173,30 @@ class MasterSurface:
         Returns:
             The same for local nodes, the number of local nodes plus the global number for others.
         """
+        if self._sweep is not None:
+            return self._sweep.named(nodes)
         if not self.distributed:
             return nodes
-        local = len(self._start)
+        local = len(self.start)
         far = nodes >= local
         named = nodes.copy()
         named[far] = local + self._ids[nodes[far] - local]
         return named
+
+    def moved(self, u: Floats) -> Floats:
+        """Displacements of the nodes as they are numbered here, from those of the mesh."""
+        return u if self._sweep is None else self._sweep.moved(u)
+
+    def local_names(self, nodes: Ints) -> Ints:
+        """Nodes of which some are images as those of the mesh."""
+        return nodes if self._sweep is None else self._sweep.named(nodes)
+
+    def couplings(self, found: Couplings) -> Couplings:
+        """Blocks with the names of `coupled`."""
+        if self._sweep is not None:
+            return self._sweep.folded(found)
+        rows, columns, blocks = found
+        return self.coupled(rows), self.coupled(columns), blocks
 
 
 def _ranked(comm: Any, keys: Keys) -> Keys:

@@ -12,8 +12,7 @@ import numpy.typing as npt
 from anisocontact.contact.contact_planes import ContactPlanes, Opposite, by_slave_tangents
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.mortar_weights import MortarWeights
-from anisocontact.contact.quadrature import FacetQuadrature
-from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.quadrature import Couplings, FacetQuadrature
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]

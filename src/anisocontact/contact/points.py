@@ -61,7 +61,8 @@ class SlavePoints:
             fixed: Prescribed displacements of the local nodes, (nodes, 3).
             normal: At the points, (n, 3).
         """
-        moving = (self.shape != 0.0)[:, :, None] & ~fixed[self.nodes]
+        # images of nodes have the numbers after them, row by row, see `Sweep`
+        moving = (self.shape != 0.0)[:, :, None] & ~fixed[self.nodes % max(len(fixed), 1)]
         free = moving.any(axis=1)
         return np.asarray(np.linalg.norm(free * normal, axis=1) < FREE)
 

@@ -17,6 +17,10 @@ from anisocontact.mesh.idealisation import SOLID, Idealisation
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
+#: Nodes of rows and columns, (p, r) and (p, c), -1 for none, and blocks (p, 3 r, 3 c), or one 3 x 3
+#: matrix for each pair of nodes, (p, r, c, 3, 3).
+type Couplings = tuple[Ints, Ints, Floats]
+
 
 @dataclass(frozen=True)
 class FacetQuadrature:
@@ -263,7 +267,8 @@ def mean_size(quadrature: FacetQuadrature, comm: Any) -> float:
     """Length of a facet: square root of the mean area, or in the plane mean length; collective."""
     line, extent = quadrature.turn is not None, quadrature.areas
     if line:
-        extent = quadrature.of_rule * _norm(quadrature.tangents[:, :, 0])
+        rule = quadrature.of_rule / quadrature.of_rule.sum(axis=1, keepdims=True)
+        extent = rule * _norm(quadrature.tangents[:, :, 0])
     total, facets = comm.allreduce(np.array([extent.sum(), len(quadrature.nodes)]))
     mean = total / max(facets, 1.0)
     return float(mean if line else np.sqrt(mean))

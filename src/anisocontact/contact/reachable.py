@@ -40,7 +40,7 @@ def reachable(
         Rows and columns: facets of the slave, pairs of slave and master, of master and slave and
         of facets of the master.
     """
-    first = sides.slave.nodes
+    first = sides.gathered.coupled(sides.slave.nodes)
     if not (len(first) and len(sides.master.nodes)):
         return [(first, first)]
     x = sides.points.positions(now)

@@ -19,12 +19,12 @@ from anisocontact.contact.facet_mesh import (
     group_area,
     isoparametric,
     near_facets,
-    node_positions,
 )
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.overlap import largest_radius
 from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.sweep import Sweep
 from anisocontact.contact.whereabouts import Seen
 from anisocontact.interface import State
 from anisocontact.mesh import Model
@@ -236,10 +236,11 @@ def make_sides(
     """
     slave, master = (model.facets(group) for group in groups)
     comm = model.mesh.comm
-    gathered = MasterSurface(model.space, master)
-    reference = node_positions(model.space)
-    own = facet_mesh(model.space, slave)
-    rule = facet_rule(own.topology, degree)
+    sweep = Sweep.of(model)
+    gathered = MasterSurface(model.space, master, sweep)
+    reference = gathered.start
+    own = facet_mesh(model.space, slave, sweep)
+    rule = facet_rule(own.topology, degree, None if sweep is None else sweep.share)
     quadrature = isoparametric(own, rule, reference)
     points = SlavePoints(quadrature, own.flip, current_area=current_area, comm=comm, share=weight)
     reach = reach if reach is not None else 2.0 * points.size

@@ -29,16 +29,13 @@ import scipy
 from anisocontact.contact.couples import Couples
 from anisocontact.contact.facet_mesh import FacetShapes
 from anisocontact.contact.overlap import Overlaps, largest_radius, overlaps
+from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.sides import Sides
 from anisocontact.surfaces.facets import FEATURES, FacetProjections
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
-
-#: Nodes of rows and columns, (p, r) and (p, c), -1 for none, and blocks (p, 3 r, 3 c), or one 3 x 3
-#: matrix for each pair of nodes, (p, r, c, 3, 3).
-type Couplings = tuple[Ints, Ints, Floats]
 
 
 @dataclass(frozen=True)

@@ -61,7 +61,10 @@ class Bodies:
         ones: Floats = np.ones(self._stress.x.array.shape)
         self._share = 1.0 / self._summed(ones).clip(1.0)
         cells, kinds, self._points = dolfinx.plot.vtk_mesh(model.space)
-        nodes = _turned_outwards(cells.reshape(len(kinds), -1), self._points)[:, 1:]
+        rows = cells.reshape(len(kinds), -1)
+        if model.idealisation.dim == 3:
+            rows = _turned_outwards(rows, self._points)
+        nodes = rows[:, 1:]
         ends = np.arange(len(kinds) + 1, dtype=np.int32) * np.int32(nodes.shape[1])
         self._cells = {
             "connectivity": nodes.astype(np.int32).reshape(-1),

@@ -135,8 +135,8 @@ def _named(name: str, value: Any) -> Any:
 
 def _nodes_of(model: Any, group: str, field: str) -> Floats:
     """Places of the nodes of a facet group, of all processes and in order."""
-    space = model.space
-    nodes = fem.locate_dofs_topological(space, 2, model.facets(group, field))
+    space, dim = model.space, model.idealisation.dim - 1
+    nodes = fem.locate_dofs_topological(space, dim, model.facets(group, field))
     own = nodes[nodes < space.dofmap.index_map.size_local]
     places = np.concatenate(model.mesh.comm.allgather(space.tabulate_dof_coordinates()[own]))
     return np.asarray(places[np.lexsort(places.T[::-1])])

@@ -32,8 +32,9 @@ class GroupResultant:
 
     def nodes(self, problem: Problem, field: str) -> Nodes:
         """Nodes of the group that this process owns."""
-        facets = problem.model.facets(self.group, f"{field}.group")
-        return _owned(problem, fem.locate_dofs_topological(problem.model.space, 2, facets))
+        model, dim = problem.model, problem.model.idealisation.dim - 1
+        facets = model.facets(self.group, f"{field}.group")
+        return _owned(problem, fem.locate_dofs_topological(model.space, dim, facets))
 
     def forces(self, problem: Problem) -> Floats:
         """At all nodes that this process owns, (nodes, 3), force."""
@@ -63,7 +64,8 @@ class SectionResultant:
     def nodes(self, problem: Problem, field: str) -> Nodes:
         """Nodes of the body in front of the plane that this process owns."""
         space, cells = problem.model.space, problem.model.cells(self.body, f"{field}.body")
-        own = _owned(problem, fem.locate_dofs_topological(space, 3, cells))
+        dim = problem.model.idealisation.dim
+        own = _owned(problem, fem.locate_dofs_topological(space, dim, cells))
         away = space.tabulate_dof_coordinates()[own] - np.array(self.point)
         return np.asarray(own[away @ np.array(self.normal) > 0.0])
 

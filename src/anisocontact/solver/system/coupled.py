@@ -11,8 +11,8 @@ import numpy.typing as npt
 import scipy
 
 from anisocontact.base.fenicsx import Mat, PETSc
+from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.reachable import NodePairs
-from anisocontact.contact.transfer import Couplings
 
 Ints = npt.NDArray[np.int32]
 Keys = npt.NDArray[np.int64]

@@ -12,7 +12,7 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Parameter
 from anisocontact.contact import facet_quadrature
-from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.led import Led
 from anisocontact.solver.terms.loads import mean_shares

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact import Contact
-from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
 

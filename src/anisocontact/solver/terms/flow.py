@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.contact import NotHeldError
-from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.term import Term
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact import Contact
-from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.terms.free_modes import ConnectedBody
 
 Floats = npt.NDArray[np.float64]

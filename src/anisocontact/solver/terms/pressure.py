@@ -11,8 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.bulk import Material, small_strain
 from anisocontact.contact import FacetQuadrature, facet_quadrature
-from anisocontact.contact.quadrature import Surfaced, inward
-from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.quadrature import Couplings, Surfaced, inward
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.led import Led
 from anisocontact.solver.terms.step import Step

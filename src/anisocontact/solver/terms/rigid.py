@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.contact import Contact
-from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.quadrature import Couplings
 from anisocontact.rigid import RigidBody
 from anisocontact.rigid.body import Pose
 from anisocontact.solver.terms.drive import Drive

@@ -20,7 +20,7 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.contact import Contact, NotHeldError
-from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.flow import Flow

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from anisocontact.contact.transfer import Couplings
+from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.terms.persistent import Arrays
 
 Ints = npt.NDArray[np.int64]

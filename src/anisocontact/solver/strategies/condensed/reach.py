@@ -88,7 +88,8 @@ class Reach:
         for contact in self._contacts:
             searched: tuple[Any, ...] = contact.passes if contact.of_two_groups else ()
             for half in searched:
-                sides = (half.slave_points.nodes, half.master.facets)
+                slave = half.master.local_names(half.slave_points.nodes)
+                sides = (slave, half.master.facets)
                 if sum(self._moved(side, u) for side in sides) > self._motion(half):
                     return False
         return True
@@ -120,7 +121,7 @@ class Reach:
         near = half.master.located(half.state)
         nearest = np.where(near, np.minimum(nearest, np.abs(half.state["gap"])), nearest)
         able = np.flatnonzero(nearest <= half.master.reach + motion + radius)
-        self.nodes[half.slave_points.nodes[able]] = True
+        self.nodes[half.master.local_names(half.slave_points.nodes[able])] = True
         limit = nearest[able] + 2.0 * motion
         lists = tree.query_ball_point(points[able], limit + radius)
         facet = np.concatenate([np.zeros(0, dtype=np.int64), *map(np.asarray, lists)]).astype(int)
