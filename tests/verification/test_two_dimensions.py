@@ -25,6 +25,7 @@ from anisocontact.mesh import (
     build_mesh,
     make_shape,
 )
+from anisocontact.results.paraview import Bodies
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Problem, Solver, Spring, Step, Turn
 from anisocontact.surfaces import Surface, make_surface
@@ -91,6 +92,21 @@ def test_sheet_of_wood_has_its_modulus():
     run(problem, Step("pull", 1, {"b.left": {"x": 0.0}}, traction={"b.right": {"x": 1e-3}}))
     found = problem.u.x.array.reshape(-1, 3)[:, 0].max()
     assert found == pytest.approx(2e-3 * slope, rel=1e-9)
+
+
+@pytest.mark.parametrize("material", [STEEL, RUBBER])
+def test_stress_at_nodes_on_the_axis(material):
+    """Requirement: the stress of the files where u / r is 0 / 0.
+
+    Source: a round bar between smooth plates has one stress everywhere; force over area of now.
+    """
+    problem = Problem(rectangle(Axisymmetric()), {"b": material})
+    run(problem, Step("press", 1, {"b.bottom": {"y": 0.0}, "b.top": {"y": -0.01}}))
+    stress = Bodies(problem).stress()
+    radius = 2.0 + problem.u.x.array.reshape(-1, 3)[:, 0].max()
+    area = 4.0 * np.pi if material is STEEL else np.pi * radius**2
+    exact = np.array([0.0, problem.reactions()["b.top"][1] / area, 0.0, 0.0, 0.0, 0.0])
+    assert np.abs(stress - exact).max() < 1e-8 * abs(exact[1])
 
 
 def test_tube_under_pressure_converges_to_lame():

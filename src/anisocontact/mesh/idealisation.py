@@ -72,6 +72,15 @@ class Idealisation:
         """The same for the stress of a linear material, (3, 3), UFL, stress."""
         return self.seen(expression, u)
 
+    def at_nodes(self, expression: Any, u: Any) -> Any:
+        """The same for any material where values at nodes are wanted, on the axis too.
+
+        Args:
+            expression: The stress, UFL.
+            u: Displacement, a DOLFINx function.
+        """
+        return self.stress(expression, u)
+
     def weight(self, mesh: Any) -> Any:
         """Length across the plane, UFL: what integrals over the mesh are multiplied with."""
         return 1.0
@@ -262,6 +271,17 @@ class Axisymmetric(_Plane):
     )
     motions: ClassVar[tuple[str, ...]] = ("y", "ry")
     turn = 2.0 * math.pi * np.array([[0.0, 0.0, -1.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+
+    def at_nodes(self, expression: Any, u: Any) -> Any:
+        """As of `Idealisation`: on the axis `u / x` is `du / dx`."""
+        places = u.function_space.mesh.geometry.x
+        least = ON_AXIS * float(np.abs(places).max(initial=0.0))
+        plane, turn = ufl.grad(u), ufl.as_matrix((self.turn / self.turn[2, 0]).tolist())
+        x = ufl.SpatialCoordinate(ufl.domain.extract_unique_domain(u))[0]
+        on_axis = ufl.as_vector([plane[i, 0] for i in range(3)])
+        side = turn * ufl.conditional(ufl.gt(x, least), u / x, on_axis)
+        gradient = plane + ufl.outer(side, ufl.as_vector([0.0, 0.0, 1.0]))
+        return ufl.replace(expression, {plane: gradient})
 
     def held(self, x: Floats) -> Iterator[tuple[npt.NDArray[np.int64], int]]:
         """As of `Idealisation`: what is on the axis stays there."""

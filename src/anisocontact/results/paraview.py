@@ -185,7 +185,7 @@ def slave_points(contacts: Iterable[Contact], chosen: Collection[str] = ()) -> D
 
 def _stress_at(problem: Problem, body: str, space: Any) -> Any:
     ideal, u = problem.model.idealisation, problem.u
-    stress = ideal.stress(cauchy_stress(problem.materials[body], u), u)
+    stress = ideal.at_nodes(cauchy_stress(problem.materials[body], u), u)
     components = ufl.as_vector([stress[i, j] for i, j in _SYMMETRIC])
     points = space.element.interpolation_points
     return compiled_expression(components, points, problem.model.mesh.comm)

@@ -67,9 +67,6 @@ class FaceOnBody:
 
     def __init__(self, spec: CoupledFace, model: Model, linear: bool, tied: Ints) -> None:
         space = model.space
-        if model.idealisation.dim == 2:
-            text = f"{spec.group!r} given, faces of bodies in space are needed"
-            raise InputError(text, "coupled")
         nodes = fem.locate_dofs_topological(space, 2, model.facets(spec.group, "coupled"))
         owned = nodes[nodes < space.dofmap.index_map.size_local].astype(np.int64)
         self.group, self.body, self._linear = spec.group, spec.body, linear
