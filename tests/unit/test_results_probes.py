@@ -139,6 +139,9 @@ def test_principal_stresses_of_a_shear():
     assert np.allclose(principal(shear), [[2.0, 0.0, -2.0]], atol=1e-15)
     assert np.allclose(von_mises(shear), 2.0 * np.sqrt(3.0))
     assert np.allclose(principal(np.array([[1.0, 2.0, 3.0, 0.0, 0.0, 0.0]])), [[3.0, 2.0, 1.0]])
+    none = principal(np.vstack([shear, np.full((1, 6), np.nan)]))
+    assert np.isfinite(none[0]).all()
+    assert np.isnan(none[1]).all()
 
 
 @pytest.mark.parametrize(

@@ -102,8 +102,9 @@ class Bodies:
         columns = np.column_stack([von_mises(now.stress), principal(now.stress)[:, [0, 2]]])
         for name in model.body_names():
             nodes = np.unique(model.space.dofmap.list[model.cells(name)])
-            own = columns[nodes] * (1.0, 1.0, -1.0)
-            largest = np.max(model.mesh.comm.allgather(own.max(axis=0, initial=-np.inf)), axis=0)
+            # of nodes that have a stress, see `principal`
+            own = np.fmax.reduce(columns[nodes] * (1.0, 1.0, -1.0), axis=0, initial=-np.inf)
+            largest = np.max(model.mesh.comm.allgather(own), axis=0)
             found[name] = {
                 "von_mises": float(largest[0]),
                 "largest_principal": float(largest[1]),

@@ -188,8 +188,14 @@ def von_mises(stress: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 
 
 def principal(stress: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-    """Principal stresses of (n, 6) components XX YY ZZ XY YZ XZ, the largest first, (n, 3)."""
-    return np.linalg.eigvalsh(stress[:, _TENSOR])[:, ::-1]
+    """Principal stresses of (n, 6) components XX YY ZZ XY YZ XZ, the largest first, (n, 3).
+
+    A node on a cell whose stress is no number there, being inside out at that node, has none.
+    """
+    known = np.isfinite(stress).all(axis=1)
+    found = np.full((len(stress), 3), np.nan)
+    found[known] = np.linalg.eigvalsh(stress[known][:, _TENSOR])[:, ::-1]
+    return found
 
 
 type _Row = tuple[str, str, str, Callable[[Any], Any]]
