@@ -2,17 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import Field, create_model
+from pydantic import Field, create_model, model_validator
 
 from anisocontact.base.cells import CELLS
 from anisocontact.base.registry import Entry
-from anisocontact.case.quantity import number, word
+from anisocontact.case.quantity import line, number, word
 from anisocontact.case.registered import Registered, table_of
 from anisocontact.case.section import Section
 
-__all__ = ["Mesh", "MeshFile", "Placed", "Point", "Rotate", "Shaped", "Weighed", "mesh_type"]
+__all__ = [
+    "Mesh",
+    "MeshFile",
+    "NodeGroup",
+    "Placed",
+    "Point",
+    "Rotate",
+    "Shaped",
+    "Weighed",
+    "mesh_type",
+]
 
 Point = tuple[float, float, float]
 
@@ -23,6 +33,23 @@ class Rotate(Section):
     axis: Annotated[Point, number("vector", "1", "direction of the axis", "nonzero")]
     angle_deg: Annotated[float, number("scalar", "angle", "angle")]
     point: Annotated[Point, number("vector", "length", "point on the axis")] = (0.0, 0.0, 0.0)
+
+
+class NodeGroup(Section):
+    """A point or an edge of a body: the node nearest to a point, or all on a straight line."""
+
+    near: Annotated[
+        Point | None, number("vector", "length", "the node of the body nearest to this point")
+    ] = None
+    start: Annotated[Point | None, number("vector", "length", "where the line begins")] = None
+    end: Annotated[Point | None, number("vector", "length", "where the line ends")] = None
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        ends = (self.start is not None) + (self.end is not None)
+        if (self.near is None) != (ends == 2) or ends == 1:
+            raise line("near, or start and end needed")
+        return self
 
 
 class Weighed(Registered):

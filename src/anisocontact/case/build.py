@@ -25,6 +25,7 @@ from anisocontact.case.units import doubts
 from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.merge import merge
+from anisocontact.mesh.node_groups import node_near, nodes_along
 from anisocontact.mesh.readers import file_arrays
 from anisocontact.mesh.selectors import with_groups
 from anisocontact.rigid import RigidBody
@@ -92,6 +93,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
         _arrays(file, MPI.COMM_WORLD), idealisation=objects.idealisation(case)
     )
     _check_bodies(case, model)
+    _name_nodes(case, model)
     materials = {
         name: material_of(section, file.resolve, f"material.{name}", python)
         for name, section in case.material.items()
@@ -203,6 +205,19 @@ def _check_bodies(case: Case, model: Model) -> None:
         model.cells(name, f"material.{name}")
 
 
+def _name_nodes(case: Case, model: Model) -> None:
+    """Points and edges by their names."""
+    for name, table in case.nodes.items():
+        body, place = name.partition(".")[0], f'nodes."{name}"'
+        if table.near is not None:
+            found = node_near(model, body, table.near, place)
+        else:
+            ends: Any = (table.start, table.end)
+            found = nodes_along(model, body, *ends, place)
+        with objects.within(place):
+            model.name_nodes(name, found)
+
+
 def _check_options(options: dict[str, str | int | float | bool]) -> None:
     """Let PETSc read the options once: a wrong one is found before anything is written."""
     prefix = "anisocontact_check_"
@@ -262,7 +277,8 @@ def _steps(case: Case, model: Model, schedule: Schedule) -> list[Step]:
     for i, section in enumerate(case.step):
         place = f"step[{i}]"
         for what, group in section.groups():
-            model.facets(group, f"{place}.{what}")
+            known = model.nodes if what in ("displacement", "rotation") else model.facets
+            known(group, f"{place}.{what}")
         with objects.within(place):
             steps.append(_step(section, schedule, begun, _weights(case, section)))
         begun += section.duration

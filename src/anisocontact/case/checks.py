@@ -52,6 +52,7 @@ def check(case: Case) -> Iterator[InputError]:
             yield InputError(f"same pair as contact[{first}]", field=f"contact[{i}]")
     yield from check_rigid(case)
     yield from _held(case)
+    yield from _points_and_faces(case)
     yield from _steps(case)
     yield from check_courses(case)
     yield from check_units(case.units)
@@ -240,18 +241,11 @@ def _group(case: Case, name: str, field: str) -> Iterator[InputError]:
 
 
 def _held(case: Case) -> Iterator[InputError]:
-    """Symmetry planes, faces of rigid bodies, elastic supports and springs."""
+    """Symmetry planes, elastic supports and springs."""
     for i, group in enumerate(case.symmetry):
         yield from _group(case, group, f"symmetry[{i}]")
         if group in case.symmetry[:i]:
             yield InputError(f'"{group}" given twice', field=f"symmetry[{i}]")
-    followed: dict[str, str] = {}
-    for name, body in case.rigid.items():
-        for i, group in enumerate(body.faces):
-            place = f"rigid.{name}.faces[{i}]"
-            yield from _group(case, group, place)
-            if (first := followed.setdefault(group, place)) != place:
-                yield InputError(f'"{group}" given, it is {first} already', field=place)
     for group, bed in case.elastic_support.items():
         yield from _group(case, group, "elastic_support")
         if bed.normal == bed.tangential == 0.0:
@@ -266,6 +260,19 @@ def _held(case: Case) -> Iterator[InputError]:
             yield InputError(f'"{spring.to}" given, the group itself', field=f"{place}.to")
         if not any(spring.stiffness):
             yield InputError("all components are 0", field=f"{place}.stiffness")
+
+
+def _points_and_faces(case: Case) -> Iterator[InputError]:
+    """Points, edges, and faces that follow rigid bodies."""
+    for name in case.nodes:
+        yield from _group(case, name, "nodes")
+    followed: dict[str, str] = {}
+    for name, body in case.rigid.items():
+        for i, group in enumerate(body.faces):
+            place = f"rigid.{name}.faces[{i}]"
+            yield from _group(case, group, place)
+            if (first := followed.setdefault(group, place)) != place:
+                yield InputError(f'"{group}" given, it is {first} already', field=place)
 
 
 def _steps(case: Case) -> Iterator[InputError]:

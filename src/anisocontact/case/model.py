@@ -24,7 +24,7 @@ from anisocontact.base.limits import Limits
 from anisocontact.base.registry import Entry
 from anisocontact.base.strategies import AUTO
 from anisocontact.case.amplitudes import amplitude_table, path_table
-from anisocontact.case.bodies import Mesh, Weighed, mesh_type
+from anisocontact.case.bodies import Mesh, NodeGroup, Weighed, mesh_type
 from anisocontact.case.contact_laws import laws_or_python
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
 from anisocontact.case.output import Output
@@ -218,6 +218,10 @@ class Case(Section):
     )
     spring: dict[str, GroupSpring] = Field(
         default_factory=dict, description="springs of facet groups by name"
+    )
+    nodes: dict[str, NodeGroup] = Field(
+        default_factory=dict,
+        description='points and edges by "body.group", for prescribed displacements',
     )
     amplitude: dict[str, Any] = Field(default_factory=dict)
     path: dict[str, Any] = Field(default_factory=dict)

@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+import numpy as np
 
 from anisocontact.case import load
 from anisocontact.case.amplitudes import FunctionTable
@@ -68,6 +71,7 @@ def contents(built: Built) -> list[str]:
             f"contact   {section.slave} on {section.master}: {model.count_facets(section.slave)} "
             f"slave facets{penalty}, {rule}{passes}"
         )
+    lines += _points(built)
     for rigid in problem.rigid.bodies:
         how = "free where a step frees it" if rigid.free else "moved as prescribed"
         at = ", ".join(f"{v:g}" for v in rigid.reference)
@@ -79,3 +83,15 @@ def contents(built: Built) -> list[str]:
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
     lines += [f"warning   {text}" for text in (*built.doubts(), *built.solver.cautions)]
     return [*lines, *(f"warning   {line}" for line in coarse_slaves(problem.contacts))]
+
+
+def _points(built: Built) -> Iterator[str]:
+    """What was found for the names of points and edges; collective."""
+    model = built.problem.model
+    for name in built.file.case.nodes:
+        x = model.space.tabulate_dof_coordinates()[model.nodes(name)]
+        places = np.concatenate(built.problem.comm.allgather(x))
+        shown = np.where(np.abs(places) > 1e-9 * np.abs(places).max(), places, 0.0)[0]
+        at = ", ".join(f"{v:.6g}" for v in shown)
+        where = f"at ({at})" if len(places) == 1 else "on a line"
+        yield f"nodes     {name}: {len(places)} {where}"

@@ -12,6 +12,7 @@ from anisocontact.mesh.idealisation import (
 )
 from anisocontact.mesh.inp import read_inp
 from anisocontact.mesh.model import Model
+from anisocontact.mesh.node_groups import node_near, nodes_along
 from anisocontact.mesh.placement import Placement, Rotation
 from anisocontact.mesh.readers import register_reader, whole_reader
 from anisocontact.mesh.selectors import make_selector, register_selector, selectors
@@ -56,6 +57,8 @@ __all__ = [
     "make_idealisation",
     "make_selector",
     "make_shape",
+    "node_near",
+    "nodes_along",
     "read_gmsh",
     "read_inp",
     "register_reader",

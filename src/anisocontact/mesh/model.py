@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import MPI, create_mesh, locate_entities, vector_space
+from anisocontact.base.fenicsx import MPI, create_mesh, fem, locate_entities, vector_space
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.idealisation import SOLID, Idealisation
@@ -60,6 +60,7 @@ class Model:
         self.linear = tuple(linear)
         self._bodies = dict(bodies)
         self._facets = dict(facets)
+        self._nodes: dict[str, Ints] = {}
 
     @classmethod
     def from_arrays(
@@ -176,6 +177,39 @@ class Model:
             InputError: No such group; the line suggests the nearest name.
         """
         return _looked_up(self._facets, name, "facet group", field)
+
+    def name_nodes(self, name: str, nodes: Ints) -> None:
+        """Give nodes a name by which displacements are prescribed: points and edges.
+
+        Args:
+            name: "body.group".
+            nodes: Local numbers, of those this rank owns.
+
+        Raises:
+            InputError: There is a group of that name.
+        """
+        if name in self._facets or name in self._nodes:
+            raise InputError(f"{name!r} given, there is a group of that name already", "nodes")
+        self._nodes[name] = nodes
+
+    def nodes(self, name: str, field: str = "") -> Ints:
+        """Nodes of a group that this rank owns, of facets or of nodes with a name.
+
+        Args:
+            name: "body.group".
+            field: Where the name was written, for the message.
+
+        Returns:
+            Their local numbers, (nodes,).
+
+        Raises:
+            InputError: No such group; the line suggests the nearest name.
+        """
+        if name in self._nodes:
+            return self._nodes[name]
+        dim = self.mesh.topology.dim - 1
+        nodes = fem.locate_dofs_topological(self.space, dim, self.facets(name, field))
+        return np.asarray(nodes[nodes < self.space.dofmap.index_map.size_local])
 
     def boundary(self, name: str, field: str = "") -> Ints:
         """Local facets of a group that has to lie on the boundary; the call is collective.

@@ -7,14 +7,14 @@ import numpy.typing as npt
 
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import MPI, Vec, fem
+from anisocontact.base.fenicsx import MPI, Vec
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.step import AXES, Goal, Step
 from anisocontact.solver.terms.turn import Turn
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
-Support = tuple[str, int]  # facet group, axis
+Support = tuple[str, int]  # group of facets or nodes, axis
 
 
 #: Displacements that count as the same, over the largest coordinate.
@@ -134,13 +134,13 @@ class Supports:
             if isinstance(goal, Turn | Course):
                 self._goals[key] = None
         for group, values in step.displacement.items():
-            self._model.facets(group, f"step {step.name!r}.displacement")
+            self._model.nodes(group, f"step {step.name!r}.displacement")
             for name, given in values.items():
                 self._goals.pop((group, AXES.index(name)), None)
                 if given is not None:
                     self._goals[group, AXES.index(name)] = given
         for group, turn in step.turned_groups().items():
-            self._model.facets(group, f"step {step.name!r}.rotation")
+            self._model.nodes(group, f"step {step.name!r}.rotation")
             for axis in range(3):
                 self._goals.pop((group, axis), None)
                 self._goals[group, axis] = turn
@@ -176,12 +176,7 @@ class Supports:
 
     def _owned_nodes(self, group: str) -> Ints:
         if group not in self._nodes:
-            space = self._model.space
-            nodes = fem.locate_dofs_topological(
-                space, self._model.idealisation.dim - 1, self._model.facets(group)
-            )
-            owned = nodes[nodes < space.dofmap.index_map.size_local]
-            self._nodes[group] = owned.astype(np.int64)
+            self._nodes[group] = self._model.nodes(group).astype(np.int64)
         return self._nodes[group]
 
     def _clash(

@@ -1,0 +1,108 @@
+"""Groups of nodes that are no facets: points and edges of bodies, by where they are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.errors import InputError
+
+if TYPE_CHECKING:
+    from anisocontact.mesh.model import Model
+
+__all__ = ["node_near", "nodes_along"]
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int32]
+
+#: Distance from a line that is rounding of mesh files, over the size of the body.
+ROUNDED = 1e-5
+#: Difference of two distances over the size of the body below which both are the nearest.
+SAME = 1e-9
+
+
+def node_near(model: Model, body: str, point: npt.ArrayLike, field: str = "") -> Ints:
+    """The node of a body that is nearest to a point; collective.
+
+    Args:
+        model: The mesh.
+        body: Name of the body.
+        point: The point, (3,), length.
+        field: Where it was written, for messages.
+
+    Returns:
+        Its local number on the rank that owns it, nothing on others.
+
+    Raises:
+        InputError: No such body, or several nodes at the same distance.
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+        >>> node = node_near(model, "block", (0.4, 0.0, 1.2))
+        >>> model.space.tabulate_dof_coordinates()[node].tolist()
+        [[0.5, 0.0, 1.0]]
+    """
+    nodes, x, size = _nodes_of(model, body, field)
+    away = np.linalg.norm(x - np.asarray(point, dtype=float), axis=1)
+    least = min(model.mesh.comm.allgather(float(away.min(initial=np.inf))))
+    found: Ints = nodes[away <= least + SAME * size]
+    count = model.mesh.comm.allreduce(len(found))
+    if count > 1:
+        text = f"{count} nodes of {body!r} are {least:.4g} from it; give a point nearer to one"
+        raise InputError(text, field)
+    return found
+
+
+def nodes_along(
+    model: Model, body: str, start: npt.ArrayLike, end: npt.ArrayLike, field: str = ""
+) -> Ints:
+    """The nodes of a body on a straight line between two points; collective.
+
+    Args:
+        model: The mesh.
+        body: Name of the body.
+        start: Where the line begins, (3,), length.
+        end: Where it ends, (3,), length.
+        field: Where it was written, for messages.
+
+    Returns:
+        Their local numbers, those this rank owns.
+
+    Raises:
+        InputError: No such body, no node on the line, or a line without length.
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+        >>> len(nodes_along(model, "block", (0, 0, 1), (1, 0, 1)))
+        3
+    """
+    nodes, x, size = _nodes_of(model, body, field)
+    first, last = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    way = last - first
+    length = float(np.linalg.norm(way))
+    if not length > ROUNDED * size:
+        raise InputError("start and end are one point", field)
+    share = np.clip((x - first) @ way / length**2, 0.0, 1.0)
+    off = np.linalg.norm(x - first - share[:, None] * way, axis=1)
+    found: Ints = nodes[off <= ROUNDED * size]
+    if not model.mesh.comm.allreduce(len(found)):
+        least = min(model.mesh.comm.allgather(float(off.min(initial=np.inf))))
+        raise InputError(
+            f"no node of {body!r} is on the line, the nearest is {least:.4g} off", field
+        )
+    return found
+
+
+def _nodes_of(model: Model, body: str, field: str) -> tuple[Ints, Floats, float]:
+    """Nodes of a body that this rank owns, where they are, and the size of the body."""
+    space, comm = model.space, model.mesh.comm
+    nodes = np.unique(space.dofmap.list[model.cells(body, field)])
+    nodes = nodes[nodes < space.dofmap.index_map.size_local].astype(np.int32)
+    x = np.asarray(space.tabulate_dof_coordinates())[nodes]
+    low = np.min(comm.allgather(x.min(axis=0, initial=np.inf)), axis=0)
+    high = np.max(comm.allgather(x.max(axis=0, initial=-np.inf)), axis=0)
+    return nodes, x, float(np.max(high - low))
