@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from anisocontact.base import registry
-from anisocontact.base.errors import InputError
+from anisocontact.base.kinds import Kinds
 from anisocontact.base.registry import Entry
 from anisocontact.bulk.hyperelastic import (
     NeoHookean,
@@ -19,9 +18,10 @@ from anisocontact.bulk.plasticity import Hill, Plastic
 from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
 from anisocontact.bulk.viscoelastic import Viscoelastic
 
-_MATERIALS: dict[str, type[Any]] = {
-    model.entry.name: model
-    for model in (
+_MATERIALS = Kinds(
+    "material",
+    "model",
+    (
         LinearElastic,
         Orthotropic,
         TransverselyIsotropic,
@@ -34,8 +34,8 @@ _MATERIALS: dict[str, type[Any]] = {
         Viscoelastic,
         Plastic,
         Hill,
-    )
-}
+    ),
+)
 
 
 def register_material[T: type[Any]](model: T) -> T:
@@ -55,9 +55,7 @@ def register_material[T: type[Any]](model: T) -> T:
         Traceback (most recent call last):
         anisocontact.base.errors.InputError: material: 'linear-elastic' is registered already
     """
-    if model.entry.name in _MATERIALS:
-        raise InputError(f"{model.entry.name!r} is registered already", field="material")
-    _MATERIALS[model.entry.name] = model
+    _MATERIALS.add(model)
     return model
 
 
@@ -71,7 +69,7 @@ def materials() -> tuple[Entry, ...]:
         >>> [entry.name for entry in materials()][0]
         'linear-elastic'
     """
-    return tuple(model.entry for model in _MATERIALS.values())
+    return _MATERIALS.entries()
 
 
 def make_material(model: str, *, field: str = "", **parameters: Any) -> Material:
@@ -92,7 +90,5 @@ def make_material(model: str, *, field: str = "", **parameters: Any) -> Material
         >>> make_material("linear-elastic", E=210e3, nu=0.3).young
         210000.0
     """
-    entry = registry.entry(materials(), model, f"{field}.model" if field else "model")
-    registry.values(entry, parameters, field)
-    found: Material = _MATERIALS[model](**parameters, field=field)
+    found: Material = _MATERIALS.make(model, field, parameters)
     return found

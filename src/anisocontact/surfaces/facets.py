@@ -109,19 +109,6 @@ class FacetSets:
         within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], counts)
         return FacetSets(offsets, self.facets[np.repeat(self.offsets[which], counts) + within])
 
-    def united(self, other: FacetSets) -> FacetSets:
-        """Sets with the facets of both.
-
-        Args:
-            other: Sets for the same points.
-
-        Returns:
-            The union for each point.
-        """
-        both = [np.union1d(self[i], other[i]) for i in range(len(self))]
-        offsets = np.concatenate(([0], np.cumsum([b.size for b in both]))).astype(np.int64)
-        return FacetSets(offsets, np.concatenate([*both, []]).astype(np.int32))
-
 
 class FacetSurface:
     """A surface of facets of any of the `TOPOLOGIES`, mixed if need be.

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from anisocontact.surfaces.facets import FacetSets, FacetSurface
+from anisocontact.surfaces.facets import FacetSurface
 
 TOPOLOGIES = ("tri3", "tri6", "quad4", "quad8", "quad9")
 CUBE = np.array([[i, j, k] for k in (0, 1) for j in (0, 1) for i in (0, 1)], dtype=float)
@@ -213,7 +213,7 @@ def test_excluded_facets(meshes: SimpleNamespace) -> None:
 
 
 def test_rings_of_neighbours(meshes: SimpleNamespace) -> None:
-    """0, 1 and 2 rings about a facet of a 7 x 7 grid: 1, 9 and 25 facets; a union with others."""
+    """0, 1 and 2 rings about a facet of a 7 x 7 grid: 1, 9 and 25 facets."""
     x, y = np.meshgrid(np.arange(8.0), np.arange(8.0), indexing="ij")
     points = np.column_stack((x.ravel(), y.ravel(), np.zeros(64)))
     surface = FacetSurface(points, meshes.grid(8, 8), "quad4")
@@ -222,5 +222,3 @@ def test_rings_of_neighbours(meshes: SimpleNamespace) -> None:
     r = surface.rings([24, 0], 1)
     assert r[0].tolist() == [16, 17, 18, 23, 24, 25, 30, 31, 32]
     assert r[1].tolist() == [0, 1, 7, 8]
-    both = r.united(FacetSets(np.array([0, 1, 1]), np.array([48], np.int32)))
-    assert both[0].tolist() == [*r[0].tolist(), 48] and both[1].tolist() == [0, 1, 7, 8]
