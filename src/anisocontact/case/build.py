@@ -212,8 +212,9 @@ def _name_nodes(case: Case, model: Model) -> None:
         if table.near is not None:
             found = node_near(model, body, table.near, place)
         else:
-            ends: Any = (table.start, table.end)
-            found = nodes_along(model, body, *ends, place)
+            start: Any = table.start
+            end: Any = table.end
+            found = nodes_along(model, body, start, end, place)
         with objects.within(place):
             model.name_nodes(name, found)
 
