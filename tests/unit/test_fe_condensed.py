@@ -223,14 +223,6 @@ def test_memory_limits_are_seen(fe: Any, monkeypatch: pytest.MonkeyPatch) -> Non
     assert "needs 0.0 GB, 0.0 GB are free" in choice.reason
 
 
-def _rubber(fe: Any) -> Problem:
-    from anisocontact.bulk import make_material
-
-    block = fe.block(fe.interface())
-    rubber = make_material("neo-hookean", E=1.0, nu=0.3)
-    return Problem(block.model, {"block": rubber}, [block.contact])
-
-
 def _no_contact(fe: Any) -> Problem:
     block = fe.block(fe.interface())
     return Problem(block.model, {"block": block.material}, [])
@@ -239,7 +231,6 @@ def _no_contact(fe: Any) -> Problem:
 @pytest.mark.parametrize(
     ("make", "options", "message"),
     [
-        (_rubber, {}, r"strategy: 'condensed' given, but material.block is not linear"),
         (_no_contact, {}, r"strategy: 'condensed' given, but there is no contact"),
         (
             lambda fe: fe.block(fe.interface()).problem,

@@ -19,7 +19,7 @@ __all__ = ["FAST", "lack_of_compiler", "machine_key"]
 
 #: Arguments for code of this machine alone whose sums may be in any order, and in which what is not
 #: a number stays none: an iterate far off is judged by that.
-FAST = ("-O3", "-march=native", "-ffast-math", "-fno-finite-math-only", "-g0")
+FAST = ("-O2", "-march=native", "-ffast-math", "-fno-finite-math-only", "-g0")
 
 #: What a compiled form begins with.
 _PROBE = "#include <Python.h>\n"

@@ -12,7 +12,7 @@ _ENTRIES = [
         (DIRECT, "one factorisation of the whole system in every Newton iteration"),
         (
             CONDENSED,
-            "one factorisation of the linear bodies for the whole run, iterations on the contact",
+            "few factorisations of the bodies, one if they are linear, iterations on the contact",
         ),
         (ITERATIVE, "Krylov iterations on the whole system"),
     )

@@ -237,8 +237,13 @@ class Newton:
     def _jacobian(self, _: SNES, x: Vec, matrix: Mat, __: Mat) -> None:
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             grown = self._problem.tangent(x, matrix)
+        if grown:
+            self._outgrow()
+
+    def _outgrow(self) -> None:
+        """The pattern of the tangent has grown."""
         # on several processes PETSc would go on with the symbolic factorisation of the old pattern
-        if grown and self._problem.comm.size > 1:
+        if self._problem.comm.size > 1:
             self.snes.getKSP().reset()
 
     def _damp(self, _: Vec, direction: Vec) -> bool:

@@ -74,6 +74,15 @@ class CoupledTangent:
         self._keys = keys.copy()
         self._given = np.full(1, -1, dtype=np.int64)
 
+    def placed(self) -> tuple[Keys, Keys, Floats]:
+        """Couplings that have a place: nodes of rows and columns of the whole system, and blocks.
+
+        Blocks are those of the last `make_room`, (k, 9); of a matrix just made there are none.
+        """
+        row, column = self._places()
+        blocks = self._blocks if len(self._blocks) == len(row) else np.zeros((len(row), 9))
+        return row, column, blocks
+
     @cached_property
     def _of_bulk(self) -> scipy.sparse.csr_array:
         """Pattern of the bulk in the rows of this rank, columns of the whole system."""

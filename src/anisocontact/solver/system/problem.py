@@ -18,6 +18,7 @@ from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import ForceBalance
 from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.contact_work import ContactWork
+from anisocontact.solver.system.coupled import CoupledTangent
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.memory import BEGUN, Memory
@@ -138,6 +139,11 @@ class Problem(AssembledSystem):
     def linear(self) -> bool:
         """Whether all bodies are linear."""
         return isinstance(self.bulk, LinearBulk)
+
+    @property
+    def coupled(self) -> CoupledTangent | None:
+        """Couplings between bodies in the tangent; None where there cannot be any."""
+        return self._tangent.coupled
 
     def constrained(self) -> npt.NDArray[np.int64]:
         """Unknowns whose row says what they are, prescribed or constrained: local numbers."""

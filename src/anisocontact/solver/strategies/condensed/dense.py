@@ -261,12 +261,12 @@ class KeptFactor:
         return x, left
 
 
-def gmres(
-    step: Callable[[Singles], tuple[Singles, Singles]],
-    b: Singles,
+def gmres[T: (np.float32, np.float64)](
+    step: Callable[[npt.NDArray[T]], tuple[npt.NDArray[T], npt.NDArray[T]]],
+    b: npt.NDArray[T],
     rtol: float,
     most: int,
-) -> tuple[Singles, float, int]:
+) -> tuple[npt.NDArray[T], float, int]:
     """Generalised minimal residuals, preconditioned from the right, without restart.
 
     Args:

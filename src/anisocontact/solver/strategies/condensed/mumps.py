@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from anisocontact.base.fenicsx import PETSc, call_petsc, check_memory, has_petsc
+from anisocontact.base.fenicsx import Mat, PETSc, call_petsc, check_memory, has_petsc
 from anisocontact.solver.strategies.condensed.factor import (
     Eliminated,
     aij,
@@ -25,9 +25,9 @@ Floats = npt.NDArray[np.float64]
 #: MUMPS: what a solution does with the Schur complement, and "the interior alone".
 _ICNTL_SCHUR_SOLUTION, _INTERIOR_ALONE = 26, 0
 #: MUMPS: workspace beyond what it expects to need, percent: tried one after the other.
-_ICNTL_WORKSPACE, _WORKSPACE = 14, (30, 200, 1000)
+_ICNTL_WORKSPACE, WORKSPACE = 14, (30, 200, 1000)
 #: MUMPS: what it says where its workspace was too small.
-_TOO_SMALL = (-8, -9, -14, -15, -17, -20)
+TOO_SMALL = (-8, -9, -14, -15, -17, -20)
 
 
 @cache
@@ -64,9 +64,9 @@ class MumpsFactor(Eliminated):
         self._border = border
         self._matrix = aij(matrix)
         self._matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-        for extra in _WORKSPACE:
-            self._factorise(extra)
-            if self._factor.getMumpsInfog(1) not in _TOO_SMALL:
+        for extra in WORKSPACE:
+            self._pc, self._factor = partial_factor(self._matrix, border, extra)
+            if self._factor.getMumpsInfog(1) not in TOO_SMALL:
                 break
         if self._pc.getFailedReason() != 0:
             check_memory(self._pc)
@@ -100,32 +100,45 @@ class MumpsFactor(Eliminated):
         self._pc.destroy()
         self._matrix.destroy()
 
-    def _factorise(self, extra: int) -> None:
-        """Factorise with so many percent of workspace beyond what MUMPS expects."""
-        self._pc = PETSc.PC().create(comm=PETSc.COMM_SELF)
-        self._pc.setOperators(self._matrix)
-        self._pc.setType(PETSc.PC.Type.LU)
-        self._pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
-        self._pc.setFactorSetUpSolverType()
-        self._factor = self._pc.getFactorMatrix()
-        self._factor.setMumpsIcntl(_ICNTL_WORKSPACE, extra)
-        numbers = PETSc.IS().createGeneral(self._border.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
-        call_petsc("MatFactorSetSchurIS", self._factor, numbers)
-        numbers.destroy()
-        self._pc.setUp()
-
     def _schur_view(self, count: int) -> Floats:
-        """PETSc's dense matrix as an array without a copy, made symmetric to the last bit."""
-        handle, status = ctypes.c_void_p(), ctypes.c_int()
-        call_petsc(
-            "MatFactorGetSchurComplement",
-            self._factor,
-            ctypes.byref(handle),
-            ctypes.byref(status),
-        )
-        entries = ctypes.POINTER(ctypes.c_double)()
-        call_petsc("MatDenseGetArrayRead", handle, ctypes.byref(entries))
-        by_columns: Any = np.ctypeslib.as_array(entries, (count, count))
-        view = np.asarray(by_columns.T)
+        """S without a copy, made symmetric to the last bit."""
+        _, view = schur_matrix(self._factor, count)
         mirror(view)
         return view
+
+
+def partial_factor(matrix: Mat, border: Ints, extra: int, prefix: str = "") -> tuple[Any, Mat]:
+    """Factorise with a border left.
+
+    Args:
+        matrix: The matrix.
+        border: Numbers of the border unknowns.
+        extra: Percent of workspace beyond what MUMPS expects.
+        prefix: Prefix of PETSc's options.
+
+    Returns:
+        PETSc's preconditioner, which owns it, and the factor.
+    """
+    pc = PETSc.PC().create(comm=PETSc.COMM_SELF)
+    pc.setOperators(matrix)
+    pc.setType(PETSc.PC.Type.LU)
+    pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+    pc.setFactorSetUpSolverType()
+    factor = pc.getFactorMatrix()
+    factor.setOptionsPrefix(prefix)
+    factor.setMumpsIcntl(_ICNTL_WORKSPACE, extra)
+    numbers = PETSc.IS().createGeneral(border.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
+    call_petsc("MatFactorSetSchurIS", factor, numbers)
+    numbers.destroy()
+    pc.setUp()
+    return pc, factor
+
+
+def schur_matrix(factor: Mat, count: int) -> tuple[ctypes.c_void_p, Floats]:
+    """PETSc's dense matrix of a factor with a border of `count` unknowns, and its entries."""
+    handle, status = ctypes.c_void_p(), ctypes.c_int()
+    call_petsc("MatFactorGetSchurComplement", factor, ctypes.byref(handle), ctypes.byref(status))
+    entries = ctypes.POINTER(ctypes.c_double)()
+    call_petsc("MatDenseGetArrayRead", handle, ctypes.byref(entries))
+    by_columns: Any = np.ctypeslib.as_array(entries, (count, count))
+    return handle, np.asarray(by_columns.T)

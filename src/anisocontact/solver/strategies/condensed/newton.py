@@ -99,7 +99,7 @@ class CondensedNewton:
             self._system = system
             options = self._options | _LINEAR
             self._newton = Newton(system, self._prefix, options, self._on_iteration)
-            system.tolerance = self._newton.snes.getTolerances()[0]
+            system.forcing.tolerance = self._newton.snes.getTolerances()[0]
             pc = self._newton.snes.getKSP().getPC()
             pc.setType(PETSc.PC.Type.PYTHON)
             pc.setPythonContext(system)

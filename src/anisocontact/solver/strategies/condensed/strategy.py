@@ -1,11 +1,13 @@
-"""Linear bodies condensed once for the whole run, Newton's method on what can be touched."""
+"""Bodies condensed on what can be touched: linear ones for good, others to precondition."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
 from anisocontact.base.strategies import CONDENSED, strategy_entry
+from anisocontact.solver.strategies.condensed import bordered
 from anisocontact.solver.strategies.condensed.condensed import Condensed
+from anisocontact.solver.strategies.condensed.lagged_newton import LaggedNewton
 from anisocontact.solver.strategies.condensed.newton import CondensedNewton
 from anisocontact.solver.strategies.condensed.reach import contact_unknowns
 from anisocontact.solver.strategies.costs import memory_needed, too_large
@@ -14,13 +16,15 @@ from anisocontact.solver.terms.persistent import Arrays
 
 #: Contact unknowns beyond which their dense matrix costs more than it saves.
 MOST_CONTACT = 8000
+#: Unknowns up to which a factorisation of bodies that are not linear is as cheap.
+LEAST_LAGGED = 2000
 
 
 class CondensedStrategy:
-    """Static condensation of linear bodies."""
+    """Static condensation: of linear bodies for good, of others as a preconditioner."""
 
     entry = strategy_entry(CONDENSED)
-    merit = "the bodies are linear: only their contact unknowns change"
+    merit = "bodies change little, linear ones not at all, while contact changes at once"
     reduces = True
 
     def obstacles(self, task: Task) -> Iterator[str]:
@@ -30,9 +34,9 @@ class CondensedStrategy:
             yield f"it runs in one process, {problem.comm.size} given"
         if not problem.contacts:
             yield "there is no contact"
-        if not problem.linear:
+        if not problem.linear and not bordered.reachable():
             names = [name for name, law in problem.materials.items() if not law.linear]
-            yield f"material.{names[0]} is not linear"
+            yield f"material.{names[0]} is not linear, and this PETSc has no MUMPS for that"
         if problem.rigid.faces:
             yield "a face follows a rigid body"
         yield from task.asked_solver()
@@ -40,7 +44,9 @@ class CondensedStrategy:
     def costs(self, task: Task) -> Iterator[str]:
         """Why it would not pay."""
         problem = task.problem
-        if problem.check_held(task.steps):
+        if not problem.linear and problem.unknowns < LEAST_LAGGED:
+            yield f"{problem.unknowns} unknowns: a factorisation costs no more than iterations"
+        if problem.linear and problem.check_held(task.steps):
             yield "a body is held by contact alone"
         count = contact_unknowns(problem, task.steps)
         if count > MOST_CONTACT:
@@ -59,7 +65,10 @@ class CondensedStrategy:
         on_iteration: Callable[[int, float], None],
         note: Callable[[str], None],
         kept: Arrays,
-    ) -> CondensedNewton:
-        """Newton's method on the contact unknowns."""
+    ) -> CondensedNewton | LaggedNewton:
+        """Newton's method on the contact unknowns; on all of them where bodies are not linear."""
+        if not task.problem.linear:
+            task.problem.predict_contact(task.steps)
+            return LaggedNewton(task.problem, task.prefix, task.options, on_iteration, note)
         condensed = Condensed(task.problem, task.steps, note, kept)
         return CondensedNewton(condensed, task.prefix, task.options, on_iteration)

@@ -12,6 +12,7 @@ from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.condensed.dense import ContactTangent, KeptFactor
 from anisocontact.solver.strategies.condensed.parts import Condensation
 from anisocontact.solver.strategies.condensed.patterns import InteriorState, Patterns
+from anisocontact.solver.strategies.forcing import Forcing
 from anisocontact.solver.strategies.newton import TOLERANCE
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import ForceBalance, Magnitudes, closed
@@ -23,13 +24,6 @@ Flags = npt.NDArray[np.bool_]
 
 #: Random patterns of signs that measure the norm of the forces at the supports.
 _SAMPLES = 8
-#: Residual of a correction over the right-hand side, far from the solution.
-_ROUGH = 1e-2
-#: The same where the last correction has not brought the forces nearer to balance.
-_CAREFUL = 1e-5
-#: The same where multipliers follow, over the forces out of balance, and over all.
-_FINE, _FINEST = 1e-5, 1e-13
-_TINY = float(np.finfo(np.float64).tiny)
 
 
 class ContactSystem(AssembledSystem):
@@ -53,7 +47,7 @@ class ContactSystem(AssembledSystem):
         way: States that bodies that flow or fall have gone through since the last
             `set_load_factor`.
         balance: Forces of the last evaluation, of the unknowns of Newton's method.
-        tolerance: Residual over the forces at work at which Newton stops.
+        forcing: How precise corrections are.
         outgrown: Whether a slave point of the last evaluation met a facet out of reach.
         solver: Solves for Newton corrections.
     """
@@ -86,10 +80,9 @@ class ContactSystem(AssembledSystem):
         )
         self.solver = KeptFactor(self._tangent)
         self.balance = ForceBalance.none(len(self.places))
-        self.tolerance = TOLERANCE
         self.outgrown = False
         self.way: list[InteriorState] = []
-        self._before = np.inf
+        self.forcing = Forcing(TOLERANCE)
         self._load_norm = 0.0
         self._a, self._b, self._g = np.zeros(0), np.zeros(0), np.zeros(len(bulk.contact))
         self._evaluated: Floats | None = None
@@ -116,7 +109,7 @@ class ContactSystem(AssembledSystem):
         self._b = self.patterns.loads(free)
         self._g = self.patterns.load(self._a, self._b)
         self._load_norm = float(np.hypot(np.linalg.norm(load), np.linalg.norm(self._rigid.loads())))
-        self._before = np.inf
+        self.forcing.begin()
         self._v[self.bulk.prescribed] = supports
         self._values = self._rigid.values()
         self._evaluated, self.way = None, []
@@ -239,16 +232,8 @@ class ContactSystem(AssembledSystem):
 
     def apply(self, pc: Any, b: Vec, x: Vec) -> None:
         """Newton correction, for PETSc: a preconditioner that is the solution."""
-        relative = float(np.linalg.norm(b.array_r)) / max(self.balance.force_scale, _TINY)
-        # Newton squares the residual: no correction has to be better than that or than asked for;
-        # one that is rough takes points of a stiff contact from one status to another and back
-        rough = _ROUGH if relative < self._before else _CAREFUL
-        self._before = 0.5 * relative
-        rtol = max(min(rough, relative), 0.1 * self.tolerance / max(relative, _TINY))
-        if self.contact_term.follows:
-            # forces that take violations away are large beside those that are out of balance
-            size = max(float(np.linalg.norm(b.array_r)), _TINY)
-            rtol = max(_FINE * min(self.balance.norm / size, 1.0), _FINEST)
+        size = float(np.linalg.norm(b.array_r))
+        rtol = self.forcing.rtol(self, size)
         found = self.solver.solve(b.array_r, min(rtol, 0.1))
         if found is None:
             pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)

@@ -1,0 +1,141 @@
+"""Newton corrections by GMRES, with the interior of an old tangent and the contacts of now."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+
+from anisocontact.base.fenicsx import Mat
+from anisocontact.solver.strategies.condensed.bordered import BorderedLU
+from anisocontact.solver.strategies.condensed.dense import gmres
+from anisocontact.solver.strategies.condensed.touched import Touched
+from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.term import SingularError
+
+Floats = npt.NDArray[np.float64]
+
+#: Most Krylov iterations of a correction before a new factor is made, if that costs no more.
+_PATIENCE = 20
+#: Corrections whose cost is the cost of now: one alone depends on how many points change.
+_LAST = 10
+#: ... and how far above the average it has to be, as it scatters.
+_MARGIN = 1.15
+#: Residual of a correction over its right-hand side that is still a direction for a line search.
+_USEFUL = 0.5
+
+
+class LaggedFactor:
+    """Solves with the tangent J of now by GMRES, preconditioned from the right.
+
+    The preconditioner is an earlier tangent, factorised once, whose border has the contacts of now:
+    `P = J_old + C - C_old` with C what acts on the unknowns that contact can couple. All that
+    changes at once is in it, and what it lacks is the change of the bodies since.
+
+    A factor is made anew where a decimal of the residual costs more now than on average since the
+    last one, with that one counted in: no other moment costs less in the long run, as long as the
+    cost grows with the age of the factor.
+
+    Args:
+        problem: The problem, on one process.
+        note: Told of every factorisation, in a line.
+
+    Attributes:
+        factors: Factorisations so far.
+        krylov: Krylov iterations of every correction so far.
+    """
+
+    def __init__(self, problem: Problem, note: Callable[[str], None]) -> None:
+        self._problem, self._note = problem, note
+        self._factor: BorderedLU | None = None
+        self._touched: Touched | None = None
+        self._old = scipy.sparse.csr_array((0, 0))
+        self._single, self._due = True, True
+        self._spent: list[tuple[float, float]] = []
+        self.factors = 0
+        self.krylov: list[int] = []
+
+    def outgrow(self) -> None:
+        """Take it that contacts couple other nodes than before."""
+        self._due = True
+
+    def solve(self, tangent: Mat, b: Floats, rtol: float) -> Floats | None:
+        """Correction for a right-hand side; None where the tangent is singular.
+
+        Args:
+            tangent: J.
+            b: Right-hand side, (n,).
+            rtol: Norm of the residual over that of `b` at which to stop.
+        """
+        fresh = self._due and self._renewed(tangent)
+        self.krylov.append(0)
+        found, left = self._corrected(tangent, b, rtol, fresh)
+        if not left <= rtol and not fresh and self._renewed(tangent):
+            found, left = self._corrected(tangent, b, rtol, True)
+        if not left <= rtol and self._single and self._doubled(tangent):
+            found, left = self._corrected(tangent, b, rtol, True)
+        return found if left < _USEFUL else None
+
+    def close(self) -> None:
+        """Give back the memory."""
+        if self._factor is not None:
+            self._factor.close()
+        self._factor = None
+
+    def _corrected(self, tangent: Mat, b: Floats, rtol: float, fresh: bool) -> tuple[Floats, float]:
+        """What Krylov iterations find, and the norm of its residual over that of `b`."""
+        factor, touched = self._factor, self._touched
+        if factor is None or touched is None:
+            return b, np.inf
+        try:
+            spent = factor.renew(touched.tangent() - self._old)
+        except SingularError:
+            return b, np.inf
+        given, direction, product = (tangent.createVecRight() for _ in range(3))
+
+        def step(v: Floats) -> tuple[Floats, Floats]:
+            given.array[:] = v
+            factor.solve(given, direction)
+            tangent.mult(direction, product)
+            return direction.array_r, product.array_r
+
+        most = max(_PATIENCE, int(factor.solutions_per_factor))
+        found, left, used = gmres(step, b, rtol, most)
+        self.krylov[-1] += used
+        self._count(factor, spent + used, left, fresh)
+        return found, left
+
+    def _count(self, factor: BorderedLU, cost: float, left: float, fresh: bool) -> None:
+        """Compare what this correction has cost with the average since the last factor."""
+        if not np.isfinite(left):
+            return
+        if fresh:
+            self._spent = [(factor.solutions_per_factor, 0.0)]
+        self._spent.append((cost, -np.log10(max(left, 1e-16))))
+        total, last = np.sum(self._spent, axis=0), np.sum(self._spent[-_LAST:], axis=0)
+        worn = last[0] * total[1] > _MARGIN * last[1] * total[0]
+        self._due = len(self._spent) > _LAST and bool(worn)
+
+    def _renewed(self, tangent: Mat) -> bool:
+        """Make a factor of this tangent; the old one stays where there is none."""
+        touched = Touched(self._problem)
+        try:
+            factor = BorderedLU(tangent, touched.unknowns, self._single)
+        except SingularError:
+            return False
+        self.close()
+        self._factor, self._touched, self._old = factor, touched, touched.tangent()
+        self._due = False
+        self.factors += 1
+        self._note(
+            f"condensing {tangent.getSize()[0]} unknowns on {len(touched.unknowns)} that contact "
+            f"can couple, in {'single' if self._single else 'double'} precision (MUMPS)"
+        )
+        return True
+
+    def _doubled(self, tangent: Mat) -> bool:
+        """Make a factor in double precision, from now on."""
+        self._single = False
+        return self._renewed(tangent)

@@ -1,0 +1,84 @@
+"""Newton's method on all unknowns whose corrections come from an old factor and GMRES."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, override
+
+import numpy as np
+
+from anisocontact.base.fenicsx import PETSc, Vec
+from anisocontact.solver.strategies.condensed.lagged import LaggedFactor
+from anisocontact.solver.strategies.forcing import Forcing
+from anisocontact.solver.strategies.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.system.problem import Problem
+
+#: Residual of a correction over its right-hand side, far from the solution: ten times rougher,
+#: points of a stiff contact end an iteration in another status, and iterations are more.
+ROUGH = 1e-3
+#: The linear system is solved by `LaggedNewton.apply`.
+LINEAR: dict[str, OptionValue] = {"ksp_type": "preonly", "pc_type": "python"}
+
+
+class LaggedNewton(Newton):
+    """SNES as `direct` has it, with inexact corrections by a `LaggedFactor`.
+
+    Residual, tangent and line search are those of `direct`.
+
+    Args:
+        problem: The problem, on one process.
+        prefix: Prefix of the PETSc options.
+        options: PETSc options of SNES without prefix.
+        on_iteration: Called with the number of the iteration and the residual.
+        note: Told what is worth a line in the log.
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        prefix: str,
+        options: Mapping[str, OptionValue],
+        on_iteration: Callable[[int, float], None],
+        note: Callable[[str], None],
+    ) -> None:
+        super().__init__(problem, prefix, dict(options) | LINEAR, on_iteration)
+        self._note = note
+        self._factor = LaggedFactor(problem, note)
+        self._forcing = Forcing(self.snes.getTolerances()[0], ROUGH)
+        pc = self.snes.getKSP().getPC()
+        pc.setType(PETSc.PC.Type.PYTHON)
+        pc.setPythonContext(self)
+
+    @override
+    def solve(
+        self, x: Vec, full_steps: bool = False, damping: Callable[[], float] | None = None
+    ) -> NewtonResult:
+        self._forcing.begin()
+        return super().solve(x, full_steps, damping)
+
+    @override
+    def close(self) -> None:
+        krylov = self._factor.krylov
+        if krylov:
+            self._note(
+                f"{self._factor.factors} factorisations for {len(krylov)} corrections; Krylov "
+                f"iterations of a correction: {np.mean(krylov):.1f} on average, at most "
+                f"{max(krylov)}"
+            )
+        self._factor.close()
+        super().close()
+
+    def apply(self, pc: Any, b: Vec, x: Vec) -> None:
+        """Newton correction, for PETSc: a preconditioner that is the solution."""
+        tangent, _ = pc.getOperators()
+        right = np.array(b.array_r)
+        rtol = self._forcing.rtol(self._problem, float(np.linalg.norm(right)))
+        found = self._factor.solve(tangent, right, rtol)
+        if found is None:
+            pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
+            found = np.zeros(len(right))
+        x.array[:] = found
+
+    @override
+    def _outgrow(self) -> None:
+        self._factor.outgrow()

@@ -1,0 +1,71 @@
+"""What acts on nodes that can be touched: the part of a tangent that changes at once."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import scipy.sparse
+
+from anisocontact.solver.strategies.condensed.dense import Places
+from anisocontact.solver.system.problem import Problem
+
+Ints = npt.NDArray[np.int64]
+
+
+class Touched:
+    """Unknowns that contact can couple, and the derivatives there of all but the bodies.
+
+    Args:
+        problem: The problem, on one process.
+
+    Attributes:
+        unknowns: Their numbers, increasing, (c,).
+    """
+
+    def __init__(self, problem: Problem) -> None:
+        self._problem = problem
+        self._places = Places(np.arange(problem.unknowns))
+        self.unknowns: Ints = self._select()
+
+    def tangent(self) -> scipy.sparse.csr_array:
+        """Derivatives of contacts, loads, springs and rigid bodies in these unknowns, (c, c).
+
+        Constraints are worked in; rows of prescribed unknowns are empty. They are those of the last
+        `Problem.tangent`.
+        """
+        problem, n = self._problem, self._problem.unknowns
+        total = self._places.total(problem.assembly.acting.blocks(), n)
+        if problem.coupled is not None:
+            row, column, blocks = problem.coupled.placed()
+            pairs = (blocks.reshape(-1, 3, 3), column, _starts(row, n // 3))
+            total = total + scipy.sparse.bsr_array(pairs, shape=(n, n)).tocsr()
+        gathering = problem.constraints.gathering()
+        if gathering is not None:
+            total = gathering @ total
+        own = total[self.unknowns][:, self.unknowns]
+        free = np.ones(n)
+        free[problem.constrained()] = 0.0
+        return (scipy.sparse.diags_array(free[self.unknowns]) @ own).tocsr()
+
+    def _select(self) -> Ints:
+        problem = self._problem
+        found = [c.couplable().astype(np.int64) for c in problem.contacts if not c.meshed]
+        extra = np.arange(problem.layout.owned // 3, problem.unknowns // 3)
+        if problem.coupled is not None:
+            row, column, _ = problem.coupled.placed()
+            found += [row, column]
+        nodes = np.unique(np.concatenate([extra, *found]))
+        unknowns = (3 * nodes[:, None] + np.arange(3)).reshape(-1)
+        gathering = problem.constraints.gathering()
+        if gathering is not None:
+            marks = np.zeros(problem.unknowns)
+            marks[unknowns] = 1.0
+            # forces on what follows others go to these
+            unknowns = np.union1d(unknowns, np.flatnonzero(abs(gathering) @ marks))
+        # an interior there has to be, if of one node
+        return unknowns[: problem.unknowns - 3]
+
+
+def _starts(row: Ints, nodes: int) -> Ints:
+    """Where the rows of nodes begin in increasing numbers of rows."""
+    return np.searchsorted(row, np.arange(nodes + 1))

@@ -1,0 +1,49 @@
+"""How precise corrections of Newton's method have to be where a Krylov method finds them."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from anisocontact.solver.strategies.newton import System
+
+#: Residual of a correction over its right-hand side where the last one has not brought the forces
+#: nearer to balance.
+_CAREFUL = 1e-5
+#: The same where multipliers follow, over the forces out of balance, and over all.
+_FINE, _FINEST = 1e-5, 1e-13
+_TINY = float(np.finfo(np.float64).tiny)
+
+
+class Forcing:
+    """Forcing terms of inexact Newton methods [Eisenstat Walker 1996].
+
+    Newton squares the residual: no correction has to be better than that or than asked for; one
+    that is rough takes points of a stiff contact from one status to another and back.
+
+    Args:
+        tolerance: Residual over the forces at work at which Newton stops.
+        rough: Residual of a correction over its right-hand side, far from the solution.
+    """
+
+    def __init__(self, tolerance: float, rough: float = 1e-2) -> None:
+        self.tolerance, self._rough = tolerance, rough
+        self._before = np.inf
+
+    def begin(self) -> None:
+        """Take it that an increment begins."""
+        self._before = np.inf
+
+    def rtol(self, system: System, size: float) -> float:
+        """Residual of the next correction over its right-hand side, at most.
+
+        Args:
+            system: The system at its last evaluation.
+            size: Norm of the right-hand side, force.
+        """
+        relative = size / max(system.balance.force_scale, _TINY)
+        rough = self._rough if relative < self._before else _CAREFUL
+        self._before = 0.5 * relative
+        if system.contact_term.follows:
+            # forces that take violations away are large beside those that are out of balance
+            return max(_FINE * min(system.balance.norm / max(size, _TINY), 1.0), _FINEST)
+        return max(min(rough, relative), 0.1 * self.tolerance / max(relative, _TINY))
