@@ -141,7 +141,7 @@ class Problem(AssembledSystem):
         return isinstance(self.bulk, LinearBulk)
 
     @property
-    def coupled(self) -> CoupledTangent | None:
+    def coupled_tangent(self) -> CoupledTangent | None:
         """Couplings between bodies in the tangent; None where there cannot be any."""
         return self._tangent.coupled
 

@@ -35,8 +35,8 @@ class Touched:
         """
         problem, n = self._problem, self._problem.unknowns
         total = self._places.total(problem.assembly.acting.blocks(), n)
-        if problem.coupled is not None:
-            row, column, blocks = problem.coupled.placed()
+        if problem.coupled_tangent is not None:
+            row, column, blocks = problem.coupled_tangent.placed()
             pairs = (blocks.reshape(-1, 3, 3), column, _starts(row, n // 3))
             total = total + scipy.sparse.bsr_array(pairs, shape=(n, n)).tocsr()
         gathering = problem.constraints.gathering()
@@ -51,8 +51,8 @@ class Touched:
         problem = self._problem
         found = [c.couplable().astype(np.int64) for c in problem.contacts if not c.meshed]
         extra = np.arange(problem.layout.owned // 3, problem.unknowns // 3)
-        if problem.coupled is not None:
-            row, column, _ = problem.coupled.placed()
+        if problem.coupled_tangent is not None:
+            row, column, _ = problem.coupled_tangent.placed()
             found += [row, column]
         nodes = np.unique(np.concatenate([extra, *found]))
         unknowns = (3 * nodes[:, None] + np.arange(3)).reshape(-1)
