@@ -95,7 +95,7 @@ _ELSEWHERE = {
     "step_size": _STEPS,
     "penalty": _STIFFNESS,
     "coefficients": "the table friction of a contact has them: friction = { coefficients = ... }",
-    "temperature": "there is no temperature",
+    "thermal": "expansion in the table of a material, and temperature in steps",
     "damping": "inertia is left out, and damping with it; contact laws may be viscous",
     "velocity": "a displacement and the duration of its step; inertia is left out",
     "max_iterations": "solver.options = { snes_max_it = 50 }",

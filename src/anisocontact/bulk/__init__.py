@@ -1,6 +1,7 @@
 """Materials of the bodies and the forces inside them."""
 
 from anisocontact.bulk.at_points import AtPoints
+from anisocontact.bulk.expansion import Expanding, Heated, bare
 from anisocontact.bulk.history import Before, BodyHistory, HistoryMaterial
 from anisocontact.bulk.hyperelastic import (
     NeoHookean,
@@ -36,6 +37,8 @@ __all__ = [
     "BodyHistory",
     "BodyPoints",
     "ElasticVolume",
+    "Expanding",
+    "Heated",
     "Hill",
     "HistoryMaterial",
     "LinearBulk",
@@ -58,6 +61,7 @@ __all__ = [
     "UserStress",
     "Viscoelastic",
     "Yeoh",
+    "bare",
     "cauchy_stress",
     "deformation_gradient",
     "make_material",

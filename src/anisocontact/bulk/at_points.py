@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import basix, compiled_expression, fem, ufl
-from anisocontact.mesh import Model
+from anisocontact.mesh import Idealisation, Model
 
 Floats = npt.NDArray[np.float64]
 
@@ -25,6 +25,7 @@ class AtPoints:
         body: Its name.
         history: Internal variables by name with their shape, () of a number.
         degree: Degree of the quadrature at whose points they live.
+        ideal: How gradients are seen; as those of the mesh if left out.
 
     Attributes:
         points: The points in the reference cell, (points, 3).
@@ -38,12 +39,17 @@ class AtPoints:
     stores: bool
 
     def __init__(
-        self, model: Model, body: str, history: Mapping[str, tuple[int, ...]], degree: int
+        self,
+        model: Model,
+        body: str,
+        history: Mapping[str, tuple[int, ...]],
+        degree: int,
+        ideal: Idealisation | None = None,
     ) -> None:
         self._mesh = model.mesh
         self._cells = np.sort(model.cells(body))
-        self._ideal = model.idealisation
-        owned = model.mesh.topology.index_map(self._ideal.dim).size_local
+        self._ideal = ideal or model.idealisation
+        owned = model.mesh.topology.index_map(model.idealisation.dim).size_local
         self._owned = int(np.searchsorted(self._cells, owned))
         cell = model.mesh.basix_cell()
         self._degree = degree

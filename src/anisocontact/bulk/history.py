@@ -10,7 +10,7 @@ from typing import Any, Protocol
 from anisocontact.base.errors import InputError
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.hyperelastic import cauchy_stress
-from anisocontact.mesh import Model
+from anisocontact.mesh import Idealisation, Model
 
 
 @dataclass(frozen=True)
@@ -63,6 +63,7 @@ class BodyHistory(AtPoints):
         u: Displacement, a DOLFINx function.
         dt: Time increment, a constant of DOLFINx.
         degree: Degree of the quadrature at whose points the variables live.
+        ideal: How gradients are seen; as those of the mesh if left out.
 
     Raises:
         InputError: The material advances other variables than it has.
@@ -73,9 +74,16 @@ class BodyHistory(AtPoints):
     """
 
     def __init__(
-        self, material: HistoryMaterial, model: Model, body: str, u: Any, dt: Any, degree: int
+        self,
+        material: HistoryMaterial,
+        model: Model,
+        body: str,
+        u: Any,
+        dt: Any,
+        degree: int,
+        ideal: Idealisation | None = None,
     ) -> None:
-        super().__init__(model, body, material.history, degree)
+        super().__init__(model, body, material.history, degree, ideal)
         self._material = material
         self.before = Before(self.variables, dt)
         after = dict(material.advance(u, self.before))
@@ -83,7 +91,7 @@ class BodyHistory(AtPoints):
             text = f"advance gives {', '.join(after)}, history has {', '.join(self.variables)}"
             raise InputError(text, f"material.{body}")
         # in the plane grad(u) has more than the derivatives along it
-        seen = partial(model.idealisation.seen, u=u)
+        seen = partial(self._ideal.seen, u=u)
         self._updates = [
             (v, self._at_points(seen(after[name]))) for name, v in self.variables.items()
         ]

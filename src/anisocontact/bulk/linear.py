@@ -9,6 +9,7 @@ from typing import Any
 from anisocontact.base.fenicsx import Mat, Vec, compiled, create_stiffness, ufl
 from anisocontact.base.form_matrix import add_matrix
 from anisocontact.bulk.at_points import AtPoints
+from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.materials import Material, body_measure
 from anisocontact.mesh import Model
 
@@ -37,6 +38,9 @@ class LinearBulk:
     stores = True
     #: Linear materials have no history.
     histories: Mapping[str, AtPoints] = MappingProxyType({})
+
+    #: They do not expand: a body that does is no linear one.
+    heated: Mapping[str, Heated] = MappingProxyType({})
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
         self.stiffness = create_stiffness(

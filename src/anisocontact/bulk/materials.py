@@ -32,8 +32,9 @@ class Material(Protocol):
 
 
 def small_strain(material: Any) -> bool:
-    """Whether a material takes displacement gradients to be small: linear ones, if not told."""
-    return bool(getattr(material, "small_strain", material.linear))
+    """Whether a material takes displacement gradients to be small: a linear one, or a law does."""
+    of_law = material.linear or getattr(material, "strain", "") == "small"
+    return bool(getattr(material, "small_strain", of_law))
 
 
 #: A term of an energy per reference volume, UFL, and the degree of its quadrature, None for the

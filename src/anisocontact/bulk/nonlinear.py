@@ -16,6 +16,7 @@ from anisocontact.base.fenicsx import (
 )
 from anisocontact.base.form_matrix import FormMatrix
 from anisocontact.bulk.at_points import AtPoints
+from anisocontact.bulk.expansion import Expanding, Heated, bare
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure
 from anisocontact.bulk.point_law import BodyPoints
@@ -31,6 +32,7 @@ class NonlinearBulk:
 
     Attributes:
         histories: What bodies whose material has a history have gone through, by body name.
+        heated: Bodies that expand with their temperature, by name.
     """
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
@@ -39,14 +41,21 @@ class NonlinearBulk:
         self._dt: Any = fem.Constant(model.mesh, 0.0)
         # full integration of the stiffness at rest; UFL's own estimate grows with every power of J
         full = 2 * model.order
-        given: Mapping[str, Any] = materials
+        given: Mapping[str, Any] = {name: bare(law) for name, law in materials.items()}
+        self.heated = {
+            name: Heated(law, model)
+            for name, law in materials.items()
+            if isinstance(law, Expanding)
+        }
         self.histories: dict[str, BodyHistory | BodyPoints] = {}
         for name, law in given.items():
             if hasattr(law, "history"):
                 kind: Any = BodyPoints if hasattr(law, "update") else BodyHistory
-                self.histories[name] = kind(law, model, name, self._u, self._dt, full)
+                seen = self.heated.get(name)
+                self.histories[name] = kind(law, model, name, self._u, self._dt, full, seen)
         self._points = [b for b in self.histories.values() if isinstance(b, BodyPoints)]
-        forms = _Forms(model, {**given, **self.histories}, self._u, v, du, full)
+        laws = {**given, **self.histories}
+        forms = _Forms(model, laws, self.heated, self._u, v, du, full)
         self._comm = model.mesh.comm
         self._work = compiled(forms.work, self._comm)
         self._tangent = FormMatrix(compiled(forms.tangent, self._comm))
@@ -147,29 +156,40 @@ class _Forms:
     """
 
     def __init__(
-        self, model: Model, laws: Mapping[str, Any], u: Any, v: Any, du: Any, full: int
+        self,
+        model: Model,
+        laws: Mapping[str, Any],
+        heated: Mapping[str, Heated],
+        u: Any,
+        v: Any,
+        du: Any,
+        full: int,
     ) -> None:
-        dx, ideal = body_measure(model), model.idealisation
-        weight = ideal.weight(model.mesh)
+        dx = body_measure(model)
+        weight = model.idealisation.weight(model.mesh)
         work, energy, slope, self.dissipated = 0, 0, 0, 0
-        told = True
+        # what heats a body from outside is not counted
+        told = not heated
         for i, name in enumerate(model.body_names()):
             law, here = laws[name], dx(i, degree=full)
+            ideal = heated.get(name, model.idealisation)
+            stretch = heated[name].stretch if name in heated else 1.0
+            volume = weight * stretch**3
             for density, degree in _stored(ideal, law, u):
-                part = weight * density * dx(i, degree=full if degree is None else degree)
+                part = volume * density * dx(i, degree=full if degree is None else degree)
                 energy += part
                 work += ufl.derivative(part, u, v)
             if isinstance(law, BodyPoints):
-                work += weight * law.work(v) * here
-                slope += weight * law.slope(du, v) * here
+                work += weight * stretch**2 * law.work(v) * here
+                slope += weight * stretch * law.slope(du, v) * here
             elif not (law.linear or hasattr(law, "energy")):
-                stress = ideal.seen(law.piola(u), u)
+                stress = stretch**2 * ideal.seen(law.piola(u), u)
                 work += weight * ufl.inner(stress, ideal.gradient(v)) * here
                 told &= isinstance(law, AtPoints)
             if isinstance(law, AtPoints):
                 told &= law.stores
-                energy += weight * law.stored * here
-                self.dissipated += weight * law.dissipated * here
+                energy += volume * law.stored * here
+                self.dissipated += volume * law.dissipated * here
         self.work, self.energy = work, energy if told else None
         self.tangent = ufl.derivative(work, u, du) + slope
 
@@ -178,6 +198,6 @@ def _stored(ideal: Idealisation, law: Any, u: Any) -> Sequence[Density]:
     """Terms of the energy of a material from which its stress follows."""
     if law.linear:
         stress = ideal.stress(law.stress(u), u)
-        return [(0.5 * ufl.inner(stress, ufl.sym(ideal.gradient(u))), None)]
+        return [(0.5 * ufl.inner(stress, ufl.sym(ideal.seen(ufl.grad(u), u))), None)]
     terms = law.energy(u) if hasattr(law, "energy") else []
     return [(ideal.seen(density, u), degree) for density, degree in terms]

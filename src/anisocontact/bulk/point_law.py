@@ -16,9 +16,9 @@ import numpy as np
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.bulk.at_points import AtPoints, Floats
 from anisocontact.bulk.hyperelastic import cauchy_stress, volumetric
-from anisocontact.bulk.materials import Density
+from anisocontact.bulk.materials import Density, small_strain
 from anisocontact.bulk.strain import STRAINS, Strain
-from anisocontact.mesh import Model
+from anisocontact.mesh import Idealisation, Model
 
 
 @dataclass(frozen=True)
@@ -120,19 +120,27 @@ class BodyPoints(AtPoints):
         u: Displacement, a DOLFINx function.
         dt: Time increment, a constant of DOLFINx.
         degree: Degree of the quadrature at whose points the law is evaluated.
+        ideal: How gradients are seen; as those of the mesh if left out.
 
     Attributes:
         stores: Whether the law says what it stores.
     """
 
     def __init__(
-        self, law: PointLaw, model: Model, body: str, u: Any, dt: Any, degree: int
+        self,
+        law: PointLaw,
+        model: Model,
+        body: str,
+        u: Any,
+        dt: Any,
+        degree: int,
+        ideal: Idealisation | None = None,
     ) -> None:
-        super().__init__(model, body, law.history, degree)
+        super().__init__(model, body, law.history, degree, ideal)
         self._law, self._dt = law, dt
-        self.small_strain = law.strain == "small"
+        self.small_strain = small_strain(law)
         self._elastic: Any = law if hasattr(law, "energy") else None
-        self._gradient = self._at_points(self._ideal.gradient(u))
+        self._gradient = self._at_points(self._ideal.seen(ufl.grad(u), u))
         self._piola, self._slope = self._zero((3, 3)), self._zero((3, 3, 3, 3))
         self._true_stress = self._at_points(self._ideal.seen(cauchy_stress(self, u), u))
         self._last: tuple[Strain, PointResult]

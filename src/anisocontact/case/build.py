@@ -320,6 +320,7 @@ def _step(
         section.increments,
         duration=section.duration,
         pressure={group: schedule.value(v, begun) for group, v in section.pressure.items()},
+        temperature={body: schedule.value(v, begun) for body, v in section.temperature.items()},
         rotation=turns,
         body_force=led("body_force") | weights,
         **{kind: led(kind) for kind in kinds},

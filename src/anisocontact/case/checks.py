@@ -298,6 +298,11 @@ def _steps(case: Case) -> Iterator[InputError]:
             if body not in (bodies := _bodies(case)):
                 text = f'"{body}" given, no such body; {near(body, bodies)}'
                 yield InputError(text, field=f"step[{i}].body_force")
+        for body in step.temperature:
+            expand = [name for name, given in case.material.items() if given.expansion]
+            if body not in expand:
+                text = f'"{body}" given, no such body whose material has an expansion; '
+                yield InputError(text + near(body, expand), field=f"step[{i}].temperature")
 
 
 def _gravity(case: Case, step: StepSection, place: str) -> Iterator[InputError]:

@@ -138,7 +138,8 @@ def _values(step: StepSection) -> Iterator[tuple[str, Any]]:
         for name, given in getattr(step, kind).items():
             yield from ((f"{kind}.{_key(name)}.{key}", value) for key, value in given)
     yield from ((f"gravity.{axis}", value) for axis, value in step.gravity or ())
-    yield from ((f"pressure.{_key(group)}", value) for group, value in step.pressure.items())
+    for kind in ("pressure", "temperature"):
+        yield from ((f"{kind}.{_key(name)}", value) for name, value in getattr(step, kind).items())
 
 
 def _key(name: str) -> str:

@@ -164,6 +164,10 @@ class Loading(Section):
     )
 
     gravity: Gravity | None = Field(None, description=str(Gravity.__doc__))
+    temperature: dict[str, Annotated[float | Scheduled, led("temperature", "temperature")]] = Field(
+        default_factory=dict,
+        description="temperature by body whose material has an expansion, over that without stress",
+    )
     anchor: dict[str, Anchor] = Field(
         default_factory=dict, description="displacements of the ends of springs on ground, by name"
     )

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any
 from anisocontact.base.errors import InputError
 from anisocontact.case import objects
 from anisocontact.case.law_file import object_of
-from anisocontact.case.python_section import MaterialTable
-from anisocontact.case.registered import Registered
+from anisocontact.case.python_section import MaterialSection, MaterialTable
 
 if TYPE_CHECKING:
     from anisocontact.bulk import Material
@@ -28,7 +27,7 @@ class _Later:
 
 
 def material_of(
-    section: Registered, resolve: Callable[[str], Path], place: str, execute: bool = True
+    section: MaterialSection, resolve: Callable[[str], Path], place: str, execute: bool = True
 ) -> Material:
     """The material of a table, registered or in a Python file, which is run.
 
@@ -41,8 +40,18 @@ def material_of(
     Raises:
         InputError: What the table says is wrong, or the file, or what is in it.
     """
-    if not isinstance(section, MaterialTable):
-        return objects.material(section, place)
+    from anisocontact.bulk import Expanding
+
+    if isinstance(section, MaterialTable):
+        made = _own(section, resolve, place, execute)
+    else:
+        made = objects.material(section, place)
+    return Expanding(made, section.expansion) if section.expansion else made
+
+
+def _own(
+    section: MaterialTable, resolve: Callable[[str], Path], place: str, execute: bool
+) -> Material:
     from anisocontact.bulk import user_material
 
     with objects.within(place):

@@ -24,11 +24,11 @@ from anisocontact.base.limits import Limits
 from anisocontact.base.registry import Entry
 from anisocontact.base.strategies import AUTO
 from anisocontact.case.amplitudes import amplitude_table, path_table
-from anisocontact.case.bodies import Mesh, NodeGroup, Weighed, mesh_type
+from anisocontact.case.bodies import Mesh, NodeGroup, mesh_type
 from anisocontact.case.contact_laws import laws_or_python
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
 from anisocontact.case.output import Output
-from anisocontact.case.python_section import MATERIAL, MaterialTable
+from anisocontact.case.python_section import MATERIAL, MaterialSection, MaterialTable
 from anisocontact.case.quantity import line, shown
 from anisocontact.case.quantity import number as _number
 from anisocontact.case.quantity import word as _word
@@ -248,7 +248,7 @@ def case_type(known: Registries) -> type[Case]:
     contact = create_model("Contact", __base__=ContactSection, **passes, **fields)
     surface = OneOf("Surface", Key("shape", known.surfaces))
     own = {MATERIAL.name: MaterialTable}
-    material = OneOf("Material", Key("model", known.materials), base=Weighed, bases=own)
+    material = OneOf("Material", Key("model", known.materials), base=MaterialSection, bases=own)
     selector = OneOf("Group", Key("by", known.group_selectors))
     idealisation = OneOf("Idealisation", Key("kind", known.idealisations))
     return create_model(

@@ -12,7 +12,7 @@ from anisocontact.case.quantity import number
 from anisocontact.case.section import Section
 from anisocontact.laws import SIDES
 
-__all__ = ["MATERIAL", "MaterialTable", "PythonSection"]
+__all__ = ["MATERIAL", "MaterialSection", "MaterialTable", "PythonSection"]
 
 #: The entry of a material in a Python file.
 MATERIAL = Entry(
@@ -42,7 +42,16 @@ class PythonSection(Section):
     directions_on: str = SIDES[0]
 
 
-class MaterialTable(Weighed):
+class MaterialSection(Weighed):
+    """A material, with what all of them may have."""
+
+    expansion: Annotated[
+        float,
+        number("scalar", "1/temperature", "coefficient of linear thermal expansion"),
+    ] = 0.0
+
+
+class MaterialTable(MaterialSection):
     """A material in a Python file."""
 
     file: str = Field(

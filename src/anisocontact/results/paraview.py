@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import compiled_expression, dolfinx, fem, scalar_element, ufl
-from anisocontact.bulk import PLASTIC_STRAIN, cauchy_stress
+from anisocontact.bulk import PLASTIC_STRAIN, bare, cauchy_stress
 from anisocontact.contact import Contact
 from anisocontact.results.dataset import DataSet, vertices
 from anisocontact.results.quantities import (
@@ -185,8 +185,8 @@ def slave_points(contacts: Iterable[Contact], chosen: Collection[str] = ()) -> D
 
 
 def _stress_at(problem: Problem, body: str, space: Any) -> Any:
-    ideal, u = problem.model.idealisation, problem.u
-    stress = ideal.at_nodes(cauchy_stress(problem.materials[body], u), u)
+    ideal, u = problem.bulk.heated.get(body, problem.model.idealisation), problem.u
+    stress = ideal.at_nodes(cauchy_stress(bare(problem.materials[body]), u), u)
     components = ufl.as_vector([stress[i, j] for i, j in _SYMMETRIC])
     points = space.element.interpolation_points
     return compiled_expression(components, points, problem.model.mesh.comm)

@@ -29,7 +29,10 @@ BENT = 2.0 * REFUSED
 #: Share of the volume of a body from which on such cells are no matter of a corner alone.
 PART = 0.1
 #: What a body at small strain that turns further needs.
-CURE = 'take a material at finite strain, model = "neo-hookean" or "st-venant-kirchhoff"'
+CURE = (
+    'take a material at finite strain, model = "neo-hookean" or "st-venant-kirchhoff", '
+    'or strain = "logarithmic" if it has that'
+)
 #: A turn that is not this many times the strain comes with it: simple shear turns by 0.7 of its
 #: strain, and there the strain is the larger matter.
 OF_STRAIN = 1.5

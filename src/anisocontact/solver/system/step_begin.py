@@ -70,6 +70,7 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
     """
     planes, turned = parts.planes, False
     for step, supports, loads in _rehearsed(parts, steps):
+        parts.assembly.bodies.check(step)
         _check_motions(parts.model.idealisation, step)
         # Where a turn ends is not known before it has been.
         turned = turned or bool(step.rotation)

@@ -8,10 +8,13 @@ from typing import override
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.bulk import LinearBulk, NonlinearBulk
 from anisocontact.solver.terms.form import FormBulk
+from anisocontact.solver.terms.led import Led
 from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
@@ -37,15 +40,37 @@ class Bodies(Term):
         self.bulk = bulk
         self.scale = float(bulk.diagonal.sum() / bulk.diagonal.getSize())
         self._u = bulk.stiffness.createVecRight()
+        self._temperatures = {name: Led(1) for name in bulk.heated}
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:
         owned = self._owned(u).getLocalSize() // 3
         out[:owned] -= self.bulk.force(self._u).array_r.reshape(-1, 3)
 
+    def check(self, step: Step) -> None:
+        """Refuse temperatures of bodies that do not expand.
+
+        Raises:
+            InputError: There is one.
+        """
+        for name in step.temperature:
+            if name not in self._temperatures:
+                text = "no such body whose material has an expansion"
+                raise InputError(text, f"step {step.name!r}.temperature.{name}")
+
+    @override
+    def begin(self, step: Step, released: Floats) -> None:
+        self.check(step)
+        for led in self._temperatures.values():
+            led.begin(step.duration)
+        for name, value in step.temperature.items():
+            self._temperatures[name].lead(0, value)
+
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
         self.bulk.set_time(dt)
+        for name, led in self._temperatures.items():
+            self.bulk.heated[name].set_temperature(float(led.at(factor)[0]))
 
     @override
     def add_tangent(self, matrix: Mat) -> None:

@@ -20,7 +20,7 @@ from anisocontact.base.fenicsx import (
     ufl,
 )
 from anisocontact.base.form_matrix import FormMatrix
-from anisocontact.bulk import AtPoints
+from anisocontact.bulk import AtPoints, Heated
 
 Floats = npt.NDArray[np.float64]
 
@@ -41,6 +41,8 @@ class FormBulk:
     stores = False
     #: What a form remembers is the user's.
     histories: Mapping[str, AtPoints] = MappingProxyType({})
+    #: Nor is its temperature known.
+    heated: Mapping[str, Heated] = MappingProxyType({})
 
     def __init__(self, F: Any, u: Any, J: Any = None) -> None:
         space = u.function_space

@@ -14,6 +14,8 @@ from anisocontact.solver.terms.turn import Turn
 AXES = ("x", "y", "z")
 # Fields of a step that are forces with a direction.
 _FORCES = ("traction", "force", "body_force")
+# Fields that have one number for each name.
+_PLAIN = ("pressure", "temperature")
 
 #: What a value is led to along a step: a number at its end, or all the way.
 Goal = float | Course
@@ -47,6 +49,8 @@ class Step:
         body_force: Body -> axis -> force per reference volume at the end, stress/length.
         rotation: Facet group "body.group", or rigid body, -> rotation it is led through along the
             step.
+        temperature: Body whose material has an expansion -> temperature at the end, over that at
+            which it has no stress.
         anchor: Spring -> axis -> displacement of its end on ground at the end, length.
 
     Raises:
@@ -71,6 +75,7 @@ class Step:
     body_force: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
     rotation: Mapping[str, Turn] = field(default_factory=dict)
     anchor: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
+    temperature: Mapping[str, Goal] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if isinstance(self.increments, bool) or not isinstance(self.increments, int):
@@ -89,8 +94,9 @@ class Step:
             for body, components in self.motion.items()
         }
         object.__setattr__(self, "motion", motion)
-        for group, pressure in self.pressure.items():
-            self._check_value("pressure", f"pressure.{group}", pressure)
+        for kind in _PLAIN:
+            for name, value in getattr(self, kind).items():
+                self._check_value(kind, f"{kind}.{name}", value)
         for group in self.rotation:
             if group in self.displacement:
                 text = "given with a displacement of the same group, one of the two is allowed"
@@ -109,7 +115,9 @@ class Step:
             named: Mapping[str, Mapping[str, Goal | None]] = getattr(self, kind)
             for name, values in named.items():
                 yield from (((kind, name, component), goal) for component, goal in values.items())
-        yield from ((("pressure", group, ""), goal) for group, goal in self.pressure.items())
+        for kind in _PLAIN:
+            plain: Mapping[str, Goal] = getattr(self, kind)
+            yield from (((kind, name, ""), goal) for name, goal in plain.items())
 
     def courses(self) -> dict[Place, Course]:
         """Those of the values that follow an amplitude."""

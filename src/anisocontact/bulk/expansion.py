@@ -1,0 +1,108 @@
+"""Thermal expansion: what a body is strained beyond what its temperature makes of it.
+
+A temperature given from outside stretches the body alike in all directions by `s = 1 + a dT`; its
+material answers to what is left, `e - a dT I` at small strain, `F/s` at finite strain, where the
+volume without stress is `s^3` of the reference [Holzapfel 2000, ch. 7].
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import fem, ufl
+from anisocontact.bulk.materials import Material, small_strain
+from anisocontact.mesh import Idealisation, Model
+
+Floats = npt.NDArray[np.float64]
+
+
+class Expanding:
+    """A material that expands with the temperature of its body; see `Step.temperature`.
+
+    Args:
+        material: The material.
+        expansion: Coefficient a of linear expansion, 1/temperature.
+        profile: How much of the body's temperature there is at places (3, n), (n,); the same
+            everywhere if left out.
+        field: Where the coefficient was written, for messages.
+
+    Raises:
+        InputError: The coefficient is no finite number.
+
+    Example:
+        >>> from anisocontact.bulk import make_material
+        >>> Expanding(make_material("linear-elastic", E=210e3, nu=0.3), 1.2e-5).young
+        210000.0
+    """
+
+    linear = False
+
+    def __init__(
+        self,
+        material: Material,
+        expansion: float,
+        profile: Callable[[Floats], Floats] | None = None,
+        field: str = "expansion",
+    ) -> None:
+        if not math.isfinite(expansion):
+            raise InputError(f"{expansion!r} given, a finite number needed", field)
+        self.material, self.expansion, self.profile = material, expansion, profile
+        self.young, self.small_strain = material.young, small_strain(material)
+
+
+def bare(material: Material) -> Any:
+    """A material without its expansion."""
+    return material.material if isinstance(material, Expanding) else material
+
+
+class Heated(Idealisation):
+    """Gradients of a body that expands, as its material sees them.
+
+    Args:
+        law: Its material.
+        model: The mesh.
+
+    Attributes:
+        stretch: What it has at its temperature without stress where strain is finite, UFL; else 1.
+    """
+
+    def __init__(self, law: Expanding, model: Model) -> None:
+        self._ideal = model.idealisation
+        self._small = law.small_strain
+        self._temperature: Any = fem.Constant(model.mesh, 0.0)
+        expands: Any = law.expansion * self._temperature
+        if law.profile is not None:
+            share = fem.Function(fem.functionspace(model.mesh, ("Lagrange", model.order)))
+            share.interpolate(law.profile)
+            expands = expands * share
+        self._strain = expands
+        self.stretch: Any = 1.0 if self._small else 1.0 + expands
+
+    def set_temperature(self, value: float) -> None:
+        """Take over the temperature over that without stress."""
+        self._temperature.value = value
+
+    def gradient(self, u: Any) -> Any:
+        """As of `Idealisation`."""
+        return self._ideal.gradient(u)
+
+    def seen(self, expression: Any, u: Any) -> Any:
+        """An expression of `grad(u)` as one of what is not made by the temperature, UFL."""
+        return self._ideal.seen(self._left(expression, u), u)
+
+    def at_nodes(self, expression: Any, u: Any) -> Any:
+        """As of `Idealisation`."""
+        return self._ideal.at_nodes(self._left(expression, u), u)
+
+    def _left(self, expression: Any, u: Any) -> Any:
+        eye, gradient = ufl.Identity(3), ufl.grad(u)
+        left = gradient - self._strain * eye
+        if not self._small:
+            left = (eye + gradient) / self.stretch - eye
+        return ufl.replace(expression, {gradient: left})
