@@ -240,20 +240,40 @@ def case_type(known: Registries) -> type[Case]:
     Returns:
         A subclass of `Case`.
     """
-    # "pass" is no name for an attribute in a class body
-    passes: dict[str, Any] = {
-        "pass": (Annotated[str, _word(_PASSES, SINGLE, TWO_HALF, MORTAR)], SINGLE)
-    }
-    fields = laws_or_python(known)
-    contact = create_model("Contact", __base__=ContactSection, **passes, **fields)
+    contact = _contact(known)
     surface = OneOf("Surface", Key("shape", known.surfaces))
+    return create_model(
+        "Case",
+        __base__=Case,
+        surface=(
+            dict[str, Annotated[Any, surface]],
+            Field(default_factory=dict, description="rigid surfaces by name"),
+        ),
+        amplitude=(
+            dict[str, Annotated[Any, amplitude_table(known.amplitudes)]],
+            Field(default_factory=dict, description="amplitudes by name, for values of steps"),
+        ),
+        path=(
+            dict[str, Annotated[Any, path_table(known.paths)]],
+            Field(default_factory=dict, description="paths by name, for what is led along them"),
+        ),
+        contact=(
+            list[contact],  # type: ignore[valid-type]
+            Field(default_factory=list, description="pairs in contact"),
+        ),
+        output=(_output(known.arrays), Output()),
+        solver=(_solver(known.strategies), Solver()),
+        **_bodies(known),
+    )
+
+
+def _bodies(known: Registries) -> dict[str, Any]:
+    """Tables of meshes, their groups and their materials."""
     own = {MATERIAL.name: MaterialTable}
     material = OneOf("Material", Key("model", known.materials), base=MaterialSection, bases=own)
     selector = OneOf("Group", Key("by", known.group_selectors))
     idealisation = OneOf("Idealisation", Key("kind", known.idealisations))
-    return create_model(
-        "Case",
-        __base__=Case,
+    return dict(
         mesh=(mesh_type(known.shapes), Field(description=str(Mesh.__doc__))),
         idealisation=(
             Annotated[Any, idealisation],
@@ -271,25 +291,16 @@ def case_type(known: Registries) -> type[Case]:
             dict[str, Annotated[Any, material]],
             Field(description="material of each body, by body name"),
         ),
-        surface=(
-            dict[str, Annotated[Any, surface]],
-            Field(default_factory=dict, description="rigid surfaces by name"),
-        ),
-        contact=(
-            list[contact],  # type: ignore[valid-type]
-            Field(default_factory=list, description="pairs in contact"),
-        ),
-        amplitude=(
-            dict[str, Annotated[Any, amplitude_table(known.amplitudes)]],
-            Field(default_factory=dict, description="amplitudes by name, for values of steps"),
-        ),
-        path=(
-            dict[str, Annotated[Any, path_table(known.paths)]],
-            Field(default_factory=dict, description="paths by name, for what is led along them"),
-        ),
-        output=(_output(known.arrays), Output()),
-        solver=(_solver(known.strategies), Solver()),
     )
+
+
+def _contact(known: Registries) -> type[ContactSection]:
+    """A table `[[contact]]`."""
+    # "pass" is no name for an attribute in a class body
+    passes: dict[str, Any] = {
+        "pass": (Annotated[str, _word(_PASSES, SINGLE, TWO_HALF, MORTAR)], SINGLE)
+    }
+    return create_model("Contact", __base__=ContactSection, **passes, **laws_or_python(known))
 
 
 def _as_list(given: object) -> object:
