@@ -84,13 +84,19 @@ class Shaped(Placed):
 class MeshFile(Placed):
     """Bodies of a mesh file: its volume groups; its surface groups are facet groups."""
 
-    path: str = Field(description="mesh file (.msh, .inp), relative to the case file")
+    path: str = Field(description="mesh file, or CAD that is meshed, relative to the case file")
     bodies: list[str] | None = Field(
         None, description="volume groups to take, all of them if left out"
     )
     rename: dict[str, str] = Field(
         default_factory=dict, description="volume group = name of the body, where they differ"
     )
+    cell_size: Annotated[
+        float | None,
+        number(
+            "scalar", "length", "of CAD and STL, the size of the cells before `scale`", "positive"
+        ),
+    ] = None
 
 
 class Mesh(Section):

@@ -170,7 +170,9 @@ def _arrays(file: CaseFile, comm: MPI.Comm) -> MeshArrays:
         place = f"mesh.files.{name}"
         path, there = file.resolve(section.path), objects.placement(section)
         with objects.within(place):
-            source = GmshFile(path, section.bodies, section.rename, there, "path")
+            source = GmshFile(
+                path, section.bodies, section.rename, there, "path", section.cell_size
+            )
             parts.append(source.arrays(comm))
     for shape, bodies in mesh.shaped().items():
         for name, table in bodies.items():

@@ -12,6 +12,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
 from anisocontact.mesh.arrays import MeshArrays, face_mesh, rename_bodies
 from anisocontact.mesh.blocks import mesh_blocks
+from anisocontact.mesh.cad import CAD, cad_arrays
 from anisocontact.mesh.idealisation import SOLID, Idealisation
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.model import Model
@@ -72,6 +73,7 @@ class MeshFile:
         rename: Volume group -> name of the body, where it is to be another.
         placement: Where they stand.
         field: Where the path was written, for messages.
+        cell_size: Of CAD, the size of the cells, length.
     """
 
     path: str | Path
@@ -79,10 +81,17 @@ class MeshFile:
     rename: Mapping[str, str] = MappingProxyType({})
     placement: Placement = IN_PLACE
     field: str = "mesh.file"
+    cell_size: float | None = None
 
     def arrays(self, comm: Any = MPI.COMM_SELF) -> MeshArrays:
         """The bodies in place; see `Source`."""
-        mesh = file_arrays(Path(self.path), self.bodies, self.field, comm)
+        path = Path(self.path)
+        if self.cell_size is None:
+            mesh = file_arrays(path, self.bodies, self.field, comm)
+        elif path.suffix.lower() in CAD:
+            mesh = cad_arrays(path, self.bodies, self.field, comm, self.cell_size)
+        else:
+            raise InputError(f"given for {path.name!r}, which is a mesh already", "cell_size")
         return self.placement.apply(rename_bodies(mesh, self.rename))
 
 

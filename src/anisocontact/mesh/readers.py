@@ -9,6 +9,7 @@ from typing import Any
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
 from anisocontact.mesh.arrays import MeshArrays
+from anisocontact.mesh.cad import CAD, cad_arrays
 from anisocontact.mesh.gmsh import gmsh_arrays
 from anisocontact.mesh.inp import read_inp
 from anisocontact.mesh.meshio_files import SUFFIXES, read_by_meshio
@@ -95,5 +96,6 @@ def file_arrays(
 
 
 register_reader(".msh")(gmsh_arrays)
+register_reader(*CAD)(cad_arrays)
 register_reader(".inp")(whole_reader(read_inp))
 register_reader(*SUFFIXES)(whole_reader(read_by_meshio))
