@@ -296,3 +296,28 @@ def test_too_few_increments_are_said():
     )
     assert few == ["step 'a'.force.bar.top.x: 10 increments are too few to follow its amplitude"]
     assert enough == []
+
+
+def test_strategies_follow_alike(fe):
+    """A block on a plane is pressed by a force that pulses and led round a circle.
+
+    Requirement: forces and elastic slips of `condensed` and `iterative` are those of `direct` in
+    every increment. Tolerance: 1e-6 of the force, Newton's method to 1e-10 and FGMRES.
+    """
+    from anisocontact.solver import Solver, Step
+
+    circle = courses_of(make_path("circle", radius=0.05))
+    pulse = Course(make_amplitude("cycles", period=0.5), -0.02, relative=True)
+    found = []
+    for strategy in ("direct", "condensed", "iterative"):
+        block = fe.block(fe.interface(), cells=(2, 2, 1))
+        steps = [
+            Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.02}}),
+            Step("rub", 5, {"block.top": {**circle, "z": pulse}}),
+        ]
+        solver = Solver(block.problem, steps, strategy=strategy, options={"snes_rtol": 1e-10})
+        contact = block.problem.contacts[0]
+        found.append([contact.resultant()[0] for _ in solver.run()])
+    direct, *others = np.array(found)
+    assert np.abs(direct).max() > 0.0
+    assert np.abs(np.array(others) - direct).max() < 1e-6 * np.abs(direct).max()
