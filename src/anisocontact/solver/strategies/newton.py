@@ -41,7 +41,7 @@ STUCK, STUCK_OVER = 0.5, 8
 #: round in circles where the least of so many is more than this share of the least before.
 IDLE, IDLE_OVER = 0.5, 5
 #: Residuals that repeat every second time, to this share of them, are those of a cycle.
-CYCLE, SAME = 5, 1e-9
+CYCLE, SAME = 5, 1e-3
 
 
 class System(Protocol):
