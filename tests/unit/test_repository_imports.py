@@ -168,3 +168,29 @@ def test_laws_of_before_are_those_of_today() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=SOURCES.parent
     )
     assert done.stdout.split() == ["transport", "slave", "(2,)"]
+
+
+#: Take longer to be imported than a small case to be solved: imported where they are used.
+SLOW = ("scipy.", "pyvista", "vtk", "vtkmodules", "rich", "meshio", "h5py", "gmsh", "pandas")
+#: Programs and pictures, which are imported late themselves.
+LATE = ("anisocontact.results.report", "anisocontact.point.pictures")
+
+
+def test_slow_packages_are_imported_where_they_are_used() -> None:
+    """`import scipy` and `scipy.sparse.csr_array` where it is needed: SciPy imports it then."""
+    early = {
+        f"{name}: {module}"
+        for name, path in modules().items()
+        if not name.startswith(LATE)
+        for node in ast.parse(path.read_text()).body
+        for module in (
+            [alias.name for alias in node.names]
+            if isinstance(node, ast.Import)
+            else [f"{node.module}." if node.module == "scipy" else str(node.module)]
+            if isinstance(node, ast.ImportFrom)
+            else []
+        )
+        if f"{module}.".startswith(tuple(s if s.endswith(".") else f"{s}." for s in SLOW))
+        and module != "scipy"
+    }
+    assert early == set()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import csr_array
+import scipy
 
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import Sides
@@ -58,8 +58,8 @@ def mortar_reachable(
     ]
 
 
-def _incidence(point: Numbers, nodes: npt.NDArray[np.int32], count: int) -> csr_array:
+def _incidence(point: Numbers, nodes: npt.NDArray[np.int32], count: int) -> scipy.sparse.csr_array:
     """Which nodes of the master are near each point: a matrix (points, nodes)."""
     rows = np.repeat(point, nodes.shape[1])
     shape = (count, int(nodes.max(initial=-1)) + 1)
-    return csr_array((np.ones(len(rows)), (rows, nodes.reshape(-1))), shape=shape)
+    return scipy.sparse.csr_array((np.ones(len(rows)), (rows, nodes.reshape(-1))), shape=shape)

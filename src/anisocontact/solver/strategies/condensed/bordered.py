@@ -9,8 +9,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-import scipy.linalg
-import scipy.sparse
+import scipy
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec, call_petsc, check_memory, has_petsc
 from anisocontact.solver.strategies.condensed.factor import aij, singular

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
-import scipy.sparse
+import scipy
 
 from anisocontact.solver.strategies.condensed.dense import Places
 from anisocontact.solver.system.problem import Problem
