@@ -1,4 +1,4 @@
-"""This code with the strategy `direct`: `python -m finite_strain.ours kind n`.
+"""This code: `python -m finite_strain.ours kind n strategy`.
 
 What a contact does in an evaluation (search, laws, forces), in the tangent (blocks, insertion into
 the matrix) and at the end of an increment is counted as contact.
@@ -17,6 +17,7 @@ import finite_strain.problem as given
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.solver import Problem
+from anisocontact.solver.strategies.condensed.lagged import LaggedFactor
 from finite_strain.problem import KINDS, Clock, show
 
 from petsc4py import PETSc
@@ -26,7 +27,7 @@ LINEAR = ("MatLUFactorSym", "MatLUFactorNum", "MatSolve")
 CONTACT = ("update", "add_force", "add_tangent", "couplings", "lever", "commit", "improve")
 
 
-def case_text(kind: str, n: int) -> str:
+def case_text(kind: str, n: int, strategy: str = "direct") -> str:
     """The case file."""
     pair = kind == KINDS[1]
     elastic = f'model = "neo-hookean"\nnu = {given.POISSON}\nE = '
@@ -39,7 +40,7 @@ def case_text(kind: str, n: int) -> str:
     # the script's history is of first order in time
     below = coulomb(pair, given.PENALTY, given.FRICTION, 'evolution = "backward-euler"\n')
     way = press_and_drag(pair, given.DOWN, given.ALONG, given.PRESSES, given.DRAGS)
-    return f'{bodies}{surface}{below}{way}\n[solver]\nstrategy = "direct"\n'
+    return f'{bodies}{surface}{below}{way}\n[solver]\nstrategy = "{strategy}"\n'
 
 
 def count(problem: Problem, clock: Clock) -> None:
@@ -56,14 +57,15 @@ def count(problem: Problem, clock: Clock) -> None:
         clock.count(problem.bulk, method, "assembly")
 
 
-def main(kind: str, n: int) -> None:
+def main(kind: str, n: int, strategy: str) -> None:
     """Solve and print."""
     with tempfile.TemporaryDirectory() as there:
         file = Path(there) / "case.toml"
-        file.write_text(case_text(kind, n))
+        file.write_text(case_text(kind, n, strategy))
         built = build(load(file))
     clock = Clock()
     count(built.problem, clock)
+    clock.count(LaggedFactor, "solve", "linear")
     PETSc.Log.begin()
     start = time.perf_counter()
     iterations, forces = 0, []
@@ -72,11 +74,12 @@ def main(kind: str, n: int) -> None:
         force = built.problem.contacts[0].resultant()[0]
         forces.append((-force[0], force[2]))
     solving = time.perf_counter() - start
-    events = [PETSc.Log.Event(name).getPerfInfo() for name in LINEAR]
-    clock.seconds["linear"] = sum(event["time"] for event in events)
+    if strategy == "direct":
+        events = [PETSc.Log.Event(name).getPerfInfo() for name in LINEAR]
+        clock.seconds["linear"] = sum(event["time"] for event in events)
     if built.problem.comm.rank == 0:
         show(clock, solving, iterations, forces, built.problem.unknowns)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1], int(sys.argv[2]))
+    main(sys.argv[1], int(sys.argv[2]), sys.argv[3])

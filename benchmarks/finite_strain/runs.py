@@ -17,8 +17,13 @@ from finite_strain.problem import KINDS, PHASES, read
 
 PART, RANKS = "finite strain", "ranks"
 SIZES, THREADS = (12, 18), 1
-OURS, SCRIPT = "anisocontact", "DOLFINx script"
-MODULES = {OURS: ("finite_strain.ours", KINDS), SCRIPT: ("finite_strain.penalty_script", KINDS[:1])}
+OURS, CONDENSED, SCRIPT = "anisocontact", "anisocontact, condensed", "DOLFINx script"
+#: Who runs what: module, kinds of the problem, further arguments.
+MODULES: dict[str, tuple[str, Sequence[str], Sequence[str]]] = {
+    OURS: ("finite_strain.ours", KINDS, ["direct"]),
+    CONDENSED: ("finite_strain.ours", KINDS, ["condensed"]),
+    SCRIPT: ("finite_strain.penalty_script", KINDS[:1], []),
+}
 
 
 def one(name: str, kind: str, n: int, limit: float, ranks: int = 1, part: str = PART) -> Record:
@@ -32,7 +37,8 @@ def one(name: str, kind: str, n: int, limit: float, ranks: int = 1, part: str = 
         ranks: Number of processes.
         part: Part of the benchmarks that the record is for.
     """
-    command = [sys.executable, "-m", MODULES[name][0], kind, str(n)]
+    module, _, more = MODULES[name]
+    command = [sys.executable, "-m", module, kind, str(n), *more]
     if ranks > 1:
         command = [mpirun(), "-n", str(ranks), *command]
     with tempfile.TemporaryDirectory() as there:
@@ -58,7 +64,7 @@ def mpirun() -> str:
 def everything(limit: float, sizes: Sequence[int] = SIZES) -> Iterator[Record]:
     """All runs, the smallest first."""
     for n in sizes:
-        for name, (_, kinds) in MODULES.items():
+        for name, (_, kinds, _) in MODULES.items():
             for kind in kinds:
                 yield one(name, kind, n, limit)
 

@@ -243,6 +243,7 @@ def test_two_processes_take_another_strategy(tmp_path: Path) -> None:
     """`auto` says why, and the run gets to its end."""
     text = f"""
 [mesh.box.block]
+origin = [0, 0, 0]
 size = [1, 1, 0.5]
 cells = [15, 15, 2]
 
@@ -260,6 +261,8 @@ normal = [0, 0, 1]
 slave = "block.bottom"
 master = "plane"
 normal = {{ penalty = 1e4 }}
+adhesion = {{ stiffness = 1e4 }}
+friction = {{ coefficients = 0.3 }}
 
 [[step]]
 name = "press"
