@@ -97,6 +97,7 @@ def pair(
     moduli: tuple[float, float] = (E, E),
     swapped: bool = False,
     augmentation: Augmentation | None = EXACT,
+    mortar: bool = True,
     **mesh: Any,
 ) -> Pressure:
     """An elastic sphere of n facets per radius on a base of `below` facets; the sphere is slave."""
@@ -108,7 +109,7 @@ def pair(
         model,
         *(sides[::-1] if swapped else sides),
         ContactLaw(**LAW),
-        mortar=True,
+        mortar=mortar,
         current_area=False,
         augmentation=augmentation,
     )
