@@ -1,6 +1,7 @@
 // Mortar weights of slave nodes.
 
 #include "anisocontact/kernel/parallel.hpp"
+#include "anisocontact/mortar/couplings.hpp"
 #include "anisocontact/mortar/nodal_weights.hpp"
 #include "arrays.hpp"
 #include "rooms.hpp"
@@ -82,6 +83,60 @@ nb::dict mortar_weights(const std::string& slave_topology, const Table& slave,
   return r;
 }
 
+using Cube = nb::ndarray<const double, nb::shape<-1, -1, -1>, nb::c_contig, nb::device::cpu>;
+using Rows = nb::ndarray<const double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
+
+/// Derivative of the tractions of some slave nodes by the nodes of their columns, (p, 3, 3 c).
+nb::ndarray<nb::numpy, double> mortar_slopes(const Indices& which, const Cube& by,
+                                             const Cube& moving, const Cube& lift,
+                                             const Cube& d_weight, std::size_t threads) {
+  const std::size_t p = which.shape(0);
+  const mortar::NodeSizes n{d_weight.shape(1), moving.shape(2)};
+  Array<double> out({p, 3, 3 * n.columns}, unset);
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_for(p, threads, [&](std::size_t q) {
+      const auto i = static_cast<std::size_t>(which.data()[q]);
+      with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
+        mortar::traction_slopes(
+            n, by.data() + q * 9 * mortar::moving_parts,
+            moving.data() + i * mortar::moving_parts * n.columns, lift.data() + q * 3 * n.masters,
+            d_weight.data() + i * n.masters * 3 * n.columns, out.data + q * 9 * n.columns);
+      });
+    });
+  }
+  return out.array;
+}
+
+/// Blocks of some slave nodes: rows of their support, then of the masters, (p, 3 r, 3 c).
+nb::ndarray<nb::numpy, double> mortar_couplings(const Indices& which, const Cube& slopes,
+                                                const Rows& traction, const Rows& support,
+                                                const Scalars& area, const Rows& weight,
+                                                const Rows& d_area, const Cube& d_weight,
+                                                std::size_t threads) {
+  const std::size_t p = which.shape(0), own = support.shape(1), masters = weight.shape(1),
+                    width = d_area.shape(1), rows = own + masters;
+  Array<double> out({p, 3 * rows, width}, unset);
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_for(p, threads, [&](std::size_t q) {
+      const auto i = static_cast<std::size_t>(which.data()[q]);
+      const double* const t = traction.data() + 3 * q;
+      const double* const dt = slopes.data() + 3 * q * width;
+      double* to = out.data + 3 * q * rows * width;
+      with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
+        for (std::size_t r = 0; r < own; ++r, to += 3 * width)
+          mortar::coupling_row(width, area.data()[i], d_area.data() + i * width,
+                               support.data()[i * own + r], t, dt, to);
+        for (std::size_t k = 0; k < masters; ++k, to += 3 * width)
+          mortar::coupling_row(width, weight.data()[i * masters + k],
+                               d_weight.data() + (i * masters + k) * width, -1.0, t, dt, to);
+      });
+    });
+  }
+  return out.array;
+}
+
 }  // namespace
 
 void bind_mortar(nb::module_& m) {
@@ -92,6 +147,11 @@ void bind_mortar(nb::module_& m) {
         nb::arg("more_offsets"), nb::arg("more_nodes"), nb::arg("straight_points"),
         nb::arg("straight_weights"), nb::arg("skew_points"), nb::arg("skew_weights"),
         nb::arg("current_area"), nb::arg("tangent"), nb::arg("threads"));
+  m.def("mortar_slopes", &mortar_slopes, nb::arg("which"), nb::arg("by"), nb::arg("moving"),
+        nb::arg("lift"), nb::arg("d_weight"), nb::arg("threads"));
+  m.def("mortar_couplings", &mortar_couplings, nb::arg("which"), nb::arg("slopes"),
+        nb::arg("traction"), nb::arg("support"), nb::arg("area"), nb::arg("weight"),
+        nb::arg("d_area"), nb::arg("d_weight"), nb::arg("threads"));
 }
 
 }  // namespace anisocontact::bindings

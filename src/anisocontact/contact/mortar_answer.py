@@ -9,10 +9,12 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact import _core
 from anisocontact.contact.contact_planes import ContactPlanes, Opposite, by_slave_tangents
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.mortar_weights import MortarWeights
 from anisocontact.contact.quadrature import Couplings, FacetQuadrature
+from anisocontact.surfaces import default_threads
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
@@ -58,13 +60,6 @@ class MortarState:
         return np.concatenate([area * own, -self.weights.weight], axis=1)
 
     @cached_property
-    def row_slopes(self) -> Floats:
-        """Their derivative by the nodes of the columns, (n, r, 3 c), length."""
-        own = self.quadrature.basis[:, 0, : self.quadrature.rows]
-        first = own[:, :, None] * self.weights.d_area[:, None]
-        return np.concatenate([first, -self.weights.d_weight], axis=1)
-
-    @cached_property
     def moving(self) -> Floats:
         """How slave point, tangents and planes are made of the nodes of the columns, (n, 10, c).
 
@@ -107,8 +102,8 @@ class MortarState:
         out += values @ same
 
     @cached_property
-    def shift(self) -> Floats:
-        """Derivative of the mean of the master by the weights alone, (n, 3, 3 c).
+    def _ways(self) -> Floats:
+        """How the mean of the master follows the weights, over their sum, (n, k, 3), 1/length.
 
         What it moves along the plane is less what the point of the reference moves there, at which
         directions are taken: on a master that keeps its shape both are the same.
@@ -120,8 +115,7 @@ class MortarState:
         way -= (material @ opposite.dual_tangents(self.reference).swapaxes(1, 2)) @ planes.now.axes
         area = self.weights.area[:, None, None]
         there = (masters >= 0)[:, :, None] & (area > 0.0)
-        share = np.divide(way, area, out=np.zeros_like(way), where=there)
-        return np.asarray(share.swapaxes(1, 2) @ self.weights.d_weight)
+        return np.asarray(np.divide(way, area, out=np.zeros_like(way), where=there))
 
     def by_columns(self, by_nodes: Floats, which: Ints) -> Floats:
         """Derivative of tractions by the nodes of the columns.
@@ -146,11 +140,11 @@ class MortarState:
         by_foot = by_place @ along
         by[:, :, 0, 0] += by_foot
         flat = np.concatenate([by.reshape(p, 3, 9, 3), -by_foot[:, :, None]], axis=2)
-        flat = flat.swapaxes(2, 3).reshape(p, 9, 10)
-        count = self.columns.shape[1]
-        found = (flat @ self.moving[which]).reshape(p, 3, 3, count).swapaxes(2, 3)
-        out = found.reshape(p, 3, 3 * count)
-        return np.asarray(out + by[:, :, 1, 0] @ self.shift[which])
+        flat = np.ascontiguousarray(flat.swapaxes(2, 3).reshape(p, 9, 10))
+        lift = by[:, :, 1, 0] @ self._ways[which].swapaxes(1, 2)
+        return _core.mortar_slopes(
+            which, flat, self.moving, lift, self.weights.d_weight, default_threads()
+        )
 
 
 @dataclass(frozen=True)
@@ -188,14 +182,19 @@ class MortarAnswer:
 
     def couplings(self) -> list[Couplings]:
         """As of `Answer`: a block for each slave node in contact."""
-        at, which = self.at, self.which
-        weights, slopes = at.row_weights[which], at.row_slopes[which]
-        traction = self.snapshot.response.traction[which]
-        p, r = weights.shape
-        blocks = weights[:, :, None, None] * self.by_columns[:, None]
-        blocks += traction[:, None, :, None] * slopes[:, :, None]
-        columns = at.columns[which]
-        return [(at.rows[which], columns, -blocks.reshape(p, 3 * r, 3 * columns.shape[1]))]
+        at, which, weights = self.at, self.which, self.at.weights
+        blocks = _core.mortar_couplings(
+            which,
+            self.by_columns,
+            self.snapshot.response.traction[which],
+            np.ascontiguousarray(at.quadrature.basis[:, 0, : at.quadrature.rows]),
+            weights.area,
+            weights.weight,
+            weights.d_area,
+            weights.d_weight,
+            default_threads(),
+        )
+        return [(at.rows[which], at.columns[which], blocks)]
 
     def by_derivative(self, other: MortarAnswer, stiffness: Floats) -> MortarAnswer:
         """As of `Answer`."""
