@@ -306,3 +306,22 @@ def mortar_weights(
     tangent: bool,
     threads: int,
 ) -> dict[str, NDArray[Any]]: ...
+def mortar_slopes(
+    which: NDArray[numpy.int32],
+    by: NDArray[numpy.float64],
+    moving: NDArray[numpy.float64],
+    lift: NDArray[numpy.float64],
+    d_weight: NDArray[numpy.float64],
+    threads: int,
+) -> NDArray[numpy.float64]: ...
+def mortar_couplings(
+    which: NDArray[numpy.int32],
+    slopes: NDArray[numpy.float64],
+    traction: NDArray[numpy.float64],
+    support: NDArray[numpy.float64],
+    area: NDArray[numpy.float64],
+    weight: NDArray[numpy.float64],
+    d_area: NDArray[numpy.float64],
+    d_weight: NDArray[numpy.float64],
+    threads: int,
+) -> NDArray[numpy.float64]: ...

@@ -293,3 +293,33 @@ def test_a_support_that_overlaps() -> None:
     held = contact.points[:, 0] < -0.5 + 1e-9
     np.testing.assert_allclose(contact.state["gap"][held], -0.001, rtol=1e-6)
     assert np.abs(contact.state["gap"][~held]).max() < 1e-6 / 4.0
+
+
+def test_stick_on_a_plane_of_symmetry() -> None:
+    """Nodes on a plane of symmetry that stick carry no traction across it, matching or not.
+
+    Source: symmetry. Dual functions of these nodes reach one side of the plane alone, where the
+    master moves across it; multipliers would hold against that without end. Along the plane and
+    elsewhere tractions stay below 5 % of mu p: equal bodies do not slip.
+    """
+    for below in (3, 4):
+        upper = BoxSpec((0, 0, 0), (1, 1, 0.5), (3, 3, 2))
+        lower = BoxSpec((0, 0, -0.5), (1, 1, 0.5), (below, below, 2))
+        model = build_box({"upper": upper, "lower": lower})
+        adhesion, friction = Adhesion(stiffness=(4e4, 4e4)), Friction(coefficients=(0.3, 0.3))
+        law = ContactLaw(NormalLaw(penalty=PENALTY), adhesion, friction)
+        contact = Contact(
+            model, "upper.bottom", "lower.top", law, mortar=True, augmentation=Augmentation()
+        )
+        steel = make_material("linear-elastic", E=YOUNG, nu=0.3)
+        problem = Problem(model, {"upper": steel, "lower": steel}, [contact])
+        held: dict[str, Any] = {f"{body}.front": {"y": 0.0} for body in ("upper", "lower")}
+        still = {"x": 0.0, "y": 0.0}
+        held |= {"upper.top": {**still, "z": -0.01}, "lower.bottom": {**still, "z": 0.0}}
+        for _ in Solver(problem, [Step("press", 2, held)]).run():
+            pass
+        across = contact.last.traction[np.abs(contact.points[:, 1]) < 1e-9, 1]
+        assert np.abs(across).max() < 1e-9 * PRESSURE
+        inner = np.all(np.abs(contact.points[:, :2] - 0.5) < 0.45, axis=1)
+        shear = np.linalg.norm(contact.last.traction[inner, :2], axis=1)
+        assert shear.max() < 0.05 * 0.3 * PRESSURE

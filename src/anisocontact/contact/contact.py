@@ -11,6 +11,7 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.making import Before, Options, SurfaceMaster, given_master, passes_of
+from anisocontact.contact.master import Resting
 from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.interface import STATUS, ContactLaw, Response, State
@@ -252,10 +253,10 @@ class Contact:
             return self.passes[0].state
         return np.concatenate([half.state for half in self.passes])
 
-    def take_supports(self, fixed: Mask) -> None:
+    def take_supports(self, fixed: Mask, resting: Sequence[Resting]) -> None:
         """As of `Pass`."""
         for half in self.passes:
-            half.take_supports(fixed)
+            half.take_supports(fixed, resting)
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.

@@ -14,18 +14,22 @@ nodes, so that history is transported and tangents are exact as on any facet.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
+Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
 #: Nodes that stand for a slave node and its planes: the slave with two tangents, the plane of now
 #: and that of the accepted increment.
 NODES = 9
+#: Share of a direction along the normal, or along others, up to which it counts as across them.
+ACROSS = 0.3
 
 
 @dataclass(frozen=True)
@@ -184,6 +188,8 @@ class ContactPlanes:
         now: Its tangents, turned.
         mean_then: Mean position now of what was opposite at the accepted increment, (n, 3), length.
         then: Tangents now at the place of then, turned.
+        held: Projection on directions along which slave and master do not move, (n, 3, 3): along
+            these both means are where the slave point is.
     """
 
     slave: Floats
@@ -192,6 +198,7 @@ class ContactPlanes:
     now: Turned
     mean_then: Floats
     then: Turned
+    held: Floats
 
     @property
     def normal(self) -> Floats:
@@ -225,17 +232,55 @@ class ContactPlanes:
         return np.ascontiguousarray(np.concatenate(found, axis=1).reshape(-1, 3))
 
 
+def held_directions(
+    resting: Sequence[tuple[Mask, Floats]], nodes: Ints, opposite: Opposite, normal: Floats
+) -> Floats:
+    """Directions in the contact plane along which supports hold slave nodes and the master.
+
+    A node on a plane of symmetry has its dual function on one side of it alone, where the master
+    moves across it; by symmetry it does not, and the supports carry what would follow from that.
+
+    Args:
+        resting: Nodes that are held along directions.
+        nodes: The slave nodes, (n,).
+        opposite: What is opposite.
+        normal: Averaged normals, (n, 3).
+
+    Returns:
+        The projection on them, (n, 3, 3).
+    """
+    out = np.zeros((len(nodes), 3, 3))
+    masters = opposite.masters
+    for there, direction in resting:
+        below = there[np.maximum(masters, 0)] & (masters >= 0) & (opposite.shares != 0.0)
+        across = np.abs(normal @ direction) < ACROSS
+        which = np.flatnonzero(there[nodes] & below.any(axis=1) & across)
+        rest = direction - out[which] @ direction
+        size = np.linalg.norm(rest, axis=1)
+        new = size > ACROSS
+        unit = rest[new] / size[new][:, None]
+        out[which[new]] += unit[:, :, None] * unit[:, None]
+    return out
+
+
 def averaged_normal(tangents: Floats) -> Floats:
     """Normal towards the slave from its tangents, which turn about the outward one, (n, 3)."""
     cross = np.cross(tangents[:, 0], tangents[:, 1])
     return np.asarray(-cross / np.linalg.norm(cross, axis=1)[:, None])
 
 
-def by_slave_tangents(tangents: Floats, by_normal: Floats) -> Floats:
-    """Derivatives by the tangents of the slave from those by the averaged normal.
+def across(held: Floats, normal: Floats) -> Floats:
+    """Normals without what is along held directions, (n, 3): by symmetry they have nothing there."""
+    rest = normal - (held @ normal[..., None])[..., 0]
+    return np.asarray(rest / np.linalg.norm(rest, axis=1)[:, None])
+
+
+def by_slave_tangents(tangents: Floats, held: Floats, by_normal: Floats) -> Floats:
+    """Derivatives by the tangents of the slave from those by the normal of the contact plane.
 
     Args:
         tangents: Of the slave, (n, 2, 3), length.
+        held: As of `ContactPlanes`.
         by_normal: Rows of some numbers, (n, r, 3).
 
     Returns:
@@ -244,6 +289,12 @@ def by_slave_tangents(tangents: Floats, by_normal: Floats) -> Floats:
     cross = np.cross(tangents[:, 0], tangents[:, 1])
     size = np.linalg.norm(cross, axis=1)
     unit = cross / size[:, None]
+    rest = unit - (held @ unit[..., None])[..., 0]
+    length = np.linalg.norm(rest, axis=1)
+    rest /= length[:, None]
+    along = np.einsum("nri,ni->nr", by_normal, rest)
+    by_normal = (by_normal - along[..., None] * rest[:, None]) / length[:, None, None]
+    by_normal = by_normal - by_normal @ held
     # n = - unit; d unit = (1 - u u) (dt_1 x t_2 + t_1 x dt_2) / size
     k = -(by_normal - np.einsum("nri,ni->nr", by_normal, unit)[..., None] * unit[:, None])
     k = k / size[:, None, None]

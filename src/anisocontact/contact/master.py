@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol, Self
 
 import numpy as np
@@ -19,6 +19,10 @@ from anisocontact.rigid import RigidBody
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 Mask = npt.NDArray[np.bool_]
+
+
+#: Local nodes that supports hold along a direction, (nodes,), and the direction, (3,).
+type Resting = tuple[Mask, Floats]
 
 
 class Answer(Protocol):
@@ -160,6 +164,15 @@ class Master(Protocol):
 
     def couplable(self) -> Ints:
         """Local nodes that the contact acts on; all ranks together have all of them."""
+
+    def take_resting(self, resting: Sequence[Resting], state: State) -> None:
+        """Learn which nodes are held along directions from now on.
+
+        Args:
+            resting: The nodes and directions.
+            state: Committed state, whose coordinates lose what is along them.
+        """
+        return
 
     def immovable(self, fixed: Mask) -> bool:
         """Whether it cannot give way where displacements of local nodes are fixed, (nodes, 3)."""

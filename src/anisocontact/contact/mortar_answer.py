@@ -110,7 +110,7 @@ class MortarState:
         """
         planes, opposite, masters = self.planes, self.opposite[0], self.weights.masters
         named = np.maximum(masters, 0)
-        way = self.now[named] - planes.mean[:, None]
+        way = self.now[named] - opposite.mean(self.now)[:, None]
         material = self.reference[named] - opposite.mean(self.reference)[:, None]
         way -= (material @ opposite.dual_tangents(self.reference).swapaxes(1, 2)) @ planes.now.axes
         area = self.weights.area[:, None, None]
@@ -132,7 +132,11 @@ class MortarState:
         by[:, :, :, 0] = by.sum(axis=3)
         by_now, by_normal = planes.now.take(which).pulled_back(by[:, :, 1, 1:])
         by[:, :, 1, 1:] = by_now
-        by[:, :, 0, 1:] += by_slave_tangents(planes.tangents[which], by_normal)
+        by[:, :, 0, 1:] += by_slave_tangents(planes.tangents[which], planes.held[which], by_normal)
+        for part in (1, 2):  # both means follow the slave point along what is held
+            held = by[:, :, part, 0] @ planes.held[which]
+            by[:, :, part, 0] -= held
+            by[:, :, 0, 0] += held
         p = len(which)
         turn, along, lean = (one[which] for one in self._place_slopes)
         by_place = np.einsum("piaj,pabj->pib", by[:, :, 1, 1:], turn)

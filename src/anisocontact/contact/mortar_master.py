@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
 from typing import Any, override
 
@@ -14,11 +14,14 @@ from anisocontact.contact.contact_planes import (
     ContactPlanes,
     Opposite,
     Turned,
+    across,
     averaged_normal,
+    held_directions,
 )
 from anisocontact.contact.facet_answer import OFF, found_on_all
 from anisocontact.contact.facet_master import FacetMaster
 from anisocontact.contact.history import Snapshot
+from anisocontact.contact.master import Resting
 from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
 from anisocontact.contact.mortar_reach import mortar_reachable
 from anisocontact.contact.mortar_weights import mortar_weights
@@ -60,6 +63,7 @@ class MortarMaster(FacetMaster):
     def __init__(self, sides: Sides, law: ContactLaw, *, group: str, size: float) -> None:
         assert isinstance(sides.points, SlaveNodes)
         self._points: SlaveNodes = sides.points
+        self._resting: Sequence[Resting] = ()
         n = len(sides.points.facet)
         none = np.full((n, 1), -1, dtype=np.int32)
         width = sides.master.nodes.shape[1]
@@ -85,13 +89,21 @@ class MortarMaster(FacetMaster):
         opposite = replace(opposite, masters=weights.masters, shares=weights.shares)
         tangents = points.at(now).tangents[:, 0]
         normal = averaged_normal(tangents)
+        x = points.positions(now)
+        held = held_directions(self._resting, points.nodes[:, 0], opposite, normal)
+        normal = across(held, normal)
+        mean, mean_then = (
+            y + (held @ (x - y)[..., None])[..., 0]
+            for y in (opposite.mean(now), self._then.mean(now))
+        )
         planes = ContactPlanes(
-            points.positions(now),
+            x,
             tangents,
-            opposite.mean(now),
+            mean,
             Turned(opposite.tangents(now), normal),
-            self._then.mean(now),
+            mean_then,
             Turned(self._then.tangents(now), normal),
+            held,
         )
         both = opposite, self._then
         return MortarState(points.quadrature, weights, planes, both, now, sides.reference)
@@ -169,8 +181,10 @@ class MortarMaster(FacetMaster):
         batch = self._batch(state, tangent)
         found = found_on_all(self._comm, law, state, dt, batch)
         failed = self._hint.status == FACET_STATUS.index("failed")
+        # supports carry what there is along directions that they hold, and history has nothing there
+        free = np.eye(3) - at.planes.held
         response = Response(
-            traction=found["traction"],
+            traction=(free @ found["traction"][..., None])[..., 0],
             tangent=np.empty((0, 3, 3)),
             state=found["state"],
             normal=found["normal"],
@@ -180,7 +194,9 @@ class MortarMaster(FacetMaster):
         )
         which = np.flatnonzero(response.status != 0).astype(np.int32)
         snapshot = Snapshot(at.planes.slave, at.weights.area, response)
-        by_nodes = -found["tangent"][which, :3] if tangent else np.zeros((len(which), 3, 27))
+        by_nodes = np.zeros((len(which), 3, 27))
+        if tangent:
+            by_nodes = -free[which] @ found["tangent"][which, :3]
         return MortarAnswer(at, snapshot, found["stiffness"] * at.weights.area, which, by_nodes)
 
     def _batch(self, state: State, tangent: bool = True) -> FacetBatch:
@@ -224,6 +240,15 @@ class MortarMaster(FacetMaster):
         found = [np.concatenate([p[:, None], p[:, None] + t], axis=1) for p, t in parts]
         found.append(np.zeros_like(found[0]))
         return np.ascontiguousarray(np.concatenate(found, axis=1).reshape(-1, 3))
+
+    @override
+    def take_resting(self, resting: Sequence[Resting], state: State) -> None:
+        self._resting = resting
+        self._at = self._placed()
+        axes, held = self._at.planes.then.axes, self._at.planes.held
+        away = np.einsum("na,nai->ni", state["xi"], axes)
+        along = axes @ (held @ away[..., None])
+        state["xi"] -= np.linalg.solve(axes @ axes.swapaxes(1, 2), along)[..., 0]
 
     @override
     def failed_point(self, i: int, state: State, dt: float, **of_point: Any) -> OnFacets:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -14,7 +14,7 @@ from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks
 from anisocontact.contact.history import Slid, Snapshot, dissipated
 from anisocontact.contact.initial import check_start
-from anisocontact.contact.master import Answer, Master
+from anisocontact.contact.master import Answer, Master, Resting
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.trials import Trials
 from anisocontact.contact.whereabouts import Whereabouts
@@ -145,14 +145,17 @@ class Pass:
         self.trials.suit(self.body_stiffness)
         self._begin()
 
-    def take_supports(self, fixed: npt.NDArray[np.bool_]) -> None:
-        """Learn which displacements are prescribed from now on: such points keep their penalty.
+    def take_supports(self, fixed: Mask, resting: Sequence[Resting]) -> None:
+        """Learn which displacements are prescribed from now on.
 
         Args:
-            fixed: Of the local nodes, (nodes, 3).
+            fixed: Of the local nodes, (nodes, 3): points that cannot move keep their penalty.
+            resting: Nodes that are held where they are along directions.
         """
+        self.master.take_resting(resting, self.state)
         held = self.slave_points.held(fixed, self.last.normal)
         self.trials.take_immovable(held & self.master.immovable(fixed))
+        self._begin()
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.

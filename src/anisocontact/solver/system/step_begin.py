@@ -34,20 +34,30 @@ def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again:
     supports, planes = parts.supports, parts.planes
     before = supports.unknowns
     supports.begin(step, start)
-    fixed = np.zeros(len(start), dtype=bool)
-    fixed[supports.unknowns] = True
-    for contact in parts.contacts:
-        contact.take_supports(fixed.reshape(-1, 3))
     gone = np.setdiff1d(before, supports.unknowns)
     released = np.zeros(len(start))
     _, of_supports = planes.forces(reaction)
     released[gone] = of_supports[gone]
     parts.assembly.terms.begin(step, released)
     planes.begin(supports.unknowns, supports.end, step.name)
+    _tell_contacts(parts, len(start))
     held = [*supports.held(), *planes.held()]
     load = parts.loads.at_end(start.reshape(-1, 3)) if parts.attached else None
     frames = parts.rigid.held_frames()
     parts.stabilisation.find_free(held, step.name, load, not again, frames)
+
+
+def _tell_contacts(parts: Parts, count: int) -> None:
+    """Let contacts know which nodes are prescribed, and which are held along which directions."""
+    fixed = np.zeros(count, dtype=bool)
+    fixed[parts.supports.unknowns] = True
+    resting = []
+    for nodes, direction in (*parts.supports.resting(), *parts.planes.held()):
+        there = np.zeros(count // 3, dtype=bool)
+        there[nodes] = True
+        resting.append((there, direction))
+    for contact in parts.contacts:
+        contact.take_supports(fixed.reshape(-1, 3), resting)
 
 
 def _rehearsed(parts: Parts, steps: Sequence[Step]) -> Iterator[tuple[Step, Supports, Loads]]:

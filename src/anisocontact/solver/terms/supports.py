@@ -108,6 +108,16 @@ class Supports:
         nodes, axes = np.divmod(self.unknowns, 3)
         return [(nodes[axes == i], np.eye(3)[i]) for i in range(3)]
 
+    def resting(self) -> list[tuple[Ints, Floats]]:
+        """Nodes that are held where they are all along the step along each axis, and the axis."""
+        still = np.abs(self.end - self.start) <= self._same
+        for _, held, _ in self._turned:
+            still[np.searchsorted(self.unknowns, held)] = False
+        for _, place in self._courses:
+            still[place] = False
+        nodes, axes = np.divmod(self.unknowns[still], 3)
+        return [(nodes[axes == i], np.eye(3)[i]) for i in range(3)]
+
     @property
     def owners(self) -> dict[Support, Ints]:
         """Local unknowns that each support holds on this rank: none of them twice."""
