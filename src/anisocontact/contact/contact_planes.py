@@ -270,7 +270,7 @@ def averaged_normal(tangents: Floats) -> Floats:
 
 
 def across(held: Floats, normal: Floats) -> Floats:
-    """Normals without what is along held directions, (n, 3): by symmetry they have nothing there."""
+    """Normals without what is along held directions, (n, 3): by symmetry nothing is there."""
     rest = normal - (held @ normal[..., None])[..., 0]
     return np.asarray(rest / np.linalg.norm(rest, axis=1)[:, None])
 

@@ -24,7 +24,7 @@ from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Resting
 from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
 from anisocontact.contact.mortar_reach import mortar_reachable
-from anisocontact.contact.mortar_weights import mortar_weights
+from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
 from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import Sides
@@ -80,12 +80,18 @@ class MortarMaster(FacetMaster):
         super().__init__(sides, law, group=group, size=size, mirrored=False, overlaps=False)
         self._at = self._placed()
 
-    def _placed(self) -> MortarState:
-        """The slave nodes, their weights and planes where the nodes are."""
+    def _placed(self, weights: MortarWeights | None = None) -> MortarState:
+        """The slave nodes, their weights and planes where the nodes are.
+
+        Args:
+            weights: As they are there, if that is known.
+        """
         sides, points, now = self.sides, self._points, self._nodes.now
         opposite = self._tangent_places()
-        more = np.concatenate([opposite.named(), self._then.named()], axis=1)
-        weights = mortar_weights(sides, points.around, now, more, current_area=points.current_area)
+        if weights is None:
+            more = np.concatenate([opposite.named(), self._then.named()], axis=1)
+            area = points.current_area
+            weights = mortar_weights(sides, points.around, now, more, current_area=area)
         opposite = replace(opposite, masters=weights.masters, shares=weights.shares)
         tangents = points.at(now).tangents[:, 0]
         normal = averaged_normal(tangents)
@@ -148,7 +154,7 @@ class MortarMaster(FacetMaster):
         state["gap"][located] = self._at.planes.gap[located]
         self._then = self._at.opposite[0]
         self._count_as_then(state)
-        self._at = self._placed()
+        self._at = self._placed(self._at.weights)
         return state
 
     def _count_as_then(self, state: State) -> None:
@@ -181,7 +187,7 @@ class MortarMaster(FacetMaster):
         batch = self._batch(state, tangent)
         found = found_on_all(self._comm, law, state, dt, batch)
         failed = self._hint.status == FACET_STATUS.index("failed")
-        # supports carry what there is along directions that they hold, and history has nothing there
+        # supports carry what there is along directions that they hold
         free = np.eye(3) - at.planes.held
         response = Response(
             traction=(free @ found["traction"][..., None])[..., 0],
@@ -244,7 +250,7 @@ class MortarMaster(FacetMaster):
     @override
     def take_resting(self, resting: Sequence[Resting], state: State) -> None:
         self._resting = resting
-        self._at = self._placed()
+        self._at = self._placed(self._at.weights)
         axes, held = self._at.planes.then.axes, self._at.planes.held
         away = np.einsum("na,nai->ni", state["xi"], axes)
         along = axes @ (held @ away[..., None])
@@ -345,7 +351,7 @@ class MortarMaster(FacetMaster):
         self._then = self._at.opposite[0]
         self._count_as_then(now.response.state)
         self._accepted = (self._nodes.now, self._hint)
-        self._at = self._placed()
+        self._at = self._placed(self._at.weights)
         lost = (state["facet"] >= 0) & (now.response.state["facet"] < 0)
         return np.asarray(now.points[lost & (self._at.weights.area <= 0.0)])
 
