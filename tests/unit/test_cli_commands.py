@@ -76,6 +76,14 @@ def test_check_says_what_is_in_a_case(capsys, case):
         "contact   block.bottom on plate: 9 slave facets, penalty 1e+04, maximum-dissipation",
         "step      press: 2 increments, block.top",
         "step      drag: 4 increments, block.top",
+        "body      block: 18 hexahedra of order 1, box (0, 0, 0) to (1, 1, 0.5), "
+        "edges 0.25 to 0.3333",
+        "quality   block: worst 1, mean 1",
+        *(
+            f"group     block.{side}: 6 facets, area 0.5"
+            for side in ("left", "right", "front", "back")
+        ),
+        *(f"group     block.{end}: 9 facets, area 1" for end in ("bottom", "top")),
     ]
     assert [entry.name for entry in case.parent.iterdir()] == ["case.toml"]
 
