@@ -29,3 +29,22 @@ def test_a_file_of_gmsh_gives_the_same_mesh(tmp_path, cell, order):
         np.unique(m.space.tabulate_dof_coordinates().round(9), axis=0) for m in (written, built)
     ]
     assert np.array_equal(*nodes)
+
+
+def test_points_on_a_line_are_seen_as_a_strip():
+    """Requirement: pictures of contacts of a mesh in the plane, with areas of any thickness."""
+    from anisocontact.results.dataset import DataSet, vertices
+    from anisocontact.results.report.frame import ContactView
+
+    x = np.array([0.0, 0.1, 0.4, 1.0])
+    data = {
+        "contact": np.zeros(4, dtype=int),
+        "status": np.array([1, 1, 0, 0]),
+        "normal": np.tile([0.0, -1.0, 0.0], (4, 1)),
+        "area": np.full(4, 100.0),
+    }
+    view = ContactView(DataSet("PolyData", np.c_[x, 0 * x, 0 * x], vertices(4), data), 0)
+    nearest, outside = view._nearest
+    assert view.on_line and not outside.any()
+    assert view.box[:, 0] == pytest.approx([-0.05, 1.05])
+    assert np.all(nearest == nearest[0]) and np.all(np.diff(nearest[0]) >= 0)

@@ -16,7 +16,7 @@ from anisocontact.base.figure_style import GREY
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["LABEL", "caption", "magnification", "round_box", "surfaces"]
+__all__ = ["LABEL", "caption", "in_plane", "magnification", "round_box", "surfaces"]
 
 #: Largest displacement in the picture as a share of the size of the bodies.
 VISIBLE = 0.1
@@ -56,6 +56,11 @@ def surfaces(
     grid.point_data["size"] = np.linalg.norm(grid.point_data["displacement"], axis=1)
     skin: pyvista.PolyData = grid.extract_surface(algorithm="dataset_surface").triangulate()
     return skin.warp_by_vector("displacement", factor=scale), skin
+
+
+def in_plane(before: pyvista.PolyData) -> bool:
+    """Whether the bodies are meshed in the plane z = 0, which is then seen from the front."""
+    return bool(before.bounds[4] == before.bounds[5])
 
 
 def caption(scale: float) -> str:
@@ -106,7 +111,10 @@ def _main(source: str, picture: str, length: str) -> None:
         **{f"n_{axis}labels": int(n) for axis, n in zip("xyz", labels, strict=True)},
     )
     plotter.add_text(caption(scale), position="upper_edge", font_size=11, color="black")
-    plotter.view_vector((-0.55, -1.0, 0.6), viewup=(0.0, 0.0, 1.0))
+    if in_plane(before):
+        plotter.view_xy()
+    else:
+        plotter.view_vector((-0.55, -1.0, 0.6), viewup=(0.0, 0.0, 1.0))
     plotter.reset_camera(bounds=np.column_stack([low, high]).reshape(-1).tolist())
     plotter.screenshot(picture)
     plotter.close()

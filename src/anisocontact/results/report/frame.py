@@ -28,6 +28,8 @@ ALIKE = 1e-3
 CLOSED = 0.1
 #: Pixels of a map along its longer side.
 PIXELS = 500
+#: Half the width of the strip that points on a line are seen as, over their length.
+STRIP = 0.05
 
 
 @dataclass(frozen=True)
@@ -139,8 +141,16 @@ class ContactView:
     def box(self) -> Floats:
         """Lowest and highest position along the axes of the frame with a margin, (2, 2)."""
         low, high = self.flat.min(axis=0), self.flat.max(axis=0)
-        margin = 0.04 * (high - low).max() + np.sqrt(self.data["area"].max())
+        extent = (high - low).max()
+        size = 0.0 if self.on_line else np.sqrt(self.data["area"].max())
+        margin = (STRIP if self.on_line else 0.04) * extent + size
         return np.stack([low - margin, high + margin])
+
+    @cached_property
+    def on_line(self) -> bool:
+        """Whether the points lie on a line, as those of a mesh in the plane do: seen as a strip."""
+        first, second = np.ptp(self.flat, axis=0)
+        return bool(second < STRIP * first)
 
     @property
     def aspect(self) -> float:
@@ -155,6 +165,9 @@ class ContactView:
         counts = np.maximum((PIXELS * size / size.max()).astype(int), 2)
         sides = [np.linspace(self.box[0, i], self.box[1, i], int(counts[i])) for i in (0, 1)]
         pixels = np.stack(np.meshgrid(*sides), axis=-1)
+        if self.on_line:
+            _, nearest = KDTree(self.flat[:, :1]).query(pixels[..., :1])
+            return nearest, np.zeros(nearest.shape, dtype=bool)
         distance, nearest = KDTree(self.flat).query(pixels, p=np.inf)
         return nearest, distance > 1.2 * np.sqrt(self.data["area"])[nearest]
 

@@ -14,7 +14,14 @@ from typing import Any
 
 from anisocontact.base.figure_style import new_figure, save
 from anisocontact.base.whole_files import draft_of
-from anisocontact.results.deformed import LABEL, caption, magnification, round_box, surfaces
+from anisocontact.results.deformed import (
+    LABEL,
+    caption,
+    in_plane,
+    magnification,
+    round_box,
+    surfaces,
+)
 
 __all__ = ["Drawing"]
 
@@ -96,10 +103,12 @@ def _by_matplotlib(grid: Any, picture: Path, length: str) -> None:
     axes.add_collection3d(outline)
     axes.add_collection3d(faces)
     low, high, _ = round_box(skin, before)
+    flat = in_plane(before)
+    high[2] = max(high[2], low[2] + 1e-3 * float((high - low).max()))
     for axis, start, end in zip("xyz", low, high, strict=True):
         axes.set(**{f"{axis}lim": (start, end), f"{axis}label": f"{axis} [{length}]"})
     axes.set_box_aspect(high - low)
-    axes.view_init(elev=25.0, azim=-60.0)
+    axes.view_init(*((90.0, -90.0) if flat else (25.0, -60.0)))
     figure.colorbar(faces, ax=axes, label=LABEL.format(length), shrink=0.6)
     axes.set_title(caption(scale))
     save(figure, picture)
