@@ -132,11 +132,12 @@ def _pulled(material: Material, cell: str, order: int) -> tuple[float, Problem]:
 def test_every_nonlinear_material_is_here() -> None:
     """A registered material is verified here, with directions or a history in a file of its own,
     or linear."""
+    linear = {"linear-elastic", "linear-elastic-incompressible"}
     directed, history = (
         {"orthotropic", "transversely-isotropic"},
         {"viscoelastic", "plastic", "hill"},
     )
-    assert {m.name for m in materials()} == {*STRESS, *directed, *history, "linear-elastic"}
+    assert {m.name for m in materials()} == {*STRESS, *directed, *history, *linear}
 
 
 @pytest.mark.parametrize(
@@ -190,12 +191,12 @@ def test_tangent_by_order(name: str) -> None:
     assert 3.7 < errors[0] / errors[1] < 4.3
 
 
-def _tip(cell: str, order: int, nu: float, n: int) -> float:
-    """Deflection of a cantilever 10 x 1 x 1 of nearly incompressible rubber under a small load."""
+def _tip(name: str, cell: str, order: int, nu: float, n: int) -> float:
+    """Deflection of a cantilever 10 x 1 x 1 of a nearly incompressible body under a small load."""
     size = {"hexahedron": (10 * n, n, n), "tetrahedron": (5 * n, n, n)}[cell]
     spec = BoxSpec((0, 0, 0), (10, 1, 1), size, cell=cell, order=order)
     model = build_box({"beam": spec})
-    rubber = make_material("neo-hookean-incompressible", E=1.0, nu=nu)
+    rubber = make_material(name, E=1.0, nu=nu)
     problem = Problem(model, {"beam": rubber})
     step = Step(
         name="bend",
@@ -211,11 +212,28 @@ def _tip(cell: str, order: int, nu: float, n: int) -> float:
 @pytest.mark.parametrize(
     ("cell", "order", "n"), [("hexahedron", 1, 4), ("hexahedron", 2, 1), ("tetrahedron", 2, 2)]
 )
-def test_no_volumetric_locking(cell: str, order: int, n: int) -> None:
+@pytest.mark.parametrize("name", ["neo-hookean-incompressible", "linear-elastic-incompressible"])
+def test_no_volumetric_locking(name: str, cell: str, order: int, n: int) -> None:
     """From nu = 0.45 to 0.4999 the deflection of a beam changes by the end effects of Poisson's
     ratio alone, below 2 %; where cells lock it falls by a factor (first-order hexahedra under full
     integration: by more than two).
 
     Source: E I governs bending whatever the Poisson's ratio [Timoshenko].
     """
-    assert _tip(cell, order, 0.4999, n) == pytest.approx(_tip(cell, order, 0.45, n), rel=0.02)
+    soft, hard = (_tip(name, cell, order, nu, n) for nu in (0.45, 0.4999))
+    assert hard == pytest.approx(soft, rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("cell", "order"), [("hexahedron", 1), ("hexahedron", 2), ("tetrahedron", 2)]
+)
+def test_incompressible_bar(cell: str, order: int) -> None:
+    """A bar of nu = 0.4999 pulled by 1 %: `E e`, to 1e-8, Newton's method."""
+    law = make_material("linear-elastic-incompressible", E=E, nu=0.4999)
+    model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2), cell=cell, order=order)})
+    problem = Problem(model, {"bar": law})
+    assert problem.linear
+    held = {"bar.bottom": {"z": 0.0}, "bar.left": {"x": 0.0}, "bar.front": {"y": 0.0}}
+    for _ in Solver(problem, [Step("pull", 1, held | {"bar.top": {"z": 0.01}})]).run():
+        pass
+    assert problem.reactions()["bar.top"][2] == pytest.approx(0.01 * E, rel=1e-8)

@@ -14,7 +14,12 @@ from anisocontact.bulk.hyperelastic import (
 )
 from anisocontact.bulk.library import make_material, materials, register_material
 from anisocontact.bulk.linear import LinearBulk
-from anisocontact.bulk.materials import LinearElastic, Material, small_strain
+from anisocontact.bulk.materials import (
+    LinearElastic,
+    LinearElasticIncompressible,
+    Material,
+    small_strain,
+)
 from anisocontact.bulk.nonlinear import NonlinearBulk
 from anisocontact.bulk.ogden import Ogden
 from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
@@ -43,6 +48,7 @@ __all__ = [
     "HistoryMaterial",
     "LinearBulk",
     "LinearElastic",
+    "LinearElasticIncompressible",
     "Material",
     "MooneyRivlin",
     "NeoHookean",

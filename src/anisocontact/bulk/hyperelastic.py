@@ -8,7 +8,7 @@ from typing import Any
 
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.bulk.materials import Density, Isotropic, small_strain
+from anisocontact.bulk.materials import Density, Isotropic, reduced_degree, small_strain
 
 _MODULI = (
     Parameter("E", "scalar", "stress", "Young's modulus at rest", "positive"),
@@ -47,12 +47,7 @@ def cauchy_stress(material: Any, u: Any) -> Any:
 
 
 def volumetric(u: Any, bulk: Any, change: Any) -> Density:
-    """`K/2 e^2` of a change of volume e, integrated at so few points that cells do not lock.
-
-    One point of a cell, of second-order hexahedra eight: as many constraints as the displacement
-    can meet [Malkus Hughes 1978, equivalence of reduced integration and a pressure of lower order].
-    Hexahedra and second-order tetrahedra do not lock with it; first-order tetrahedra have one point
-    anyway, and do.
+    """`K/2 e^2` of a change of volume e, integrated so that cells do not lock: `reduced_degree`.
 
     Args:
         u: Displacement, a DOLFINx function.
@@ -62,9 +57,7 @@ def volumetric(u: Any, bulk: Any, change: Any) -> Density:
     Returns:
         The term and the degree of its quadrature.
     """
-    element = u.function_space.element.basix_element
-    tensor = element.cell_type.name in ("hexahedron", "quadrilateral")
-    return 0.5 * bulk * change**2, 2 if tensor and element.degree == 2 else 1
+    return 0.5 * bulk * change**2, reduced_degree(u)
 
 
 class Hyperelastic(ABC):

@@ -11,7 +11,7 @@ from anisocontact.bulk.hyperelastic import (
     NeoHookeanIncompressible,
     StVenantKirchhoff,
 )
-from anisocontact.bulk.materials import LinearElastic, Material
+from anisocontact.bulk.materials import LinearElastic, LinearElasticIncompressible, Material
 from anisocontact.bulk.ogden import Ogden
 from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
 from anisocontact.bulk.plasticity import Hill, Plastic
@@ -23,6 +23,7 @@ _MATERIALS = Kinds(
     "model",
     (
         LinearElastic,
+        LinearElasticIncompressible,
         Orthotropic,
         TransverselyIsotropic,
         StVenantKirchhoff,

@@ -10,7 +10,7 @@ from anisocontact.base.fenicsx import Mat, Vec, compiled, create_stiffness, ufl
 from anisocontact.base.form_matrix import add_matrix
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.expansion import Heated
-from anisocontact.bulk.materials import Material, body_measure
+from anisocontact.bulk.materials import Material, body_measure, linear_parts
 from anisocontact.mesh import Model
 
 
@@ -104,6 +104,7 @@ def _bilinear_form(model: Model, materials: Mapping[str, Material]) -> Any:
     law: Mapping[str, Any] = materials
     weight, strain = ideal.weight(model.mesh), ufl.sym(ideal.gradient(v))
     return sum(
-        weight * ufl.inner(ideal.stress(law[name].stress(u), u), strain) * dx(i)
+        weight * ufl.inner(ideal.stress(stress, u), strain) * dx(i, degree=degree)
         for i, name in enumerate(model.body_names())
+        for stress, degree in linear_parts(law[name], u)
     )

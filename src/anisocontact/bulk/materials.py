@@ -42,6 +42,27 @@ def small_strain(material: Any) -> bool:
 type Density = tuple[Any, int | None]
 
 
+def reduced_degree(u: Any) -> int:
+    """Degree of a quadrature with so few points that cells do not lock.
+
+    One point of a cell, of second-order hexahedra eight: as many constraints as the displacement
+    can meet [Malkus Hughes 1978, equivalence of reduced integration and a pressure of lower order].
+    Hexahedra and second-order tetrahedra do not lock with it; first-order tetrahedra have one point
+    anyway, and do.
+
+    Args:
+        u: Displacement, a DOLFINx function or an argument of a form.
+    """
+    element = u.ufl_function_space().element.basix_element
+    tensor = element.cell_type.name in ("hexahedron", "quadrilateral")
+    return 2 if tensor and element.degree == 2 else 1
+
+
+def linear_parts(material: Any, u: Any) -> list[tuple[Any, int | None]]:
+    """Stresses whose sum is that of a linear material, with the degree of quadrature of each."""
+    return material.parts(u) if hasattr(material, "parts") else [(material.stress(u), None)]
+
+
 def body_measure(model: Model) -> Any:
     """Measure of a form over bodies, numbered in the order of their names."""
     names = enumerate(model.body_names())
@@ -140,3 +161,31 @@ class LinearElastic(Isotropic):
         lame, shear = self.constants(u)
         strain = ufl.sym(ufl.grad(u))
         return lame * ufl.tr(strain) * ufl.Identity(3) + 2.0 * shear * strain
+
+
+class LinearElasticIncompressible(LinearElastic):
+    """`sigma = 2 G dev(eps) + K tr(eps) I` whose second term is integrated at fewer points.
+
+    Args:
+        E: Young's modulus, > 0, stress.
+        nu: Poisson's ratio, -1 < nu < 0.5; its stiffness grows as 1 / (1 - 2 nu).
+        field: Where the material was written, for messages.
+
+    Raises:
+        InputError: A value is out of range.
+    """
+
+    entry = Entry(
+        "linear-elastic-incompressible",
+        "material",
+        "nearly incompressible linear elasticity, volume term by reduced integration",
+        LinearElastic.entry.parameters,
+    )
+
+    def parts(self, u: Any) -> list[tuple[Any, int | None]]:
+        """Deviator, and pressure at the points of `reduced_degree`, (3, 3) each, UFL, stress."""
+        domain = ufl.domain.extract_unique_domain(u)
+        bulk, (_, shear) = fem.Constant(domain, self.bulk_modulus), self.constants(u)
+        strain = ufl.sym(ufl.grad(u))
+        deviator = 2.0 * shear * (strain - ufl.tr(strain) / 3.0 * ufl.Identity(3))
+        return [(deviator, None), (bulk * ufl.tr(strain) * ufl.Identity(3), reduced_degree(u))]

@@ -18,7 +18,7 @@ from anisocontact.base.form_matrix import FormMatrix
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.expansion import Expanding, Heated, bare
 from anisocontact.bulk.history import BodyHistory
-from anisocontact.bulk.materials import Density, Material, body_measure
+from anisocontact.bulk.materials import Density, Material, body_measure, linear_parts
 from anisocontact.bulk.point_law import BodyPoints
 from anisocontact.mesh import Idealisation, Model
 
@@ -197,7 +197,8 @@ class _Forms:
 def _stored(ideal: Idealisation, law: Any, u: Any) -> Sequence[Density]:
     """Terms of the energy of a material from which its stress follows."""
     if law.linear:
-        stress = ideal.stress(law.stress(u), u)
-        return [(0.5 * ufl.inner(stress, ufl.sym(ideal.seen(ufl.grad(u), u))), None)]
+        strain = ufl.sym(ideal.seen(ufl.grad(u), u))
+        parts = linear_parts(law, u)
+        return [(0.5 * ufl.inner(ideal.stress(s, u), strain), degree) for s, degree in parts]
     terms = law.energy(u) if hasattr(law, "energy") else []
     return [(ideal.seen(density, u), degree) for density, degree in terms]

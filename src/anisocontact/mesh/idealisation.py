@@ -244,6 +244,8 @@ class PlaneStress(_Sheet):
         if not material.linear:
             text = "plane stress needs a linear material; take plane strain, or a body in space"
             raise InputError(text, field)
+        if hasattr(material, "parts"):
+            raise InputError("plane stress does not lock; take linear-elastic", field)
 
 
 @dataclass(frozen=True, eq=False)
