@@ -21,16 +21,18 @@ __all__ = ["command", "contents"]
 
 def command(arguments: argparse.Namespace) -> int:
     """Build the case and say what is in it."""
+    path = Path(arguments.case)
+    # says first whether the finite elements are there
+    file = load(path) if path.suffix == ".toml" else None
+
     from anisocontact.case.build import build, mesh_of
     from anisocontact.mesh.described import described
 
-    path = Path(arguments.case)
-    if path.suffix != ".toml":
+    if file is None:
         for line in described(mesh_of(path)):
             say(line)
         say("units     a mesh file has none: the numbers are taken as they are")
         return 0
-    file = load(path)
     for line in contents(build(file, python=not arguments.no_python)):
         say(line)
     for line in described(mesh_of(path)):
