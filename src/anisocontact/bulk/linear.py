@@ -22,6 +22,7 @@ class LinearBulk:
         materials: Body name -> linear material, one for each body.
 
     Example:
+        >>> import numpy as np
         >>> from anisocontact.bulk import make_material
         >>> from anisocontact.mesh import BoxSpec, build_box
         >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
