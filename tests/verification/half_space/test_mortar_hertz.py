@@ -161,8 +161,8 @@ def test_pair(half_spaces: Any, which: str, n: int, below: int, bound: float) ->
 def test_pair_with_a_finer_sphere(half_spaces: Any, which: str) -> None:
     """9 facets on 8.
 
-    A stiff slave is left out: finer than a soft master it has more multipliers than the
-    displacements of the master can hold, and they alternate by 25 % of p0.
+    A stiff slave is left out: the fewer displacements of a soft master cannot close the gaps of all
+    its nodes, with errors of 25 % of p0.
     """
     p = pair(half_spaces, 9, 8, **PAIRS[which])
     assert p.largest < 0.025
