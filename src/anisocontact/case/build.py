@@ -26,7 +26,7 @@ from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.node_groups import node_near, nodes_along
-from anisocontact.mesh.readers import file_arrays
+from anisocontact.mesh.readers import file_arrays, is_mesh
 from anisocontact.mesh.selectors import with_groups
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import CoupledFace, ElasticSupport, Problem, Solver, Spring, Step, Turn
@@ -147,14 +147,14 @@ def mesh_of(path: Path) -> MeshArrays:
     """The mesh of a case file or of a mesh file, in one process.
 
     Args:
-        path: A case file if its name ends with `.toml`, else a mesh file.
+        path: A mesh file by the ending of its name, else a case file.
 
     Raises:
         InputError: It is missing or damaged.
     """
-    if path.suffix == ".toml":
-        return _arrays(load(path), MPI.COMM_SELF)
-    return file_arrays(path, field="")
+    if is_mesh(path):
+        return file_arrays(path, field="")
+    return _arrays(load(path), MPI.COMM_SELF)
 
 
 def _arrays(file: CaseFile, comm: MPI.Comm) -> MeshArrays:

@@ -22,17 +22,13 @@ __all__ = ["command", "contents"]
 def command(arguments: argparse.Namespace) -> int:
     """Build the case and say what is in it."""
     path = Path(arguments.case)
-    # says first whether the finite elements are there
-    file = load(path) if path.suffix == ".toml" else None
+    if path.suffix.lower() != ".toml" and _is_mesh(path):
+        return 0
+    file = load(path)
 
     from anisocontact.case.build import build, mesh_of
     from anisocontact.mesh.described import described
 
-    if file is None:
-        for line in described(mesh_of(path)):
-            say(line)
-        say("units     a mesh file has none: the numbers are taken as they are")
-        return 0
     for line in contents(build(file, python=not arguments.no_python)):
         say(line)
     for line in described(mesh_of(path)):
@@ -45,6 +41,19 @@ def command(arguments: argparse.Namespace) -> int:
             if isinstance(table, FunctionTable):
                 say(f"not run   {table.file}: its amplitude is not checked")
     return 0
+
+
+def _is_mesh(path: Path) -> bool:
+    """Say what is in a mesh file; whether it is one, by the ending of its name."""
+    from anisocontact.mesh.described import described
+    from anisocontact.mesh.readers import file_arrays, is_mesh
+
+    if not is_mesh(path):
+        return False
+    for line in described(file_arrays(path, field="")):
+        say(line)
+    say("units     a mesh file has none: the numbers are taken as they are")
+    return True
 
 
 def contents(built: Built) -> list[str]:

@@ -70,6 +70,16 @@ def whole_reader(read: Callable[[Path], WholeMesh]) -> Reader:
     return arrays
 
 
+def is_mesh(path: Path) -> bool:
+    """Whether the ending of a name is that of mesh files.
+
+    Example:
+        >>> is_mesh(Path("part.INP")), is_mesh(Path("case.toml"))
+        (True, False)
+    """
+    return path.suffix.lower() in _READERS
+
+
 def file_arrays(
     path: Path,
     bodies: Sequence[str] | None = None,
