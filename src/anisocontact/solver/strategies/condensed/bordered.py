@@ -74,6 +74,7 @@ class BorderedLU:
         border: As given.
         solutions_per_factor: Solutions that cost as much as the factorisation.
         solutions_per_border: Solutions that cost as much as a factorisation of the border.
+        change: Change of the border that is factorised, None before the first.
     """
 
     def __init__(self, matrix: Mat, border: Ints, single: bool = False) -> None:
@@ -98,7 +99,7 @@ class BorderedLU:
         dense = len(border) ** 3 / 3.0  # single precision is twice as fast
         self.solutions_per_border = dense / OPERATIONS_PER_ENTRY / entries
         self._diagonal = np.abs(np.diagonal(self._schur))
-        self._change: scipy.sparse.csr_array | None = None
+        self.change: scipy.sparse.csr_array | None = None
         self._solve_border: Callable[[Singles], Singles] | None = None
         self._callback = _MatSolve(self._answer)
         call_petsc("MatFactorRestoreSchurComplement", self._factor, None, _FACTORED)
@@ -116,8 +117,8 @@ class BorderedLU:
         Raises:
             SingularError: The border has no inverse.
         """
-        if self._change is not None:
-            rows = abs(change - self._change).max(axis=1).toarray().ravel()
+        if self.change is not None:
+            rows = abs(change - self.change).max(axis=1).toarray().ravel()
             if np.count_nonzero(rows > _CLEARLY * self._diagonal) < self.solutions_per_border:
                 return 0.0
         matrix = np.array(self._schur, order="F")
@@ -128,7 +129,7 @@ class BorderedLU:
         if info != 0:
             raise singular()
         self._solve_border = lambda b: np.asarray(scipy.linalg.lapack.sgetrs(lu, pivots, b)[0])
-        self._change = change
+        self.change = change
         return self.solutions_per_border
 
     def solve(self, b: Vec, x: Vec) -> None:

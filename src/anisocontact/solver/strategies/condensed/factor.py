@@ -61,15 +61,15 @@ class Way(Protocol):
         ...
 
 
-def aij(matrix: scipy.sparse.csr_array) -> Mat:
-    """The same matrix for PETSc, on this process alone."""
+def aij(matrix: scipy.sparse.csr_array, block: int = 1) -> Mat:
+    """The same matrix for PETSc, on this process alone, of blocks of some rows."""
     parts = (
         (matrix.indptr, PETSc.IntType),
         (matrix.indices, PETSc.IntType),
         (matrix.data, PETSc.ScalarType),
     )
     csr = tuple(np.ascontiguousarray(values, dtype=kind) for values, kind in parts)
-    return PETSc.Mat().createAIJ(matrix.shape, csr=csr, comm=PETSc.COMM_SELF)
+    return PETSc.Mat().createAIJ(matrix.shape, bsize=block, csr=csr, comm=PETSc.COMM_SELF)
 
 
 def mirror(lower: Floats) -> None:

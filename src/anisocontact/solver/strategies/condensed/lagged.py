@@ -11,12 +11,17 @@ import scipy
 from anisocontact.base.fenicsx import Mat
 from anisocontact.solver.strategies.condensed.bordered import BorderedLU
 from anisocontact.solver.strategies.condensed.dense import gmres
+from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.touched import Touched
 from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
 
 Floats = npt.NDArray[np.float64]
 
+#: Matrices that are kept, and the arrays of each.
+_MATRIX, _OLD, _CHANGE = "lagged.matrix", "lagged.old", "lagged.change"
+_PARTS = ("data", "indices", "indptr")
 #: Most Krylov iterations of a correction before a new factor is made, if that costs no more.
 _PATIENCE = 20
 #: Corrections whose cost is the cost of now: one alone depends on how many points change.
@@ -41,21 +46,62 @@ class LaggedFactor:
     Args:
         problem: The problem, on one process.
         note: Told of every factorisation, in a line.
+        kept: What `persistent` gave of a run that goes on; nothing for one that begins.
 
     Attributes:
         factors: Factorisations so far.
         krylov: Krylov iterations of every correction so far.
     """
 
-    def __init__(self, problem: Problem, note: Callable[[str], None]) -> None:
+    def __init__(
+        self, problem: Problem, note: Callable[[str], None], kept: Arrays | None = None
+    ) -> None:
         self._problem, self._note = problem, note
         self._factor: BorderedLU | None = None
         self._touched: Touched | None = None
         self._old = scipy.sparse.csr_array((0, 0))
+        self._of_factor = self._old
         self._single, self._due = True, True
         self._spent: list[tuple[float, float]] = []
         self.factors = 0
         self.krylov: list[int] = []
+        if kept and f"{_MATRIX}.data" in kept:
+            self._restore(kept)
+
+    def persistent(self) -> Arrays:
+        """What the corrections of a run that goes on depend on: the matrices behind the factor.
+
+        The factor is not written but made again, from the same numbers in the same order.
+        """
+        factor, touched = self._factor, self._touched
+        if factor is None or touched is None:
+            return {}
+        change = factor.change
+        out = {
+            "lagged.unknowns": touched.unknowns,
+            "lagged.spent": np.array(self._spent).reshape(-1, 2),
+            "lagged.flags": np.array([self._single, self._due, change is not None]),
+        }
+        change = self._old if change is None else change
+        for name, one in ((_MATRIX, self._of_factor), (_OLD, self._old), (_CHANGE, change)):
+            out |= {f"{name}.{part}": getattr(one, part) for part in _PARTS}
+        return out
+
+    def _restore(self, kept: Arrays) -> None:
+        n, unknowns = self._problem.unknowns, kept["lagged.unknowns"]
+        matrix, old, change = (
+            scipy.sparse.csr_array(tuple(kept[f"{name}.{part}"] for part in _PARTS), (size, size))
+            for name, size in ((_MATRIX, n), (_OLD, len(unknowns)), (_CHANGE, len(unknowns)))
+        )
+        self._single, self._due, changed = map(bool, kept["lagged.flags"])
+        self._spent = [(float(a), float(b)) for a, b in kept["lagged.spent"]]
+        tangent = aij(matrix, 3)
+        self._factor = BorderedLU(tangent, unknowns, self._single)
+        tangent.destroy()
+        if changed:
+            self._factor.renew(change)
+        self._touched = Touched(self._problem, unknowns)
+        self._old, self._of_factor = old, matrix
 
     def outgrow(self) -> None:
         """Take it that contacts couple other nodes than before."""
@@ -127,6 +173,8 @@ class LaggedFactor:
             return False
         self.close()
         self._factor, self._touched, self._old = factor, touched, touched.tangent()
+        starts, columns, values = tangent.getValuesCSR()
+        self._of_factor = scipy.sparse.csr_array((values, columns, starts), tangent.getSize())
         self._due = False
         self.factors += 1
         self._note(

@@ -12,6 +12,7 @@ from anisocontact.solver.strategies.condensed.lagged import LaggedFactor
 from anisocontact.solver.strategies.forcing import Forcing
 from anisocontact.solver.strategies.newton import Newton, NewtonResult, OptionValue
 from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.terms.persistent import Arrays
 
 #: Residual of a correction over its right-hand side, far from the solution: ten times rougher,
 #: points of a stiff contact end an iteration in another status, and iterations are more.
@@ -31,6 +32,7 @@ class LaggedNewton(Newton):
         options: PETSc options of SNES without prefix.
         on_iteration: Called with the number of the iteration and the residual.
         note: Told what is worth a line in the log.
+        kept: What `persistent` gave of a run that goes on; nothing for one that begins.
     """
 
     def __init__(
@@ -40,10 +42,11 @@ class LaggedNewton(Newton):
         options: Mapping[str, OptionValue],
         on_iteration: Callable[[int, float], None],
         note: Callable[[str], None],
+        kept: Arrays,
     ) -> None:
         super().__init__(problem, prefix, dict(options) | LINEAR, on_iteration)
         self._note = note
-        self._factor = LaggedFactor(problem, note)
+        self._factor = LaggedFactor(problem, note, kept)
         self._forcing = Forcing(self.snes.getTolerances()[0], ROUGH)
         pc = self.snes.getKSP().getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
@@ -55,6 +58,10 @@ class LaggedNewton(Newton):
     ) -> NewtonResult:
         self._forcing.begin()
         return super().solve(x, full_steps, damping)
+
+    @override
+    def persistent(self) -> Arrays:
+        return self._factor.persistent()
 
     @override
     def close(self) -> None:

@@ -69,6 +69,6 @@ class CondensedStrategy:
         """Newton's method on the contact unknowns; on all of them where bodies are not linear."""
         if not task.problem.linear:
             task.problem.predict_contact(task.steps)
-            return LaggedNewton(task.problem, task.prefix, task.options, on_iteration, note)
+            return LaggedNewton(task.problem, task.prefix, task.options, on_iteration, note, kept)
         condensed = Condensed(task.problem, task.steps, note, kept)
         return CondensedNewton(condensed, task.prefix, task.options, on_iteration)

@@ -17,15 +17,16 @@ class Touched:
 
     Args:
         problem: The problem, on one process.
+        unknowns: The unknowns, if they are known; those that contact couples now if not.
 
     Attributes:
         unknowns: Their numbers, increasing, (c,).
     """
 
-    def __init__(self, problem: Problem) -> None:
+    def __init__(self, problem: Problem, unknowns: Ints | None = None) -> None:
         self._problem = problem
         self._places = Places(np.arange(problem.unknowns))
-        self.unknowns: Ints = self._select()
+        self.unknowns: Ints = self._select() if unknowns is None else unknowns
 
     def tangent(self) -> scipy.sparse.csr_array:
         """Derivatives of contacts, loads, springs and rigid bodies in these unknowns, (c, c).
