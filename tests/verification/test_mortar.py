@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact
+from anisocontact.contact import Contact, doubtful_sides
 from anisocontact.interface import ContactLaw
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -323,3 +323,22 @@ def test_stick_on_a_plane_of_symmetry() -> None:
         inner = np.all(np.abs(contact.points[:, :2] - 0.5) < 0.45, axis=1)
         shear = np.linalg.norm(contact.last.traction[inner, :2], axis=1)
         assert shear.max() < 0.05 * 0.3 * PRESSURE
+
+
+def test_a_stiff_and_fine_slave_is_told() -> None:
+    """A slave ten times as stiff and finer than the master is a warning that names what to do.
+
+    The other way round, and with equal bodies, nothing is said.
+    """
+    model = _blocks("hexahedron", 1)
+    stiff, soft = (make_material("linear-elastic", E=e, nu=0.3) for e in (10.0 * YOUNG, YOUNG))
+    for upper, sides, said in (
+        (stiff, ("upper.bottom", "lower.top"), True),
+        (stiff, ("lower.top", "upper.bottom"), False),
+        (soft, ("upper.bottom", "lower.top"), False),
+    ):
+        contact = Contact(model, *sides, _law(), mortar=True)
+        Problem(model, {"upper": upper, "lower": soft}, [contact])
+        lines = doubtful_sides([contact])
+        assert bool(lines) == said
+        assert not said or "swap slave and master" in lines[0]

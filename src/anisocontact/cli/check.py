@@ -58,7 +58,7 @@ def _is_mesh(path: Path) -> bool:
 
 def contents(built: Built) -> list[str]:
     """What a case contains, in a few lines."""
-    from anisocontact.contact import coarse_slaves
+    from anisocontact.contact import doubtful_sides
 
     case, problem = built.file.case, built.problem
     model = problem.model
@@ -93,7 +93,7 @@ def contents(built: Built) -> list[str]:
         driven = ", ".join(step.driven()) or "nothing new"
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
     lines += [f"warning   {text}" for text in (*built.doubts(), *built.solver.cautions)]
-    return [*lines, *(f"warning   {line}" for line in coarse_slaves(problem.contacts))]
+    return [*lines, *(f"warning   {line}" for line in doubtful_sides(problem.contacts))]
 
 
 def _points(built: Built) -> Iterator[str]:

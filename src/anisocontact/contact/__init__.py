@@ -5,7 +5,7 @@ from typing import Any
 
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.directions import facet_directions
-from anisocontact.contact.hints import coarse_slaves, warn_of
+from anisocontact.contact.hints import coarse_slaves, doubtful_sides, warn_of
 from anisocontact.contact.initial import Overlap, check_start, initial_overlap
 from anisocontact.contact.multipliers import NotHeldError
 from anisocontact.contact.one_pass import Pass
@@ -23,6 +23,7 @@ __all__ = [
     "auto_penalty",
     "check_start",
     "coarse_slaves",
+    "doubtful_sides",
     "facet_directions",
     "facet_quadrature",
     "facet_size",

@@ -201,6 +201,11 @@ class FacetMaster(Master):
         return self.sides.stiffness(diagonal)
 
     @override
+    def yields(self, diagonal: Floats) -> float:
+        slave, master = self.sides.stiffnesses(diagonal)
+        return slave * self.sides.points.size / (master * self.size)
+
+    @override
     def couplable(self) -> Ints:
         named = self._gathered.local_names
         return np.union1d(named(self.sides.slave.nodes), named(self._gathered.own.nodes))

@@ -162,6 +162,14 @@ class Master(Protocol):
                 (nodes, 3), force/length.
         """
 
+    def yields(self, diagonal: Floats) -> float:
+        """How many times as far as the slave it gives way; 0 for a surface.
+
+        Args:
+            diagonal: As of `stiffness`.
+        """
+        return 0.0
+
     def couplable(self) -> Ints:
         """Local nodes that the contact acts on; all ranks together have all of them."""
 

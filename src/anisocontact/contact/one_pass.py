@@ -63,6 +63,7 @@ class Pass:
         ran_off: Slave points that left the end of the master in the accepted increment, (k, 3).
         body_stiffness: Traction per displacement of a single node of the bodies behind it, mean
             over the surface, stress/length; 0 until they are known.
+        master_yields: How many times as far as the slave the master gives way, see `Master.yields`.
 
     Raises:
         InputError: As of `check_start` and of `make_multipliers`.
@@ -83,7 +84,7 @@ class Pass:
         self.space, self.slave, self.slave_points, self.master = space, slave, points, master
         self._comm, self._area_told = space.mesh.comm, area_told
         self._dt = 1.0
-        self.body_stiffness = 0.0
+        self.body_stiffness = self.master_yields = 0.0
         self.ran_off: Floats = np.zeros((0, 3))
         self.state = adjusted(master.initial_state(), adjust)
         self.answer: Answer = master.answer(self.state, 1.0)
@@ -142,6 +143,7 @@ class Pass:
                 (nodes, 3), force/length.
         """
         self.body_stiffness = self.master.stiffness(diagonal)
+        self.master_yields = self.master.yields(diagonal)
         self.trials.suit(self.body_stiffness)
         self._begin()
 

@@ -34,9 +34,11 @@ class SlavePoints:
         current_area: As given, until `take_area`.
         size: Length of a facet over all ranks, see `mean_size`.
         spread: How far from a point its traction acts, length.
+        at_nodes: Whether points are nodes of the mesh.
     """
 
     spread = 0.0
+    at_nodes = False
 
     def __init__(
         self,
@@ -65,6 +67,10 @@ class SlavePoints:
         moving = (self.shape != 0.0)[:, :, None] & ~fixed[self.nodes % max(len(fixed), 1)]
         free = moving.any(axis=1)
         return np.asarray(np.linalg.norm(free * normal, axis=1) < FREE)
+
+    def peaks(self, areas: Floats) -> npt.NDArray[np.bool_]:
+        """Points whose tractions count among peaks, of those with some areas, (n,)."""
+        return np.ones(len(areas), dtype=bool)
 
     def take_area(self, current: bool) -> None:
         """Take the area of now, or that of the reference."""

@@ -135,6 +135,14 @@ class Sides:
         """Traction per displacement of a node of both, one behind the other, stress/length.
 
         Args:
+            diagonal: As of `stiffnesses`.
+        """
+        return float(1.0 / sum(1.0 / k for k in self.stiffnesses(diagonal)))
+
+    def stiffnesses(self, diagonal: Floats) -> list[float]:
+        """Traction per displacement of a node of slave and master, stress/length.
+
+        Args:
             diagonal: Diagonal of the stiffness of the bodies, of the nodes this rank owns,
                 (nodes, 3), force/length.
         """
@@ -144,8 +152,8 @@ class Sides:
             owned = diagonal[nodes[nodes < len(diagonal)]]
             local = np.array([owned.mean(axis=1).sum(), group_area(side, self.reference)])
             total, area = self.comm.allreduce(local)
-            found.append(total / area)
-        return float(1.0 / sum(1.0 / k for k in found))
+            found.append(float(total / area))
+        return found
 
     def outrun(self, now: Floats) -> bool:
         """Whether points may reach facets that this rank has not gathered; the same on all ranks.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, override
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +25,8 @@ Floats = npt.NDArray[np.float64]
 #: Share of the nodes of the edges that the vertices of a tri6 take, whose own functions have no
 #: mass [Popp Wohlmuth Gitterle Wall 2012, sec. 3.2]; as in cpp/include/anisocontact/mortar.
 EDGE_SHARE = 0.2
+#: Share of its weight that has to be covered for the traction of a node to count among peaks.
+PEAK = 0.05
 #: Vertices beside the edges of a tri6.
 _ENDS = ((1, 2), (0, 2), (0, 1))
 
@@ -217,6 +219,8 @@ class SlaveNodes(SlavePoints):
         around: The facets around each node.
     """
 
+    at_nodes = True
+
     def __init__(
         self,
         mesh: FacetMesh,
@@ -235,3 +239,8 @@ class SlaveNodes(SlavePoints):
         self.size = float(np.sqrt(area / max(facets, 1.0)))
         away = reference[quadrature.nodes] - quadrature.reference[:, None]
         self.spread = float(np.linalg.norm(away, axis=2).max(initial=0.0))
+
+    @override
+    def peaks(self, areas: Floats) -> npt.NDArray[np.bool_]:
+        """Nodes with more than 5 % of their weight: others carry next to no force."""
+        return np.asarray(areas > PEAK * self.quadrature.areas)

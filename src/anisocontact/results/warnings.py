@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from anisocontact.base.limits import FOLLOWED
-from anisocontact.contact import Contact, coarse_slaves, initial_overlap
+from anisocontact.contact import Contact, coarse_slaves, doubtful_sides, initial_overlap
 from anisocontact.contact.hints import MISSED
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
@@ -36,7 +36,7 @@ def at_start(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> li
         contacts: The contacts.
         shown: Their entries in the summary.
     """
-    found = coarse_slaves(contacts)
+    found = doubtful_sides(contacts)
     for contact, entry in zip(contacts, shown, strict=True):
         overlap = initial_overlap(contact, entry["facet_size"])
         if overlap is not None:
