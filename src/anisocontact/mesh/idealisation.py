@@ -57,7 +57,9 @@ class Idealisation:
     entry: ClassVar[Entry] = Entry("solid", "idealisation", "a body in space", ())
     dim: ClassVar[int] = 3
     lateral: bool = True
+    #: :meta private:
     offset: Floats = np.zeros(3)
+    #: :meta private:
     turn: Floats = np.zeros((3, 3))
 
     def gradient(self, u: Any) -> Any:
