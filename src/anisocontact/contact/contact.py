@@ -369,13 +369,17 @@ class Contact:
         return {name: sum(one[name] for one in found) for name in found[0]}
 
     def extreme(self, values: Floats) -> float:
-        """Largest of one number at each point, over all ranks; 0 without points.
+        """Largest of some numbers at points, over all ranks; 0 without points."""
+        return float(max(self._comm.allgather(float(np.max(values, initial=0.0)))))
 
-        Nodes of a mortar of which the master covers next to nothing do not count: see `peaks`.
+    def peak(self, values: Floats) -> float:
+        """Largest of one number at each point of the accepted increment, over all ranks.
+
+        Nodes of a mortar of which the master covers next to nothing do not count: see
+        `SlaveNodes.peaks`.
         """
-        told = [half.slave_points.peaks(half.accepted.areas) for half in self.passes]
-        largest = float(np.max(values[np.concatenate(told)], initial=0.0))
-        return float(max(self._comm.allgather(largest)))
+        counted = [half.slave_points.peaks(half.accepted.areas) for half in self.passes]
+        return self.extreme(values[np.concatenate(counted)])
 
 
 def seen_from_slave(passes: Sequence[Snapshot]) -> Snapshot:

@@ -310,13 +310,13 @@ _TABLE = {
             CONTACT,
             ("force", "force", "resultant on the slave", lambda c: c.resultant[0]),
             ("moment", "force length", "its moment about the origin", lambda c: c.resultant[1]),
-            ("max_pressure", "stress", "largest", lambda c: c.contact.extreme(c.last.pressure)),
-            ("max_penetration", "length", "largest", lambda c: c.contact.extreme(-c.last.gap)),
+            ("max_pressure", "stress", "largest", lambda c: c.contact.peak(c.last.pressure)),
+            ("max_penetration", "length", "largest", lambda c: c.contact.peak(-c.last.gap)),
             (
                 "max_elastic_slip",
                 "length",
                 "largest",
-                lambda c: c.contact.extreme(np.linalg.norm(c.contact.elastic_slip(), axis=1)),
+                lambda c: c.contact.peak(np.linalg.norm(c.contact.elastic_slip(), axis=1)),
             ),
             (
                 "max_turn",
