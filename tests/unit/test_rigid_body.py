@@ -98,7 +98,10 @@ def test_refused_motion():
         ({"motion": {"punch": {"z": 1.0}}}, r"motion: no contact has a rigid body 'punch', .* die"),
         ({"rotation": {"punch": TURN}}, r"rotation: no contact has a rigid body 'punch', .* die"),
         ({"load": {"punch": {"z": 1.0}}}, r"load: no contact has a rigid body 'punch', .* die"),
-        ({"motion": {"die": {"u": 1.0}}}, r"motion.die.u: no component 'u', allowed: x, y, z, rx"),
+        (
+            {"motion": {"die": {"u": 1.0}}},
+            r"motion.die.u: 1.0 given, .* no such motion; allowed: x, y, z, rx",
+        ),
         ({"load": {"die": {"z": 1.0}}}, r"load.die.z: z is held; a load acts on a component"),
         ({"motion": {"fixed": {"z": None}}}, r"motion.fixed.z: the rigid body was not made free"),
         (

@@ -50,6 +50,7 @@ def tensor(
 
     Example:
         >>> from anisocontact.surfaces import make_surface
+        >>> from anisocontact.anisotropy import make_directions
         >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1), tangent=(1, 0, 0))
         >>> marks = make_directions("constant", vector=(1, 0, 0))
         >>> tensor(plane, [[0, 0]], marks, (4.0, 1.0))[0].tolist()
@@ -87,6 +88,7 @@ def tensor_derivative(
 
     Example:
         >>> from anisocontact.surfaces import make_surface
+        >>> from anisocontact.anisotropy import make_directions
         >>> bar = make_surface("cylinder", point=(0, 0, 0), axis=(0, 0, 1), radius=2)
         >>> along = make_directions("constant", vector=(0, 0, 1))
         >>> tensor_derivative(bar, [[0.3, 1.0]], along, (2.0, 1.0)).shape

@@ -156,7 +156,7 @@ def elsewhere(word: str) -> str | None:
 
     Example:
         >>> elsewhere("rho")
-        'body_force of a step takes it; inertia is left out'
+        'the table of the material has it, for gravity; inertia is left out'
     """
     plain = _plain(word)
     if plain in _ELSEWHERE:

@@ -38,6 +38,7 @@ def draw_force_plane(
         The matplotlib axes.
 
     Example:
+        >>> from anisocontact.laws import force_domain
         >>> draw_force_plane(force_domain((0.3, 0.1), 0.5, 1.0), unit="MPa").get_xlabel()
         'T₁ [MPa]'
     """
@@ -75,6 +76,7 @@ def draw_tangent_plane(
         The matplotlib axes.
 
     Example:
+        >>> from anisocontact.laws import adhesion_domain
         >>> strip = adhesion_domain((0, 1e3), 0.2, (0.3, 0.1), 0.5, 1.0)
         >>> draw_tangent_plane(strip, unit="mm").get_ylabel()
         'ξ² [mm]'

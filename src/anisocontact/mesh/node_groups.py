@@ -42,7 +42,7 @@ def node_near(model: Model, body: str, point: npt.ArrayLike, field: str = "") ->
         >>> from anisocontact.mesh import BoxSpec, build_box
         >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
         >>> node = node_near(model, "block", (0.4, 0.0, 1.2))
-        >>> model.space.tabulate_dof_coordinates()[node].tolist()
+        >>> (model.space.tabulate_dof_coordinates()[node] + 0.0).round(9).tolist()
         [[0.5, 0.0, 1.0]]
     """
     nodes, x, size = _nodes_of(model, body, field)
