@@ -269,6 +269,35 @@ def _on_rigid(master: Any, augmented: bool, top: dict[str, float], **held: Any) 
     return contact
 
 
+@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("cell", CELLS)
+def test_on_a_plane(cell: str, order: int) -> None:
+    """Every kind of facet pressed on a rigid plane and left to spread: p = E strain, 1e-5, what friction is left.
+
+    Source: a bar under uniform compression; the tangent has a place for every block.
+    """
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 1), cell=cell, order=order)})
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    law = ContactLaw(
+        NormalLaw(penalty=PENALTY), Adhesion(stiffness=(1e-3, 1e-3)), Friction(coefficients=1e-6)
+    )
+    augmentation = Augmentation(tangential=False)
+    contact = Contact(
+        model,
+        "block.bottom",
+        plane,
+        law,
+        mortar=True,
+        current_area=False,
+        augmentation=augmentation,
+    )
+    problem = Problem(model, {"block": make_material("linear-elastic", E=YOUNG, nu=0.3)}, [contact])
+    held = {"block.left": {"x": 0.0}, "block.front": {"y": 0.0}, "block.top": {"z": -0.01}}
+    for _ in Solver(problem, [Step("press", 1, held)], options={"snes_rtol": 1e-10}).run():
+        pass
+    np.testing.assert_allclose(contact.last.pressure, 0.01 * YOUNG, rtol=1e-5)
+
+
 def test_a_node_below_a_pole() -> None:
     """A sphere whose pole is on a node presses like one with its pole elsewhere, 1e-9.
 

@@ -39,8 +39,8 @@ class Patches:
         offsets: Where the facets of each node begin, (n + 1,).
         facets: Facets around the nodes, one list after the other.
         local: Number of the node in each of these facets.
-        nodes: Nodes of the facets around each, (n, k): those of its support first, itself at the
-            end where there are fewer.
+        nodes: Nodes of the facets around each, (n, k): those of its support first, filled up with
+            itself to r, then the others, and itself again to k.
         support: Values at the first nodes whose combination is the slave point, (n, r).
     """
 
@@ -64,12 +64,12 @@ def patches(mesh: FacetMesh) -> Patches:
     offsets = np.append(first, len(flat)).astype(np.int64)
     facets, local = np.divmod(order, k)
     support = [_support(mesh, int(facets[a]), int(local[a])) for a in offsets[:-1]]
+    rows = max((len(one) for one, _ in support), default=1)
     lists = []
     for node, a, b, (own, _) in zip(nodes, offsets[:-1], offsets[1:], support, strict=True):
         around = np.setdiff1d(mesh.nodes[facets[a:b]], own)
-        lists.append([*own, *around, node])
+        lists.append([*own, *[node] * (rows - len(own)), *around, node])
     width = max((len(one) - 1 for one in lists), default=1)
-    rows = max((len(one) for one, _ in support), default=1)
     padded = np.array([[*one[:-1], *[one[-1]] * (width + 1 - len(one))] for one in lists])
     values = np.zeros((len(nodes), rows))
     for i, (_, value) in enumerate(support):
