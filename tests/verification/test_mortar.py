@@ -272,9 +272,10 @@ def _on_rigid(master: Any, augmented: bool, top: dict[str, float], **held: Any) 
 @pytest.mark.parametrize("order", [1, 2])
 @pytest.mark.parametrize("cell", CELLS)
 def test_on_a_plane(cell: str, order: int) -> None:
-    """Every kind of facet pressed on a rigid plane and left to spread: p = E strain, 1e-5, what friction is left.
+    """Every kind of facet pressed on a rigid plane and left to spread: p = E strain, 1e-5.
 
-    Source: a bar under uniform compression; the tangent has a place for every block.
+    Source: a bar under uniform compression but for a friction of 1e-6; the tangent has a place for
+    every block.
     """
     model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 1), cell=cell, order=order)})
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
