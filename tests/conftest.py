@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -211,21 +210,3 @@ def fe() -> FiniteElements:
     """Builders of small contact problems; skips where DOLFINx is not installed."""
     pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     return FiniteElements()
-
-
-#: Tests after which what they left in cycles is collected, and where the count is kept.
-COLLECTED = 25
-_SINCE = pytest.StashKey[int]()
-
-
-def pytest_runtest_teardown(item: pytest.Item) -> None:
-    """Let meshes and solvers give their communicators back: MPICH has some 2000 of them.
-
-    A test takes up to 40, which its objects hold until the collector finds them; it counts objects,
-    of which these are few.
-    """
-    stash = item.session.stash
-    stash[_SINCE] = stash.get(_SINCE, 0) + 1
-    if stash[_SINCE] == COLLECTED:
-        stash[_SINCE] = 0
-        gc.collect()

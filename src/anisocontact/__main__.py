@@ -2,7 +2,7 @@
 
 import sys
 
-from anisocontact.cli import main
+from anisocontact.cli import command
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(command())

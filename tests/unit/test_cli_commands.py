@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import signal
@@ -22,6 +23,13 @@ def case(tmp_path, unpictured):
     path = tmp_path / "case.toml"
     path.write_text(unpictured)
     return path
+
+
+def test_a_script_that_calls_the_command_keeps_its_collector(capsys):
+    """Settings of the interpreter are those of the command's own process: see `command`."""
+    before = gc.get_threshold()
+    assert main(["--version"]) == 0
+    assert gc.get_threshold() == before
 
 
 def test_help_names_every_command_and_the_exit_codes(capsys):

@@ -135,15 +135,27 @@ def main(argv: Sequence[str] | None = None) -> int:
     # NumPy and SciPy bring a pool of threads each, which wait for each other in products that the
     # memory bounds; it is read when they are imported. Contacts have threads of their own.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    # What is imported stays: looking through it for garbage takes as long as a small case.
-    gc.set_threshold(100_000)
-    atexit.register(gc.freeze)
     with ended_by_signals():
         together = started_together()
         if together is None:
             return _run(arguments)
         together.quiet()
         return together.finish(_run(arguments))
+
+
+def command() -> int:
+    """The command in a process of its own: garbage is looked for seldom, and not at the end.
+
+    What is imported stays, and looking through it takes as long as a small case. A process that
+    calls `main` again and again needs its garbage collected: meshes that nobody has any more hold
+    communicators, of which MPI has some 2000.
+
+    Returns:
+        The exit code.
+    """
+    gc.set_threshold(100_000)
+    atexit.register(gc.freeze)
+    return main()
 
 
 def _run(arguments: argparse.Namespace) -> int:
