@@ -54,6 +54,19 @@ def test_auto_takes_it_beyond_a_number_of_unknowns(monkeypatch: pytest.MonkeyPat
     )
 
 
+def test_auto_factorises_meshes_of_two_dimensions(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many unknowns: their factors are small."""
+    from anisocontact.bulk import make_material
+    from anisocontact.mesh import Body, PlaneStrain, build_mesh, make_shape
+
+    shape = make_shape("rectangle", origin=(0.0, 0.0), size=(2.0, 1.0), cells=(8, 8))
+    model = build_mesh([Body("block", shape)], idealisation=PlaneStrain())
+    problem = Problem(model, {"block": make_material(**RUBBER)})
+    monkeypatch.setattr(direct, "MOST_FACTORISED", 100)
+    assert problem.unknowns > 100
+    assert _choice(problem).name == "direct"
+
+
 def test_auto_takes_it_where_a_factor_does_not_fit(monkeypatch: pytest.MonkeyPatch) -> None:
     """A factor of 525 unknowns needs 1.5 MB."""
     assert 1e6 < factor_bytes(525) < 2e6
