@@ -364,7 +364,7 @@ def test_line_contact_converges_to_hertz():
         exact = 2.0 * force / (np.pi * a) * np.sqrt(np.clip(1.0 - (x / a) ** 2, 0.0, None))
         errors.append(np.sqrt(contact.areas @ (p - exact) ** 2 / (contact.areas @ exact**2)))
     assert np.log2(errors[0] / errors[1]) > 0.9
-    assert errors[1] < 0.06
+    assert errors[1] < 0.05
 
 
 def test_sphere_on_a_half_space_is_that_of_hertz():
@@ -384,12 +384,12 @@ def test_turned_disc_has_the_torque_of_reissner_and_sagoci():
 
     Source: Reissner and Sagoci 1944, torque 16/3 G a^3 times the angle. The stress has an infinite
     value at the edge, so that the error falls with h; what is left of it where the limit of two
-    meshes is taken is of second order, 0.6 %; asked is 1 %.
+    meshes is taken is of second order, 0.33 %; asked is 0.5 %.
     """
-    coarse, fine = _torque_of_disc(12), _torque_of_disc(24)
+    coarse, fine = _torque_of_disc(16), _torque_of_disc(32)
     exact = 16.0 / 3.0 * E / 2.6 * 1e-3
     assert 1.8 < (coarse - exact) / (fine - exact) < 2.2
-    assert 2.0 * fine - coarse == pytest.approx(exact, rel=1e-2)
+    assert 2.0 * fine - coarse == pytest.approx(exact, rel=5e-3)
 
 
 def _torque_of_disc(n: int) -> float:
