@@ -398,7 +398,7 @@ def test_directions_of_either_body(on: str, angle: float) -> None:
 
 def _dragged() -> tuple[Problem, list[Step]]:
     upper = BoxSpec((0, 0, 0), (1, 1, 0.5), (3, 3, 1))
-    lower = BoxSpec((-0.4, -0.4, -0.5), (2, 2, 0.5), (5, 5, 1))
+    lower = BoxSpec((-0.4, 0, -0.5), (2, 2, 0.5), (5, 5, 1))
     model = build_box({"upper": upper, "lower": lower})
     contact = Contact(
         model, "upper.bottom", "lower.top", _law(), mortar=True, augmentation=Augmentation()
@@ -406,7 +406,8 @@ def _dragged() -> tuple[Problem, list[Step]]:
     steel = make_material("linear-elastic", E=YOUNG, nu=0.3)
     problem = Problem(model, {"upper": steel, "lower": steel}, [contact])
     still = {"x": 0.0, "y": 0.0}
-    press = {"lower.bottom": {**still, "z": 0.0}, "upper.top": {**still, "z": -0.005}}
+    press: dict[str, Any] = {f"{body}.front": {"y": 0.0} for body in ("upper", "lower")}
+    press |= {"lower.bottom": {**still, "z": 0.0}, "upper.top": {**still, "z": -0.005}}
     return problem, [Step("press", 2, press), Step("drag", 3, {"upper.top": {"x": 0.2}})]
 
 

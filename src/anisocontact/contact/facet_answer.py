@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, Protocol
@@ -203,15 +203,7 @@ class Evaluation:
         batch = self.batch(state, tangent)
         found = found_on_all(self.sides.comm, law, state, dt, batch, self.by_points)
         lost = hit.status == FACET_STATUS.index("failed")
-        response = Response(
-            traction=found["traction"],
-            tangent=np.empty((0, 3, 3)),
-            state=found["state"],
-            normal=found["normal"],
-            directions_adhesion=found["adhesion_axes"],
-            directions_friction=found["friction_axes"],
-            failure=np.where(lost, np.int8(1), found["failure"]),
-        )
+        response = response_of(found, lost)
         snapshot = Snapshot(slave.positions(self.now), found["area"], response)
         own, gathered = slave.quadrature.nodes.shape[1], self.sides.gathered
         forces: Forces
@@ -246,6 +238,24 @@ class Evaluation:
             "tangent": tangent,
             "threads": self.sides.threads,
         }
+
+
+def response_of(found: Mapping[str, Any], lost: Mask) -> Response:
+    """What the core has found for a batch as a response.
+
+    Args:
+        found: As of `FacetLaw.evaluate`.
+        lost: Points whose projection has failed, (n,).
+    """
+    return Response(
+        traction=found["traction"],
+        tangent=np.empty((0, 3, 3)),
+        state=found["state"],
+        normal=found["normal"],
+        directions_adhesion=found["adhesion_axes"],
+        directions_friction=found["friction_axes"],
+        failure=np.where(lost, np.int8(1), found["failure"]),
+    )
 
 
 def found_on_all(

@@ -12,13 +12,12 @@ import numpy.typing as npt
 from anisocontact.contact.facet_answer import ByPoints, Evaluation, FacetAnswer
 from anisocontact.contact.held_feet import HeldFeet, footing, on_held_facets
 from anisocontact.contact.history import Snapshot
-from anisocontact.contact.master import Master
+from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.point_tangent import Nodes, PointTangent
 from anisocontact.contact.reachable import NodePairs, reachable, slid
 from anisocontact.contact.sides import Sides, initial_state, located
 from anisocontact.contact.transfer import Transfer
 from anisocontact.contact.transfer_work import transfer_work
-from anisocontact.contact.whereabouts import Seen, Whereabouts, carried
 from anisocontact.interface import ContactLaw, State
 from anisocontact.interface.failed_point import OnFacets, one_point
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -29,7 +28,7 @@ Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
 
-class FacetMaster(Master):
+class FacetMaster(MeshedMaster):
     """The closest facets below the slave points of one pass, where both are now, see `Master`.
 
     Args:
@@ -42,12 +41,7 @@ class FacetMaster(Master):
         overlaps: Whether forces on the master are integrated over the overlaps of the facets (see
             `Transfer`) or act at the feet of the slave points.
 
-    Attributes:
-        sides: As given, with the facets that this rank has now.
     """
-
-    # projections start from the last ones, and could come back to another facet
-    retraceable = False
 
     def __init__(
         self,
@@ -59,42 +53,17 @@ class FacetMaster(Master):
         mirrored: bool,
         overlaps: bool,
     ) -> None:
-        self.groups, self.size, self.reach = (group,), size, sides.reach
-        self.sides, self._mirrored, self._dtype = sides, mirrored, law.dtype
-        self._gathered, self._comm = sides.gathered, sides.comm
+        super().__init__(sides, law, group=group, size=size, mirrored=mirrored)
         self._transfer = Transfer(sides) if overlaps else None
         self._transferred = 0.0
         self._count = len(sides.points.facet)
-        self._nodes = Nodes(sides.reference, np.zeros_like(sides.reference))
-        self._hint: FacetProjections = sides.project(sides.reference)
-        self._accepted = (self._gathered.local(sides.reference), self._hint)
-        self.take(law, law)
         self.begin()
         if self._transfer is not None:
             self._transfer.place(sides.reference)
 
-    @property
-    def facets(self) -> Ints:
-        """Nodes of the facets that this rank has, (m, k)."""
-        return self._gathered.local_names(self.sides.master.nodes)
-
-    @override
-    def local_names(self, nodes: Ints) -> Ints:
-        return self._gathered.local_names(nodes)
-
-    @property
-    def numbers(self) -> npt.NDArray[np.int64]:
-        """Their numbers in the whole group."""
-        return self._gathered.numbers
-
     @override
     def initial_state(self) -> State:
         return initial_state(self._hint, self._dtype)
-
-    @override
-    def take(self, laws: ContactLaw, derivative: ContactLaw) -> None:
-        self._given, self._law = laws, laws.pairs(self._mirrored)
-        self._derivative = self._law if derivative is laws else derivative.pairs(self._mirrored)
 
     @override
     def place(self, u: Floats, *histories: State) -> bool:
@@ -193,59 +162,12 @@ class FacetMaster(Master):
         return self.sides.place(state)
 
     @override
-    def located(self, state: State) -> Mask:
-        return np.asarray(state["facet"] >= 0)
-
-    @override
-    def stiffness(self, diagonal: Floats) -> float:
-        return self.sides.stiffness(diagonal)
-
-    @override
-    def yields(self, diagonal: Floats) -> float:
-        slave, master = self.sides.stiffnesses(diagonal)
-        return slave * self.sides.points.size / (master * self.size)
-
-    @override
-    def couplable(self) -> Ints:
-        named = self._gathered.local_names
-        return np.union1d(named(self.sides.slave.nodes), named(self._gathered.own.nodes))
-
-    @override
     def feet(self) -> Ints:
         return np.unique(self.facets[self._hint.facet[located(self._hint)]])
 
     @override
-    def immovable(self, fixed: Mask) -> bool:
-        return bool(fixed[self._gathered.local_names(self._gathered.own.nodes)].all())
-
-    @override
     def below(self, state: State) -> Ints:
         return np.unique(self.facets[state["facet"][self.located(state)]])
-
-    @override
-    def look(self, x: Floats) -> Seen:
-        return self.sides.look(x)
-
-    @override
-    def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
-        sides = self.sides
-        there = sides.reference + self._gathered.everywhere(self._gathered.moved(u))
-        then = self._gathered.everywhere(self._accepted[0])
-        nodes = np.unique(sides.master.nodes)
-        return Whereabouts(
-            before=carried(before.points, then[nodes], there[nodes]),
-            now=now.points,
-            outward=sides.points.outward_of(sides.points.at(there)),
-            closed=now.response.status != 0,
-            located=self.located(now.response.state),
-            had=self.located(state),
-            normal=now.response.normal,
-            areas=now.areas,
-            size=sides.points.size,
-            reach=self.reach,
-            look=sides.look,
-            comm=self._comm,
-        )
 
     @override
     def probe(
@@ -319,15 +241,9 @@ class FacetMaster(Master):
     @override
     def roll_back(self, tried: bool) -> None:
         if tried:
-            place, self._hint = self._accepted
-            self._go_to(self._gathered.everywhere(place))
+            self._return()
         if self._transfer is not None:
             self._transfer.roll_back()
-
-    def _go_to(self, now: Floats) -> None:
-        """Bring the surface to positions of the nodes, (nodes, 3), length."""
-        self._nodes = Nodes(now, now - self.sides.reference)
-        self.sides.surface.update(now)
 
     @override
     def energies(self) -> dict[str, float]:

@@ -18,10 +18,10 @@ from anisocontact.contact.contact_planes import (
     averaged_normal,
     held_directions,
 )
-from anisocontact.contact.facet_answer import OFF, found_on_all
-from anisocontact.contact.facet_master import FacetMaster
+from anisocontact.contact.facet_answer import OFF, found_on_all, response_of
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Resting
+from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
 from anisocontact.contact.mortar_reach import mortar_reachable
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
@@ -29,7 +29,7 @@ from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.slave_nodes import SlaveNodes
-from anisocontact.interface import ContactLaw, Response, State
+from anisocontact.interface import ContactLaw, State
 from anisocontact.interface.contact_law import FacetBatch, FacetLaw
 from anisocontact.interface.failed_point import OnFacets, one_point
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -43,11 +43,13 @@ Floats = npt.NDArray[np.float64]
 NEAR = 1e-6
 #: Share of its weight that has to be covered for a node to carry traction.
 COVERED = 1e-8
+#: Distance along held directions, as a share of the size of the facets, that is none.
+ROUNDING = 1e-12
 #: Least cosine between the averaged normal and that of the master below a node.
 OPPOSED = 0.1
 
 
-class MortarMaster(FacetMaster):
+class MortarMaster(MeshedMaster):
     """Facets of the master below slave nodes, where both are now, see `Master`.
 
     Laws are evaluated in contact planes at the slave nodes, `ContactPlanes`; forces act with the
@@ -77,7 +79,7 @@ class MortarMaster(FacetMaster):
             np.zeros((n, 2, 2, width)),
             np.zeros((n, 2)),
         )
-        super().__init__(sides, law, group=group, size=size, mirrored=False, overlaps=False)
+        super().__init__(sides, law, group=group, size=size, mirrored=False)
         self._at = self._placed()
 
     def _placed(self, weights: MortarWeights | None = None) -> MortarState:
@@ -189,15 +191,8 @@ class MortarMaster(FacetMaster):
         failed = self._hint.status == FACET_STATUS.index("failed")
         # supports carry what there is along directions that they hold
         free = np.eye(3) - at.planes.held
-        response = Response(
-            traction=(free @ found["traction"][..., None])[..., 0],
-            tangent=np.empty((0, 3, 3)),
-            state=found["state"],
-            normal=found["normal"],
-            directions_adhesion=found["adhesion_axes"],
-            directions_friction=found["friction_axes"],
-            failure=np.where(failed, np.int8(1), found["failure"]),
-        )
+        traction = (free @ found["traction"][..., None])[..., 0]
+        response = response_of(found | {"traction": traction}, failed)
         which = np.flatnonzero(response.status != 0).astype(np.int32)
         snapshot = Snapshot(at.planes.slave, at.weights.area, response)
         by_nodes = np.zeros((len(which), 3, 27))
@@ -253,7 +248,10 @@ class MortarMaster(FacetMaster):
         self._at = self._placed(self._at.weights)
         axes, held = self._at.planes.then.axes, self._at.planes.held
         away = np.einsum("na,nai->ni", state["xi"], axes)
-        along = axes @ (held @ away[..., None])
+        along = held @ away[..., None]
+        # what is rounding stays, so that a run that goes on within a step keeps its bits
+        along[np.linalg.norm(along[..., 0], axis=1) <= ROUNDING * self._points.size] = 0.0
+        along = axes @ along
         state["xi"] -= np.linalg.solve(axes @ axes.swapaxes(1, 2), along)[..., 0]
 
     @override
@@ -268,10 +266,6 @@ class MortarMaster(FacetMaster):
             mirrored=False,
             batch=batch,
         )
-
-    @override
-    def settled(self, answer: Any) -> Any:
-        return answer
 
     @override
     def linear(self, answer: Any) -> Any:
@@ -325,26 +319,6 @@ class MortarMaster(FacetMaster):
         return np.asarray(way)
 
     @override
-    def footing(self, count: int) -> npt.NDArray[np.int64]:
-        return np.zeros(count, dtype=np.int64)
-
-    @override
-    def hold(self, points: Mask) -> None:
-        return
-
-    @override
-    def strayed(self, count: int) -> Floats:
-        return np.zeros(count)
-
-    @override
-    def let_go(self) -> bool:
-        return False
-
-    @override
-    def hold_again(self) -> bool:
-        return False
-
-    @override
     def commit(self, before: Snapshot, state: State, now: Snapshot | None) -> Floats:
         if now is None:
             return np.zeros((0, 3))
@@ -358,7 +332,7 @@ class MortarMaster(FacetMaster):
     @override
     def roll_back(self, tried: bool) -> None:
         if tried:
-            super().roll_back(tried)
+            self._return()
             self._at = self._placed()
 
     @override

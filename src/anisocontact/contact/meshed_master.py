@@ -1,0 +1,126 @@
+"""Facets of a mesh as a master, whatever is put on them: what passes over facets share."""
+
+from __future__ import annotations
+
+from typing import override
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.history import Snapshot
+from anisocontact.contact.master import Master
+from anisocontact.contact.point_tangent import Nodes
+from anisocontact.contact.sides import Sides
+from anisocontact.contact.whereabouts import Seen, Whereabouts, carried
+from anisocontact.interface import ContactLaw, State
+from anisocontact.surfaces.facets import FacetProjections
+
+Mask = npt.NDArray[np.bool_]
+Ints = npt.NDArray[np.int32]
+Floats = npt.NDArray[np.float64]
+
+
+class MeshedMaster(Master):
+    """Both sides where they are now, the laws, and the closest points of the master.
+
+    Args:
+        sides: Slave points and facets.
+        law: Laws of the interface.
+        group: Facet group of the master.
+        size: Length of its facets.
+        mirrored: Whether angles of directions count about the normal of the slave, not of the
+            master: the other way round.
+
+    Attributes:
+        sides: As given, with the facets that this rank has now.
+    """
+
+    # projections start from the last ones, and could come back to another facet
+    retraceable = False
+
+    def __init__(
+        self, sides: Sides, law: ContactLaw, *, group: str, size: float, mirrored: bool
+    ) -> None:
+        self.groups, self.size, self.reach = (group,), size, sides.reach
+        self.sides, self._mirrored, self._dtype = sides, mirrored, law.dtype
+        self._gathered, self._comm = sides.gathered, sides.comm
+        self._nodes = Nodes(sides.reference, np.zeros_like(sides.reference))
+        self._hint: FacetProjections = sides.project(sides.reference)
+        self._accepted = (self._gathered.local(sides.reference), self._hint)
+        self.take(law, law)
+
+    @property
+    def facets(self) -> Ints:
+        """Nodes of the facets that this rank has, (m, k)."""
+        return self._gathered.local_names(self.sides.master.nodes)
+
+    @override
+    def local_names(self, nodes: Ints) -> Ints:
+        return self._gathered.local_names(nodes)
+
+    @property
+    def numbers(self) -> npt.NDArray[np.int64]:
+        """Their numbers in the whole group."""
+        return self._gathered.numbers
+
+    @override
+    def take(self, laws: ContactLaw, derivative: ContactLaw) -> None:
+        self._given, self._law = laws, laws.pairs(self._mirrored)
+        self._derivative = self._law if derivative is laws else derivative.pairs(self._mirrored)
+
+    @override
+    def located(self, state: State) -> Mask:
+        return np.asarray(state["facet"] >= 0)
+
+    @override
+    def stiffness(self, diagonal: Floats) -> float:
+        return self.sides.stiffness(diagonal)
+
+    @override
+    def yields(self, diagonal: Floats) -> float:
+        slave, master = self.sides.stiffnesses(diagonal)
+        return slave * self.sides.points.size / (master * self.size)
+
+    @override
+    def couplable(self) -> Ints:
+        named = self._gathered.local_names
+        return np.union1d(named(self.sides.slave.nodes), named(self._gathered.own.nodes))
+
+    @override
+    def immovable(self, fixed: Mask) -> bool:
+        return bool(fixed[self._gathered.local_names(self._gathered.own.nodes)].all())
+
+    @override
+    def look(self, x: Floats) -> Seen:
+        return self.sides.look(x)
+
+    @override
+    def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
+        sides = self.sides
+        there = sides.reference + self._gathered.everywhere(self._gathered.moved(u))
+        then = self._gathered.everywhere(self._accepted[0])
+        nodes = np.unique(sides.master.nodes)
+        return Whereabouts(
+            before=carried(before.points, then[nodes], there[nodes]),
+            now=now.points,
+            outward=sides.points.outward_of(sides.points.at(there)),
+            closed=now.response.status != 0,
+            located=self.located(now.response.state),
+            had=self.located(state),
+            normal=now.response.normal,
+            areas=now.areas,
+            size=sides.points.size,
+            reach=self.reach,
+            look=sides.look,
+            comm=self._comm,
+        )
+
+    def _go_to(self, now: Floats) -> None:
+        """Bring the surface to positions of the nodes, (nodes, 3), length."""
+        self._nodes = Nodes(now, now - self.sides.reference)
+        self.sides.surface.update(now)
+
+    def _return(self) -> None:
+        """Go back to the accepted state."""
+        place, self._hint = self._accepted
+        self._go_to(self._gathered.everywhere(place))
