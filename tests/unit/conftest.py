@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import signal
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -17,3 +20,42 @@ def case_text() -> str:
 def unpictured(case_text: str) -> str:
     """The same without pictures, which take longer than the run."""
     return case_text.replace("[output]", "[output]\npictures = false")
+
+
+@pytest.fixture
+def stop_after() -> Callable[..., None]:
+    """Let runs get a signal, that of Ctrl-C, behind so many accepted increments."""
+
+    def stop(patch: pytest.MonkeyPatch, count: int, number: int = signal.SIGINT) -> None:
+        from anisocontact.results.writer import Writer
+
+        keep = Writer.keep
+
+        def interrupted(self: Writer, *arguments: object) -> None:
+            keep(self, *arguments)  # type: ignore[arg-type]
+            if self.summary["steps"] == count > 0:
+                os.kill(os.getpid(), number)
+
+        patch.setattr(Writer, "keep", interrupted)
+
+    return stop
+
+
+@pytest.fixture
+def gone_on(
+    monkeypatch: pytest.MonkeyPatch, stop_after: Callable[..., None]
+) -> Callable[[Path, int], tuple[Path, Path]]:
+    """Run a case, and again with a stop behind so many increments; the folders of both."""
+
+    def both(case: Path, count: int) -> tuple[Path, Path]:
+        from anisocontact.cli import main
+
+        whole, out = case.parent / "whole", case.parent / "out"
+        assert main(["run", str(case), "-o", str(whole)]) == 0
+        with monkeypatch.context() as patch:
+            stop_after(patch, count)
+            assert main(["run", str(case), "-o", str(out)]) == 3
+        assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
+        return whole, out
+
+    return both

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-import os
-import signal
-
 import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import main
-from anisocontact.results.writer import Writer
 
 CASE = """
 [mesh.box.bar]
@@ -70,21 +66,9 @@ def case(tmp_path):
     return path
 
 
-def test_a_run_goes_on_bit_by_bit(monkeypatch, case):
+def test_a_run_goes_on_bit_by_bit(gone_on, case):
     """Requirement: a run that is stopped in a step with amplitudes ends as one that was not."""
-    keep = Writer.keep
-
-    def interrupted(self, *arguments):
-        keep(self, *arguments)
-        if self.summary["steps"] == 6:
-            os.kill(os.getpid(), signal.SIGINT)
-
-    whole, out = case.parent / "whole", case.parent / "out"
-    assert main(["run", str(case), "-o", str(whole)]) == 0
-    with monkeypatch.context() as patch:
-        patch.setattr(Writer, "keep", interrupted)
-        assert main(["run", str(case), "-o", str(out)]) == 3
-    assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
+    whole, out = gone_on(case, 6)
     assert (whole / "history.csv").read_bytes() == (out / "history.csv").read_bytes()
 
 

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import os
-import signal
-
 import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import main
 from anisocontact.results import Results
-from anisocontact.results.writer import Writer
 
 CASE = """
 [mesh.box.pin]
@@ -76,21 +72,9 @@ def case(tmp_path):
     return path
 
 
-def test_a_run_goes_on_bit_by_bit(monkeypatch, case):
+def test_a_run_goes_on_bit_by_bit(gone_on, case):
     """Requirement: a run that is stopped ends as one that was not; the load is carried."""
-    keep = Writer.keep
-
-    def interrupted(self, *arguments):
-        keep(self, *arguments)
-        if self.summary["steps"] == 5:
-            os.kill(os.getpid(), signal.SIGINT)
-
-    whole, out = case.parent / "whole", case.parent / "out"
-    assert main(["run", str(case), "-o", str(whole)]) == 0
-    with monkeypatch.context() as patch:
-        patch.setattr(Writer, "keep", interrupted)
-        assert main(["run", str(case), "-o", str(out)]) == 3
-    assert main(["run", str(case), "-o", str(out), "--restart"]) == 0
+    whole, out = gone_on(case, 5)
     assert (whole / "history.csv").read_bytes() == (out / "history.csv").read_bytes()
     history = Results(whole).history
     force = [history[f"contacts.0.force.{axis}"][1:] for axis in "xyz"]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import signal
 import subprocess
 import sys
@@ -22,23 +21,9 @@ from anisocontact.cli import main
 from anisocontact.results.history import flat
 
 
-def stop_after(monkeypatch, count, number=signal.SIGINT):
-    """Let runs get a signal, that of Ctrl-C, behind so many accepted increments."""
-    from anisocontact.results.writer import Writer
-
-    keep = Writer.keep
-
-    def interrupted(self, *arguments):
-        keep(self, *arguments)
-        if self.summary["steps"] == count > 0:
-            os.kill(os.getpid(), number)
-
-    monkeypatch.setattr(Writer, "keep", interrupted)
-
-
 @pytest.mark.parametrize("model", ["linear-elastic", "neo-hookean"])
 @pytest.mark.parametrize("count", [1, 3])
-def test_condensed_goes_on_bit_by_bit(monkeypatch, case, count, model, same):
+def test_condensed_goes_on_bit_by_bit(monkeypatch, case, count, model, same, stop_after):
     """What has been condensed is made again from the same numbers in the same order."""
     text = case.read_text().replace('"direct"', '"condensed"')
     case.write_text(text.replace('"linear-elastic"', f'"{model}"'))
@@ -51,7 +36,7 @@ def test_condensed_goes_on_bit_by_bit(monkeypatch, case, count, model, same):
     assert same(whole, out)
 
 
-def test_condensed_goes_on_as_direct(monkeypatch, case):
+def test_condensed_goes_on_as_direct(monkeypatch, case, stop_after):
     """A checkpoint without the interior of the bodies: another strategy solves for it first.
 
     Both go on to the tolerance of Newton's method, 1e-8 of the forces at work.
@@ -94,7 +79,7 @@ def test_a_restored_state_is_whole_when_it_is_asked_for(case):
                 np.testing.assert_allclose(second.problem.reactions()[group], force, atol=1e-7)
 
 
-def test_augmented_contact_of_a_free_body_goes_on(monkeypatch, case, same):
+def test_augmented_contact_of_a_free_body_goes_on(monkeypatch, case, same, stop_after):
     """Multipliers, the level of their penalties and stabilisation go on bit by bit."""
     text = case.read_text().replace("normal = { penalty = 1e4 }", 'method = "augmented"')
     text = text.replace("stiffness = [4e3, 1e3]", 'stiffness = "auto"')
@@ -116,7 +101,9 @@ def test_augmented_contact_of_a_free_body_goes_on(monkeypatch, case, same):
 
 
 @pytest.mark.parametrize("count", [1, 2, 4])
-def test_ctrl_c_says_how_to_go_on_and_it_does(monkeypatch, capsys, case, whole, count, same):
+def test_ctrl_c_says_how_to_go_on_and_it_does(
+    monkeypatch, capsys, case, whole, count, same, stop_after
+):
     """Requirement: Ctrl-C finishes the increment, keeps all and says the exact command."""
     out = case.parent / "out folder"
     with monkeypatch.context() as patch:
@@ -131,7 +118,7 @@ def test_ctrl_c_says_how_to_go_on_and_it_does(monkeypatch, capsys, case, whole, 
     assert same(whole, out)
 
 
-def test_term_is_like_ctrl_c(monkeypatch, capsys, case, whole, same):
+def test_term_is_like_ctrl_c(monkeypatch, capsys, case, whole, same, stop_after):
     """Batch systems send TERM before they kill."""
     out = case.parent / "out"
     with monkeypatch.context() as patch:
