@@ -10,11 +10,12 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.verification.laws_in_python import RadialReturn
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact, doubtful_sides
-from anisocontact.interface import ContactLaw
+from anisocontact.interface import ContactLaw, PythonLaw
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
@@ -232,16 +233,18 @@ def test_rotation() -> None:
     assert np.abs(forces[0] - forces[1]).max() < 1e-9 * np.abs(forces[0]).max()
 
 
-def _sliding_forces(law: ContactLaw, pieces: int) -> Iterator[Floats]:
+def _sliding_forces(
+    law: ContactLaw, pieces: int, size: float = 1.0, mortar: bool = True
+) -> Iterator[Floats]:
     """Forces on a rigid block that slides along a base, in equal increments."""
     model = _offset_pair("hexahedron", 1)
-    contact = Contact(model, "upper.bottom", "lower.top", law, mortar=True, current_area=False)
+    contact = Contact(model, "upper.bottom", "lower.top", law, mortar=mortar, current_area=False)
     block = np.unique(model.space.dofmap.list[model.cells("upper")])
     u = np.zeros_like(model.space.tabulate_dof_coordinates())
     u[block, 2] = -PRESSURE / PENALTY
     for _ in range(pieces):
-        u[block, :2] += np.array([0.3, 0.4]) / pieces
-        contact.update(u, 1.0)
+        u[block, :2] += size * np.array([0.3, 0.4]) / pieces
+        contact.update(u, 0.1)
         contact.commit()
         yield contact.resultant()[0]
 
@@ -394,6 +397,48 @@ def test_directions_of_either_body(on: str, angle: float) -> None:
     shares = np.array([0.3, 0.1]) * (axes @ np.array([0.6, 0.8]))
     expected = -(axes.T @ (np.array([0.3, 0.1]) * shares)) / np.linalg.norm(shares)
     np.testing.assert_allclose(last / PRESSURE, [*expected, 1.0], atol=1e-8)
+
+
+MARKS = make_directions("constant", vector=(1.0, 0.3, 0.0))
+STIFF: dict[str, Any] = {"stiffness": (600.0, 900.0), "directions": MARKS}
+MU: dict[str, Any] = {"coefficients": (0.3, 0.1), "directions": MARKS}
+LAWS: dict[str, tuple[Any, Any]] = {
+    rule: (Adhesion(**STIFF), Friction(sliding_rule=rule, **MU, **more))
+    for rule, more in {
+        "maximum-dissipation": {},
+        "explicit": {"history": "centre"},
+        "radial": {},
+        "linear": {},
+        "coaxial": {},
+        "slip-ellipse": {"slip_axes": (0.2, 0.4)},
+    }.items()
+}
+LAWS |= {
+    model: (Adhesion(model, **STIFF, **more), Friction(**MU))
+    for model, more in {
+        "maxwell": {"relaxation_time": (0.3, 0.5)},
+        "kelvin-voigt": {"viscosity": (50.0, 70.0)},
+        "standard-linear-solid": {"stiffness_maxwell": 300.0, "relaxation_time": (0.3, 0.5)},
+    }.items()
+}
+LAWS["python"] = (PythonLaw(RadialReturn((600.0, 900.0), (0.3, 0.1)), directions=MARKS), None)
+
+
+@pytest.mark.parametrize("name", LAWS)
+def test_every_law_is_asked_as_at_points(name: str) -> None:
+    """From stick into slip: force in every increment as from integration points, 1e-9.
+
+    Source: the state of a rigid block on a flat base is the same everywhere, so that it does not
+    matter where the law is asked; its answers there have tests of their own.
+    """
+    law = ContactLaw(NormalLaw(penalty=PENALTY), *LAWS[name])
+    at_nodes, at_points = (
+        np.array(list(_sliding_forces(law, 9, 0.04, mortar))) for mortar in (True, False)
+    )
+    np.testing.assert_allclose(at_nodes, at_points, atol=1e-9 * PRESSURE)
+    shear = np.linalg.norm(at_nodes[:, :2], axis=1)
+    assert shear.min() > 0.5
+    assert shear.max() < 3.0 + 1e-9
 
 
 def _dragged() -> tuple[Problem, list[Step]]:
