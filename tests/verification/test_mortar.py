@@ -211,6 +211,23 @@ def test_forces_balance() -> None:
     assert np.abs(force.sum(axis=0)).max() < 1e-12 * np.abs(force).sum()
 
 
+@pytest.mark.parametrize(("current_area", "area"), [(True, 1.32), (False, 1.0)])
+@pytest.mark.parametrize("master", ["facets", "sphere"])
+def test_area(master: str, current_area: bool, area: float) -> None:
+    """A slave stretched by 1.1 and 1.2: its area of now or of the reference, whole, 1e-12."""
+    model = _offset_pair("hexahedron", 1)
+    contact = Contact(
+        model, "upper.bottom", _on(master), _law(), mortar=True, current_area=current_area
+    )
+    x = model.space.tabulate_dof_coordinates()
+    u = np.zeros_like(x)
+    block = np.unique(model.space.dofmap.list[model.cells("upper")])
+    u[block, :2] = x[block, :2] * [0.1, 0.2]
+    contact.update(u, 1.0)
+    contact.commit()
+    assert contact.areas.sum() == pytest.approx(area, rel=1e-12)
+
+
 def test_rotation() -> None:
     """Both bodies turned by 70 degrees as one, in between of increments: forces turn, 1e-9.
 
