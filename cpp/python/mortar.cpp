@@ -6,7 +6,10 @@
 #include "arrays.hpp"
 #include "rooms.hpp"
 
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
 
 namespace anisocontact::bindings {
 
@@ -22,136 +25,191 @@ surface::Topology named(const std::string& name) {
   return *t;
 }
 
-/// Mortar weights of the nodes of slave facets, see cpp/include/anisocontact/mortar/.
-nb::dict mortar_weights(const std::string& slave_topology, const Table& slave,
-                        const std::string& master_topology, const Table& master, const Points& now,
-                        const Points& reference, const Offsets& pair_offsets,
-                        const Indices& pair_facets, const Table& patch,
-                        const Offsets& around_offsets, const Indices& around_facets,
-                        const Indices& around_local, const Offsets& more_offsets,
-                        const Indices& more_nodes, const Coordinates& straight_points,
-                        const Scalars& straight_weights, const Coordinates& skew_points,
-                        const Scalars& skew_weights, bool current_area, bool tangent,
-                        std::size_t threads) {
-  const mortar::MortarInput in{
-      {named(slave_topology), slave.data(), slave.shape(0)},
-      {named(master_topology), master.data(), master.shape(0)},
-      now.data(),
-      current_area ? nullptr : reference.data(),
-      {{straight_points.data(), straight_weights.data(), straight_weights.shape(0)},
-       {skew_points.data(), skew_weights.data(), skew_weights.shape(0)}},
-      tangent};
-  const std::size_t n = patch.shape(0);
-  const mortar::ListView pairs{pair_offsets.data(), pair_facets.data()},
-      more{more_offsets.data(), more_nodes.data()};
-  const mortar::Patches patches{{around_offsets.data(), around_facets.data()},
-                                {around_offsets.data(), around_local.data()},
-                                patch.data(),
-                                patch.shape(1)};
-  std::vector<mortar::DualWeights> facets(in.slave.count);
-  std::vector<std::vector<std::int32_t>> masters(n);
-  {
-    nb::gil_scoped_release free;
-    kernel::parallel_for(in.slave.count, threads, [&](std::size_t f) {
-      facets[f] = mortar::dual_weights(in, f, pairs.begin(f), pairs.size(f));
-    });
-    kernel::parallel_for(n, threads, [&](std::size_t i) {
-      masters[i] = mortar::masters_of(facets, patches, more, i);
-    });
-  }
-  std::size_t most = 1;
-  for (const auto& m : masters) most = std::max(most, m.size());
-  const std::size_t columns = 3 * (patch.shape(1) + most), rows = tangent ? n : 0;
-  Array<std::int32_t> nodes({n, most}, unset);
-  std::fill_n(nodes.data, n * most, -1);
-  Array<double> area({n}), weight({n, most}), d_area({rows, columns}),
-      d_weight({rows, most, columns});
-  {
-    nb::gil_scoped_release free;
-    const mortar::NodalWeights out{most,        nodes.data,  area.data,
-                                   weight.data, d_area.data, d_weight.data};
-    kernel::parallel_for(n, threads, [&](std::size_t i) {
-      mortar::collect(in, facets, patches, masters[i], i, out);
-    });
-  }
-  nb::dict r;
-  r["masters"] = nodes.array;
-  r["area"] = area.array;
-  r["weight"] = weight.array;
-  r["d_area"] = d_area.array;
-  r["d_weight"] = d_weight.array;
-  return r;
-}
-
-using Cube = nb::ndarray<const double, nb::shape<-1, -1, -1>, nb::c_contig, nb::device::cpu>;
 using Rows = nb::ndarray<const double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
+using Cube = nb::ndarray<const double, nb::shape<-1, -1, -1>, nb::c_contig, nb::device::cpu>;
 
-/// Derivative of the tractions of some slave nodes by the nodes of their columns, (p, 3, 3 c).
-nb::ndarray<nb::numpy, double> mortar_slopes(const Indices& which, const Cube& by,
-                                             const Cube& moving, const Cube& lift,
-                                             const Cube& d_weight, std::size_t threads) {
-  const std::size_t p = which.shape(0);
-  const mortar::NodeSizes n{d_weight.shape(1), moving.shape(2)};
-  Array<double> out({p, 3, 3 * n.columns}, unset);
+/// Arrays of Python that the weights refer to as long as they are there.
+struct Given {
+  surface::Topology slave_topology, master_topology;
+  Table slave, master;
+  Points now, reference;
+  Offsets pair_offsets;
+  Indices pair_facets;
+  Table patch;
+  Offsets around_offsets;
+  Indices around_facets, around_local;
+  Rows support;
+  Coordinates straight_points;
+  Scalars straight_weights;
+  Coordinates skew_points;
+  Scalars skew_weights;
+  bool current_area;
+};
+
+/// Mortar weights of the nodes of slave facets, see cpp/include/anisocontact/mortar/.
+class MortarWeights {
+ public:
+  MortarWeights(const Given& given, const Offsets& more_offsets, const Indices& more_nodes,
+                std::size_t threads)
+      : given_(given), facets_(given.slave.shape(0)) {
+    const std::size_t n = given_.patch.shape(0);
+    const mortar::ListView more{more_offsets.data(), more_nodes.data()};
+    std::vector<std::vector<std::int32_t>> masters(n);
+    {
+      nb::gil_scoped_release free;
+      kernel::parallel_for(facets_.size(), threads,
+                           [&](std::size_t f) { facets_[f] = weights(f, false); });
+      kernel::parallel_for(n, threads, [&](std::size_t i) {
+        masters[i] = mortar::masters_of(facets_, patches_, more, i);
+      });
+    }
+    std::size_t most = 1;
+    for (const auto& m : masters) most = std::max(most, m.size());
+    Array<std::int32_t> nodes({n, most}, unset);
+    std::fill_n(nodes.data, n * most, -1);
+    Array<double> area({n}), weight({n, most});
+    nodal_ = {most, nodes.data, area.data, weight.data};
+    {
+      nb::gil_scoped_release free;
+      kernel::parallel_for(n, threads, [&](std::size_t i) {
+        mortar::collect(facets_, patches_, masters[i], i, nodal_);
+      });
+    }
+    masters_ = nodes.array;
+    area_ = area.array;
+    weight_ = weight.array;
+  }
+
+  const auto& masters() const { return masters_; }
+  const auto& area() const { return area_; }
+  const auto& weight() const { return weight_; }
+
+  using Part = std::tuple<std::size_t, std::optional<Table>, Cube>;
+  nb::tuple tangent(const Indices& which, const Cube& by, const Cube& lift, const Points& traction,
+                    const std::vector<Part>& moving, std::size_t threads) const;
+
+ private:
+  mortar::DualWeights weights(std::size_t f, bool slopes) const {
+    mortar::MortarInput in = in_;
+    in.slopes = slopes;
+    return mortar::dual_weights(in, f, pairs_.begin(f), pairs_.size(f));
+  }
+
+  Given given_;
+  mortar::MortarInput in_{
+      {given_.slave_topology, given_.slave.data(), given_.slave.shape(0)},
+      {given_.master_topology, given_.master.data(), given_.master.shape(0)},
+      given_.now.data(),
+      given_.current_area ? nullptr : given_.reference.data(),
+      {{given_.straight_points.data(), given_.straight_weights.data(),
+        given_.straight_weights.shape(0)},
+       {given_.skew_points.data(), given_.skew_weights.data(), given_.skew_weights.shape(0)}},
+      false};
+  mortar::ListView pairs_{given_.pair_offsets.data(), given_.pair_facets.data()};
+  mortar::Patches patches_{{given_.around_offsets.data(), given_.around_facets.data()},
+                           {given_.around_offsets.data(), given_.around_local.data()},
+                           given_.patch.data(),
+                           given_.patch.shape(1)};
+  std::vector<mortar::DualWeights> facets_;
+  mortar::NodalWeights nodal_{};
+  nb::ndarray<nb::numpy, std::int32_t> masters_;
+  nb::ndarray<nb::numpy, double> area_, weight_;
+};
+
+/// Derivative of the tractions of some slave nodes, (p, columns, 3, 3), and blocks of the tangent of the
+/// forces: rows, columns, (k, 3, 3).
+nb::tuple MortarWeights::tangent(const Indices& which, const Cube& by, const Cube& lift,
+                                 const Points& traction, const std::vector<Part>& moving,
+                                 std::size_t threads) const {
+  const std::size_t p = which.shape(0), slaves = in_.slave.width(), nodes = given_.now.shape(0);
+  const mortar::Nodes n{in_,   facets_, patches_, given_.support.data(), given_.support.shape(1),
+                        nodal_};
+  const mortar::Chosen chosen{which.data(), p, by.data(), lift.data(), traction.data()};
+  std::vector<mortar::MovingPart> parts;
+  for (const auto& [first, named, values] : moving)
+    parts.push_back(
+        {first, values.shape(1), values.shape(2), named ? named->data() : nullptr, values.data()});
+  Array<double> slopes({p, n.columns(), 3, 3}, unset);
+  std::vector<mortar::FacetBlocks> blocks(facets_.size());
+  std::vector<std::vector<std::int32_t>> columns;
+  std::optional<mortar::ForceRows> rows;
+  std::vector<std::size_t> offset{0};
   {
     nb::gil_scoped_release free;
-    kernel::parallel_for(p, threads, [&](std::size_t q) {
+    std::vector<std::int32_t> place(facets_.size() * slaves, -1);
+    for (std::size_t q = 0; q < p; ++q) {
       const auto i = static_cast<std::size_t>(which.data()[q]);
-      with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
-        mortar::traction_slopes(
-            n, by.data() + q * 9 * mortar::moving_parts,
-            moving.data() + i * mortar::moving_parts * n.columns, lift.data() + q * 3 * n.masters,
-            d_weight.data() + i * n.masters * 3 * n.columns, out.data + q * 9 * n.columns);
-      });
+      for (std::size_t e = 0; e < patches_.facet.size(i); ++e)
+        place[static_cast<std::size_t>(patches_.facet.begin(i)[e]) * slaves +
+              static_cast<std::size_t>(patches_.local.begin(i)[e])] = static_cast<std::int32_t>(q);
+    }
+    kernel::parallel_for(facets_.size(), threads, [&](std::size_t f) {
+      const std::int32_t* const own = place.data() + f * slaves;
+      if (std::any_of(own, own + slaves, [](std::int32_t q) { return q >= 0; }))
+        blocks[f] = mortar::facet_blocks(n, chosen, f, weights(f, true), own);
     });
+    kernel::parallel_for(p, threads, [&](std::size_t q) {
+      mortar::traction_slopes(n, blocks, parts, chosen, q,
+                              slopes.data + q * n.columns() * mortar::block_size);
+    });
+    rows.emplace(n, chosen, slopes.data, blocks, nodes);
+    columns.resize(rows->nodes().size());
+    kernel::parallel_pieces(columns.size(), threads, [&](std::size_t first, std::size_t last) {
+      std::vector<std::int32_t> seen(nodes, -1);
+      for (std::size_t r = first; r < last; ++r) columns[r] = rows->columns(rows->nodes()[r], seen);
+    });
+    for (const auto& one : columns) offset.push_back(offset.back() + one.size());
   }
-  return out.array;
-}
-
-/// Blocks of some slave nodes: rows of their support, then of the masters, (p, 3 r, 3 c).
-nb::ndarray<nb::numpy, double> mortar_couplings(const Indices& which, const Cube& slopes,
-                                                const Rows& traction, const Rows& support,
-                                                const Scalars& area, const Rows& weight,
-                                                const Rows& d_area, const Cube& d_weight,
-                                                std::size_t threads) {
-  const std::size_t p = which.shape(0), own = support.shape(1), masters = weight.shape(1),
-                    width = d_area.shape(1), rows = own + masters;
-  Array<double> out({p, 3 * rows, width}, unset);
+  Array<std::int32_t> row({offset.back(), 1}, unset), column({offset.back(), 1}, unset);
+  Array<double> values({offset.back(), 1, 1, 3, 3}, unset);
   {
     nb::gil_scoped_release free;
-    kernel::parallel_for(p, threads, [&](std::size_t q) {
-      const auto i = static_cast<std::size_t>(which.data()[q]);
-      const double* const t = traction.data() + 3 * q;
-      const double* const dt = slopes.data() + 3 * q * width;
-      double* to = out.data + 3 * q * rows * width;
-      with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
-        for (std::size_t r = 0; r < own; ++r, to += 3 * width)
-          mortar::coupling_row(width, area.data()[i], d_area.data() + i * width,
-                               support.data()[i * own + r], t, dt, to);
-        for (std::size_t k = 0; k < masters; ++k, to += 3 * width)
-          mortar::coupling_row(width, weight.data()[i * masters + k],
-                               d_weight.data() + (i * masters + k) * width, -1.0, t, dt, to);
-      });
+    kernel::parallel_pieces(columns.size(), threads, [&](std::size_t first, std::size_t last) {
+      std::vector<std::int32_t> place(nodes, -1);
+      for (std::size_t r = first; r < last; ++r) {
+        std::fill_n(row.data + offset[r], columns[r].size(), rows->nodes()[r]);
+        std::copy(columns[r].begin(), columns[r].end(), column.data + offset[r]);
+        rows->write(rows->nodes()[r], columns[r], place,
+                    values.data + offset[r] * mortar::block_size);
+      }
     });
   }
-  return out.array;
+  return nb::make_tuple(slopes.array, row.array, column.array, values.array);
 }
 
 }  // namespace
 
 void bind_mortar(nb::module_& m) {
-  m.def("mortar_weights", &mortar_weights, nb::arg("slave_topology"), nb::arg("slave"),
-        nb::arg("master_topology"), nb::arg("master"), nb::arg("now"), nb::arg("reference"),
-        nb::arg("pair_offsets"), nb::arg("pair_facets"), nb::arg("patch"),
-        nb::arg("around_offsets"), nb::arg("around_facets"), nb::arg("around_local"),
-        nb::arg("more_offsets"), nb::arg("more_nodes"), nb::arg("straight_points"),
-        nb::arg("straight_weights"), nb::arg("skew_points"), nb::arg("skew_weights"),
-        nb::arg("current_area"), nb::arg("tangent"), nb::arg("threads"));
-  m.def("mortar_slopes", &mortar_slopes, nb::arg("which"), nb::arg("by"), nb::arg("moving"),
-        nb::arg("lift"), nb::arg("d_weight"), nb::arg("threads"));
-  m.def("mortar_couplings", &mortar_couplings, nb::arg("which"), nb::arg("slopes"),
-        nb::arg("traction"), nb::arg("support"), nb::arg("area"), nb::arg("weight"),
-        nb::arg("d_area"), nb::arg("d_weight"), nb::arg("threads"));
+  nb::class_<MortarWeights>(m, "MortarWeights")
+      .def(
+          "__init__",
+          [](MortarWeights* self, const std::string& slave_topology, const Table& slave,
+             const std::string& master_topology, const Table& master, const Points& now,
+             const Points& reference, const Offsets& pair_offsets, const Indices& pair_facets,
+             const Table& patch, const Offsets& around_offsets, const Indices& around_facets,
+             const Indices& around_local, const Rows& support, const Offsets& more_offsets,
+             const Indices& more_nodes, const Coordinates& straight_points,
+             const Scalars& straight_weights, const Coordinates& skew_points,
+             const Scalars& skew_weights, bool current_area, std::size_t threads) {
+            new (self)
+                MortarWeights({named(slave_topology), named(master_topology), slave, master, now,
+                               reference, pair_offsets, pair_facets, patch, around_offsets,
+                               around_facets, around_local, support, straight_points,
+                               straight_weights, skew_points, skew_weights, current_area},
+                              more_offsets, more_nodes, threads);
+          },
+          nb::arg("slave_topology"), nb::arg("slave"), nb::arg("master_topology"),
+          nb::arg("master"), nb::arg("now"), nb::arg("reference"), nb::arg("pair_offsets"),
+          nb::arg("pair_facets"), nb::arg("patch"), nb::arg("around_offsets"),
+          nb::arg("around_facets"), nb::arg("around_local"), nb::arg("support"),
+          nb::arg("more_offsets"), nb::arg("more_nodes"), nb::arg("straight_points"),
+          nb::arg("straight_weights"), nb::arg("skew_points"), nb::arg("skew_weights"),
+          nb::arg("current_area"), nb::arg("threads"))
+      .def_prop_ro("masters", &MortarWeights::masters, nb::rv_policy::reference)
+      .def_prop_ro("area", &MortarWeights::area, nb::rv_policy::reference)
+      .def_prop_ro("weight", &MortarWeights::weight, nb::rv_policy::reference)
+      .def("tangent", &MortarWeights::tangent, nb::arg("which"), nb::arg("by"), nb::arg("lift"),
+           nb::arg("traction"), nb::arg("moving"), nb::arg("threads"));
 }
 
 }  // namespace anisocontact::bindings

@@ -283,45 +283,43 @@ class FacetInterface:
         outputs: NDArray[numpy.float64] | None = None,
     ) -> dict[str, NDArray[Any]]: ...
 
-def mortar_weights(
-    slave_topology: str,
-    slave: NDArray[numpy.int32],
-    master_topology: str,
-    master: NDArray[numpy.int32],
-    now: NDArray[numpy.float64],
-    reference: NDArray[numpy.float64],
-    pair_offsets: NDArray[numpy.int64],
-    pair_facets: NDArray[numpy.int32],
-    patch: NDArray[numpy.int32],
-    around_offsets: NDArray[numpy.int64],
-    around_facets: NDArray[numpy.int32],
-    around_local: NDArray[numpy.int32],
-    more_offsets: NDArray[numpy.int64],
-    more_nodes: NDArray[numpy.int32],
-    straight_points: NDArray[numpy.float64],
-    straight_weights: NDArray[numpy.float64],
-    skew_points: NDArray[numpy.float64],
-    skew_weights: NDArray[numpy.float64],
-    current_area: bool,
-    tangent: bool,
-    threads: int,
-) -> dict[str, NDArray[Any]]: ...
-def mortar_slopes(
-    which: NDArray[numpy.int32],
-    by: NDArray[numpy.float64],
-    moving: NDArray[numpy.float64],
-    lift: NDArray[numpy.float64],
-    d_weight: NDArray[numpy.float64],
-    threads: int,
-) -> NDArray[numpy.float64]: ...
-def mortar_couplings(
-    which: NDArray[numpy.int32],
-    slopes: NDArray[numpy.float64],
-    traction: NDArray[numpy.float64],
-    support: NDArray[numpy.float64],
-    area: NDArray[numpy.float64],
-    weight: NDArray[numpy.float64],
-    d_area: NDArray[numpy.float64],
-    d_weight: NDArray[numpy.float64],
-    threads: int,
-) -> NDArray[numpy.float64]: ...
+class MortarWeights:
+    def __init__(
+        self,
+        slave_topology: str,
+        slave: NDArray[numpy.int32],
+        master_topology: str,
+        master: NDArray[numpy.int32],
+        now: NDArray[numpy.float64],
+        reference: NDArray[numpy.float64],
+        pair_offsets: NDArray[numpy.int64],
+        pair_facets: NDArray[numpy.int32],
+        patch: NDArray[numpy.int32],
+        around_offsets: NDArray[numpy.int64],
+        around_facets: NDArray[numpy.int32],
+        around_local: NDArray[numpy.int32],
+        support: NDArray[numpy.float64],
+        more_offsets: NDArray[numpy.int64],
+        more_nodes: NDArray[numpy.int32],
+        straight_points: NDArray[numpy.float64],
+        straight_weights: NDArray[numpy.float64],
+        skew_points: NDArray[numpy.float64],
+        skew_weights: NDArray[numpy.float64],
+        current_area: bool,
+        threads: int,
+    ) -> None: ...
+    @property
+    def masters(self) -> NDArray[numpy.int32]: ...
+    @property
+    def area(self) -> NDArray[numpy.float64]: ...
+    @property
+    def weight(self) -> NDArray[numpy.float64]: ...
+    def tangent(
+        self,
+        which: NDArray[numpy.int32],
+        by: NDArray[numpy.float64],
+        lift: NDArray[numpy.float64],
+        traction: NDArray[numpy.float64],
+        moving: Sequence[tuple[int, NDArray[numpy.int32] | None, NDArray[numpy.float64]]],
+        threads: int,
+    ) -> Any: ...

@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact import _core
 from anisocontact.contact.contact_planes import ContactPlanes, Opposite, by_slave_tangents
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.mortar_weights import MortarWeights
@@ -59,23 +58,20 @@ class MortarState:
         area = self.weights.area[:, None]
         return np.concatenate([area * own, -self.weights.weight], axis=1)
 
-    @cached_property
-    def moving(self) -> Floats:
-        """How slave point, tangents and planes are made of the nodes of the columns, (n, 10, c).
+    @property
+    def _moving(self) -> list[tuple[int, Ints | None, Floats]]:
+        """How slave point, tangents and planes are made of nodes: first of ten, nodes, values.
 
         The slave point and its tangents, the mean of the master and the tangents there, these of
         the accepted increment, and the place where the tangents are taken now.
         """
-        n, k = self.quadrature.nodes.shape
-        out = np.zeros((n, 10, self.columns.shape[1]))
-        out[:, 0, :k] = self.quadrature.basis[:, 0]
-        out[:, 1:3, :k] = self.quadrature.gradient[:, 0].swapaxes(1, 2)
-        for first, one in zip((3, 6), self.opposite, strict=True):
-            self._put(one.masters, one.shares[:, None], out[:, first : first + 1, k:])
-            self._put(one.nodes, one.gradient, out[:, first + 1 : first + 3, k:])
-        now = self.opposite[0]
-        self._put(now.nodes, now.shape[:, None], out[:, 9:, k:])
-        return out
+        quadrature, (now, then) = self.quadrature, self.opposite
+        own = [quadrature.basis, quadrature.gradient[:, 0].swapaxes(1, 2)]
+        parts: list[tuple[int, Ints | None, Floats]] = [(0, None, np.concatenate(own, axis=1))]
+        for first, one in ((3, now), (6, then)):
+            parts += [(first, one.masters, one.shares[:, None])]
+            parts += [(first + 1, one.nodes, one.gradient)]
+        return [*parts, (9, now.nodes, now.shape[:, None])]
 
     @cached_property
     def _place_slopes(self) -> tuple[Floats, Floats, Floats]:
@@ -96,11 +92,6 @@ class MortarState:
         w = one.moves(self.now, apart)
         return bend - turn @ now[:, None], w @ now, w[..., None] * apart[:, None, None]
 
-    def _put(self, nodes: Ints, values: Floats, out: Floats) -> None:
-        """Add values (n, v, j) of nodes (n, j) to the columns (n, v, masters) of those nodes."""
-        same = (nodes[:, :, None] == self.weights.masters[:, None]) & (nodes[:, :, None] >= 0)
-        out += values @ same
-
     @cached_property
     def _ways(self) -> Floats:
         """How the mean of the master follows the weights, over their sum, (n, k, 3), 1/length.
@@ -117,15 +108,18 @@ class MortarState:
         there = (masters >= 0)[:, :, None] & (area > 0.0)
         return np.asarray(np.divide(way, area, out=np.zeros_like(way), where=there))
 
-    def by_columns(self, by_nodes: Floats, which: Ints) -> Floats:
-        """Derivative of tractions by the nodes of the columns.
+    def tangent(
+        self, by_nodes: Floats, which: Ints, traction: Floats
+    ) -> tuple[Floats, Ints, Ints, Floats]:
+        """Derivative of tractions, and of the forces that they are.
 
         Args:
-            by_nodes: By the nodes of `ContactPlanes.nodes`, (p, 3, 27).
+            by_nodes: Of the tractions by the nodes of `ContactPlanes.nodes`, (p, 3, 27).
             which: Slave nodes that have these tractions, (p,).
+            traction: The tractions, (p, 3).
 
         Returns:
-            The derivative, (p, 3, 3 c).
+            That of the tractions by the nodes of the columns, (p, c, 3, 3), and couplings.
         """
         planes = self.planes
         by = by_nodes.reshape(-1, 3, 3, 3, 3).copy()  # (p, i, part, node of it, j)
@@ -144,11 +138,12 @@ class MortarState:
         by_foot = by_place @ along
         by[:, :, 0, 0] += by_foot
         flat = np.concatenate([by.reshape(p, 3, 9, 3), -by_foot[:, :, None]], axis=2)
-        flat = np.ascontiguousarray(flat.swapaxes(2, 3).reshape(p, 9, 10))
-        lift = by[:, :, 1, 0] @ self._ways[which].swapaxes(1, 2)
-        return _core.mortar_slopes(
-            which, flat, self.moving, lift, self.weights.d_weight, default_threads()
+        flat = np.ascontiguousarray(np.moveaxis(flat, 2, 1).reshape(p, 10, 9))
+        lift = self._ways[which] @ by[:, :, 1, 0].swapaxes(1, 2)
+        found: tuple[Floats, Ints, Ints, Floats] = self.weights.core.tangent(
+            which, flat, lift, traction, self._moving, default_threads()
         )
+        return found
 
 
 @dataclass(frozen=True)
@@ -170,9 +165,14 @@ class MortarAnswer:
     by_nodes: Floats
 
     @cached_property
+    def _tangent(self) -> tuple[Floats, Ints, Ints, Floats]:
+        traction = self.snapshot.response.traction[self.which]
+        return self.at.tangent(self.by_nodes, self.which, traction)
+
+    @property
     def by_columns(self) -> Floats:
-        """The same by the nodes of the columns, (p, 3, 3 c)."""
-        return self.at.by_columns(self.by_nodes, self.which)
+        """Derivative of the tractions by the nodes of the columns, (p, c, 3, 3)."""
+        return self._tangent[0]
 
     def add_force(self, out: Floats) -> None:
         """As of `Answer`."""
@@ -185,20 +185,8 @@ class MortarAnswer:
         np.add.at(out, rows[there], (weights[:, :, None] * traction[:, None])[there])
 
     def couplings(self) -> list[Couplings]:
-        """As of `Answer`: a block for each slave node in contact."""
-        at, which, weights = self.at, self.which, self.at.weights
-        blocks = _core.mortar_couplings(
-            which,
-            self.by_columns,
-            self.snapshot.response.traction[which],
-            np.ascontiguousarray(at.quadrature.basis[:, 0, : at.quadrature.rows]),
-            weights.area,
-            weights.weight,
-            weights.d_area,
-            weights.d_weight,
-            default_threads(),
-        )
-        return [(at.rows[which], at.columns[which], blocks)]
+        """As of `Answer`: a block for each pair of nodes."""
+        return [self._tangent[1:]]
 
     def by_derivative(self, other: MortarAnswer, stiffness: Floats) -> MortarAnswer:
         """As of `Answer`."""
@@ -225,8 +213,7 @@ class MortarLinear:
         # the tangent is so stiff that the rounding of positions would be felt in the difference
         way = (now - self._then)[np.maximum(columns, 0)]
         way[columns < 0] = 0.0
-        found = answer.by_columns @ way.reshape(len(way), 3 * columns.shape[1], 1)
-        return self._everywhere(found[..., 0])
+        return self._everywhere(np.einsum("pcij,pcj->pi", answer.by_columns, way))
 
     def slipped(self, slip: Floats) -> Floats:
         """As of `Linear`."""

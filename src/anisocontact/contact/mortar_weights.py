@@ -31,15 +31,13 @@ class MortarWeights:
         masters: Nodes, (n, k), ascending, -1 behind the last.
         area: D_i, integral of the dual function over what is covered, (n,), length^2.
         weight: W_ik, integral of it with the shape functions of the master, (n, k), length^2.
-        d_area: Derivative of D_i by the nodes of the patch, then by `masters`, (n, 3 c), length.
-        d_weight: That of W_ik, (n, k, 3 c), length.
+        core: What the core has found them from, and differentiates.
     """
 
     masters: Ints
     area: Floats
     weight: Floats
-    d_area: Floats
-    d_weight: Floats
+    core: _core.MortarWeights
 
     @property
     def shares(self) -> Floats:
@@ -55,7 +53,6 @@ def mortar_weights(
     more: Ints,
     *,
     current_area: bool,
-    tangent: bool = True,
 ) -> MortarWeights:
     """Weights where the nodes are; the surface of the master has to be there already.
 
@@ -65,7 +62,6 @@ def mortar_weights(
         now: Positions of the nodes, (nodes, 3), length.
         more: Nodes of the master to have as well, (n, j), -1 for none.
         current_area: Whether areas are those of now or of the reference configuration.
-        tangent: Whether derivatives are needed.
     """
     slave, master = sides.slave, sides.master
     shapes = FacetShapes(slave.topology)
@@ -76,7 +72,7 @@ def mortar_weights(
     there = more >= 0
     starts = np.append(0, np.cumsum(there.sum(axis=1))).astype(np.int64)
     straight, skew = _rules(slave, master)
-    found = _core.mortar_weights(
+    core = _core.MortarWeights(
         slave_topology=slave.topology,
         slave=slave.nodes,
         master_topology=master.topology,
@@ -89,6 +85,7 @@ def mortar_weights(
         around_offsets=around.offsets,
         around_facets=around.facets,
         around_local=around.local,
+        support=around.support,
         more_offsets=starts,
         more_nodes=np.ascontiguousarray(more[there]),
         straight_points=straight[0],
@@ -96,10 +93,9 @@ def mortar_weights(
         skew_points=skew[0],
         skew_weights=skew[1],
         current_area=current_area,
-        tangent=tangent,
         threads=sides.threads,
     )
-    return MortarWeights(**found)
+    return MortarWeights(core.masters, core.area, core.weight, core)
 
 
 def _rules(slave: FacetMesh, master: FacetMesh) -> list[tuple[Floats, Floats]]:

@@ -1,54 +1,266 @@
 #pragma once
-// Tangent of a slave node of a mortar contact from the slopes of its traction and of its weights.
+// Tangent of the forces of a mortar contact. Of a slave node with traction t, weights D and W_k:
+//   - d(D t) = - D dt - t dD   on the nodes of its support,
+//     d(W_k t) = W_k dt + t dW_k   on those of the master,
+// where t follows moving parts, which are sums over nodes, and the weights. Derivatives of weights are
+// contracted facet by facet; what is left are blocks of 3 x 3 numbers, row by row.
 
-#include <cstddef>
-#include <cstdint>
+#include <span>
 
-#include "anisocontact/tensor/inline.hpp"
+#include "anisocontact/mortar/nodal_weights.hpp"
 
 namespace anisocontact::mortar {
 
 /// How many things a traction depends on that are sums over nodes: slave point and tangents, mean of
 /// the master and tangents, the same of the accepted increment, place of the tangents.
 inline constexpr std::size_t moving_parts = 10;
+inline constexpr std::size_t block_size = 9;
 
-/// Sizes of the arrays of a node.
-struct NodeSizes {
-  std::size_t masters, columns;  ///< columns count nodes
+/// The nodes that moving parts are made of, for each slave node: `count` parts from `first` on.
+struct MovingPart {
+  std::size_t first, count, width;
+  const std::int32_t* nodes;  ///< (n, width) of the master, -1 for none; none at all: of the patch
+  const double* values;       ///< (n, count, width)
 };
 
-/// Writes dt/du, (3, 3 columns): by the moving parts, `by` (3, 3, parts) and `moving` (parts, columns),
-/// and by the weights, through `lift` (3, masters) and their derivative (masters, 3 columns).
-inline void traction_slopes(const NodeSizes& n, const double* by, const double* moving,
-                            const double* lift, const double* d_weight, double* out) {
-  const std::size_t width = 3 * n.columns;
-  for (std::size_t i = 0; i < 3; ++i) {
-    double* const row = out + i * width;
-    for (std::size_t c = 0; c < n.columns; ++c)
-      for (std::size_t j = 0; j < 3; ++j) {
-        const double* const slope = by + (3 * i + j) * moving_parts;
-        double sum = 0.0;
-        for (std::size_t v = 0; v < moving_parts; ++v) sum += slope[v] * moving[v * n.columns + c];
-        row[3 * c + j] = sum;
-      }
-    for (std::size_t k = 0; k < n.masters; ++k) {
-      const double f = lift[i * n.masters + k];
-      const double* const d = d_weight + k * width;
-      if (f != 0.0)
-        for (std::size_t c = 0; c < width; ++c) row[c] += f * d[c];
+/// Slave nodes whose tangent is wanted, p of n.
+struct Chosen {
+  const std::int32_t* which;  ///< (p,)
+  std::size_t count;
+  const double* by;        ///< slopes of their tractions by the moving parts, (p, parts, 3, 3)
+  const double* lift;      ///< and by the weights, (p, masters, 3)
+  const double* traction;  ///< (p, 3)
+};
+
+/// Blocks of a facet; none where no node of it is chosen.
+struct FacetBlocks {
+  std::vector<std::int32_t> nodes;  ///< of the facet, then masters: columns, and rows of the force
+  std::vector<bool> acting;         ///< which of these rows are not all zero
+  std::vector<double> lift;         ///< of tractions of its nodes through weights, (slaves, c, 9)
+  std::vector<double> force;        ///< of forces through weights, (c, c, 9)
+};
+
+/// Weights of slave nodes and what they were found from.
+struct Nodes {
+  const MortarInput& in;
+  const std::vector<DualWeights>& facets;
+  const Patches& patches;
+  const double* support;  ///< (n, rows)
+  std::size_t rows;
+  const NodalWeights& weights;
+
+  std::size_t columns() const { return patches.width + weights.most; }
+  const std::int32_t* patch(std::size_t i) const { return patches.nodes + i * patches.width; }
+  const std::int32_t* masters(std::size_t i) const { return weights.masters + i * weights.most; }
+  std::size_t place(std::size_t i, std::int32_t master) const { return weights.place(i, master); }
+};
+
+namespace detail {
+
+ANISOCONTACT_INLINE void add_block(double factor, const double* from, double* to) {
+  for (std::size_t x = 0; x < block_size; ++x) to[x] += factor * from[x];
+}
+
+/// Adds vector times row, (3 c), to blocks, (c, 9).
+ANISOCONTACT_INLINE void add_outer(const double* v, const double* row, std::size_t count,
+                                   double* to) {
+  for (std::size_t c = 0; c < count; ++c)
+    for (std::size_t x = 0; x < 3; ++x)
+      for (std::size_t j = 0; j < 3; ++j) to[block_size * c + 3 * x + j] += v[x] * row[3 * c + j];
+}
+
+}  // namespace detail
+
+/// Blocks of a facet, whose nodes have these places among those that are chosen, -1 for none.
+inline FacetBlocks facet_blocks(const Nodes& n, const Chosen& chosen, std::size_t f,
+                                const DualWeights& own, const std::int32_t* place) {
+  FacetBlocks out;
+  const std::size_t slaves = n.in.slave.width(), masters = own.masters.size(),
+                    count = slaves + masters;
+  if (masters == 0) return out;
+  for (std::size_t a = 0; a < slaves; ++a) out.nodes.push_back(n.in.slave.node(f, a));
+  out.nodes.insert(out.nodes.end(), own.masters.begin(), own.masters.end());
+  out.acting.assign(count, false);
+  out.lift.assign(slaves * count * block_size, 0.0);
+  out.force.assign(count * count * block_size, 0.0);
+  const auto row = [](const DualWeights::Matrix& m, std::size_t r) {
+    return m.data() + r * static_cast<std::size_t>(m.cols());
+  };
+  for (std::size_t s = 0; s < slaves; ++s) {
+    if (place[s] < 0) continue;
+    const auto q = static_cast<std::size_t>(place[s]);
+    const auto i = static_cast<std::size_t>(chosen.which[q]);
+    const double* const t = chosen.traction + 3 * q;
+    for (std::size_t r = 0; r < n.rows; ++r) {
+      const double share = -n.support[i * n.rows + r];
+      if (share == 0.0) continue;
+      const auto a = static_cast<std::size_t>(
+          std::find(out.nodes.begin(), out.nodes.end(), n.patch(i)[r]) - out.nodes.begin());
+      out.acting[a] = true;
+      const std::array<double, 3> v{share * t[0], share * t[1], share * t[2]};
+      detail::add_outer(v.data(), row(own.d_area, s), count,
+                        out.force.data() + a * count * block_size);
+    }
+    for (std::size_t k = 0; k < masters; ++k) {
+      out.acting[slaves + k] = true;
+      const double* const dw = row(own.d_weight, s * masters + k);
+      detail::add_outer(t, dw, count, out.force.data() + (slaves + k) * count * block_size);
+      const double* const lift =
+          chosen.lift + 3 * (q * n.weights.most + n.place(i, own.masters[k]));
+      detail::add_outer(lift, dw, count, out.lift.data() + s * count * block_size);
+    }
+  }
+  return out;
+}
+
+/// Writes dt/du of a chosen slave node, (columns, 9): by the moving parts, and by the weights.
+inline void traction_slopes(const Nodes& n, const std::vector<FacetBlocks>& blocks,
+                            const std::vector<MovingPart>& parts, const Chosen& chosen,
+                            std::size_t q, double* out) {
+  const auto i = static_cast<std::size_t>(chosen.which[q]);
+  const std::size_t width = n.patches.width;
+  std::fill_n(out, n.columns() * block_size, 0.0);
+  for (const MovingPart& part : parts)
+    for (std::size_t a = 0; a < part.width; ++a) {
+      const std::int32_t node = part.nodes == nullptr ? 0 : part.nodes[i * part.width + a];
+      if (node < 0) continue;
+      const std::size_t c = part.nodes == nullptr ? a : width + n.place(i, node);
+      for (std::size_t v = 0; v < part.count; ++v)
+        detail::add_block(part.values[(i * part.count + v) * part.width + a],
+                          chosen.by + (q * moving_parts + part.first + v) * block_size,
+                          out + c * block_size);
+    }
+  for (std::size_t e = 0; e < n.patches.facet.size(i); ++e) {
+    const FacetBlocks& b = blocks[static_cast<std::size_t>(n.patches.facet.begin(i)[e])];
+    const std::size_t count = b.nodes.size(), slaves = n.in.slave.width();
+    const double* from =
+        b.lift.data() + static_cast<std::size_t>(n.patches.local.begin(i)[e]) * count * block_size;
+    for (std::size_t c = 0; c < count; ++c, from += block_size) {
+      const std::size_t to =
+          c < slaves ? static_cast<std::size_t>(
+                           std::find(n.patch(i), n.patch(i) + width, b.nodes[c]) - n.patch(i))
+                     : width + n.place(i, b.nodes[c]);
+      detail::add_block(1.0, from, out + to * block_size);
     }
   }
 }
 
-/// Writes - w dt/du - t dw/du for one row of nodes: weight w and its slopes, (3 columns).
-ANISOCONTACT_INLINE void coupling_row(std::size_t width, double w, const double* dw, double sign,
-                                      const double* t, const double* slopes, double* out) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double a = -sign * w, b = -sign * t[i];
-    const double* const from = slopes + i * width;
-    double* const to = out + i * width;
-    for (std::size_t c = 0; c < width; ++c) to[c] = a * from[c] + b * dw[c];
+/// Rows of the tangent of the forces, each with the slave nodes and facets that add to it.
+class ForceRows {
+ public:
+  /// A row of blocks, (columns, 9), times a factor.
+  struct Term {
+    std::size_t of;  ///< chosen slave node, or facet
+    const double* blocks;
+    double factor;
+  };
+
+  /// `slopes` are those of the tractions, (p, columns, 9).
+  ForceRows(const Nodes& n, const Chosen& chosen, const double* slopes,
+            const std::vector<FacetBlocks>& facets, std::size_t nodes)
+      : n_(n), chosen_(chosen), facets_(facets), by_node_(nodes), by_facet_(nodes) {
+    const auto each_node = [&](const auto& put) {
+      for (std::size_t q = 0; q < chosen.count; ++q) {
+        const auto i = static_cast<std::size_t>(chosen.which[q]);
+        const double* const dt = slopes + q * n.columns() * block_size;
+        for (std::size_t r = 0; r < n.rows; ++r)
+          if (const double share = n.support[i * n.rows + r]; share != 0.0)
+            put(n.patch(i)[r], Term{q, dt, -share * n.weights.area[i]});
+        for (std::size_t k = 0; k < n.weights.most && n.masters(i)[k] >= 0; ++k)
+          put(n.masters(i)[k], Term{q, dt, n.weights.weight[i * n.weights.most + k]});
+      }
+    };
+    const auto each_facet = [&](const auto& put) {
+      for (std::size_t f = 0; f < facets.size(); ++f) {
+        const std::size_t count = facets[f].nodes.size();
+        for (std::size_t a = 0; a < count; ++a)
+          if (facets[f].acting[a])
+            put(facets[f].nodes[a], Term{f, facets[f].force.data() + a * count * block_size, 1.0});
+      }
+    };
+    by_node_.fill(each_node);
+    by_facet_.fill(each_facet);
+    for (std::size_t r = 0; r < nodes; ++r)
+      if (by_node_.size(r) > 0) nodes_.push_back(static_cast<std::int32_t>(r));
   }
-}
+
+  /// Nodes that have a row.
+  const std::vector<std::int32_t>& nodes() const { return nodes_; }
+
+  /// Columns of a row, in the order in which they come; `place` is -1 for every node.
+  std::vector<std::int32_t> columns(std::int32_t row, std::vector<std::int32_t>& place) const {
+    std::vector<std::int32_t> out;
+    const auto put = [&](std::int32_t node) {
+      auto& there = place[static_cast<std::size_t>(node)];
+      if (there >= 0) return;
+      there = 0;
+      out.push_back(node);
+    };
+    for (const Term& term : by_node_.of(row)) {
+      const auto i = static_cast<std::size_t>(chosen_.which[term.of]);
+      std::for_each_n(n_.patch(i), n_.patches.width, put);
+      for (std::size_t k = 0; k < n_.weights.most && n_.masters(i)[k] >= 0; ++k)
+        put(n_.masters(i)[k]);
+    }
+    for (const std::int32_t node : out) place[static_cast<std::size_t>(node)] = -1;
+    return out;
+  }
+
+  /// Writes the blocks of a row, (columns, 9); `place` as before.
+  void write(std::int32_t row, const std::vector<std::int32_t>& columns,
+             std::vector<std::int32_t>& place, double* out) const {
+    std::fill_n(out, columns.size() * block_size, 0.0);
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      place[static_cast<std::size_t>(columns[c])] = static_cast<std::int32_t>(c);
+    const auto add = [&](const Term& term, const std::int32_t* nodes, std::size_t count,
+                         std::size_t first) ANISOCONTACT_INLINE_LAMBDA {
+      for (std::size_t c = 0; c < count && nodes[c] >= 0; ++c)
+        detail::add_block(
+            term.factor, term.blocks + (first + c) * block_size,
+            out + static_cast<std::size_t>(place[static_cast<std::size_t>(nodes[c])]) * block_size);
+    };
+    with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
+      for (const Term& term : by_node_.of(row)) {
+        const auto i = static_cast<std::size_t>(chosen_.which[term.of]);
+        add(term, n_.patch(i), n_.patches.width, 0);
+        add(term, n_.masters(i), n_.weights.most, n_.patches.width);
+      }
+      for (const Term& term : by_facet_.of(row)) {
+        const auto& nodes = facets_[term.of].nodes;
+        add(term, nodes.data(), nodes.size(), 0);
+      }
+    });
+    for (const std::int32_t node : columns) place[static_cast<std::size_t>(node)] = -1;
+  }
+
+ private:
+  /// Terms sorted by their row.
+  struct Sorted {
+    std::vector<std::size_t> offset;
+    std::vector<Term> terms;
+
+    explicit Sorted(std::size_t nodes) : offset(nodes + 2, 0) {}
+    template <class Each>
+    void fill(const Each& each) {
+      each([&](std::int32_t row, const Term&) { ++offset[static_cast<std::size_t>(row) + 2]; });
+      for (std::size_t r = 2; r < offset.size(); ++r) offset[r] += offset[r - 1];
+      terms.resize(offset.back());
+      each([&](std::int32_t row, const Term& t) {
+        terms[offset[static_cast<std::size_t>(row) + 1]++] = t;
+      });
+    }
+    std::size_t size(std::size_t row) const { return offset[row + 1] - offset[row]; }
+    std::span<const Term> of(std::int32_t row) const {
+      const auto r = static_cast<std::size_t>(row);
+      return {terms.data() + offset[r], size(r)};
+    }
+  };
+
+  const Nodes& n_;
+  const Chosen& chosen_;
+  const std::vector<FacetBlocks>& facets_;
+  Sorted by_node_, by_facet_;
+  std::vector<std::int32_t> nodes_;
+};
 
 }  // namespace anisocontact::mortar

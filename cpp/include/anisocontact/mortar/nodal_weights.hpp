@@ -24,11 +24,18 @@ struct Patches {
   std::size_t width;
 };
 
-/// Where the weights of n nodes go. Columns: nodes of the patch, then masters; `most` masters a node.
+/// Weights of n slave nodes on `most` masters each, -1 behind the last.
 struct NodalWeights {
   std::size_t most;
-  std::int32_t* masters;
-  double *area, *weight, *d_area, *d_weight;
+  std::int32_t* masters;  ///< (n, most), ascending
+  double *area, *weight;  ///< (n,), (n, most)
+
+  /// Number of a node among the masters of a slave node.
+  std::size_t place(std::size_t i, std::int32_t node) const {
+    const auto first = static_cast<const std::int32_t*>(masters + i * most);
+    const auto last = std::find(first, first + most, -1);
+    return static_cast<std::size_t>(std::lower_bound(first, last, node) - first);
+  }
 };
 
 /// Nodes of the master that a slave node has weights on, and further ones, ascending.
@@ -45,41 +52,18 @@ inline std::vector<std::int32_t> masters_of(const std::vector<DualWeights>& face
 }
 
 /// Writes the weights of a node; what is written to is zero before.
-inline void collect(const MortarInput& in, const std::vector<DualWeights>& facets, const Patches& p,
+inline void collect(const std::vector<DualWeights>& facets, const Patches& p,
                     const std::vector<std::int32_t>& masters, std::size_t i,
                     const NodalWeights& out) {
-  const std::size_t columns = 3 * (p.width + out.most), ns = in.slave.width();
   std::copy(masters.begin(), masters.end(), out.masters + i * out.most);
-  std::vector<std::size_t> column;
   for (std::size_t e = 0; e < p.facet.size(i); ++e) {
-    const auto f = static_cast<std::size_t>(p.facet.begin(i)[e]);
-    const auto row = static_cast<Eigen::Index>(p.local.begin(i)[e]);
-    const DualWeights& own = facets[f];
+    const DualWeights& own = facets[static_cast<std::size_t>(p.facet.begin(i)[e])];
     if (own.masters.empty()) continue;
+    const auto row = static_cast<Eigen::Index>(p.local.begin(i)[e]);
     out.area[i] += own.area[row];
-    const auto count = static_cast<Eigen::Index>(own.masters.size());
-    column.clear();
-    for (std::size_t a = 0; a < ns; ++a) {
-      const std::int32_t* patch = p.nodes + i * p.width;
-      column.push_back(
-          static_cast<std::size_t>(std::find(patch, patch + p.width, in.slave.node(f, a)) - patch));
-    }
-    for (const std::int32_t m : own.masters)
-      column.push_back(
-          p.width + static_cast<std::size_t>(std::lower_bound(masters.begin(), masters.end(), m) -
-                                             masters.begin()));
-    const auto add = [&](const auto& from, double* to) {
-      for (std::size_t c = 0; c < column.size(); ++c)
-        for (std::size_t j = 0; j < 3; ++j)
-          to[3 * column[c] + j] += from[static_cast<Eigen::Index>(3 * c + j)];
-    };
-    if (in.slopes) add(own.d_area.row(row), out.d_area + i * columns);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const std::size_t to = column[ns + static_cast<std::size_t>(k)] - p.width;
-      out.weight[i * out.most + to] += own.weight(row, k);
-      if (in.slopes)
-        add(own.d_weight.row(row * count + k), out.d_weight + (i * out.most + to) * columns);
-    }
+    for (std::size_t k = 0; k < own.masters.size(); ++k)
+      out.weight[i * out.most + out.place(i, own.masters[k])] +=
+          own.weight(row, static_cast<Eigen::Index>(k));
   }
 }
 
