@@ -489,3 +489,31 @@ def test_a_run_goes_on_bit_by_bit(strategy: str) -> None:
         pass
     assert np.array_equal(again.u.x.array, problem.u.x.array)
     assert problem.contacts[0].counts()["slip"] > 0
+
+
+def test_multipliers_are_extrapolated_with_displacements() -> None:
+    """A load in proportion: from the third increment on at most two corrections, without a cut.
+
+    Source: at small displacements the answer to a load that grows in proportion does, sticking and
+    slipping nodes with it, so that what is extrapolated is the solution to the square of the
+    displacements. Pressures of the increment before take half of the nodes beyond the bound of
+    friction, as adhesion is physical; then some tens of corrections and a cut follow.
+    """
+    upper = BoxSpec((0, 0, 0), (1, 1, 0.5), (6, 6, 3))
+    lower = BoxSpec((-0.5, -0.5, -0.5), (2, 2, 0.5), (9, 9, 2))
+    model = build_box({"upper": upper, "lower": lower})
+    law = ContactLaw(
+        NormalLaw(penalty=1e5), Adhesion(stiffness=(1e5, 1e5)), Friction(coefficients=(0.3, 0.3))
+    )
+    augmentation = Augmentation(tangential=False)
+    contact = Contact(
+        model, "upper.bottom", "lower.top", law, mortar=True, augmentation=augmentation
+    )
+    steel = make_material("linear-elastic", E=YOUNG, nu=0.3)
+    problem = Problem(model, {"upper": steel, "lower": steel}, [contact])
+    still = {"x": 0.0, "y": 0.0}
+    press = {"lower.bottom": {**still, "z": 0.0}, "upper.top": {**still, "z": -0.01}}
+    done = list(Solver(problem, [Step("press", 5, press)]).run())
+    assert contact.counts()["slip"] > 4
+    assert all(accepted.done == 1.0 for accepted in done)
+    assert max(accepted.iterations for accepted in done[2:]) <= 2

@@ -212,6 +212,26 @@ class Multipliers:
             start["status"][touching] = STICK
         return start
 
+    def extrapolated(self, start: State, change: Floats, frames: Frames) -> State:
+        """What the trials start from where tractions go on as before.
+
+        Without it displacements that are extrapolated meet bounds of friction of the increment
+        before.
+
+        Args:
+            start: What `begin` gave.
+            change: Change of the traction to be expected, (n, 3), stress.
+            frames: Frames at the committed coordinates.
+        """
+        new = start.copy()
+        loaded = start["multiplier"] > 0.0
+        more = np.where(loaded, np.einsum("nd,nd->n", change, frames.normal), 0.0)
+        new["multiplier"] = np.maximum(start["multiplier"] + more, 0.0)
+        if self.tangential:
+            stored = np.einsum("nid,nd->ni", frames.tangents, change)
+            new["stored"][loaded] += stored[loaded]
+        return new
+
     def suit(self, stiffness: float) -> None:
         """Bring the penalties to the stiffness of the bodies, whatever was given.
 

@@ -90,6 +90,7 @@ class Pass:
         self.answer: Answer = master.answer(self.state, 1.0)
         self.accepted: Snapshot = self.answer.snapshot
         self._trial: Snapshot | None = None
+        self._gained: Floats = np.zeros_like(self.last.traction)
         self.trials = Trials(master, law, self.state, self._comm)
         check_start(self, points.size)
         if augmentation is not None:
@@ -230,6 +231,7 @@ class Pass:
         """Make the trial the history."""
         self.ran_off = self.master.commit(self.accepted, self.state, self._trial)
         if self._trial is not None:
+            self._gained = self._trial.response.traction - self.last.traction
             self.accepted = self._trial
             if self._way:
                 self.last.state["dissipation"] = dissipated(self.state, self._way, self.last.state)
@@ -257,6 +259,10 @@ class Pass:
     def retraceable(self) -> bool:
         """Whether `update` answers at any state from the accepted one, and nothing else changes."""
         return self.master.retraceable and not self.trials.augmented
+
+    def predict(self, ratio: float) -> None:
+        """Let multipliers of the next trials start extrapolated, by a ratio of the last change."""
+        self.trials.predict(ratio * self._gained)
 
     def pass_through(self) -> None:
         """Remember the trial as a state that bodies which flow have gone through."""
@@ -300,6 +306,7 @@ class Pass:
             "state": self.state,
             "points": now.points,
             "areas": now.areas,
+            "gained": self._gained,
             "level": np.full(len(now.areas), self.trials.level),
         }
         kept = {name: values.copy() for name, values in (own | fields).items()}
@@ -320,6 +327,6 @@ class Pass:
             **{name: np.array(kept[name]) for name in _KEPT},
         )
         self.accepted = Snapshot(np.array(kept["points"]), np.array(kept["areas"]), response)
-        self._trial = None
+        self._gained, self._trial = np.array(kept["gained"]), None
         self.trials.level = max(self._comm.allgather(float(kept["level"].max(initial=0.0))))
         self._begin()

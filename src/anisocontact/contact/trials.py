@@ -103,6 +103,18 @@ class Trials:
         if self._layer is not None:
             self.start = self._layer.begin(self.start, self.master.axes(accepted.response))
 
+    def predict(self, change: Floats) -> None:
+        """Let trials start anew, with multipliers as if tractions changed like this.
+
+        Args:
+            change: Change that is to be expected, (n, 3), stress.
+        """
+        if self._multipliers is None:
+            return
+        self.begin(self._state, self._accepted)
+        change, frames = self.master.into_frame(change), self._frames(self.start)
+        self._start_from(self._multipliers.extrapolated(self.start, change, frames))
+
     def end(self, accepted: bool) -> None:
         """Take it that an increment is accepted or given up: the next one is found as usual."""
         if accepted and self._multipliers is not None:

@@ -50,6 +50,7 @@ class _Way:
 
     Attributes:
         start: State that it starts from.
+        ratio: Part of the load over the last one if that is extrapolated, else 0.
         full_steps: Whether there is no line search.
         damped: Whether corrections are taken in shares while the status of points alternates.
         flowing: Whether the bodies flow.
@@ -59,6 +60,7 @@ class _Way:
     """
 
     start: Vec
+    ratio: float = 0.0
     full_steps: bool = True
     damped: bool = False
     flowing: bool = False
@@ -99,12 +101,15 @@ class Attempts:
         self._failed: FailedPoint | None = None
         self._continuation = Continuation(problem, newton)
 
-    def solve(self, first: Vec, last: Vec, small: bool = False, tiny: bool = False) -> Outcome:
+    def solve(
+        self, first: Vec, last: Vec, ratio: float, small: bool = False, tiny: bool = False
+    ) -> Outcome:
         """Solve and commit, or roll back.
 
         Args:
             first: Extrapolated state.
             last: Accepted state.
+            ratio: Size of this part over that of the last one, 0 where nothing is extrapolated.
             small: Whether no smaller part will be tried, or is likely to help.
             tiny: Whether the part is so small that everything is tried, whatever failed.
 
@@ -114,7 +119,7 @@ class Attempts:
         spent, self._failed = 0, None
         found: list[Culprit] = []
         seen: set[str] = set()
-        ways = self._ways(first, last)
+        ways = self._ways(first, last, ratio)
         for way in ways:
             result, culprits = self._attempt(way)
             spent += result.iterations
@@ -131,8 +136,8 @@ class Attempts:
         hint = self._continuation.hint()
         return Outcome(result, tuple(found), self._final, hint, self._failed)
 
-    def _ways(self, first: Vec, last: Vec) -> list[_Way]:
-        searching, full = _Way(first, full_steps=False), _Way(last)
+    def _ways(self, first: Vec, last: Vec, ratio: float) -> list[_Way]:
+        searching, full = _Way(first, ratio, full_steps=False), _Way(last)
         trusts = self._problem.stabilisation.trusts
         if self._problem.contact_term.follows:
             ways = _following(searching, full, IN_CYCLES in self._problem.contact_term.ways, trusts)
@@ -159,6 +164,7 @@ class Attempts:
             if way.flowing:
                 problem.stabilisation.flow.start(problem.nodal)
             problem.contact_term.take_way(way.multipliers)
+            problem.contact_term.predict(way.ratio)
             if way.layered:
                 result = self._continuation.solve(x)
             else:

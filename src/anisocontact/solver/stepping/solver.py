@@ -231,12 +231,12 @@ class Solver:
         whole = _whole(pace.increment, pace.end)
         part = dt if pace.part == 1.0 else pace.part * dt
         self.problem.set_load_factor(whole / step.increments, part)
-        first = last
+        first, ratio = last, 0.0
         if before is not None:
             ratio = pace.part / pace.last
             first = (1.0 + ratio) * last - ratio * before
         self._turns.permitted = pace.cuttable
-        return attempts.solve(first, last, pace.small, pace.tiny)
+        return attempts.solve(first, last, ratio, pace.small, pace.tiny)
 
     def _cut(self, step: Step, outcome: Outcome) -> None:
         """Make the next part smaller, or give up."""

@@ -146,3 +146,13 @@ class Contacts(Term):
         """Find multipliers in another way in this attempt, see `Trials.take_way`."""
         for one in self._trials:
             one.take_way(name)
+
+    def predict(self, ratio: float) -> None:
+        """Let trials start anew from extrapolated multipliers.
+
+        Args:
+            ratio: Part of the load over the last one where displacements are extrapolated, 0 where
+                they start from the accepted state.
+        """
+        for half in self._halves:
+            half.predict(ratio)

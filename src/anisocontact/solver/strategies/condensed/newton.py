@@ -73,9 +73,11 @@ class CondensedNewton:
             except SingularError as error:
                 return NewtonResult(0, [], f"{error} (a body without support?)")
             own = system.new_vector()
-            # what has come into reach just now has no extrapolation
-            start = x if system is known else self._condensed.accepted()
-            own.array[:] = start.array_r[system.places]
+            if system is not known:
+                # what has come into reach just now has no extrapolation
+                self._condensed.accepted().copy(x)
+                system.contact_term.predict(0.0)
+            own.array[:] = x.array_r[system.places]
             result = newton.solve(own, full_steps, damping)
             if not (result.reason and system.outgrown):
                 break
