@@ -43,7 +43,7 @@ def test_points_on_a_line_are_seen_as_a_strip():
         "normal": np.tile([0.0, -1.0, 0.0], (4, 1)),
         "area": np.full(4, 100.0),
     }
-    view = ContactView(DataSet("PolyData", np.c_[x, 0 * x, 0 * x], vertices(4), data), 0)
+    view = ContactView(DataSet("PolyData", np.c_[x, 0 * x, 0 * x], vertices(np.arange(4)), data), 0)
     nearest, outside = view._nearest
     assert view.on_line and not outside.any()
     assert view.box[:, 0] == pytest.approx([-0.05, 1.05])

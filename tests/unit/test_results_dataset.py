@@ -18,7 +18,9 @@ def test_points_come_back_to_the_last_bit(tmp_path):
     """Whole numbers keep their type."""
     points = np.random.default_rng(3).normal(size=(3001, 3))
     status = np.arange(3001, dtype=np.int32)
-    cloud = DataSet("PolyData", points, vertices(3001), {"status": status, "gap": points[:, 0]})
+    cloud = DataSet(
+        "PolyData", points, vertices(np.arange(3001)), {"status": status, "gap": points[:, 0]}
+    )
     found = read(tmp_path / "cloud.vtp", cloud.encoded())
     assert np.array_equal(found.points, points)
     assert found.n_cells == 3001
@@ -40,7 +42,7 @@ def test_polygons(tmp_path):
 
 
 def test_no_points_at_all(tmp_path):
-    empty = DataSet("PolyData", np.zeros((0, 3)), vertices(0), {"gap": np.zeros(0)})
+    empty = DataSet("PolyData", np.zeros((0, 3)), vertices(np.arange(0)), {"gap": np.zeros(0)})
     assert read(tmp_path / "none.vtp", empty.encoded()).n_points == 0
     assert len(read_data_set(tmp_path / "none.vtp").points) == 0
 
@@ -48,14 +50,14 @@ def test_no_points_at_all(tmp_path):
 def test_more_than_one_block(tmp_path):
     """Arrays of more than 1 MiB are cut; VTK puts them together, and so do we."""
     points = np.random.default_rng(4).normal(size=(100_000, 3))
-    cloud = DataSet("PolyData", points, vertices(len(points)), {})
+    cloud = DataSet("PolyData", points, vertices(np.arange(len(points))), {})
     assert np.array_equal(read(tmp_path / "cloud.vtp", cloud.encoded()).points, points)
     assert np.array_equal(read_data_set(tmp_path / "cloud.vtp").points, points)
 
 
 def test_pieces_are_joined(tmp_path):
     """The file that names pieces tells VTK what is in them."""
-    cells = {**vertices(2)["Verts"], "types": np.ones(2, dtype=np.uint8)}
+    cells = {**vertices(np.arange(2))["Verts"], "types": np.ones(2, dtype=np.uint8)}
     for i in range(2):
         points = np.full((2, 3), float(i))
         piece = DataSet("UnstructuredGrid", points, {"Cells": cells}, {"gap": np.full(2, i)})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,9 +15,11 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact import __version__
 from anisocontact.base.errors import InputError
+from anisocontact.base.figure_style import new_figure
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.results import Results
+from anisocontact.results.dataset import DataSet, polygons, vertices
 from anisocontact.results.deformed import magnification
 from anisocontact.results.paraview import Bodies
 from anisocontact.results.quantities import von_mises
@@ -307,39 +310,60 @@ def test_maps_of_a_slave_that_moves_a_little(run):
 
 def test_a_view_of_a_closed_master():
     """All around a bar along z: seen from the front, without the points behind."""
-    pyvista = pytest.importorskip("pyvista")
     angle = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False) + 0.01
     normal = np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
-    points = pyvista.PolyData(3.0 * normal)
-    points["normal"], points["contact"] = normal, np.zeros(40, dtype=int)
-    points["status"], points["area"] = np.ones(40, dtype=int), np.ones(40)
-    view = ContactView(points, 0)
+    view = ContactView(_touching(3.0 * normal, normal), 0)
     assert view.closed
     assert view.frame.names() == ("x", "z")
     assert len(view.position) == 20
     assert np.all(view.position[:, 1] < 0.0)
     # Half of the way around there is a mean normal to look along.
-    half = points.extract_points(normal[:, 0] > 0.0)
-    assert not ContactView(half, 0).closed
+    half = normal[normal[:, 0] > 0.0]
+    assert not ContactView(_touching(3.0 * half, half), 0).closed
+
+
+def _touching(places, normals, **data):
+    """Slave points that touch."""
+    count = len(places)
+    data |= {"normal": normals, "contact": np.zeros(count, dtype=int), "area": np.ones(count)}
+    data["status"] = np.ones(count, dtype=int)
+    return DataSet("PolyData", places, vertices(np.arange(count)), data)
 
 
 def test_maps_of_two_half_passes_show_the_points_of_the_slave():
-    pyvista = pytest.importorskip("pyvista")
-    points = pyvista.PolyData(np.random.default_rng(5).uniform(size=(10, 3)))
-    points["normal"], points["contact"] = np.tile([0.0, 0, 1], (10, 1)), np.zeros(10, dtype=int)
-    points["status"], points["area"] = np.ones(10, dtype=int), np.ones(10)
-    assert len(ContactView(points, 0).position) == 10
-    points["pass"] = np.repeat([0, 1], [4, 6])
-    assert np.array_equal(ContactView(points, 0).position, points.points[:4])
+    places = np.random.default_rng(5).uniform(size=(10, 3))
+    up = np.tile([0.0, 0, 1], (10, 1))
+    assert len(ContactView(_touching(places, up), 0).position) == 10
+    of_passes = _touching(places, up, **{"pass": np.repeat([0, 1], [4, 6])})
+    assert np.array_equal(ContactView(of_passes, 0).position, places[:4])
+
+
+@pytest.mark.parametrize(("tilt", "name"), [(8.0, "z"), (20.0, "(0, 0.342, 0.94)")])
+def test_a_contact_that_is_nearly_level_is_seen_along_an_axis(tilt, name):
+    up = np.tile([0.0, np.sin(np.radians(tilt)), np.cos(np.radians(tilt))], (10, 1))
+    view = ContactView(_touching(np.random.default_rng(5).uniform(size=(10, 3)), up), 0)
+    assert view.frame.normal_name == name
+
+
+def test_values_at_nodes_are_drawn_between_them():
+    """A square of which three nodes touch, beside a triangle that is open, and two loose points."""
+    places = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [5, 5, 0], [6, 5, 0]])
+    points = _touching(places.astype(float), np.tile([0.0, 0, 1], (7, 1)), covered=np.ones(7))
+    points.point_data["status"][[2, 4]] = 0
+    points.point_data["contact"][5:] = 1
+    cells = polygons(np.array([[0, 1, 2, 3]]), np.array([[1, 4, 2]]))
+    view = ContactView(replace(points, cells=cells), 0)
+    axes = new_figure(3.0, 3.0).subplots()
+    image = view.draw_touching(axes, np.arange(5.0))
+    # four triangles around the middle of the square, and that of which one node touches
+    assert len(image.get_paths()) == 5
+    assert axes.get_xlim()[1] < 4.0
+    assert ContactView(replace(points, cells=cells), 1).position.tolist() == places[5:].tolist()
 
 
 def test_points_that_have_never_seen_their_master_are_seen_across_their_plane():
-    pyvista = pytest.importorskip("pyvista")
     place = np.random.default_rng(4).uniform(size=(20, 3)) * [1.0, 0.0, 2.0]
-    points = pyvista.PolyData(place)
-    points["normal"], points["contact"] = np.zeros((20, 3)), np.zeros(20, dtype=int)
-    points["status"], points["area"] = np.zeros(20, dtype=int), np.ones(20)
-    view = ContactView(points, 0)
+    view = ContactView(_touching(place, np.zeros((20, 3))), 0)
     assert not view.closed
     assert view.frame.names() == ("x", "z")
 

@@ -378,8 +378,23 @@ class Contact:
         Nodes of a mortar of which the master covers next to nothing do not count: see
         `SlaveNodes.peaks`.
         """
-        counted = [half.slave_points.peaks(half.accepted.areas) for half in self.passes]
-        return self.extreme(values[np.concatenate(counted)])
+        return self.extreme(values[self.counted()])
+
+    def counted(self) -> Mask:
+        """Slave points of the accepted increment that count among peaks, (n,)."""
+        return np.concatenate(
+            [half.slave_points.peaks(half.accepted.areas) for half in self.passes]
+        )
+
+    def touching(self) -> Floats:
+        """Area of each slave point on which it touches, accepted increment, (n,), length^2."""
+        return np.concatenate([half.slave_points.touching(half.accepted) for half in self.passes])
+
+    def covered(self) -> Floats:
+        """Share of each slave point that a master was opposite to, accepted increment, (n,)."""
+        return np.concatenate(
+            [half.slave_points.covered(half.accepted.areas) for half in self.passes]
+        )
 
 
 def seen_from_slave(passes: Sequence[Snapshot]) -> Snapshot:

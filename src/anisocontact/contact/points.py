@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.contact.history import Snapshot
 from anisocontact.contact.quadrature import FacetQuadrature, Surfaced, mean_size
 
 #: Share of the normal along free displacements below which a point does not move along it.
@@ -35,10 +36,13 @@ class SlavePoints:
         size: Length of a facet over all ranks, see `mean_size`.
         spread: How far from a point its traction acts, length.
         at_nodes: Whether points are nodes of the mesh.
+        polygons: Points around the pieces of facets on which fields go on between nodes, seen from
+            outside, (m, corners); none of integration points.
     """
 
     spread = 0.0
     at_nodes = False
+    polygons: Ints = np.zeros((0, 3), dtype=np.int32)
 
     def __init__(
         self,
@@ -71,6 +75,14 @@ class SlavePoints:
     def peaks(self, areas: Floats) -> npt.NDArray[np.bool_]:
         """Points whose tractions count among peaks, of those with some areas, (n,)."""
         return np.ones(len(areas), dtype=bool)
+
+    def covered(self, areas: Floats) -> Floats:
+        """Share of the weight of each point, of some area, that a master is opposite to, (n,)."""
+        return np.ones(len(areas))
+
+    def touching(self, now: Snapshot) -> Floats:
+        """Area of each point on which it touches, (n,), length^2."""
+        return np.asarray(now.areas * (now.response.status != 0))
 
     def take_area(self, current: bool) -> None:
         """Take the area of now, or that of the reference."""

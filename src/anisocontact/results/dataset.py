@@ -33,6 +33,8 @@ _HEAD = (
     'header_type="UInt32" compressor="vtkZLibDataCompressor">'
 )
 _NO_ARRAYS: Arrays = {}
+#: Sorts of cells that are read.
+_CELLS = ("Cells", "Polys")
 
 
 @dataclass(frozen=True)
@@ -49,7 +51,8 @@ class DataSet:
         cell_data: Name -> a row for each cell.
 
     Example:
-        >>> cloud = DataSet("PolyData", np.zeros((2, 3)), vertices(2), {"gap": np.ones(2)})
+        >>> cells = vertices(np.arange(2))
+        >>> cloud = DataSet("PolyData", np.zeros((2, 3)), cells, {"gap": np.ones(2)})
         >>> b'NumberOfVerts="2"' in cloud.encoded()
         True
     """
@@ -101,7 +104,7 @@ def read_data_set(path: Path) -> DataSet:
         path: What `DataSet` has written.
 
     Returns:
-        The data set; without cells if it is no grid.
+        The data set; without vertices, which are its points once more.
 
     Raises:
         ValueError, OSError: The file is damaged, or there is none.
@@ -115,30 +118,28 @@ def read_data_set(path: Path) -> DataSet:
     def arrays(part: str) -> dict[str, npt.NDArray[Any]]:
         return {str(a.get("Name")): _read(a) for a in tree.iterfind(f"{kind}/Piece/{part}/*")}
 
-    cells = arrays("Cells")
-    if cells:
-        cells["offsets"] = np.append(0, cells["offsets"]).astype(cells["offsets"].dtype)
+    cells = {name: found for name in _CELLS if (found := arrays(name))}
+    for found in cells.values():
+        found["offsets"] = np.append(0, found["offsets"]).astype(found["offsets"].dtype)
     (points,) = arrays("Points").values()
-    named: dict[str, Arrays] = {"Cells": cells} if cells else {}
-    return DataSet(kind, points, named, arrays("PointData"), arrays("CellData"))
+    return DataSet(kind, points, cells, arrays("PointData"), arrays("CellData"))
 
 
 def _put_together(parts: Sequence[DataSet]) -> DataSet:
     """Pieces as one data set."""
     first = np.cumsum([0] + [len(p.points) for p in parts])
     cells: dict[str, Arrays] = {}
-    if "Cells" in parts[0].cells:
-        own = [p.cells["Cells"] for p in parts]
+    for name in parts[0].cells:
+        own = [p.cells[name] for p in parts]
         ends = np.cumsum([0] + [len(c["connectivity"]) for c in own])
-        cells["Cells"] = {
-            "connectivity": np.concatenate(
-                [c["connectivity"] + n for c, n in zip(own, first, strict=False)]
-            ),
-            "offsets": np.concatenate(
-                [[0], *(c["offsets"][1:] + n for c, n in zip(own, ends, strict=False))]
-            ),
-            "types": np.concatenate([c["types"] for c in own]),
+        of_points = [c["connectivity"] + n for c, n in zip(own, first, strict=False)]
+        offsets = [c["offsets"][1:] + n for c, n in zip(own, ends, strict=False)]
+        cells[name] = {
+            "connectivity": np.concatenate(of_points),
+            "offsets": np.concatenate([[0], *offsets]),
         }
+        if name == "Cells":
+            cells[name] = {**cells[name], "types": np.concatenate([c["types"] for c in own])}
     at_points, at_cells = (
         {n: np.concatenate([getattr(p, what)[n] for p in parts]) for n in getattr(parts[0], what)}
         for what in ("point_data", "cell_data")
@@ -147,17 +148,23 @@ def _put_together(parts: Sequence[DataSet]) -> DataSet:
     return DataSet(parts[0].kind, points, cells, at_points, at_cells)
 
 
-def vertices(count: int) -> dict[str, Arrays]:
-    """Cells of `DataSet` that show each of so many points."""
-    ends = np.arange(count + 1, dtype=np.int32)
-    return {"Verts": {"connectivity": ends[:-1], "offsets": ends}}
+def vertices(points: npt.NDArray[np.integer[Any]]) -> dict[str, Arrays]:
+    """Cells of `DataSet` that show each of some points, (points,)."""
+    return {"Verts": _in_a_row(points[:, None])}
 
 
-def polygons(corners: npt.NDArray[np.integer[Any]]) -> dict[str, Arrays]:
+def polygons(*corners: npt.NDArray[np.integer[Any]]) -> dict[str, Arrays]:
     """Cells of `DataSet` with the given points in order around each of them, (cells, corners)."""
-    flat = corners.astype(np.int32).reshape(-1)
-    ends = np.arange(len(corners) + 1, dtype=np.int32) * np.int32(corners.shape[1])
-    return {"Polys": {"connectivity": flat, "offsets": ends}}
+    return {"Polys": _in_a_row(*corners)}
+
+
+def _in_a_row(*cells: npt.NDArray[np.integer[Any]]) -> Arrays:
+    """Points of all cells, and where each begins."""
+    sizes = np.concatenate([np.full(len(one), one.shape[1]) for one in cells])
+    return {
+        "connectivity": np.concatenate([one.reshape(-1) for one in cells]).astype(np.int32),
+        "offsets": np.append(0, np.cumsum(sizes)).astype(np.int32),
+    }
 
 
 def _described(name: str, values: npt.NDArray[Any]) -> str:

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from anisocontact.base.fenicsx import compiled_expression, dolfinx, fem, scalar_element, ufl
 from anisocontact.bulk import PLASTIC_STRAIN, bare, cauchy_stress
 from anisocontact.contact import Contact
-from anisocontact.results.dataset import DataSet, vertices
+from anisocontact.results.dataset import DataSet, polygons, vertices
 from anisocontact.results.quantities import (
     CELL,
     NODE,
@@ -173,6 +173,8 @@ class BodiesNow:
 def slave_points(contacts: Iterable[Contact], chosen: Collection[str] = ()) -> DataSet | None:
     """The slave points of this rank of all contacts where they are now; None without a contact.
 
+    Between slave nodes there are facets, so that what is known at nodes is a field on them.
+
     Args:
         contacts: The contacts.
         chosen: Quantities to write; all if not given.
@@ -181,7 +183,12 @@ def slave_points(contacts: Iterable[Contact], chosen: Collection[str] = ()) -> D
     if not parts:
         return None
     points = np.concatenate([part.contact.points for part in parts])
-    return DataSet("PolyData", points, vertices(len(points)), arrays(POINT, parts, chosen))
+    passes = [half.slave_points for part in parts for half in part.contact.passes]
+    starts = np.cumsum([0, *(len(one.facet) for one in passes)])
+    loose = np.repeat([not one.at_nodes for one in passes], np.diff(starts))
+    pieces = (one.polygons + start for one, start in zip(passes, starts, strict=False))
+    cells = vertices(np.flatnonzero(loose)) | polygons(*pieces)
+    return DataSet("PolyData", points, cells, arrays(POINT, parts, chosen))
 
 
 def _stress_at(problem: Problem, body: str, space: Any) -> Any:

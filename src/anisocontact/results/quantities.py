@@ -223,7 +223,8 @@ def _axis(law: str, number: int) -> _Row:
 _TENSOR = [[0, 3, 5], [3, 1, 4], [5, 4, 2]]
 #: What the report is made of.
 _PICTURED = {
-    *("displacement", "body", "contact", "pass", "area", "pressure", "status", "normal"),
+    *("displacement", "body", "contact", "pass", "area", "covered", "pressure", "status"),
+    "normal",
     *("traction_principal", "direction_adhesion_1", "direction_adhesion_2"),
     *("direction_friction_1", "direction_friction_2"),
 }
@@ -269,6 +270,12 @@ _TABLE = {
                 lambda p: p.passes,
             ),
             ("area", "length^2", "slave area", lambda p: p.contact.areas),
+            (
+                "covered",
+                "1",
+                "share of the weight of a slave node that the master covers; 1 at other points",
+                lambda p: p.contact.covered(),
+            ),
             ("gap", "length", "signed gap, negative in contact", lambda p: p.last.gap),
             ("pressure", "stress", "pressure", lambda p: p.last.pressure),
             ("traction", "stress", "traction on the slave", lambda p: p.last.traction),
@@ -311,6 +318,12 @@ _TABLE = {
             ("force", "force", "resultant on the slave", lambda c: c.resultant[0]),
             ("moment", "force length", "its moment about the origin", lambda c: c.resultant[1]),
             ("max_pressure", "stress", "largest", lambda c: c.contact.peak(c.last.pressure)),
+            (
+                "max_pressure_at",
+                "length",
+                "where it is; no number where nothing touches",
+                lambda c: c.place_of_peak(),
+            ),
             ("max_penetration", "length", "largest", lambda c: c.contact.peak(-c.last.gap)),
             (
                 "max_elastic_slip",
@@ -326,6 +339,16 @@ _TABLE = {
                 lambda c: c.contact.extreme(c.state["turn"]),
             ),
             ("area", "length^2", "slave area that touches", lambda c: c.means[0]),
+            (
+                "radius",
+                "length",
+                "that of a disc of the same area, seen against the mean normal, with what planes "
+                "of symmetry mirror; no number unless it is round: its two semi-axes (of the "
+                "ellipse with its second moments) differ by at most 15 %, no point of it with half "
+                "its own size is farther than 1.17 radii from its middle, and it is no smaller "
+                "than sixteen points",
+                lambda c: c.radius(),
+            ),
             ("elastic_slip", "length", "its mean over that area, a vector", lambda c: c.means[1]),
             ("slip", "length", "mean over it of the length of slip so far", lambda c: c.means[2]),
             ("least_gap", "length", "smallest gap of the points", lambda c: c.least_gap()),

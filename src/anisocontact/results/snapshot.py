@@ -12,9 +12,9 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact import Contact
-from anisocontact.interface import STATUS
 from anisocontact.results.quantities import CONTACT, RIGID, SlavePoints, numbers
 from anisocontact.results.resultants import Resultant, resultant
+from anisocontact.results.round_area import Images, round_radius
 from anisocontact.rigid import Pose, RigidBody, rotation_vector
 from anisocontact.solver import Accepted, Problem, Step
 from anisocontact.solver.terms.loads import mean_shares
@@ -81,7 +81,7 @@ class Observer:
         }
         return {
             "contacts": [
-                numbers(CONTACT, _ContactNow(number, contact, displacements, rigid))
+                numbers(CONTACT, _ContactNow(number, contact, displacements, rigid, self._problem))
                 for number, contact in enumerate(self._problem.contacts)
             ],
             "reactions": {g: reactions.get(g, zero).tolist() for g in self._supports},
@@ -130,10 +130,12 @@ class _ContactNow(SlavePoints):
     Args:
         displacements: Mean displacement of the facet groups that are led or loaded, by name.
         rigid: What the summary has of rigid bodies, by name.
+        problem: The problem.
     """
 
     displacements: Mapping[str, Any]
     rigid: Mapping[str, Any]
+    problem: Problem
 
     @cached_property
     def resultant(self) -> tuple[Floats, Floats]:
@@ -143,13 +145,26 @@ class _ContactNow(SlavePoints):
     @cached_property
     def means(self) -> tuple[float, Floats, float]:
         """Area that touches; means over it of elastic slip and accumulated slip."""
-        touching = self.contact.areas * (self.last.status != STATUS.index("open"))
+        touching = self.contact.touching()
         slips = np.column_stack([self.contact.elastic_slip(), self.state["slip_accumulated"]])
         comm = self.contact.space.mesh.comm
         total = comm.allreduce(np.append(touching @ slips, touching.sum()))
         area = float(total[4])
         mean = total[:4] / area if area > 0.0 else np.zeros(4)
         return area, mean[:3], float(mean[3])
+
+    def place_of_peak(self) -> Floats:
+        """Where the largest pressure is, (3,); no number where nothing touches."""
+        contact = self.contact
+        pressure = np.where(contact.counted(), self.last.pressure, 0.0)
+        best = int(np.argmax(pressure)) if len(pressure) else -1
+        own = (float(pressure[best]), contact.points[best]) if best >= 0 else (0.0, np.zeros(3))
+        most, place = max(contact.space.mesh.comm.allgather(own), key=lambda one: one[0])
+        return np.asarray(place) if most > 0.0 else np.full(3, np.nan)
+
+    def radius(self) -> float:
+        """Radius of the area that touches, no number where it is not round."""
+        return round_radius(self.contact, Images(self.problem, self.contact))
 
     def least_gap(self) -> float:
         """Smallest gap, negative where points overlap; 0 where no point has a surface below it."""

@@ -12,11 +12,13 @@ from matplotlib.colors import ListedColormap
 from scipy.spatial import KDTree
 
 from anisocontact.base.figure_style import STATUS_COLOURS
+from anisocontact.contact.slave_nodes import PEAK
 from anisocontact.results.dataset import DataSet
+from anisocontact.results.report.facet_map import FacetMap, polygons_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.image import AxesImage
+    from matplotlib.cm import ScalarMappable
 
 __all__ = ["ContactView", "Frame"]
 
@@ -24,6 +26,8 @@ Floats = npt.NDArray[np.float64]
 
 #: One less the cosine of the angle up to which directions are drawn as the same: 2.6 degrees.
 ALIKE = 1e-3
+#: Cosine of the angle up to which a contact is seen along an axis of space: 11 degrees.
+NEARLY = 0.98
 #: Length of the mean of the unit normals below which a master is closed.
 CLOSED = 0.1
 #: Pixels of a map along its longer side.
@@ -100,7 +104,12 @@ class ContactView:
             facing = self.data["normal"] @ self.frame.normal > 0.0
             self.data = {name: values[facing] for name, values in self.data.items()}
             self.position = self.position[facing]
+            chosen[chosen] = facing
         self.touching = self.data["status"] > 0
+        if "covered" in self.data:
+            self.touching &= self.data["covered"] > PEAK
+        facets = polygons_of(points, chosen)
+        self._facets = FacetMap(self.flat, facets) if len(facets) else None
 
     def _seen_against(self) -> Floats:
         """Mean normal, or an axis of space where the master is closed and the mean means nothing.
@@ -117,7 +126,7 @@ class ContactView:
         total = np.asarray(normal.sum(axis=0))
         self.closed = bool(np.linalg.norm(total) < CLOSED * np.linalg.norm(normal, axis=1).sum())
         if not self.closed:
-            return total
+            return _straight(total / np.linalg.norm(total))
         share = np.mean(normal**2, axis=0)
         axis = np.flatnonzero(share >= 0.99 * share.max())[-1]
         return np.asarray(-np.eye(3)[axis] if axis == 1 else np.eye(3)[axis])
@@ -171,37 +180,57 @@ class ContactView:
         distance, nearest = KDTree(self.flat).query(pixels, p=np.inf)
         return nearest, distance > 1.2 * np.sqrt(self.data["area"])[nearest]
 
-    def draw(self, axes: Axes, values: npt.NDArray[Any], **style: Any) -> AxesImage:
-        """Draw values at the points as a filled map: every pixel shows the nearest point.
+    def draw(self, axes: Axes, values: npt.NDArray[Any], **style: Any) -> ScalarMappable:
+        """Draw values at the points as a filled map: every place shows the nearest point.
 
         Args:
             axes: Where.
             values: A value for each point, NaN where it is to be left blank, (n,).
-            **style: Of `imshow`.
+            **style: Colours and their limits, as Matplotlib takes them.
 
         Returns:
-            The image.
+            What a scale of colours is made of.
         """
+        first, second = self.frame.names()
+        axes.set_xlabel(f"{first} [length]")
+        axes.set_ylabel(f"{second} [length]")
+        if self._facets is not None:
+            self._frame_in(axes)
+            return self._facets.by_node(axes, values.astype(float), **style)
         nearest, outside = self._nearest
         picked = values.astype(float)[nearest]
         (left, bottom), (right, top) = self.box.tolist()
-        image = axes.imshow(
+        return axes.imshow(
             np.ma.masked_where(outside | np.isnan(picked), picked),
             origin="lower",
             extent=(left, right, bottom, top),
             interpolation="nearest",
             **style,
         )
-        first, second = self.frame.names()
-        axes.set_xlabel(f"{first} [length]")
-        axes.set_ylabel(f"{second} [length]")
-        return image
 
-    def draw_touching(self, axes: Axes, values: npt.NDArray[Any], **style: Any) -> AxesImage:
-        """As `draw`, with the open points in grey."""
+    def draw_touching(self, axes: Axes, values: Floats, **style: Any) -> ScalarMappable:
+        """Draw values that are zero where points are open, and open points in grey.
+
+        On facets they fall to zero at the open nodes beside those that touch.
+        """
         grey = ListedColormap([STATUS_COLOURS[0]])
         self.draw(axes, np.where(self.touching, np.nan, 0.0), cmap=grey)
-        return self.draw(axes, np.where(self.touching, values, np.nan), **style)
+        if self._facets is None:
+            return self.draw(axes, np.where(self.touching, values, np.nan), **style)
+        near = self._facets.beside(self.touching)
+        shown = np.where(self.touching, values, np.where(near, 0.0, np.nan))
+        return self._facets.smooth(axes, shown, **style)
+
+    def _frame_in(self, axes: Axes) -> None:
+        """Show the box of the view, true to scale."""
+        (left, bottom), (right, top) = self.box.tolist()
+        axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+
+
+def _straight(normal: Floats) -> Floats:
+    """A unit normal, or the axis of space that it is nearly along: pictures have x, y or z then."""
+    main = int(np.argmax(np.abs(normal)))
+    return np.sign(normal[main]) * np.eye(3)[main] if abs(normal[main]) > NEARLY else normal
 
 
 def _axis_name(axis: Floats) -> str:

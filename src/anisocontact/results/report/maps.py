@@ -28,7 +28,7 @@ def pressure(run: RunData, contact: int) -> Figure:
     """Pressure at the end of each step, one scale for all."""
     moments = run.ends()[-MOST:]
     figure, panels = _panels(run, contact, moments)
-    top = max(float(view.data["pressure"].max()) for _, view, _ in panels)
+    top = max(float(view.data["pressure"][view.touching].max(initial=0.0)) for _, view, _ in panels)
     for axes, view, moment in panels:
         axes.set_title(plain(moment.title))
         image = view.draw_touching(

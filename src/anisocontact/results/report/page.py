@@ -136,6 +136,9 @@ def _contacts(summary: dict[str, Any]) -> list[dict[str, Any]]:
         row |= _vector("moment", contact["moment"], "force length")
         row |= {
             "largest pressure [stress]": contact["max_pressure"],
+            **_vector("at", contact["max_pressure_at"], "length"),
+            "area [length^2]": contact["area"],
+            "radius if round [length]": contact["radius"],
             "largest penetration [length]": contact["max_penetration"],
             "worst penetration over facet size": _share(contact, "penetration"),
             "worst elastic slip over facet size": _share(contact, "elastic_slip"),
