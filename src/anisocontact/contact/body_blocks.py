@@ -76,7 +76,7 @@ def body_blocks(
         body_node += np.einsum("mqdij,mqbd->mibj", both, quadrature.gradient)
         if quadrature.turn is not None:
             across = both[:, :, 1] @ quadrature.turn
-            body_node += np.einsum("mqij,mqb->mibj", across, quadrature.basis)
+            body_node += np.einsum("mqij,mqb->mibj", across, quadrature.across)
     if moved is not None:
         wrench = np.concatenate([traction, np.einsum("nij,nj->ni", arms, traction)], axis=1)
         body_node += np.einsum("mqi,mqbj->mibj", wrench.reshape(m, q, 6), moved.area_changes)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
@@ -15,9 +16,11 @@ from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.poles import without_poles
-from anisocontact.contact.quadrature import chosen_degree, facet_quadrature, inward
+from anisocontact.contact.quadrature import FacetQuadrature, chosen_degree, facet_quadrature, inward
 from anisocontact.contact.sides import check_sides, make_sides
-from anisocontact.contact.slave_nodes import SlaveNodes
+from anisocontact.contact.slave_edges import SlaveEdges
+from anisocontact.contact.slave_nodes import Patches, SlaveNodes, nodes_of_facets
+from anisocontact.contact.sweep import Sweep
 from anisocontact.contact.symmetric import check_symmetry
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.interface.augmentation import Augmentation
@@ -126,8 +129,8 @@ def _on_surface(
     comm = model.mesh.comm
     current = options.current_area is not False
     if options.mortar:
-        _check_in_space(model, "mortar")
-        nodes = _slave_nodes(model, slave, facet_mesh(model.space, facets), current)
+        mesh = facet_mesh(model.space, facets, Sweep.of(model))
+        nodes = _slave_nodes(model, mesh, current, SlaveEdges.in_plane)
         interface = without_poles(interface, nodes.quadrature.reference)
         points: SlavePoints = nodes
     else:
@@ -138,23 +141,30 @@ def _on_surface(
     return Pass(model.space, slave, points, found, interface, **options.of_pass)
 
 
-def _slave_nodes(model: Model, slave: str, mesh: FacetMesh, current_area: bool) -> SlaveNodes:
+def _slave_nodes(
+    model: Model,
+    mesh: FacetMesh,
+    current_area: bool,
+    of_edges: Callable[[SlaveEdges], tuple[Patches, FacetQuadrature, float]],
+) -> SlaveNodes:
     """Slave nodes of a mortar contact.
 
     Raises:
         InputError: There are several processes.
     """
-    comm = model.mesh.comm
+    comm, x = model.mesh.comm, node_positions(model.space)
     if comm.size > 1:
         text = f"mortar given, on {comm.size} processes points are needed: mortar works on one"
         raise InputError(text, "pass")
-    return SlaveNodes(mesh, node_positions(model.space), current_area=current_area, comm=comm)
+    swept = mesh.sweep is not None
+    found = of_edges(SlaveEdges(mesh, x)) if swept else nodes_of_facets(mesh, x, comm)
+    return SlaveNodes(found, x, current_area=current_area, comm=comm)
 
 
 def _check_in_space(model: Model, field: str) -> None:
-    """Refuse what bodies of two dimensions do not have: they meet others at points of edges."""
+    """Refuse what bodies of two dimensions do not have: a slave that is a master as well."""
     if model.idealisation.dim == 2:
-        raise InputError("given; a mesh of two dimensions has one pass, at points of edges", field)
+        raise InputError("given; a mesh of two dimensions has one pass", field)
 
 
 def _check_pair(model: Model, options: Options) -> None:
@@ -162,7 +172,7 @@ def _check_pair(model: Model, options: Options) -> None:
     ideal, comm = model.idealisation, model.mesh.comm
     if ideal.dim == 3:
         return
-    for name in ("two_half", "self_contact", "overlaps", "mortar"):
+    for name in ("two_half", "self_contact", "overlaps"):
         if getattr(options, name):
             _check_in_space(model, name)
     if ideal.lateral and ideal.turn.any():
@@ -246,7 +256,7 @@ def facet_pass(
         weight,
     )
     if options.mortar:
-        nodes = _slave_nodes(model, slave, sides.slave, sides.points.current_area)
+        nodes = _slave_nodes(model, sides.slave, sides.points.current_area, SlaveEdges.in_space)
         met = MortarMaster(
             replace(sides, points=nodes, excluded=None),
             law,

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.contact.contact_planes import ContactPlanes, Opposite, by_slave_tangents
 from anisocontact.contact.history import Snapshot
+from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.mortar_weights import MortarWeights
 from anisocontact.contact.quadrature import Couplings, FacetQuadrature
 from anisocontact.surfaces import default_threads
@@ -152,6 +153,7 @@ class MortarAnswer:
 
     Attributes:
         at: The nodes where they are.
+        gathered: The master as this rank has it.
         snapshot: The nodes as points.
         stiffness: Size of the derivative of the force of each, (n,), force/length.
         which: Slave nodes in contact, (p,).
@@ -159,6 +161,7 @@ class MortarAnswer:
     """
 
     at: MortarState
+    gathered: MasterSurface
     snapshot: Snapshot
     stiffness: Floats
     which: Ints
@@ -181,12 +184,13 @@ class MortarAnswer:
     def add_traction(self, which: Ints, traction: Floats, out: Floats) -> None:
         """Add the forces of tractions on the slave, (p, 3), of some slave nodes, (p,)."""
         rows, weights = self.at.rows[which], self.at.row_weights[which]
-        there = rows >= 0
-        np.add.at(out, rows[there], (weights[:, :, None] * traction[:, None])[there])
+        there, forces = rows >= 0, self.gathered.zeros(out)
+        np.add.at(forces, rows[there], (weights[:, :, None] * traction[:, None])[there])
+        self.gathered.hand_back(forces, out)
 
     def couplings(self) -> list[Couplings]:
         """As of `Answer`: a block for each pair of nodes."""
-        return [self._tangent[1:]]
+        return [self.gathered.couplings(self._tangent[1:])]
 
     def by_derivative(self, other: MortarAnswer, stiffness: Floats) -> MortarAnswer:
         """As of `Answer`."""

@@ -98,7 +98,9 @@ class MortarMaster(MeshedMaster):
         tangents = points.at(now).tangents[:, 0]
         normal = averaged_normal(tangents)
         x = points.positions(now)
-        held = held_directions(self._resting, points.nodes[:, 0], opposite, normal)
+        named = self._gathered.local_names
+        under = replace(opposite, masters=named(opposite.masters))
+        held = held_directions(self._resting, points.nodes[:, 0], under, normal)
         normal = across(held, normal)
         mean, mean_then = (
             y + (held @ (x - y)[..., None])[..., 0]
@@ -166,7 +168,8 @@ class MortarMaster(MeshedMaster):
 
     @override
     def place(self, u: Floats, *histories: State) -> bool:
-        self._nodes = Nodes(self.sides.reference + u, u.copy())
+        moved = np.array(self._gathered.everywhere(self._gathered.moved(u)))
+        self._nodes = Nodes(self.sides.reference + moved, moved)
         self._hint = self.sides.project(self._nodes.now, self._hint)
         self._at = self._placed()
         return False
@@ -198,7 +201,8 @@ class MortarMaster(MeshedMaster):
         by_nodes = np.zeros((len(which), 3, 27))
         if tangent:
             by_nodes = -free[which] @ found["tangent"][which, :3]
-        return MortarAnswer(at, snapshot, found["stiffness"] * at.weights.area, which, by_nodes)
+        stiffness = found["stiffness"] * at.weights.area
+        return MortarAnswer(at, self._gathered, snapshot, stiffness, which, by_nodes)
 
     def _batch(self, state: State, tangent: bool = True) -> FacetBatch:
         """Slave nodes and planes as the core takes them."""
@@ -290,12 +294,12 @@ class MortarMaster(MeshedMaster):
 
     @override
     def feet(self) -> Ints:
-        named = self._at.weights.masters
+        named = self._gathered.local_names(self._at.weights.masters)
         return np.unique(named[named >= 0])
 
     @override
     def below(self, state: State) -> Ints:
-        named = self._then.named()[self.located(state)]
+        named = self._gathered.local_names(self._then.named()[self.located(state)])
         return np.unique(named[named >= 0])
 
     @override
@@ -349,8 +353,9 @@ class MortarMaster(MeshedMaster):
         names = [f.name for f in fields(FacetProjections)]
         self._hint = FacetProjections(*(np.array(kept[f"projection.{n}"]) for n in names))
         self._then = Opposite(*(np.array(kept[f"opposite.{f.name}"]) for f in fields(Opposite)))
-        self._go_to(self.sides.reference + u)
-        self._nodes = Nodes(self._nodes.now, u.copy())
+        moved = np.array(self._gathered.everywhere(self._gathered.moved(u)))
+        self._go_to(self.sides.reference + moved)
+        self._nodes = Nodes(self._nodes.now, moved)
         self._accepted = (self._nodes.now, self._hint)
         self._at = self._placed()
         return kept

@@ -31,7 +31,7 @@ def mortar_reachable(
             for all, (w, n or 1, 3), length.
         margin: How far beside the way a node can be, length.
     """
-    nodes = points.nodes
+    nodes = sides.gathered.coupled(points.nodes)
     own = nodes[:, : points.quadrature.rows]
     if not (len(nodes) and len(sides.master.nodes)):
         return [(own, nodes)]
@@ -45,7 +45,7 @@ def mortar_reachable(
     point = np.repeat(found, np.diff(near.offsets)) % len(x)
     count = len(sides.master.nodes)
     point, facet = np.divmod(np.unique(point * count + near.facets), count)
-    below = _incidence(point, sides.master.nodes[facet], len(x))
+    below = _incidence(point, sides.gathered.coupled(sides.master.nodes)[facet], len(x))
     first, second = below.nonzero()
     both = (below.T @ below).nonzero()
     own_rows, own_masters = own[first], second[:, None].astype(np.int32)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
+from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +13,7 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base.fenicsx import basix
 from anisocontact.contact.facet_mesh import FacetMesh, FacetShapes
+from anisocontact.contact.line_weights import line_weights
 from anisocontact.contact.overlap import facing, largest_radius
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.slave_nodes import Patches
@@ -23,6 +26,34 @@ Floats = npt.NDArray[np.float64]
 DEGREES = {"tri3": (2, 2), "quad4": (4, 6), "tri6": (4, 4), "quad9": (8, 8)}
 
 
+class Differentiated(Protocol):
+    """What forces of slave nodes follow from weights and from sums over nodes."""
+
+    def tangent(
+        self,
+        which: Ints,
+        by: Floats,
+        lift: Floats,
+        traction: Floats,
+        moving: Sequence[tuple[int, Ints | None, Floats]],
+        threads: int,
+        /,
+    ) -> tuple[Floats, Ints, Ints, Floats]:
+        """Derivatives of tractions, and of the forces that they are.
+
+        Args:
+            which: Slave nodes that have tractions, (p,).
+            by: Derivatives of the tractions by ten sums over nodes, (p, 10, 9).
+            lift: And by the weights, (p, k, 3).
+            traction: The tractions, (p, 3).
+            moving: First sums, nodes of the master or those of the patch, and values.
+            threads: Threads of the kernel.
+
+        Returns:
+            Of the tractions, (p, columns, 3, 3); rows, columns and blocks of that of the forces.
+        """
+
+
 @dataclass(frozen=True)
 class MortarWeights:
     """Weights of slave nodes on the nodes of the master that their dual functions reach.
@@ -31,13 +62,13 @@ class MortarWeights:
         masters: Nodes, (n, k), ascending, -1 behind the last.
         area: D_i, integral of the dual function over what is covered, (n,), length^2.
         weight: W_ik, integral of it with the shape functions of the master, (n, k), length^2.
-        core: What the core has found them from, and differentiates.
+        core: What has found them, and differentiates them.
     """
 
     masters: Ints
     area: Floats
     weight: Floats
-    core: _core.MortarWeights
+    core: Differentiated
 
     @property
     def shares(self) -> Floats:
@@ -64,6 +95,9 @@ def mortar_weights(
         current_area: Whether areas are those of now or of the reference configuration.
     """
     slave, master = sides.slave, sides.master
+    if slave.sweep is not None:
+        found = line_weights(sides, around, now, more, current_area=current_area)
+        return MortarWeights(found.masters, found.area, found.weight, found)
     shapes = FacetShapes(slave.topology)
     far = sides.reach + largest_radius(slave, now)
     f, g = facing(slave, shapes, now[slave.nodes], sides.surface, master, now, far, sides.near)

@@ -36,6 +36,7 @@ class FacetQuadrature:
         rows: Number of the first nodes whose basis functions are not all zero; all if None.
         turn: Of edges of a mesh in the plane: change of the second tangent, which is that across
             the plane, with the position of the point, (3, 3); None of facets in space.
+        spread: Shares of the nodes in the position that it goes with, (m, q, k); `basis` if None.
     """
 
     nodes: Ints
@@ -46,6 +47,12 @@ class FacetQuadrature:
     tangents: Floats
     rows: int | None = None
     turn: Floats | None = None
+    spread: Floats | None = None
+
+    @property
+    def across(self) -> Floats:
+        """Shares of the nodes in the position that the tangent across a plane goes with."""
+        return self.basis if self.spread is None else self.spread
 
     @property
     def count(self) -> int:
@@ -86,7 +93,7 @@ class FacetQuadrature:
         own = nodal[self.nodes]
         tangents = self.tangents + self.gradient.swapaxes(2, 3) @ own[:, None]
         if self.turn is not None:
-            tangents[:, :, 1] += self.basis @ own @ self.turn.T
+            tangents[:, :, 1] += self.across @ own @ self.turn.T
         return Surfaced(self, tangents)
 
     def to_nodes(self, traction: Floats, out: Floats, areas: Floats | None = None) -> None:
@@ -136,7 +143,7 @@ class FacetQuadrature:
         )
         if self.turn is not None:
             across = weighted[:, :, 1] @ self.turn
-            blocks += np.einsum("mqa,mqij,mqb->maibj", self.basis, across, self.basis)
+            blocks += np.einsum("mqa,mqij,mqb->maibj", self.basis, across, self.across)
         return np.asarray(blocks.reshape(m, 3 * k, 3 * k))
 
 
@@ -194,7 +201,7 @@ class Surfaced:
         one = self.quadrature
         changes = one.gradient @ sides
         if one.turn is not None:
-            changes += one.basis[..., None] * (sides[:, :, 1] @ one.turn)[:, :, None]
+            changes += one.across[..., None] * (sides[:, :, 1] @ one.turn)[:, :, None]
         return np.asarray(self._weights[..., None, None] * changes)
 
     @property
@@ -216,7 +223,7 @@ class Surfaced:
         turned = np.cross(arm[..., None, :], np.eye(3))
         if (turn := self.quadrature.turn) is not None:
             across = np.cross(self.tangents[:, :, 0, None], turn.T)
-            turned += self.quadrature.basis[..., None, None] * across[:, :, None]
+            turned += self.quadrature.across[..., None, None] * across[:, :, None]
         weighted = self._weights[..., None] * self.quadrature.basis
         blocks = np.einsum("mqa,mqbji->maibj", weighted, turned, optimize=True)
         return np.asarray(blocks.reshape(m, 3 * k, 3 * k))

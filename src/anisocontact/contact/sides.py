@@ -148,7 +148,7 @@ class Sides:
         """
         found = []
         for side in (self.slave, self.gathered.own):
-            nodes = np.unique(side.nodes)
+            nodes = np.unique(self.gathered.local_names(side.nodes))
             owned = diagonal[nodes[nodes < len(diagonal)]]
             local = np.array([owned.mean(axis=1).sum(), group_area(side, self.reference)])
             total, area = self.comm.allreduce(local)

@@ -24,8 +24,11 @@ Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
 #: Share of the nodes of the edges that the vertices of a tri6 take, whose own functions have no
-#: mass [Popp Wohlmuth Gitterle Wall 2012, sec. 3.2]; as in cpp/include/anisocontact/mortar.
+#: mass [Popp Wohlmuth Gitterle Wall 2012, sec. 3.2]; as in cpp/include/anisocontact/mortar. An edge
+#: of order 2 that ends on an axis of revolution has none there either.
 EDGE_SHARE = 0.2
+#: Edges of order 2 of a body of revolution.
+ROUND = "line3 of revolution"
 #: Share of its weight that has to be covered for the traction of a node to count among peaks.
 PEAK = 0.05
 #: Times the pressure of a node at the edge of contact, over that beside it, with which it counts:
@@ -33,6 +36,8 @@ PEAK = 0.05
 EDGE = 3.0
 #: Vertices beside the edges of a tri6.
 _ENDS = ((1, 2), (0, 2), (0, 1))
+#: Nodes that give a share, and the vertices that take it.
+_GIVING = {"tri6": {3 + e: ends for e, ends in enumerate(_ENDS)}, ROUND: {2: (0, 1)}}
 
 #: Nodes around the pieces of a facet that have nodes at their corners alone.
 _PIECES = {
@@ -97,23 +102,21 @@ def patches(mesh: FacetMesh) -> Patches:
 
 def _support(mesh: FacetMesh, facet: int, local: int) -> tuple[list[int], list[float]]:
     """Nodes whose displacements make that of a slave point, and their shares."""
-    nodes = mesh.nodes[facet]
-    if mesh.topology != "tri6" or local < 3:
+    nodes, giving = mesh.nodes[facet], _GIVING.get(mesh.topology, {})
+    if local not in giving:
         return [int(nodes[local])], [1.0]
     scale = 1.0 / (1.0 - 2.0 * EDGE_SHARE)
-    ends = [int(nodes[v]) for v in _ENDS[local - 3]]
+    ends = [int(nodes[v]) for v in giving[local]]
     return [int(nodes[local]), *ends], [scale, -EDGE_SHARE * scale, -EDGE_SHARE * scale]
 
 
 def transformed(topology: str, shape: Floats) -> Floats:
     """Shape functions that the multipliers are dual to, (..., k), from those of the facet."""
-    if topology != "tri6":
-        return shape
     out = shape.copy()
-    for e, ends in enumerate(_ENDS):
+    for node, ends in _GIVING.get(topology, {}).items():
         for v in ends:
-            out[..., v] += EDGE_SHARE * shape[..., 3 + e]
-        out[..., 3 + e] = (1.0 - 2.0 * EDGE_SHARE) * shape[..., 3 + e]
+            out[..., v] += EDGE_SHARE * shape[..., node]
+        out[..., node] = (1.0 - 2.0 * EDGE_SHARE) * shape[..., node]
     return out
 
 
@@ -148,6 +151,22 @@ def nodal_quadrature(mesh: FacetMesh, around: Patches, reference: Floats) -> Fac
         tangents=tangents[:, None],
         rows=around.support.shape[1],
     )
+
+
+def nodes_of_facets(
+    mesh: FacetMesh, reference: Floats, comm: Any
+) -> tuple[Patches, FacetQuadrature, float]:
+    """The facets around each node, the nodes as points, and the length of a facet; collective.
+
+    Args:
+        mesh: Facets of the slave.
+        reference: Positions of the local nodes in the reference configuration, (nodes, 3), length.
+        comm: Communicator of the mesh.
+    """
+    around = patches(mesh)
+    points = nodal_quadrature(mesh, around, reference)
+    area, facets = comm.allreduce(np.array([points.weights.sum(), len(mesh.nodes)]))
+    return around, points, float(np.sqrt(area / max(facets, 1.0)))
 
 
 def _plane_gradients(
@@ -229,7 +248,7 @@ class SlaveNodes(SlavePoints):
     """Slave nodes of one pass: one point each, with the averaged normal of the facets around it.
 
     Args:
-        mesh: Facets of the slave.
+        nodes: The facets around each node, the nodes as points, and the length of a facet.
         reference: Positions of the local nodes in the reference configuration, (nodes, 3), length.
         current_area: Whether the area of a node is that of now or of the reference.
         comm: Communicator of the mesh.
@@ -243,21 +262,21 @@ class SlaveNodes(SlavePoints):
 
     def __init__(
         self,
-        mesh: FacetMesh,
+        nodes: tuple[Patches, FacetQuadrature, float],
         reference: Floats,
         *,
         current_area: bool,
         comm: Any,
         share: float = 1.0,
     ) -> None:
-        self.around = patches(mesh)
-        quadrature = nodal_quadrature(mesh, self.around, reference)
+        self.around, quadrature, size = nodes
         flip = np.zeros(len(quadrature.nodes), dtype=bool)
         super().__init__(quadrature, flip, current_area=current_area, comm=comm, share=share)
         self.facet = self.around.facets[self.around.offsets[:-1]].astype(np.int64)
-        area, facets = comm.allreduce(np.array([quadrature.weights.sum(), len(mesh.nodes)]))
-        self.size = float(np.sqrt(area / max(facets, 1.0)))
-        away = reference[quadrature.nodes] - quadrature.reference[:, None]
+        self.size = size
+        # images of nodes have the numbers after them, see `Sweep`
+        near = reference[quadrature.nodes % max(len(reference), 1)]
+        away = near - quadrature.reference[:, None]
         self.spread = float(np.linalg.norm(away, axis=2).max(initial=0.0))
         self.polygons = _polygons(mesh)
 

@@ -1,0 +1,382 @@
+"""Mortar weights of slave nodes on the edges of a mesh in the plane.
+
+As those on facets (cpp/include/anisocontact/mortar): edges of order 2 are two parts with straight
+ends, the overlap of two parts is an interval of the line through the part of the slave, and dual
+functions are biorthogonal on what is covered. Integrals are over the thickness, or over the
+circumference at the radius of the slave,
+
+    m_ij = int N_i N_j c ds ,   w_ik = int N_i M_k c ds ,   D_i = sum_j m_ij ,   W = D m^-1 w ,
+
+which a rule on the interval integrates exactly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.facet_mesh import FacetShapes
+from anisocontact.contact.overlap import facing
+from anisocontact.contact.sides import Sides
+from anisocontact.contact.slave_edges import SlaveEdges, line_rule, line_shapes
+from anisocontact.contact.slave_nodes import Patches
+
+Ints = npt.NDArray[np.int32]
+Numbers = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+
+#: Ends of the parts of an edge by the number of its nodes, and their coordinates.
+_PARTS = {2: ([[0, 1]], [[0.0, 1.0]]), 3: ([[0, 2], [2, 1]], [[0.0, 0.5], [0.5, 1.0]])}
+#: Share of a part below which an overlap is rounding, and least pivot of scaled dual functions; as
+#: in cpp/include/anisocontact/mortar.
+SLIVER, LEAST = 1e-13, 1e-13
+
+
+@dataclass(frozen=True)
+class _Number:
+    """Numbers, (q,), and their derivatives by both coordinates of four points, (q, 8).
+
+    The points are the ends of the part of the slave, then of the master.
+    """
+
+    of: Floats
+    by: Floats
+
+    def __add__(self, other: _Number) -> _Number:
+        return _Number(self.of + other.of, self.by + other.by)
+
+    def __mul__(self, other: _Number) -> _Number:
+        by = self.of[:, None] * other.by + other.of[:, None] * self.by
+        return _Number(self.of * other.of, by)
+
+    def __truediv__(self, other: _Number) -> _Number:
+        share = self.of / other.of
+        return _Number(share, (self.by - share[:, None] * other.by) / other.of[:, None])
+
+    def times(self, factor: Floats | float) -> _Number:
+        """Multiplied by what stays."""
+        column = np.asarray(factor)[..., None] if np.ndim(factor) else factor
+        return _Number(factor * self.of, column * self.by)
+
+    def less(self, other: _Number) -> _Number:
+        """The difference."""
+        return self + other.times(-1.0)
+
+    def where(self, own: npt.NDArray[np.bool_], other: _Number) -> _Number:
+        """These numbers, or others."""
+        by = np.where(own[:, None], self.by, other.by)
+        return _Number(np.where(own, self.of, other.of), by)
+
+    def take(self, which: Numbers) -> _Number:
+        """Some of them."""
+        return _Number(self.of[which], self.by[which])
+
+
+@dataclass(frozen=True)
+class _Overlap:
+    """Parts of edges that face each other, as numbers along the part of the slave.
+
+    Attributes:
+        length: Length of the part of the slave.
+        ends: Where the part of the master begins and ends on it.
+        low, high: Where the overlap begins and ends.
+    """
+
+    length: _Number
+    ends: tuple[_Number, _Number]
+    low: _Number
+    high: _Number
+
+    @classmethod
+    def of(cls, x: Floats) -> _Overlap:
+        """Overlap of parts with their ends at x, (q, 4, 2), length."""
+        t = x[:, 1] - x[:, 0]
+        size = np.linalg.norm(t, axis=1)
+        e = t / size[:, None]
+        by = np.zeros((len(x), 4, 2))
+        by[:, 0], by[:, 1] = -e, e
+        length = _Number(size, by.reshape(-1, 8))
+        ends = []
+        for i in (2, 3):
+            r = x[:, i] - x[:, 0]
+            along = np.einsum("qi,qi->q", e, r)
+            turn = (r - along[:, None] * e) / size[:, None]  # by the second end of the slave
+            by = np.zeros((len(x), 4, 2))
+            by[:, 0], by[:, 1], by[:, i] = -e - turn, turn, e
+            ends.append(_Number(along, by.reshape(-1, 8)))
+        first, last = ends
+        back = first.of > last.of
+        low, high = last.where(back, first), first.where(back, last)
+        zero = length.times(0.0)
+        low = low.where(low.of > 0.0, zero)
+        high = high.where(high.of < length.of, length)
+        return cls(length, (first, last), low, high)
+
+    def take(self, which: Numbers) -> _Overlap:
+        """Some of them."""
+        first, last = (one.take(which) for one in self.ends)
+        return _Overlap(
+            self.length.take(which), (first, last), self.low.take(which), self.high.take(which)
+        )
+
+
+def _coordinate(share: _Number, ends: Floats, count: int) -> tuple[Floats, Floats]:
+    """Shape functions of edges, (q, k), and their derivatives, (q, k, 8), at shares of a part."""
+    width = ends[:, 1] - ends[:, 0]
+    value, slope = line_shapes(ends[:, 0] + width * share.of, count)
+    return value, slope[..., None] * (width[:, None] * share.by)[:, None]
+
+
+@dataclass(frozen=True)
+class _Edges:
+    """Edges of both sides and where they are.
+
+    Attributes:
+        slave: Nodes of those of the slave, (f, k).
+        master: Nodes of those of the master, (g, k).
+        now: Positions of the nodes in the plane, (nodes, 2), length.
+        reference: The same in the reference configuration, where areas are those there.
+        across: Length across the plane at x = 0, and its change with x.
+        transform: As of `SlaveEdges`.
+    """
+
+    slave: Ints
+    master: Ints
+    now: Floats
+    reference: Floats | None
+    across: tuple[float, float]
+    transform: Floats
+
+    def integrals(self, f: Numbers, g: Numbers) -> tuple[Numbers, Numbers, Floats, Floats]:
+        """Integrals over the overlaps of parts of pairs of edges.
+
+        Args:
+            f: Slave edges, (p,).
+            g: Master edges, (p,).
+
+        Returns:
+            Pair of each overlap, (q,), local nodes of its ends, (q, 4), m and w, (q, k, 2 k), and
+            their derivatives by these ends, (q, k, 2 k, 8).
+        """
+        count = self.slave.shape[1]
+        ends, at = (np.array(one) for one in _PARTS[count])
+        n = len(ends)
+        pair, part = np.divmod(np.arange(len(f) * n * n), n * n)
+        own, other = np.divmod(part, n)
+        local = np.concatenate([ends[own], ends[other]], axis=1)
+        nodes = np.concatenate(
+            [self.slave[f[pair][:, None], ends[own]], self.master[g[pair][:, None], ends[other]]],
+            axis=1,
+        )
+        overlap = _Overlap.of(self.now[nodes])
+        there = overlap.high.of - overlap.low.of > SLIVER * overlap.length.of
+        kept = np.flatnonzero(there)
+        overlap, nodes, places = overlap.take(kept), nodes[kept], (at[own[kept]], at[other[kept]])
+        values = np.zeros((len(kept), count, 2 * count))
+        slopes = np.zeros((*values.shape, 8))
+        first, last = overlap.ends
+        extent = overlap.high.less(overlap.low)
+        for point, weight in zip(*line_rule(count - 1), strict=True):
+            s = overlap.low + extent.times(point)
+            shares = s / overlap.length, s.less(first) / last.less(first)
+            shapes = [_coordinate(*one, count) for one in zip(shares, places, strict=True)]
+            area = extent.times(weight) * self._across(shares[0], nodes, overlap.length.of)
+            turned = np.einsum("ji,qjv->qiv", self.transform, shapes[0][1])
+            own_value, own_by = shapes[0] = shapes[0][0] @ self.transform, turned
+            both, by = (np.concatenate(one, axis=1) for one in zip(*shapes, strict=True))
+            product = own_value[:, :, None] * both[:, None]
+            values += area.of[:, None, None] * product
+            rate = own_by[:, :, None] * both[:, None, :, None]
+            rate = rate + own_value[:, :, None, None] * by[:, None]
+            slopes += area.of[:, None, None, None] * rate
+            slopes += product[..., None] * area.by[:, None, None]
+        return pair[kept], local[kept], values, slopes
+
+    def _across(self, share: _Number, nodes: Ints, length: Floats) -> _Number:
+        """Length across the plane at points of the slave; of reference per length of now."""
+        offset, rate = self.across
+        x = self.now if self.reference is None else self.reference
+        ends = x[nodes[:, :2]]
+        first, step = ends[:, 0, 0], ends[:, 1, 0] - ends[:, 0, 0]
+        found = share.times(rate * step)
+        found = _Number(found.of + offset + rate * first, found.by)
+        if self.reference is None:
+            found.by[:, 0] += rate * (1.0 - share.of)
+            found.by[:, 2] += rate * share.of
+            return found
+        size = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        e = (self.now[nodes[:, 1]] - self.now[nodes[:, 0]]) / length[:, None]
+        by = np.concatenate([-e, e, np.zeros((len(e), 4))], axis=1)
+        return found * (_Number(size, np.zeros_like(by)) / _Number(length, by))
+
+
+@dataclass(frozen=True)
+class LineWeights:
+    """Weights of slave edges and their derivatives: two columns a node of the edge, then a master.
+
+    Attributes:
+        masters: Nodes, (f, c), ascending, -1 behind the last.
+        area: D, (f, k); zero where nothing is covered.
+        weight: W, (f, k, c).
+        d_area: (f, k, 2 (k + c)).
+        d_weight: (f, k, c, 2 (k + c)).
+    """
+
+    masters: Ints
+    area: Floats
+    weight: Floats
+    d_area: Floats
+    d_weight: Floats
+
+
+def listed(owner: Numbers, nodes: Ints, count: int) -> Ints:
+    """Nodes of each owner once, (count, c), ascending, -1 behind the last."""
+    most = int(nodes.max(initial=0)) + 1
+    own, node = np.divmod(np.unique(owner[nodes >= 0] * most + nodes[nodes >= 0]), most)
+    first = np.searchsorted(own, np.arange(count + 1))
+    out = np.full((count, max(int(np.diff(first).max(initial=0)), 1)), -1, dtype=np.int32)
+    out[own, np.arange(len(own)) - first[own]] = node
+    return out
+
+
+def place_in(lists: Ints, nodes: Ints) -> Numbers:
+    """Places of nodes, (p, j), in lists, (p, c)."""
+    return np.asarray((lists[:, None] == nodes[:, :, None]).argmax(axis=2))
+
+
+def edge_weights(edges: _Edges, f: Numbers, g: Numbers) -> LineWeights:
+    """Weights of slave edges from their overlaps with those of the master, pairs (p,)."""
+    pair, local, values, slopes = edges.integrals(f, g)
+    owner, below = f[pair], edges.master[g[pair]]
+    count, k = edges.slave.shape
+    masters = listed(np.repeat(owner, k), below.reshape(-1), count)
+    c = masters.shape[1]
+    place = place_in(masters[owner], below)
+    columns = local.copy()
+    columns[:, 2:] = k + np.take_along_axis(place, local[:, 2:].astype(np.int64), axis=1)
+    columns = (2 * columns[:, :, None] + np.arange(2)).reshape(-1, 8)
+    to = np.concatenate([np.tile(np.arange(k), (len(owner), 1)), k + place], axis=1)
+    total = np.zeros((count, k + c, k))
+    np.add.at(total, (owner[:, None], to), values.swapaxes(1, 2))
+    rates = np.zeros((count, k + c, 2 * (k + c), k))
+    at = owner[:, None, None], to[:, :, None], columns[:, None]
+    np.add.at(rates, at, slopes.transpose(0, 2, 3, 1))
+    return _dual(masters, total.swapaxes(1, 2), np.moveaxis(rates, 3, 1))
+
+
+def _dual(masters: Ints, total: Floats, rates: Floats) -> LineWeights:
+    """W = D m^-1 w and its derivative from (m, w), (f, k, k + c), and theirs."""
+    k = total.shape[1]
+    m, w, dm, dw = total[..., :k], total[..., k:], rates[:, :, :k], rates[:, :, k:]
+    diagonal = np.einsum("fii->fi", m)
+    covered = (diagonal > 0.0).all(axis=1)
+    unit = 1.0 / np.sqrt(np.where(covered[:, None], diagonal, 1.0))
+    scaled = unit[:, :, None] * m * unit[:, None]
+    scaled[~covered] = np.eye(k)
+    covered &= np.linalg.eigvalsh(scaled)[:, 0] > LEAST
+    scaled[~covered] = np.eye(k)
+    inverse = unit[:, :, None] * np.linalg.inv(scaled) * unit[:, None]
+    inverse[~covered] = 0.0
+    z = inverse @ w
+    area = np.where(covered[:, None], m.sum(axis=2), 0.0)
+    d_area = np.where(covered[:, None, None], dm.sum(axis=2), 0.0)
+    right = dw - np.einsum("fijv,fjc->ficv", dm, z)
+    d_weight = np.einsum("fij,fjcv->ficv", inverse, right)
+    d_weight = area[:, :, None, None] * d_weight + z[..., None] * d_area[:, :, None]
+    return LineWeights(masters, area, area[:, :, None] * z, d_area, d_weight)
+
+
+@dataclass(frozen=True)
+class LineNodes:
+    """Weights of slave nodes, and their derivatives by the nodes of the patch and the masters.
+
+    Attributes:
+        around: The edges around each node.
+        masters: As of `MortarWeights`.
+        area: As of `MortarWeights`.
+        weight: As of `MortarWeights`.
+        d_area: (n, 3 c), c nodes of the patch and masters, length.
+        d_weight: (n, k, 3 c), length.
+    """
+
+    around: Patches
+    masters: Ints
+    area: Floats
+    weight: Floats
+    d_area: Floats
+    d_weight: Floats
+
+    def tangent(
+        self,
+        which: Ints,
+        by: Floats,
+        lift: Floats,
+        traction: Floats,
+        moving: Sequence[tuple[int, Ints | None, Floats]],
+        threads: int,
+    ) -> tuple[Floats, Ints, Ints, Floats]:
+        """As of `Differentiated`."""
+        masters, area, support = self.masters[which], self.area[which], self.around.support[which]
+        patch = self.around.nodes[which]
+        columns = np.concatenate([patch, masters], axis=1)
+        p, c = columns.shape
+        sums = np.zeros((p, by.shape[1], c))
+        for first, nodes, values in moving:
+            own, to = values[which], slice(0, patch.shape[1])
+            if nodes is not None:
+                there = nodes[which][:, :, None]
+                own, to = own @ ((there == masters[:, None]) & (there >= 0)), slice(to.stop, c)
+            sums[:, first : first + own.shape[1], to] += own
+        d_weight = self.d_weight[which].reshape(p, -1, c, 3)
+        slopes = np.einsum("pvx,pvc->pcx", by, sums).reshape(p, c, 3, 3)
+        slopes += np.einsum("pki,pkcj->pcij", lift, d_weight)
+        rows = np.concatenate([patch[:, : support.shape[1]], masters], axis=1)
+        weights = np.concatenate([-area[:, None] * support, self.weight[which]], axis=1)
+        own = -support[:, :, None] * self.d_area[which][:, None]
+        rates = np.concatenate([own.reshape(p, -1, c, 3), d_weight], axis=1)
+        blocks = weights[:, :, None, None, None] * slopes[:, None]
+        blocks += traction[:, None, None, :, None] * rates[:, :, :, None]
+        return slopes, rows, columns, blocks
+
+
+def line_weights(
+    sides: Sides, around: Patches, now: Floats, more: Ints, *, current_area: bool
+) -> LineNodes:
+    """As of `mortar_weights`."""
+    slave, master, sweep = sides.slave, sides.master, sides.slave.sweep
+    assert sweep is not None
+    reference = None if current_area else sides.reference[:, :2]
+    across = float(sweep.ideal.offset[2]), float(sweep.ideal.turn[2, 0])
+    own = SlaveEdges(slave, sides.reference)
+    below = sweep.edges(master.nodes)
+    edges = _Edges(own.nodes, below, now[:, :2], reference, across, own.transform)
+    x = now[edges.slave]
+    radius = np.linalg.norm(x - x.mean(axis=1, keepdims=True), axis=2).max(initial=0.0)
+    shapes, swept = FacetShapes(slave.topology), now[slave.nodes]
+    far = sides.reach + float(radius)
+    pairs = facing(slave, shapes, swept, sides.surface, master, now, far, sides.near)
+    found = edge_weights(edges, *pairs)
+    n, patch = around.nodes.shape
+    owner = np.repeat(np.arange(n), np.diff(around.offsets))
+    f, i = around.facets, around.local
+    below = found.masters[f]
+    masters = listed(
+        np.concatenate([np.repeat(owner, below.shape[1]), np.repeat(np.arange(n), more.shape[1])]),
+        np.concatenate([below.reshape(-1), more.reshape(-1)]),
+        n,
+    )
+    place = np.where(below >= 0, place_in(masters[owner], below), 0)
+    places = np.concatenate([place_in(around.nodes[owner], edges.slave[f]), patch + place], axis=1)
+    columns = (3 * places[:, :, None] + np.arange(2)).reshape(len(f), -1)
+    c = masters.shape[1]
+    weight, d_area = np.zeros((n, c)), np.zeros((n, 3 * (patch + c)))
+    d_weight = np.zeros((n, c, 3 * (patch + c)))
+    np.add.at(weight, (owner[:, None], place), found.weight[f, i])
+    np.add.at(d_area, (owner[:, None], columns), found.d_area[f, i])
+    at = owner[:, None, None], place[:, :, None], columns[:, None]
+    np.add.at(d_weight, at, found.d_weight[f, i])
+    area = np.bincount(owner, found.area[f, i], minlength=n)
+    return LineNodes(around, masters, area, weight, d_area, d_weight)
