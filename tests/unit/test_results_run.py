@@ -20,7 +20,7 @@ from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.results import Results
 from anisocontact.results.dataset import DataSet, polygons, vertices
-from anisocontact.results.deformed import magnification
+from anisocontact.results.deformed import SHOWN, magnification, surfaces
 from anisocontact.results.paraview import Bodies
 from anisocontact.results.quantities import von_mises
 from anisocontact.results.report import maps, shape, write_report
@@ -235,7 +235,7 @@ def test_von_mises_of_known_states():
 
 def test_report_is_one_file_with_all_pictures(run):
     text = (run.folder / "report.html").read_text()
-    names = ("deformed", "pressure", "status", "traction", "domain", "force")
+    names = (*SHOWN, "pressure", "status", "traction", "domain", "force")
     assert text.count("data:image/png;base64,") == len(names)
     for name in names:
         assert (run.folder / "pictures" / f"{name}.png").stat().st_size > 5000
@@ -263,21 +263,42 @@ def test_a_picture_that_fails_does_not_cost_the_report(run, monkeypatch):
     def broken(*_: object) -> None:
         raise RuntimeError("no ink")
 
-    monkeypatch.setattr(shape.Drawing, "finish", broken)
-    assert write_report(run.folder) == ["picture deformed: RuntimeError: no ink"]
+    monkeypatch.setattr(shape.Drawings, "finish", broken)
+    names = ["deformed", "von_mises", "principal_stress"]
+    failed = [f"picture {name}: RuntimeError: no ink" for name in names]
+    assert write_report(run.folder) == failed
     assert (run.folder / "report.html").read_text().count("data:image/png") == 5
 
 
 def test_without_graphics_matplotlib_draws(run, monkeypatch, tmp_path):
     """A renderer that dies, as VTK does without any OpenGL, leaves the run alone."""
     monkeypatch.setattr(shape, "_RENDERER", "anisocontact.no_such_module")
-    picture = tmp_path / "deformed.png"
-    with shape.Drawing(run.results.fields_file(), picture) as drawing:
-        drawing.finish()
-    assert picture.read_bytes().startswith(b"\x89PNG")
-    assert [entry.name for entry in tmp_path.iterdir()] == ["deformed.png"]
+    names = sorted(SHOWN)
+    with shape.Drawings(run.results.fields_file(), tmp_path, names, {}) as drawings:
+        for name in names:
+            drawings.finish(name)
+            assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+    assert sorted(entry.stem for entry in tmp_path.iterdir()) == names
     # The largest movement is 0.025 of a body whose diagonal is 1.5: a round magnification of 5.
     assert magnification(run.results.fields()) == 5.0
+
+
+def test_stress_is_shown_where_it_is_largest():
+    """A bar whose middle is at the stress 8 inside: it is cut open there, on the far side in y."""
+    pyvista = pytest.importorskip("pyvista")
+    grid = pyvista.ImageData(dimensions=(5, 5, 5)).cast_to_unstructured_grid()
+    inside = np.all(grid.points == 2.0, axis=1)
+    grid.point_data["displacement"] = np.zeros((125, 3))
+    grid.point_data["von_mises"] = np.where(inside, 8.0, 1.0)
+    grid.point_data["principal_stress"] = np.where(inside[:, None], [1.0, 0.0, -8.0], [3.0, 2, 1])
+    for name, most in (("von_mises", 8.0), ("principal_stress", -8.0)):
+        skin, before = surfaces(grid, 1.0, SHOWN[name])
+        value = skin.point_data["value"]
+        assert value[np.argmax(abs(value))] == most
+        assert skin.bounds[2] == 2.0
+        assert before.bounds[2] == 0.0
+    assert SHOWN["von_mises"].limits(np.array([1.0, 8.0])) == (0.0, 8.0)
+    assert SHOWN["principal_stress"].limits(np.array([-8.0, 3.0])) == (-8.0, 8.0)
 
 
 def test_bodies_that_move_far_are_true_to_scale(run):

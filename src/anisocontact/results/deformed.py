@@ -1,4 +1,4 @@
-"""What the picture of the deformed bodies shows; as a program VTK's picture: grid, picture.
+"""What pictures of the deformed bodies show; as a program VTK's pictures of a grid.
 
 A program of its own that imports what it draws with and nothing else.
 """
@@ -7,20 +7,73 @@ from __future__ import annotations
 
 import math
 import sys
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from anisocontact.base.figure_style import GREY
 
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["LABEL", "caption", "in_plane", "magnification", "round_box", "surfaces"]
+__all__ = ["SHOWN", "Shown", "caption", "in_plane", "magnification", "round_box", "surfaces"]
+
+Floats = npt.NDArray[np.float64]
 
 #: Largest displacement in the picture as a share of the size of the bodies.
 VISIBLE = 0.1
-LABEL = "displacement [{}]"
+
+
+@dataclass(frozen=True)
+class Shown:
+    """What is drawn on the bodies.
+
+    Args:
+        array: The array of the grid that it is made of.
+        label: Of the scale of colours, with a place for the unit.
+        dimension: Of the unit.
+        value: Makes a number for each node.
+        colours: Name of the scale of colours; one with a middle has zero there.
+        cut: Whether bodies are cut open at the largest value, towards who looks at them.
+    """
+
+    array: str
+    label: str
+    dimension: str
+    value: Callable[[Floats], Floats]
+    colours: str = "viridis"
+    cut: bool = False
+
+    def limits(self, values: Floats) -> tuple[float, float]:
+        """Ends of the scale of colours."""
+        low, high = float(np.nanmin(values)), float(np.nanmax(values))
+        largest = max(abs(low), abs(high)) or 1.0
+        return (-largest, largest) if self.colours == "RdBu_r" else (min(low, 0.0), largest)
+
+
+def _further(principal: Floats) -> Floats:
+    """The principal stress that is largest in size, with its sign."""
+    ends = principal[:, [0, -1]]
+    return np.asarray(np.take_along_axis(ends, abs(ends).argmax(axis=1)[:, None], axis=1)[:, 0])
+
+
+#: Pictures of the bodies by their names.
+SHOWN = {
+    "deformed": Shown(
+        "displacement", "displacement [{}]", "length", lambda u: np.linalg.norm(u, axis=1)
+    ),
+    "von_mises": Shown(
+        "von_mises", "equivalent stress [{}]", "stress", lambda s: s, "inferno", cut=True
+    ),
+    "principal_stress": Shown(
+        "principal_stress", "principal stress [{}]", "stress", _further, "RdBu_r", cut=True
+    ),
+}
+#: Size of the bodies in the picture, over all of it: labels of axes have the rest.
+ROOM = 0.92
 #: The scale of colours.
 _BAR = {
     "color": "black",
@@ -49,13 +102,28 @@ def magnification(grid: pyvista.UnstructuredGrid) -> float:
 
 
 def surfaces(
-    grid: pyvista.UnstructuredGrid, scale: float
+    grid: pyvista.UnstructuredGrid, scale: float, shown: Shown
 ) -> tuple[pyvista.PolyData, pyvista.PolyData]:
-    """Surface of the bodies as triangles: deformed, with the `size` of the movement, and not."""
+    """Surface of the bodies as triangles: deformed, with the `value` that is shown, and not."""
     grid = grid.copy()
-    grid.point_data["size"] = np.linalg.norm(grid.point_data["displacement"], axis=1)
+    values = shown.value(np.asarray(grid.point_data[shown.array], dtype=float))
+    grid.point_data["value"] = values
+    before = _skin(grid)
+    cut = shown.cut and not in_plane(before)
+    skin = _skin(_opened(grid, values)) if cut else before
+    return skin.warp_by_vector("displacement", factor=scale), before
+
+
+def _skin(grid: pyvista.DataSet) -> pyvista.PolyData:
     skin: pyvista.PolyData = grid.extract_surface(algorithm="dataset_surface").triangulate()
-    return skin.warp_by_vector("displacement", factor=scale), skin
+    return skin
+
+
+def _opened(grid: pyvista.UnstructuredGrid, values: Floats) -> pyvista.DataSet:
+    """Bodies without what is in front of the largest value, along y."""
+    place = grid.points[int(np.nanargmax(abs(values)))]
+    behind: pyvista.DataSet = grid.clip(normal="y", origin=place, invert=False)
+    return behind if behind.n_cells else grid
 
 
 def in_plane(before: pyvista.PolyData) -> bool:
@@ -81,24 +149,35 @@ def round_box(*meshes: pyvista.PolyData) -> tuple[Any, Any, Any]:
     return low, high, np.rint((high - low) / step).astype(int) + 1
 
 
-def _main(source: str, picture: str, length: str) -> None:
+def _main(source: str, *pictures: str) -> None:
+    """Draw a grid: names of pictures, each followed by its file, the unit and that of lengths."""
     import pyvista
 
     grid: Any = pyvista.read(source)
+    for i in range(0, len(pictures), 4):
+        name, picture, unit, length = pictures[i : i + 4]
+        _draw(grid, SHOWN[name], picture, unit, length)
+
+
+def _draw(grid: Any, shown: Shown, picture: str, unit: str, length: str) -> None:
+    import pyvista
+
     scale = magnification(grid)
-    skin, before = surfaces(grid, scale)
+    skin, before = surfaces(grid, scale, shown)
     plotter: Any = pyvista.Plotter(off_screen=True, window_size=[1200, 800])
     plotter.set_background("white")
     plotter.add_mesh(
         skin,
-        scalars="size",
-        cmap="viridis",
-        scalar_bar_args=_BAR | {"title": LABEL.format(length)},
+        scalars="value",
+        cmap=shown.colours,
+        clim=shown.limits(skin.point_data["value"]),
+        scalar_bar_args=_BAR | {"title": shown.label.format(unit)},
         smooth_shading=True,
         split_sharp_edges=True,
-        ambient=0.25,
+        ambient=0.6 if shown.cut else 0.25,
     )
-    plotter.add_mesh(before, color=GREY, opacity=0.12)
+    if not shown.cut:  # colours that are read as numbers stay what they are
+        plotter.add_mesh(before, color=GREY, opacity=0.12)
     plotter.add_silhouette(before, color=GREY, line_width=2)
     low, high, labels = round_box(skin, before)
     plotter.show_bounds(
@@ -116,6 +195,7 @@ def _main(source: str, picture: str, length: str) -> None:
     else:
         plotter.view_vector((-0.55, -1.0, 0.6), viewup=(0.0, 0.0, 1.0))
     plotter.reset_camera(bounds=np.column_stack([low, high]).reshape(-1).tolist())
+    plotter.camera.zoom(ROOM)
     plotter.screenshot(picture)
     plotter.close()
 

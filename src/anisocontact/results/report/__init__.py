@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from anisocontact.base.errors import InputError
 from anisocontact.base.figure_style import save
+from anisocontact.results.deformed import SHOWN
 from anisocontact.results.files import write_text
 from anisocontact.results.no_energy import told
 from anisocontact.results.report import curves, maps, shape
@@ -54,6 +56,18 @@ _OF_CONTACT: tuple[tuple[str, Callable[[RunData, int], Figure], str, str], ...] 
         "Resultant of the contact on the slave; the steps are shaded.",
     ),
 )
+#: Of the bodies: heading and caption by the name of the picture.
+_OF_BODIES = {
+    "deformed": ("Deformed bodies", "Colour: size of the displacement."),
+    "von_mises": (
+        "Equivalent stress",
+        "Von Mises; bodies are cut open at the largest value, in front of which they are left out.",
+    ),
+    "principal_stress": (
+        "Principal stress",
+        "The one that is largest in size, tension positive; bodies are cut open where it is.",
+    ),
+}
 
 
 def write_report(folder: str | Path) -> list[str]:
@@ -99,16 +113,26 @@ class _Album:
 def _pictures(run: RunData, folder: Path, failed: list[str]) -> list[Picture]:
     folder.mkdir(exist_ok=True)
     first, others = _Album(folder), _Album(folder)
-    with shape.Drawing(
-        run.results.fields_file(), folder / "deformed.png", run.units.get("length", "length")
-    ) as bodies:
+    there = _arrays(run)
+    names = [name for name in _OF_BODIES if SHOWN[name].array in there]
+    with shape.Drawings(run.results.fields_file(), folder, names, run.units) as bodies:
         for number in range(len(run.summary["contacts"])):
             _of_contact(run, number, others)
         # drawn meanwhile by another process, shown first
-        caption = f"Colour: size of the displacement. State: {run.moments[-1].title}."
-        first.attempt("deformed", "Deformed bodies", caption, lambda _: bodies.finish())
+        for name in names:
+            title, caption = _OF_BODIES[name]
+            caption += f" State: {run.moments[-1].title}."
+            first.attempt(name, title, caption, lambda path: bodies.finish(path.stem))
     failed += first.failed + others.failed
     return first.pictures + others.pictures
+
+
+def _arrays(run: RunData) -> Collection[str]:
+    """Arrays at the nodes; that alone without which nothing is drawn where none can be read."""
+    try:
+        return run.results.grid().point_data
+    except InputError:  # each picture says what is wrong
+        return ("displacement",)
 
 
 def _of_contact(run: RunData, number: int, album: _Album) -> None:

@@ -9,13 +9,15 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from anisocontact.base.figure_style import new_figure, save
 from anisocontact.base.whole_files import draft_of
 from anisocontact.results.deformed import (
-    LABEL,
+    SHOWN,
+    Shown,
     caption,
     in_plane,
     magnification,
@@ -23,52 +25,70 @@ from anisocontact.results.deformed import (
     surfaces,
 )
 
-__all__ = ["Drawing"]
+__all__ = ["Drawings"]
 
-#: Seconds that VTK may take.
+#: Seconds that VTK may take for all of them.
 PATIENCE = 120.0
 _RENDERER = "anisocontact.results.deformed"
 
 
-class Drawing:
-    """A picture of the deformed bodies that VTK draws while other things are done.
+class Drawings:
+    """Pictures of the deformed bodies that VTK draws while other things are done.
 
     Args:
         source: File with the bodies and their `displacement`.
-        picture: PNG to write.
-        length: Unit of lengths.
+        folder: Where the pictures go.
+        names: Which of `SHOWN`.
+        units: Unit by dimension; the dimension itself if there is none.
     """
 
-    def __init__(self, source: Path, picture: Path, length: str = "length") -> None:
-        self._source, self._picture, self._length = source, picture, length
-        self._draft = draft_of(picture)
-        self._process = _start_vtk(source, self._draft, length)
+    def __init__(
+        self, source: Path, folder: Path, names: Sequence[str], units: Mapping[str, str]
+    ) -> None:
+        self._source, self._length = source, units.get("length", "length")
+        self._pictures = {name: folder / f"{name}.png" for name in names}
+        self._units = {
+            name: units.get(SHOWN[name].dimension, SHOWN[name].dimension) for name in names
+        }
+        self._drafts = {name: draft_of(picture) for name, picture in self._pictures.items()}
+        wanted = [
+            text
+            for name, draft in self._drafts.items()
+            for text in (name, str(draft), self._units[name], self._length)
+        ]
+        self._process = _start_vtk([str(source), *wanted])
+        self._whole: bool | None = None
 
-    def __enter__(self) -> Drawing:
+    def __enter__(self) -> Drawings:
         return self
 
     def __exit__(self, *_: object) -> None:
         if self._process is not None and self._process.poll() is None:
             self._process.kill()
             self._process.wait()
-        self._draft.unlink(missing_ok=True)
+        for draft in self._drafts.values():
+            draft.unlink(missing_ok=True)
 
-    def finish(self) -> None:
-        """Wait for the picture; where VTK fails, matplotlib draws it."""
-        if _ended(self._process) and self._draft.is_file():
-            self._draft.replace(self._picture)
+    def finish(self, name: str) -> None:
+        """Wait for a picture; where VTK fails, matplotlib draws it."""
+        if self._whole is None:
+            self._whole = _ended(self._process)
+        draft, picture = self._drafts[name], self._pictures[name]
+        if self._whole and draft.is_file():
+            draft.replace(picture)
             return
         import pyvista
 
-        self._picture.unlink(missing_ok=True)
-        _by_matplotlib(pyvista.read(self._source), self._picture, self._length)
+        picture.unlink(missing_ok=True)
+        grid = pyvista.read(self._source)
+        _by_matplotlib(grid, SHOWN[name], picture, self._units[name], self._length)
 
 
-def _start_vtk(source: Path, picture: Path, length: str) -> subprocess.Popen[bytes] | None:
+def _start_vtk(arguments: Sequence[str]) -> subprocess.Popen[bytes] | None:
     environment = dict(os.environ)
     if sys.platform == "linux" and not environment.get("DISPLAY"):
         environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-    command = [sys.executable, "-m", _RENDERER, str(source), str(picture), length]
+    command = [sys.executable, "-m", _RENDERER, *arguments]
     silent = subprocess.DEVNULL
     try:
         return subprocess.Popen(command, env=environment, stdout=silent, stderr=silent)
@@ -88,18 +108,19 @@ def _ended(process: subprocess.Popen[bytes] | None) -> bool:
         return False
 
 
-def _by_matplotlib(grid: Any, picture: Path, length: str) -> None:
+def _by_matplotlib(grid: Any, shown: Shown, picture: Path, unit: str, length: str) -> None:
     from mpl_toolkits.mplot3d.art3d import (  # type: ignore[import-untyped]
         Poly3DCollection,
     )
 
     scale = magnification(grid)
-    skin, before = surfaces(grid, scale)
+    skin, before = surfaces(grid, scale, shown)
     figure = new_figure(9.0, 6.0)
     axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
     outline = Poly3DCollection(before.points[before.regular_faces], facecolor=(0, 0, 0, 0.04))
-    faces = Poly3DCollection(skin.points[skin.regular_faces], cmap="viridis")
-    faces.set_array(skin.point_data["size"][skin.regular_faces].mean(axis=1))
+    faces = Poly3DCollection(skin.points[skin.regular_faces], cmap=shown.colours)
+    faces.set_array(skin.point_data["value"][skin.regular_faces].mean(axis=1))
+    faces.set_clim(*shown.limits(skin.point_data["value"]))
     axes.add_collection3d(outline)
     axes.add_collection3d(faces)
     low, high, _ = round_box(skin, before)
@@ -109,6 +130,6 @@ def _by_matplotlib(grid: Any, picture: Path, length: str) -> None:
         axes.set(**{f"{axis}lim": (start, end), f"{axis}label": f"{axis} [{length}]"})
     axes.set_box_aspect(high - low)
     axes.view_init(*((90.0, -90.0) if flat else (25.0, -60.0)))
-    figure.colorbar(faces, ax=axes, label=LABEL.format(length), shrink=0.6)
+    figure.colorbar(faces, ax=axes, label=shown.label.format(unit), shrink=0.6)
     axes.set_title(caption(scale))
     save(figure, picture)
