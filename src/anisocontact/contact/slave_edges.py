@@ -15,7 +15,7 @@ import numpy.typing as npt
 from anisocontact.base.fenicsx import basix
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.quadrature import FacetQuadrature
-from anisocontact.contact.slave_nodes import ROUND, Patches, patches, transformed
+from anisocontact.contact.slave_nodes import LINES, ROUND, Patches, patches, transformed
 from anisocontact.contact.sweep import Sweep
 
 Ints = npt.NDArray[np.int32]
@@ -77,7 +77,8 @@ class SlaveEdges:
 
     @property
     def _topology(self) -> str:
-        return ROUND if self.nodes.shape[1] == 3 and self.sweep.ideal.turn.any() else "line"
+        count = self.nodes.shape[1]
+        return ROUND if count == 3 and self.sweep.ideal.turn.any() else LINES[count]
 
     def in_plane(self) -> tuple[Patches, FacetQuadrature, float]:
         """The edges around each node, the nodes as points, and the mean length of an edge."""

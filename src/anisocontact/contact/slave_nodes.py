@@ -27,8 +27,8 @@ Floats = npt.NDArray[np.float64]
 #: mass [Popp Wohlmuth Gitterle Wall 2012, sec. 3.2]; as in cpp/include/anisocontact/mortar. An edge
 #: of order 2 that ends on an axis of revolution has none there either.
 EDGE_SHARE = 0.2
-#: Edges of order 2 of a body of revolution.
-ROUND = "line3 of revolution"
+#: Edges by their number of nodes, and those of order 2 of a body of revolution.
+LINES, ROUND = {2: "line2", 3: "line3"}, "line3 of revolution"
 #: Share of its weight that has to be covered for the traction of a node to count among peaks.
 PEAK = 0.05
 #: Times the pressure of a node at the edge of contact, over that beside it, with which it counts:
@@ -45,6 +45,9 @@ _PIECES = {
     "tri6": [[0, 5, 4], [1, 3, 5], [2, 4, 3], [3, 4, 5]],
     "quad4": [[0, 1, 3, 2]],
     "quad9": [[0, 4, 8, 5], [4, 1, 6, 8], [5, 8, 7, 2], [8, 6, 3, 7]],
+    "line2": [[0, 1]],
+    "line3": [[0, 2], [2, 1]],
+    ROUND: [[0, 2], [2, 1]],
 }
 
 
@@ -59,6 +62,7 @@ class Patches:
         nodes: Nodes of the facets around each, (n, k): those of its support first, filled up with
             itself to r, then the others, and itself again to k.
         support: Values at the first nodes whose combination is the slave point, (n, r).
+        pieces: Pieces of the facets with straight edges, as numbers of slave nodes, (m, corners).
     """
 
     offsets: npt.NDArray[np.int64]
@@ -66,6 +70,7 @@ class Patches:
     local: Ints
     nodes: Ints
     support: Floats
+    pieces: Ints
 
 
 def patches(mesh: FacetMesh) -> Patches:
@@ -97,6 +102,7 @@ def patches(mesh: FacetMesh) -> Patches:
         local.astype(np.int32),
         padded.astype(np.int32).reshape(len(nodes), width),
         values,
+        _pieces(mesh),
     )
 
 
@@ -236,7 +242,7 @@ def _node_coordinates(topology: str, corners: Floats) -> Floats:
     return np.array([*corners, *middles, *[corners.mean(axis=0)] * (topology == "quad9")])
 
 
-def _polygons(mesh: FacetMesh) -> Ints:
+def _pieces(mesh: FacetMesh) -> Ints:
     """Pieces of the facets with straight edges, as numbers of their nodes in ascending order."""
     pieces = mesh.nodes[:, _PIECES[mesh.topology]]
     pieces = np.where(mesh.flip[:, None, None], pieces[..., ::-1], pieces)
@@ -278,7 +284,7 @@ class SlaveNodes(SlavePoints):
         near = reference[quadrature.nodes % max(len(reference), 1)]
         away = near - quadrature.reference[:, None]
         self.spread = float(np.linalg.norm(away, axis=2).max(initial=0.0))
-        self.polygons = _polygons(mesh)
+        self.polygons = self.around.pieces
 
     @override
     def peaks(self, areas: Floats) -> npt.NDArray[np.bool_]:

@@ -34,7 +34,7 @@ _HEAD = (
 )
 _NO_ARRAYS: Arrays = {}
 #: Sorts of cells that are read.
-_CELLS = ("Cells", "Polys")
+_CELLS = ("Cells", "Lines", "Polys")
 
 
 @dataclass(frozen=True)
@@ -44,7 +44,7 @@ class DataSet:
     Attributes:
         kind: Type of VTK, "UnstructuredGrid" or "PolyData".
         points: Positions, (points, 3), length.
-        cells: Sort of cells, "Cells", "Verts" or "Polys" -> "connectivity", the points of all
+        cells: Sort of cells, "Cells", "Verts", "Lines" or "Polys" -> "connectivity", the points of all
             cells in a row, "offsets", where each cell begins and the last one ends, and for
             "Cells" their "types".
         point_data: Name -> a row for each point.
@@ -154,8 +154,14 @@ def vertices(points: npt.NDArray[np.integer[Any]]) -> dict[str, Arrays]:
 
 
 def polygons(*corners: npt.NDArray[np.integer[Any]]) -> dict[str, Arrays]:
-    """Cells of `DataSet` with the given points in order around each of them, (cells, corners)."""
-    return {"Polys": _in_a_row(*corners)}
+    """Cells of `DataSet` with the given points in order around each of them, (cells, corners).
+
+    Those of two points are lines.
+    """
+    kinds: dict[str, list[npt.NDArray[np.integer[Any]]]] = {"Lines": [], "Polys": []}
+    for one in corners:
+        kinds["Lines" if one.shape[1] == 2 else "Polys"].append(one)
+    return {kind: _in_a_row(*cells) for kind, cells in kinds.items() if cells}
 
 
 def _in_a_row(*cells: npt.NDArray[np.integer[Any]]) -> Arrays:
