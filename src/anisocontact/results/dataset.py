@@ -44,8 +44,8 @@ class DataSet:
     Attributes:
         kind: Type of VTK, "UnstructuredGrid" or "PolyData".
         points: Positions, (points, 3), length.
-        cells: Sort of cells, "Cells", "Verts", "Lines" or "Polys" -> "connectivity", the points of all
-            cells in a row, "offsets", where each cell begins and the last one ends, and for
+        cells: Sort of cells, "Cells", "Verts", "Lines" or "Polys" -> "connectivity", the points of
+            all cells in a row, "offsets", where each cell begins and the last one ends, and for
             "Cells" their "types".
         point_data: Name -> a row for each point.
         cell_data: Name -> a row for each cell.
