@@ -71,6 +71,93 @@ def test_one_file_of_all_states(folder, tmp_path, capsys):
     assert "results are written as .vtkhdf" in capsys.readouterr().err
 
 
+PRESSED = """
+[mesh.box.upper]
+origin = [0.2, 0.2, 1]
+size = [0.5, 0.5, 0.5]
+cells = [2, 2, 1]
+
+[mesh.box.lower]
+origin = [0, 0, 0]
+size = [1, 1, 1]
+cells = [3, 3, 1]
+
+[material.upper]
+model = "linear-elastic"
+E = 1000
+nu = 0.3
+
+[material.lower]
+model = "linear-elastic"
+E = 1000
+nu = 0.3
+
+[surface.floor]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+
+[[contact]]
+slave = "upper.bottom"
+master = "lower.top"
+pass = "mortar"
+friction = { coefficients = 0.3 }
+
+[[contact]]
+slave = "lower.bottom"
+master = "floor"
+pass = "single"
+friction = { coefficients = 0.3 }
+
+[[step]]
+name = "press"
+increments = 2
+displacement = { "upper.top" = { x = 0, y = 0, z = -0.01 } }
+
+[output]
+pictures = false
+vtkhdf = true
+"""
+
+
+def test_contacts_in_one_file(tmp_path, monkeypatch, capsys):
+    """Requirement: VTK finds facets between slave nodes, loose points and patches, as they move."""
+    pytest.importorskip("h5py")
+    hdf = pytest.importorskip("vtkmodules.vtkIOHDF")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+
+    case, out = tmp_path / "case.toml", tmp_path / "out"
+    case.write_text(PRESSED)
+    assert main(["run", str(case), "-o", str(out)]) == 0
+    results = Results(out)
+    assert results.kinds == ["fields", "contact", "surfaces"]
+    for kind in results.kinds:
+        reader = hdf.vtkHDFReader()
+        reader.SetFileName(str(out / f"{kind}.vtkhdf"))
+        reader.UpdateInformation()
+        states, times = results.states(kind)
+        assert reader.GetNumberOfSteps() == len(times) == 3
+        for step, known in enumerate(states):
+            reader.SetStep(step)
+            reader.Update()
+            found = reader.GetOutput()
+            assert np.array_equal(vtk_to_numpy(found.GetPoints().GetData()), known.points)
+            for name, values in known.point_data.items():
+                array = found.GetPointData().GetArray(name)
+                assert np.array_equal(vtk_to_numpy(array), values)
+        if kind == "contact":
+            # four facets of the upper body, and the points of nine below
+            assert found.GetNumberOfPolys() == 4
+            assert found.GetNumberOfVerts() == 36
+    with monkeypatch.context() as hidden:
+        hidden.setattr("anisocontact.case.output.find_spec", lambda _: None)
+        assert main(["check", str(case)]) == 2
+        assert "output.vtkhdf: needs h5py: pip install h5py" in capsys.readouterr().err
+    assert main(["convert", str(out), str(tmp_path / "run.vtkhdf")]) == 0
+    written = {path.name for path in tmp_path.glob("*.vtkhdf")}
+    assert written == {"run.vtkhdf", "run-contact.vtkhdf", "run-surfaces.vtkhdf"}
+
+
 def test_tables_for_pandas(folder):
     pytest.importorskip("pandas")
     results = Results(folder)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
@@ -108,6 +109,18 @@ class Output(Section):
             )
         ),
     ] = True
+    vtkhdf: Annotated[
+        bool,
+        Quantity(
+            Parameter(
+                "",
+                "flag",
+                "1",
+                "whether all states are also written as one file of each sort, fields.vtkhdf, "
+                "contact.vtkhdf and surfaces.vtkhdf, at the end; needs h5py",
+            )
+        ),
+    ] = False
     quantities: list[str] = Field(
         default_factory=list,
         description="arrays of the files for ParaView, all if left out; those that pictures are "
@@ -129,6 +142,8 @@ def check_output(output: Output, steps: list[str]) -> Iterator[InputError]:
         output: The table.
         steps: Names of the steps.
     """
+    if output.vtkhdf and find_spec("h5py") is None:
+        yield InputError("needs h5py: pip install h5py", "output.vtkhdf")
     for i, name in enumerate(output.steps):
         if name not in steps:
             text = f'no step "{name}"; there are: {", ".join(steps)}'

@@ -169,6 +169,7 @@ def _writer(built: Built, folder: str | Path, text: str, checkpoint: Stored | No
         probes={name: one.probe() for name, one in case.output.probe.items()},
         resultants={name: one.resultant() for name, one in case.output.resultant.items()},
         pictures=case.output.pictures,
+        vtkhdf=case.output.vtkhdf,
         units=case.units.labels(),
         case=text,
         resumed=checkpoint.facts["writer"] if checkpoint else None,

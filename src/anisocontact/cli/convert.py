@@ -17,10 +17,14 @@ def command(arguments: argparse.Namespace) -> int:
         from anisocontact.results import Results
         from anisocontact.results.vtkhdf import write_vtkhdf
 
-        if Path(arguments.target).suffix != ".vtkhdf":
+        target, results = Path(arguments.target), Results(arguments.source)
+        if target.suffix != ".vtkhdf":
             raise InputError(f"'{arguments.target}' given; results are written as .vtkhdf")
-        write_vtkhdf(Results(arguments.source), arguments.target)
-        say(f"written   {arguments.target}")
+        for kind in results.kinds or ["fields"]:
+            added = "" if kind == "fields" else f"-{kind}"
+            path = target.with_name(f"{target.stem}{added}.vtkhdf")
+            write_vtkhdf(results, path, kind)
+            say(f"written   {path}")
         return 0
     from anisocontact.case.build import mesh_of
     from anisocontact.mesh.described import described

@@ -34,7 +34,7 @@ _HEAD = (
 )
 _NO_ARRAYS: Arrays = {}
 #: Sorts of cells that are read.
-_CELLS = ("Cells", "Lines", "Polys")
+_CELLS = ("Cells", "Verts", "Lines", "Polys")
 
 
 @dataclass(frozen=True)
@@ -104,7 +104,7 @@ def read_data_set(path: Path) -> DataSet:
         path: What `DataSet` has written.
 
     Returns:
-        The data set; without vertices, which are its points once more.
+        The data set.
 
     Raises:
         ValueError, OSError: The file is damaged, or there is none.

@@ -73,7 +73,7 @@ SHOWN = {
     ),
 }
 #: Size of the bodies in the picture, over all of it: labels of axes have the rest.
-ROOM = 0.92
+ROOM = 0.86
 #: The scale of colours.
 _BAR = {
     "color": "black",

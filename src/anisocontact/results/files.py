@@ -37,6 +37,9 @@ OWN = (
     "contact",
     "surfaces.pvd",
     "surfaces",
+    "fields.vtkhdf",
+    "contact.vtkhdf",
+    "surfaces.vtkhdf",
     "probes",
     "pictures",
     "report.html",
@@ -49,7 +52,7 @@ OWN = (
 #: The file that is locked while a run goes on; a crash leaves it there, unlocked.
 LOCK = ".lock"
 #: Name of a file that is being written.
-_DRAFT = re.compile(r"\..+-\d+\.(csv|html|json|log|npz|png|pvd|pvtp|pvtu|toml|vtp|vtu)")
+_DRAFT = re.compile(r"\..+-\d+\.(csv|html|json|log|npz|png|pvd|pvtp|pvtu|toml|vtkhdf|vtp|vtu)")
 #: Files that show that a folder is that of a run.
 MARKS = ("summary.json", "run.log")
 

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 __all__ = ["Results"]
 
 
+#: Sorts of fields.
+KINDS = ("fields", "contact", "surfaces")
 #: Number of components -> their dimension, and what they are called.
 _DIMENSIONS = {2: "axis_of_friction", 3: "axis", 6: "component"}
 _COMPONENTS = {"axis": list("xyz"), "component": ["XX", "YY", "ZZ", "XY", "YZ", "XZ"]}
@@ -165,16 +167,35 @@ class Results:
             InputError: xarray is not installed, or nothing was written.
         """
         xarray = needed("xarray")
-        listed = self._listed(f"{kind}.pvd")
-        if not listed:
-            raise InputError(f"{kind!r} given, of which nothing was written", "kind")
-        states = [self._data_set(f"{kind}.pvd", i) for i in range(len(listed))]
+        states, times = self.states(kind)
         first, found = states[0], {"position": _over_time([s.points for s in states], "point")}
         for name in first.point_data:
             found[name] = _over_time([s.point_data[name] for s in states], "point")
         for name in first.cell_data:
             found[name] = _over_time([s.cell_data[name] for s in states], "cell")
-        return xarray.Dataset(found, {"time": [time for time, _ in listed]} | _COMPONENTS)
+        return xarray.Dataset(found, {"time": times} | _COMPONENTS)
+
+    def states(self, kind: str) -> tuple[list[DataSet], list[float]]:
+        """All states that were written, as arrays without pyvista.
+
+        Args:
+            kind: "fields", "contact" or "surfaces".
+
+        Returns:
+            The states, and their times.
+
+        Raises:
+            InputError: Nothing was written.
+        """
+        times = [time for time, _ in self._listed(f"{kind}.pvd")]
+        if not times:
+            raise InputError(f"{kind!r} given, of which nothing was written", "kind")
+        return [self._data_set(f"{kind}.pvd", i) for i in range(len(times))], times
+
+    @property
+    def kinds(self) -> list[str]:
+        """Which of "fields", "contact" and "surfaces" were written."""
+        return [kind for kind in KINDS if self._listed(f"{kind}.pvd")]
 
     def _data_set(self, name: str, index: int) -> DataSet:
         path = self._file(name, index)

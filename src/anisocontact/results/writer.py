@@ -25,9 +25,11 @@ from anisocontact.results.history import History
 from anisocontact.results.no_energy import told
 from anisocontact.results.paraview import Bodies, slave_points
 from anisocontact.results.probes import Probe, ProbeTable
+from anisocontact.results.read import Results
 from anisocontact.results.resultants import Resultant
 from anisocontact.results.snapshot import Observer, laws
 from anisocontact.results.surfaces import Surfaces
+from anisocontact.results.vtkhdf import write_vtkhdf
 from anisocontact.results.warnings import at_end, at_start, of_models, soft, worst, worst_of_models
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
 from anisocontact.solver.terms.persistent import Persistent
@@ -54,6 +56,7 @@ class Writer:
         probes: Places at which values are written after each increment, by name.
         resultants: Further forces and moments, by name.
         pictures: Whether the report with its pictures is made at the end.
+        vtkhdf: Whether all states are also written as one file of each sort at the end.
         units: What numbers are in, by dimension: labels of the report.
         case: Text of the case file, kept beside the results.
         resumed: What `state` gave: the folder is that of a run which goes on.
@@ -81,6 +84,7 @@ class Writer:
         probes: Mapping[str, Probe] = MappingProxyType({}),
         resultants: Mapping[str, Resultant] = MappingProxyType({}),
         pictures: bool = True,
+        vtkhdf: bool = False,
         units: Mapping[str, str] = MappingProxyType({}),
         case: str = "",
         resumed: Mapping[str, Any] | None = None,
@@ -89,7 +93,7 @@ class Writer:
         self._problem = problem
         self._steps = list(steps)
         self._every, self._only, self._times = every, list(only), list(times)
-        self._pictures = pictures
+        self._pictures, self._vtkhdf = pictures, vtkhdf
         self._increments = 0
         self._kept = 0
         self._disk = Disk(problem.model.mesh.comm)
@@ -289,6 +293,8 @@ class Writer:
             found += soft(self._problem.contacts, self.summary["contacts"])
         self.summary["warnings"] = [*self._at_start, *found, *of_models(self.summary)]
         self._write_summary()
+        if self._vtkhdf:
+            self._disk.write(self._write_vtkhdf)
         if self._pictures:
             self._disk.write(self._report)
 
@@ -305,6 +311,11 @@ class Writer:
             for line in (details or message).splitlines():
                 self._append(line)
             write_text(self.folder / "summary.json", self._text())
+
+    def _write_vtkhdf(self) -> None:
+        results = Results(self.folder)
+        for kind in results.kinds:
+            write_vtkhdf(results, self.folder / f"{kind}.vtkhdf", kind)
 
     def _report(self) -> None:
         # Matplotlib takes half a second to be imported, and only pictures need it
