@@ -207,9 +207,8 @@ def _dragged(ideal: Idealisation) -> tuple[Problem, list[Step]]:
     model = _stacked(ideal, 2)
     contact = Contact(model, "b.bottom", "a.top", _law(), mortar=True, augmentation=MULTIPLIERS)
     problem = Problem(model, {"a": STEEL, "b": STEEL}, [contact])
-    press: dict[str, Any] = {"a.bottom": {"x": 0.0, "y": 0.0}, "b.top": {"y": -0.01}}
-    end = "b.right" if ideal.turn.any() else "b.top"
-    led = {end: {"x": 0.05}} if ideal.turn.any() else {end: {"x": 0.05, "y": -0.01}}
+    press: dict[str, Any] = {"a.bottom": {"x": 0.0, "y": 0.0}, "b.top": {"y": -0.03}}
+    led = {"b.right": {"x": 0.03}} if ideal.turn.any() else {"b.top": {"x": 0.05, "y": -0.03}}
     return problem, [Step("press", 2, press), Step("drag", 3, led)]
 
 

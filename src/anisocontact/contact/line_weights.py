@@ -330,13 +330,13 @@ class LineNodes:
                 there = nodes[which][:, :, None]
                 own, to = own @ ((there == masters[:, None]) & (there >= 0)), slice(to.stop, c)
             sums[:, first : first + own.shape[1], to] += own
-        d_weight = self.d_weight[which].reshape(p, -1, c, 3)
+        d_weight = self.d_weight[which].reshape(p, masters.shape[1], c, 3)
         slopes = np.einsum("pvx,pvc->pcx", by, sums).reshape(p, c, 3, 3)
         slopes += np.einsum("pki,pkcj->pcij", lift, d_weight)
         rows = np.concatenate([patch[:, : support.shape[1]], masters], axis=1)
         weights = np.concatenate([-area[:, None] * support, self.weight[which]], axis=1)
         own = -support[:, :, None] * self.d_area[which][:, None]
-        rates = np.concatenate([own.reshape(p, -1, c, 3), d_weight], axis=1)
+        rates = np.concatenate([own.reshape(*support.shape, c, 3), d_weight], axis=1)
         blocks = weights[:, :, None, None, None] * slopes[:, None]
         blocks += traction[:, None, None, :, None] * rates[:, :, :, None]
         return slopes, rows, columns, blocks
