@@ -33,7 +33,7 @@ struct Facets {
 /// Weights of a facet and their derivatives: three columns for each node of the facet, then of
 /// `masters`.
 struct DualWeights {
-  using Matrix = PairIntegrals::Matrix;
+  using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   std::vector<std::int32_t> masters;  ///< nodes, ascending
   Eigen::VectorXd area;               ///< D
   Matrix weight;                      ///< W, (slaves, masters)
@@ -44,65 +44,63 @@ namespace detail {
 
 using Eigen::Index;
 
-/// Integrals over all overlaps of a facet, columns as of `DualWeights`.
-struct FacetIntegrals {
-  PairIntegrals sum;
-
-  /// Adds a pair whose masters have these places among all.
-  void add(const PairIntegrals& one, Index slaves, const std::vector<Index>& place, bool slopes) {
-    sum.m += one.m;
-    const Index own = 3 * slaves, count = sum.c.cols(), mine = one.c.cols();
-    for (Index i = 0; i < slaves; ++i)
-      for (Index k = 0; k < mine; ++k) sum.c(i, place[static_cast<std::size_t>(k)]) += one.c(i, k);
-    if (!slopes) return;
-    const auto columns = [&](const auto& from, auto to) {
-      to.head(own) += from.head(own);
-      for (Index k = 0; k < mine; ++k)
-        to.segment(own + 3 * place[static_cast<std::size_t>(k)], 3) += from.segment(own + 3 * k, 3);
-    };
-    for (Index r = 0; r < one.dm.rows(); ++r) columns(one.dm.row(r), sum.dm.row(r));
-    for (Index i = 0; i < slaves; ++i)
-      for (Index k = 0; k < mine; ++k)
-        columns(one.dc.row(i * mine + k),
-                sum.dc.row(i * count + place[static_cast<std::size_t>(k)]));
-  }
-};
-
-/// W = D m^-1 c with its derivatives; whether m can be inverted. Its rows and columns are scaled to a
-/// diagonal of one, so that the size of what is covered does not matter.
-inline bool put_weights(const PairIntegrals& in, bool slopes, DualWeights& out) {
-  const Index n = in.m.rows(), count = in.c.cols();
-  if (!(in.m.diagonal().minCoeff() > 0.0)) return false;
-  const Eigen::VectorXd unit = in.m.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd scaled = unit.asDiagonal() * in.m * unit.asDiagonal();
-  const Eigen::LDLT<Eigen::MatrixXd> factor(scaled);
+/// The inverse of m, column by column; whether there is one. Rows and columns are scaled to a diagonal
+/// of one, so that the size of what is covered does not matter.
+template <std::size_t L>
+bool invert(const Integrals<L>& in, std::size_t n, std::array<Lanes<L>, L>& out) {
+  Eigen::MatrixXd m(n, n);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      m(static_cast<Index>(i), static_cast<Index>(j)) = in.value[j][i];
+  if (!(m.diagonal().minCoeff() > 0.0)) return false;
+  const Eigen::VectorXd unit = m.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<Eigen::MatrixXd> factor(unit.asDiagonal() * m * unit.asDiagonal());
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13)) return false;
-  const auto solve = [&](const auto& b) -> Eigen::MatrixXd {
-    return unit.asDiagonal() * factor.solve(unit.asDiagonal() * b);
+  const Eigen::MatrixXd inverse =
+      unit.asDiagonal() * factor.solve(Eigen::MatrixXd(unit.asDiagonal()));
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      out[j][i] = inverse(static_cast<Index>(i), static_cast<Index>(j));
+  return true;
+}
+
+/// W = D m^-1 c with its derivatives; whether m can be inverted.
+template <std::size_t L>
+ANISOCONTACT_INLINE bool put_weights(const Integrals<L>& in, std::size_t n, DualWeights& out) {
+  const std::size_t count = in.rows - n, columns = in.columns;
+  std::array<Lanes<L>, L> inverse;
+  if (!invert(in, n, inverse)) return false;
+  const auto times = [&](const auto& x) ANISOCONTACT_INLINE_LAMBDA {
+    Lanes<L> product;
+    for (std::size_t j = 0; j < n; ++j) product.add(x[j], inverse[j]);
+    return product;
   };
-  const Eigen::MatrixXd z = solve(in.c);
-  out.area = in.m.rowwise().sum();
-  out.weight = out.area.asDiagonal() * z;
-  if (!slopes) return true;
-  const Index columns = in.dm.cols();
-  out.d_area.setZero(n, columns);
-  for (Index i = 0; i < n; ++i)
-    for (Index j = 0; j < n; ++j) out.d_area.row(i) += in.dm.row(i * n + j);
-  // dz = m^-1 (dc - dm z), all columns at once: rows i, columns (k, v)
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> right(n, count * columns);
-  for (Index i = 0; i < n; ++i)
-    for (Index k = 0; k < count; ++k) {
-      auto to = right.row(i).segment(k * columns, columns);
-      to = in.dc.row(i * count + k);
-      for (Index j = 0; j < n; ++j) to -= z(j, k) * in.dm.row(i * n + j);
+  Lanes<L> area;
+  for (std::size_t j = 0; j < n; ++j) area.add(1.0, in.value[j]);
+  std::vector<Lanes<L>> z(count);
+  out.area.resize(static_cast<Index>(n));
+  out.weight.resize(static_cast<Index>(n), static_cast<Index>(count));
+  for (std::size_t k = 0; k < count; ++k) z[k] = times(in.value[n + k]);
+  for (std::size_t i = 0; i < n; ++i) {
+    out.area[static_cast<Index>(i)] = area[i];
+    for (std::size_t k = 0; k < count; ++k) out.weight.data()[i * count + k] = area[i] * z[k][i];
+  }
+  if (in.slope.empty()) return true;
+  out.d_area.resize(static_cast<Index>(n), static_cast<Index>(columns));
+  out.d_weight.resize(static_cast<Index>(n * count), static_cast<Index>(columns));
+  for (std::size_t c = 0; c < columns; ++c) {
+    Lanes<L> grown;
+    for (std::size_t j = 0; j < n; ++j) grown.add(1.0, in.slope[j * columns + c]);
+    for (std::size_t i = 0; i < n; ++i) out.d_area.data()[i * columns + c] = grown[i];
+    for (std::size_t k = 0; k < count; ++k) {
+      // dz = m^-1 (dc - dm z)
+      Lanes<L> right = in.slope[(n + k) * columns + c];
+      for (std::size_t j = 0; j < n; ++j) right.add(-z[k][j], in.slope[j * columns + c]);
+      const Lanes<L> dz = times(right);
+      for (std::size_t i = 0; i < n; ++i)
+        out.d_weight.data()[(i * count + k) * columns + c] = z[k][i] * grown[i] + area[i] * dz[i];
     }
-  const Eigen::MatrixXd inverse = solve(Eigen::MatrixXd::Identity(n, n));
-  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> dz = inverse * right;
-  out.d_weight.resize(n * count, columns);
-  for (Index i = 0; i < n; ++i)
-    for (Index k = 0; k < count; ++k)
-      out.d_weight.row(i * count + k) =
-          z(i, k) * out.d_area.row(i) + out.area[i] * dz.row(i).segment(k * columns, columns);
+  }
   return true;
 }
 
@@ -121,44 +119,47 @@ struct MortarInput {
 inline DualWeights dual_weights(const MortarInput& in, std::size_t f,
                                 const std::int32_t* candidates, std::size_t count) {
   const Facet slave = in.slave.at(f, in.now);
-  const std::size_t ns = slave.nodes(), nm = in.master.width();
-  std::vector<std::pair<std::int32_t, PairIntegrals>> found;
-  detail::PlaneIntegrals work;
-  std::vector<Overlaps> parts;
-  for (const SubFacet& part : sub_facets(slave.topology)) {
-    parts.emplace_back(slave, part, in.rules, in.slopes);
+  const auto sub = sub_facets(slave.topology);
+  std::vector<SlavePart> parts;
+  std::vector<Overlap> found;
+  DualWeights out;
+  parts.reserve(sub.size());
+  for (const SubFacet& part : sub) {
+    parts.emplace_back(slave, part);
     if (!parts.back().valid()) return {};
     if (in.reference != nullptr) parts.back().scale_to(in.slave.at(f, in.reference));
+    for (std::size_t c = 0; c < count; ++c) {
+      const auto g = static_cast<std::size_t>(candidates[c]);
+      parts.back().find(in.master.at(g, in.now), g, found);
+    }
   }
-  for (std::size_t c = 0; c < count; ++c) {
-    const Facet master = in.master.at(static_cast<std::size_t>(candidates[c]), in.now);
-    PairIntegrals pair;
-    pair.reset(ns, nm, in.slopes);
-    bool any = false;
-    with_longest([&]() ANISOCONTACT_INLINE_LAMBDA {
-      for (const Overlaps& part : parts) any |= part.add(master, work, pair);
-    });
-    if (any) found.emplace_back(candidates[c], std::move(pair));
-  }
-  DualWeights out;
   if (found.empty()) return out;
-  for (const auto& [g, pair] : found)
-    for (std::size_t a = 0; a < nm; ++a)
-      out.masters.push_back(in.master.node(static_cast<std::size_t>(g), a));
+  for (const Overlap& o : found)
+    for (std::size_t a = 0; a < in.master.width(); ++a)
+      out.masters.push_back(in.master.node(o.facet, a));
   std::sort(out.masters.begin(), out.masters.end());
   out.masters.erase(std::unique(out.masters.begin(), out.masters.end()), out.masters.end());
-  detail::FacetIntegrals total;
-  total.sum.reset(ns, out.masters.size(), in.slopes);
-  std::vector<Eigen::Index> place(nm);
-  for (const auto& [g, pair] : found) {
-    for (std::size_t a = 0; a < nm; ++a)
-      place[a] = std::lower_bound(out.masters.begin(), out.masters.end(),
-                                  in.master.node(static_cast<std::size_t>(g), a)) -
-                 out.masters.begin();
-    total.add(pair, static_cast<Eigen::Index>(ns), place, in.slopes);
-  }
-  if (!detail::put_weights(total.sum, in.slopes, out)) return {};
-  return out;
+  const bool any = with_lanes(slave.nodes(), [&](auto lanes) {
+    Integrals<lanes> total(slave.nodes(), out.masters.size(), in.slopes);
+    Integrator<lanes> integrator(slave, in.rules, total);
+    bool good = false;
+    with_longest([&]() ANISOCONTACT_INLINE_LAMBDA {
+      for (const Overlap& o : found) {
+        std::array<std::size_t, most> column{};
+        for (std::size_t a = 0; a < in.master.width(); ++a)
+          column[a] =
+              3 * (slave.nodes() +
+                   static_cast<std::size_t>(std::lower_bound(out.masters.begin(), out.masters.end(),
+                                                             in.master.node(o.facet, a)) -
+                                            out.masters.begin()));
+        integrator.add(parts[static_cast<std::size_t>(o.slave - sub.data())], o,
+                       in.master.at(o.facet, in.now), column);
+      }
+      good = detail::put_weights(total, slave.nodes(), out);
+    });
+    return good;
+  });
+  return any ? out : DualWeights{};
 }
 
 }  // namespace anisocontact::mortar
