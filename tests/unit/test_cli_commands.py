@@ -81,7 +81,8 @@ def test_check_says_what_is_in_a_case(capsys, case):
         "body      block: linear-elastic",
         # (3+1)(3+1)(2+1) nodes, 3*3*2 cells
         "mesh      48 nodes, 18 cells of order 1, 144 unknowns",
-        "contact   block.bottom on plate: 9 slave facets, penalty 1e+04, maximum-dissipation",
+        "contact   block.bottom on plate: 9 slave facets, penalty 1e+04, maximum-dissipation, "
+        "at slave nodes (mortar), penalties",
         "step      press: 2 increments, block.top",
         "step      drag: 4 increments, block.top",
         "body      block: 18 hexahedra of order 1, box (0, 0, 0) to (1, 1, 0.5), "
@@ -140,6 +141,7 @@ def test_default_folder(monkeypatch, capsys, case):
 def test_a_run_that_cannot_go_on_keeps_what_converged(capsys, case, unpictured):
     """Pressing takes four iterations; the whole drag in one increment takes more."""
     text = unpictured.replace("increments = 4", "increments = 1")
+    text = text.replace("[[contact]]", '[[contact]]\npass = "single"')
     case.write_text(text + "[solver]\ncuts = 0\noptions = { snes_max_it = 4 }\n")
     out = case.parent / "out"
     assert main(["run", str(case), "-o", str(out)]) == 3

@@ -72,6 +72,7 @@ pin = { model = "linear-elastic", E = 100, nu = 0.3 }
 [[contact]]
 slave = "base.top"
 master = "pin.bottom"
+pass = "single"
 friction = { coefficients = 0.3 }
 
 [[step]]

@@ -21,6 +21,7 @@ from anisocontact.case.model import (
 )
 from anisocontact.case.output import check_output
 from anisocontact.case.python_section import MaterialTable
+from anisocontact.case.quantity import AUTO
 from anisocontact.case.rigid_checks import check_rigid
 from anisocontact.case.section import near
 from anisocontact.case.units import check_units
@@ -181,8 +182,10 @@ def _method(contact: ContactSection, place: str) -> Iterator[InputError]:
         if contact.multipliers != AUTO_MULTIPLIERS:
             text = f'given with method "{PENALTY}", needs "{AUGMENTED}"'
             yield InputError(text, field=f"{place}.multipliers")
+    elif contact.method == AUTO and not contact.asks_for_multipliers:
+        return
     elif contact.half_passes:
-        text = f'"{TWO_HALF}" given, "{SINGLE}" needed with method "{AUGMENTED}"'
+        text = f'"{TWO_HALF}" given, "{SINGLE}" or "{MORTAR}" needed with method "{AUGMENTED}"'
         yield InputError(text, field=f"{place}.pass")
     elif contact.self_contact:
         text = f'"{AUGMENTED}" given, "{PENALTY}" needed with self_contact = true'

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 from anisocontact.bulk import Material
 from anisocontact.case import law_file, objects
+from anisocontact.case.contact_defaults import chosen, physical_adhesion
 from anisocontact.case.model import AUGMENTED, Case, ContactSection
-from anisocontact.case.quantity import AUTO
 from anisocontact.contact import Contact, auto_penalty
 from anisocontact.interface import ContactLaw, TangentialLaw
 from anisocontact.interface.augmentation import Augmentation
@@ -53,6 +53,7 @@ def contact(
         auto_penalty(model, group, body) for (_, group), body in zip(sides, bodies, strict=True)
     )
     law = law_file.contact_law(section, place, auto, given)
+    section = chosen(section, model, bodies, law)
     if section.meshed:
         made = _made(section, model, section.master, law, place)
     else:
@@ -60,7 +61,7 @@ def contact(
         interface = objects.interface(law, surface, place)
         moving = MovingSurface(interface, rigid.get(section.master))
         made = _made(section, model, moving, None, place)
-    made.physical_adhesion = not _auto_adhesion(section)
+    made.physical_adhesion = physical_adhesion(section)
     return made
 
 
@@ -90,9 +91,4 @@ def _augmentation(section: ContactSection) -> Augmentation | None:
     if section.method != AUGMENTED:
         return None
     tolerance = Augmentation.tolerance if section.tolerance is None else section.tolerance
-    return Augmentation(tolerance, _auto_adhesion(section), section.multipliers)
-
-
-def _auto_adhesion(section: ContactSection) -> bool:
-    """Whether the stiffness of adhesion is one that the run chooses."""
-    return section.python is None and bool(section.adhesion.parameters().get("stiffness") == AUTO)
+    return Augmentation(tolerance, not physical_adhesion(section), section.multipliers)

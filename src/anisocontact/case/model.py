@@ -44,7 +44,8 @@ PENALTY, AUGMENTED = "penalty", "augmented"
 SINGLE, TWO_HALF, MORTAR = "single", "two-half", "mortar"
 _PASSES = (
     "where the law is evaluated: at integration points of the slave alone, or, between bodies, "
-    "of both with half the weight; or at the slave nodes, with dual mortar weights"
+    "of both with half the weight; or at the slave nodes, with dual mortar weights; "
+    f'"{AUTO}" takes "{MORTAR}" where it can'
 )
 
 
@@ -143,11 +144,13 @@ class ContactSection(Section):
         _word(
             "whether penetration and elastic slip are those of the penalties or are brought below "
             "the tolerance by an augmented Lagrangian; the stiffness of adhesion counts as a "
-            'penalty where it is "auto"',
+            f'penalty where it is "auto"; "{AUTO}" takes "{AUGMENTED}" at slave nodes where the '
+            "normal penalty is not given and the laws allow for it",
+            AUTO,
             PENALTY,
             AUGMENTED,
         ),
-    ] = PENALTY
+    ] = AUTO
     tolerance: Annotated[
         float | None,
         _number(
@@ -186,14 +189,24 @@ class ContactSection(Section):
         return "." in self.master
 
     @property
+    def where(self) -> str:
+        """The `pass`."""
+        return str(getattr(self, "pass"))
+
+    @property
+    def asks_for_multipliers(self) -> bool:
+        """Whether something is given that only an augmented contact has."""
+        return self.tolerance is not None or self.multipliers != AUTO_MULTIPLIERS
+
+    @property
     def half_passes(self) -> bool:
         """Whether each of two bodies is slave and master for half of the work."""
-        return bool(getattr(self, "pass") == TWO_HALF)
+        return self.where == TWO_HALF
 
     @property
     def mortar(self) -> bool:
         """Whether the law is evaluated at slave nodes with mortar weights."""
-        return bool(getattr(self, "pass") == MORTAR)
+        return self.where == MORTAR
 
 
 class Case(Section):
@@ -298,7 +311,7 @@ def _contact(known: Registries) -> type[ContactSection]:
     """A table `[[contact]]`."""
     # "pass" is no name for an attribute in a class body
     passes: dict[str, Any] = {
-        "pass": (Annotated[str, _word(_PASSES, SINGLE, TWO_HALF, MORTAR)], SINGLE)
+        "pass": (Annotated[str, _word(_PASSES, AUTO, SINGLE, TWO_HALF, MORTAR)], AUTO)
     }
     return create_model("Contact", __base__=ContactSection, **passes, **laws_or_python(known))
 

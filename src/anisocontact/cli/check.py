@@ -15,6 +15,7 @@ from anisocontact.cli.output import say
 
 if TYPE_CHECKING:
     from anisocontact.case.build import Built
+    from anisocontact.contact import Contact
 
 __all__ = ["command", "contents"]
 
@@ -77,10 +78,9 @@ def contents(built: Built) -> list[str]:
         penalty = f", penalty {values['penalty'][0]:.4g}" if "penalty" in values else ""
         own = section.python
         rule = section.friction.sliding_rule if own is None else f"{own.law} of {own.file}"
-        passes = ", two half passes" if section.half_passes else ""
         lines.append(
             f"contact   {section.slave} on {section.master}: {model.count_facets(section.slave)} "
-            f"slave facets{penalty}, {rule}{passes}"
+            f"slave facets{penalty}, {rule}, {_pass(contact)}"
         )
     lines += _points(built)
     for rigid in problem.rigid.bodies:
@@ -94,6 +94,14 @@ def contents(built: Built) -> list[str]:
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
     lines += [f"warning   {text}" for text in (*built.doubts(), *built.solver.cautions)]
     return [*lines, *(f"warning   {line}" for line in doubtful_sides(problem.contacts))]
+
+
+def _pass(contact: Contact) -> str:
+    """Where the law of a contact is evaluated, and how exactly it holds."""
+    first = contact.passes[0]
+    where = "at slave nodes (mortar)" if first.slave_points.at_nodes else "at integration points"
+    both = ", two half passes" if len(contact.passes) > 1 else ""
+    return f"{where}{both}, {'multipliers' if first.trials.augmented else 'penalties'}"
 
 
 def _points(built: Built) -> Iterator[str]:

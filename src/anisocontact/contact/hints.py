@@ -23,7 +23,8 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
     """Contacts whose slave has much larger facets than the master.
 
     A single pass looks from points of the slave: what of the master lies between two of them is
-    not met. Two half passes and self-contact look from both sides.
+    not met. Slave nodes meet it, by its mean. Two half passes and self-contact look from both
+    sides.
 
     Args:
         contacts: The contacts.
@@ -38,13 +39,21 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
             continue
         slave, master = contact.facet_size, contact.master_size
         if slave > ratio * master:
+            at_nodes = contact.passes[0].slave_points.at_nodes
             found.append(
                 f"contact of {contact.slave} with {contact.master}: the facets of the slave are "
                 f"{slave / master:.2g} times as large as those of the master ({slave:.3g} and "
-                f"{master:.3g}), and what lies between its points is not met; swap slave and "
-                'master, or take two half passes (pass = "two-half", Contact(..., two_half=True))'
+                f"{master:.3g}), {_AT_NODES if at_nodes else _AT_POINTS}"
             )
     return found
+
+
+#: What a coarse slave does to a contact.
+_AT_POINTS = (
+    "and what lies between its points is not met; swap slave and master, or take slave nodes "
+    '(pass = "mortar", Contact(..., mortar=True))'
+)
+_AT_NODES = "and pressures are as coarse as these; swap slave and master"
 
 
 def stiff_slaves(contacts: Sequence[Contact]) -> list[str]:

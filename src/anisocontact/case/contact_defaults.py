@@ -1,0 +1,80 @@
+"""What "auto" means for a contact: where its law is evaluated, and whether penalties are exact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from anisocontact.base.errors import InputError
+from anisocontact.bulk import Material
+from anisocontact.case.model import AUGMENTED, MORTAR, PENALTY, SINGLE, ContactSection
+from anisocontact.case.quantity import AUTO
+from anisocontact.contact import facet_size
+from anisocontact.contact.hints import FINER, STIFF
+from anisocontact.contact.multipliers import check, follows
+from anisocontact.interface import ContactLaw
+from anisocontact.interface.augmentation import Augmentation
+from anisocontact.mesh import Model
+
+__all__ = ["chosen", "physical_adhesion"]
+
+
+def chosen(
+    section: ContactSection, model: Model, materials: Sequence[Material], law: ContactLaw
+) -> ContactSection:
+    """The table with what "auto" stands for.
+
+    Slave nodes and multipliers are exact where pressures at points matter, and are taken wherever
+    they can be, docs/verification/mortar.md.
+
+    Args:
+        section: The table.
+        model: Mesh of the bodies.
+        materials: Material of the slave, and of the master if it is a body.
+        law: Laws of the contact.
+
+    Returns:
+        The table, with names of a pass and of a method.
+    """
+    where = section.where if section.where != AUTO else _where(section, model, materials)
+    taken = section.model_copy(update={"pass": where})
+    if taken.method == AUTO:
+        taken = taken.model_copy(update={"method": _method(taken, law)})
+    return taken
+
+
+def physical_adhesion(section: ContactSection) -> bool:
+    """Whether the stiffness of adhesion is given, not one that the run chooses."""
+    python = section.python is not None
+    return python or bool(section.adhesion.parameters().get("stiffness") != AUTO)
+
+
+def _where(section: ContactSection, model: Model, materials: Sequence[Material]) -> str:
+    """Slave nodes, unless something speaks for integration points."""
+    return SINGLE if any(_for_points(section, model, materials)) else MORTAR
+
+
+def _for_points(
+    section: ContactSection, model: Model, materials: Sequence[Material]
+) -> Iterator[bool]:
+    """What speaks for integration points."""
+    yield section.self_contact or section.degree is not None
+    yield model.idealisation.dim == 2 or model.mesh.comm.size > 1
+    if section.meshed:
+        slave, master = materials
+        finer = facet_size(model, section.slave) < FINER * facet_size(model, section.master)
+        # nodes of a slave that is stiffer and finer lose contact in between, see `stiff_slaves`
+        yield finer and slave.young > STIFF * master.young
+
+
+def _method(section: ContactSection, law: ContactLaw) -> str:
+    """Multipliers at slave nodes, unless a penalty is given or the law has a say."""
+    if section.asks_for_multipliers:
+        return AUGMENTED
+    if not section.mortar or section.normal.parameters().get("penalty") != AUTO:
+        return PENALTY
+    augmentation = Augmentation(tangential=not physical_adhesion(section))
+    try:
+        check(augmentation, law)
+    except InputError:
+        return PENALTY
+    return AUGMENTED if follows(augmentation, law) else PENALTY
