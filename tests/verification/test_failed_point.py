@@ -147,7 +147,8 @@ def test_a_law_in_python_that_returns_no_number(
     """The point is found among those that the law was evaluated for, and fails alone, too."""
     text = (Path(__file__).parents[1] / "unit" / "small_block.toml").read_text()
     first, last = text.index("adhesion ="), text.index("[[step]]")
-    table = 'pass = "single"\n[contact.python]\nfile = "law.py"\nlaw = "Fading"\narguments = { last = 0.94 }\n'
+    table = 'pass = "single"\n[contact.python]\nfile = "law.py"\nlaw = "Fading"\n'
+    table += "arguments = { last = 0.94 }\n"
     text = text[:first] + table + "isotropic = true\n" + text[last:]
     text = text.replace("normal = [0, 0, 1]", "normal = [0, 0, 1]\ntangent = [1, 0, 0]")
     (tmp_path / "case.toml").write_text(text.replace("[output]", "[output]\npictures = false"))

@@ -53,20 +53,27 @@ def contact(
         auto_penalty(model, group, body) for (_, group), body in zip(sides, bodies, strict=True)
     )
     law = law_file.contact_law(section, place, auto, given)
+    required = section.method == AUGMENTED or section.asks_for_multipliers
     section = chosen(section, model, bodies, law)
+    augmentation = _augmentation(section, required)
     if section.meshed:
-        made = _made(section, model, section.master, law, place)
+        made = _made(section, model, section.master, law, place, augmentation)
     else:
         surface = objects.surface(case.surface[section.master], f"surface.{section.master}")
         interface = objects.interface(law, surface, place)
         moving = MovingSurface(interface, rigid.get(section.master))
-        made = _made(section, model, moving, None, place)
+        made = _made(section, model, moving, None, place, augmentation)
     made.physical_adhesion = physical_adhesion(section)
     return made
 
 
 def _made(
-    section: ContactSection, model: Model, master: AnyMaster, law: ContactLaw | None, place: str
+    section: ContactSection,
+    model: Model,
+    master: AnyMaster,
+    law: ContactLaw | None,
+    place: str,
+    augmentation: Augmentation | None,
 ) -> Contact:
     on = "itself" if section.self_contact else section.master
     with objects.within(place):
@@ -76,7 +83,7 @@ def _made(
             master,
             law,
             degree=section.degree,
-            augmentation=_augmentation(section),
+            augmentation=augmentation,
             adjust=section.adjust_gap if section.adjust else None,
             two_half=section.half_passes,
             mortar=section.mortar,
@@ -86,9 +93,15 @@ def _made(
         )
 
 
-def _augmentation(section: ContactSection) -> Augmentation | None:
-    """What the table asks for; a stiffness of adhesion that the user gave is physical."""
+def _augmentation(section: ContactSection, required: bool) -> Augmentation | None:
+    """What the table asks for; a stiffness of adhesion that the user gave is physical.
+
+    Args:
+        section: The table, with what "auto" stands for.
+        required: Whether the user asks for multipliers: else penalties hold where there are none.
+    """
     if section.method != AUGMENTED:
         return None
     tolerance = Augmentation.tolerance if section.tolerance is None else section.tolerance
-    return Augmentation(tolerance, not physical_adhesion(section), section.multipliers)
+    tangential = not physical_adhesion(section)
+    return Augmentation(tolerance, tangential, section.multipliers, required)

@@ -8,12 +8,12 @@ from typing import Any
 from anisocontact.contact.multipliers import AugmentedLaw, Multipliers, check, follows
 from anisocontact.contact.nested import Nested
 from anisocontact.contact.semismooth import Semismooth, Softer
-from anisocontact.contact.uzawa import Uzawa
+from anisocontact.contact.uzawa import Once, Uzawa
 from anisocontact.interface.augmentation import AUTO, NEWTON, UZAWA, Augmentation
 
 #: Ways of an increment, the usual one and what is tried where that fails: with smaller penalties,
-#: in cycles.
-USUAL, SOFTER, IN_CYCLES = "usual", "softer", "in cycles"
+#: in cycles, and with penalties alone where multipliers are not required.
+USUAL, SOFTER, IN_CYCLES, PENALTIES = "usual", "softer", "in cycles", "penalties"
 
 #: Classes of the ways that a scheme has.
 SCHEMES: Mapping[str, Mapping[str, type[Multipliers]]] = {
@@ -40,5 +40,7 @@ def make_multipliers(
     name = augmentation.multipliers
     if name == AUTO:
         name = NEWTON if follows(augmentation, law) else UZAWA
-    ways = SCHEMES[name].items()
-    return {way: kind(augmentation, size, law.penalties(), comm) for way, kind in ways}
+    ways = dict(SCHEMES[name])
+    if not augmentation.required:
+        ways[PENALTIES] = Once
+    return {way: kind(augmentation, size, law.penalties(), comm) for way, kind in ways.items()}

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact.multipliers import SHARE, ContactTrial, Multipliers, NotHeldError
+from anisocontact.contact.penalty import PENALTY_FACTOR
 from anisocontact.interface import State
 from anisocontact.interface.augmentation import Augmentation
 
@@ -146,6 +147,24 @@ class Uzawa(Multipliers):
         if self._comm.allreduce(int(not same)) > 0:
             self._mixing = Mixing(self._comm)
         self._status = status
+
+
+class Once(Uzawa):
+    """A single cycle: penalties about the multipliers of the accepted state, whatever they leave.
+
+    The penetration is the change of the pressure in the increment over the penalty.
+    """
+
+    def suit(self, stiffness: float) -> None:
+        """Bring the penalties to the stiffness of the bodies: `PENALTY_FACTOR` times of it."""
+        Multipliers.suit(self, PENALTY_FACTOR * stiffness)
+
+    def commit(self) -> None:
+        """Keep nothing."""
+
+    def improve(self, _: ContactTrial) -> State | None:
+        """What equilibrium with penalties leaves stays."""
+        return None
 
 
 class Mixing:

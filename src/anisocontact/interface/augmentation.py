@@ -22,6 +22,8 @@ class Augmentation:
         tolerance: Largest penetration and elastic slip, share of the facet size, > 0.
         tangential: Whether the stiffness of adhesion is a penalty as well; not if it is physical.
         multipliers: Way to the multipliers, one of `SCHEMES`.
+        required: Whether an increment fails in which no multipliers are found; if not, penalties
+            hold in it, and the run says so.
 
     Raises:
         InputError: The tolerance is out of range, or there is no such way.
@@ -34,6 +36,7 @@ class Augmentation:
     tolerance: float = 1e-6
     tangential: bool = True
     multipliers: str = AUTO
+    required: bool = True
 
     def __post_init__(self) -> None:
         if not 0.0 < self.tolerance < 1.0:

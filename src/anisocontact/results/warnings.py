@@ -85,7 +85,7 @@ def worst_of_models(accepted: Accepted, before: Mapping[str, Any]) -> dict[str, 
         before: What this gave at the one before; empty at the start.
 
     Returns:
-        "turned", by body, and "energy_residual", as JSON can have them.
+        "turned", by body, "energy_residual" and "relaxed", as JSON can have them.
     """
     turned = dict(before.get("turned", {}))
     for name, now in accepted.turned.items():
@@ -97,11 +97,12 @@ def worst_of_models(accepted: Accepted, before: Mapping[str, Any]) -> dict[str, 
     if not left or share > left["worst_share"]:
         cause = accepted.imbalance.cause
         left |= {"worst_share": share, "worst_time": accepted.time, "cause": cause}
-    return {"turned": turned, "energy_residual": left | {"share": share}}
+    relaxed = [*before.get("relaxed", [])] + [accepted.time] * accepted.relaxed
+    return {"turned": turned, "energy_residual": left | {"share": share}, "relaxed": relaxed}
 
 
 def of_models(summary: Mapping[str, Any]) -> list[str]:
-    """Bodies that turned beyond small strain, and energies that do not balance.
+    """Bodies that turned beyond small strain, energies out of balance, increments with penalties.
 
     Args:
         summary: Content of the summary, with what `worst_of_models` gave.
@@ -116,6 +117,11 @@ def of_models(summary: Mapping[str, Any]) -> list[str]:
         found.append(
             f"the balance of energy left {left['worst_share']:.0%} of the work open at time "
             f"{left['worst_time']:.4g}, {left['share']:.1%} at the end: {left['cause']}"
+        )
+    if relaxed := summary.get("relaxed"):
+        found.append(
+            f"penalties held in {len(relaxed)} increments or parts, from time {relaxed[0]:.4g} on, "
+            "as no multipliers were found: bodies overlap there by the penetrations of contacts"
         )
     return found
 

@@ -7,6 +7,12 @@ from collections.abc import Iterator
 from anisocontact.solver.stepping.report import Accepted
 from anisocontact.solver.system.rotations import CURE, WARNED
 
+#: What is said where penalties hold instead of multipliers.
+RELAXED = (
+    "no multipliers were found that hold the contacts exactly, so penalties do in this increment "
+    "and later ones like it; the summary has the penetration"
+)
+
 
 class Alarms:
     """Warnings that accepted increments give reason to."""
@@ -30,3 +36,5 @@ def _found(accepted: Accepted) -> Iterator[tuple[str, str]]:
             yield f"turned {name}", f"body {name!r}, at small strain, {turned}; {CURE}"
     if accepted.imbalance.large:
         yield "energy", str(accepted.imbalance)
+    if accepted.relaxed:
+        yield "relaxed", RELAXED

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from anisocontact.base.fenicsx import Vec
-from anisocontact.contact.schemes import IN_CYCLES, SOFTER, USUAL
+from anisocontact.contact.schemes import IN_CYCLES, PENALTIES, SOFTER, USUAL
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.acceptance import refused
 from anisocontact.solver.stepping.continuation import Continuation
@@ -35,6 +35,7 @@ class Outcome:
         final: Whether no smaller part can help, see `Refusal`.
         hint: What may be behind the failure, and what to do about it.
         failed: A point at which the laws failed, on the first rank that has one.
+        relaxed: Whether penalties hold where no multipliers were found.
     """
 
     result: NewtonResult
@@ -42,6 +43,7 @@ class Outcome:
     final: bool = False
     hint: str = ""
     failed: FailedPoint | None = None
+    relaxed: bool = False
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,8 @@ class Attempts:
     status of points alternated, a further one takes a share of each correction: half as much as
     before where it still alternates, twice as much where it does not. Where that does not help
     either and the part is small, the last one lets the bodies flow, see `Flow`. Where a part is
-    tiny, both are tried whatever was in the way. Where contact may
+    tiny, both are tried whatever was in the way. Before, penalties hold in a small part where
+    multipliers are not required. Where contact may
     hold free bodies without springs, an attempt without them comes before all these. Multipliers
     that follow every correction have ways of their own, see `_following`.
 
@@ -124,14 +127,15 @@ class Attempts:
             result, culprits = self._attempt(way)
             spent += result.iterations
             if not result.reason:
-                return Outcome(replace(result, iterations=spent))
+                relaxed = way.multipliers == PENALTIES
+                return Outcome(replace(result, iterations=spent), relaxed=relaxed)
             if self._turns.objects:  # nothing but a smaller part can help
                 return Outcome(replace(result, iterations=spent))
             found = _graver(found, culprits)
             seen |= {culprit.kind for culprit in culprits}
             alternates = "flipping" in seen and not seen & PLAIN
-            if way is ways[-1] and not self._final and (alternates or tiny):
-                ways += self._last_resorts(way, small)
+            if way is ways[-1] and not self._final:
+                ways += self._last_resorts(way, last, small, alternates or tiny)
         result = replace(result, iterations=spent, reason=_reason(result.reason, found))
         hint = self._continuation.hint()
         return Outcome(result, tuple(found), self._final, hint, self._failed)
@@ -147,12 +151,19 @@ class Attempts:
             ways.insert(2 if trusts else 1, _Way(last, layered=True))
         return ways
 
-    def _last_resorts(self, failed: _Way, small: bool) -> list[_Way]:
+    def _last_resorts(self, failed: _Way, last: Vec, small: bool, stuck: bool) -> list[_Way]:
         """What is left to be tried where the status of points alternates, or parts are small."""
-        if not failed.damped and not failed.flowing:
+        relaxed = failed.multipliers == PENALTIES
+        if stuck and not (failed.damped or failed.flowing or relaxed):
             return [replace(failed, damped=True)]
-        if small and self._problem.stabilisation.enabled and not failed.flowing:
-            return [_Way(failed.start, flowing=True)]
+        if (
+            small
+            and PENALTIES in self._problem.contact_term.ways
+            and not (failed.flowing or relaxed)
+        ):
+            return [_Way(last, full_steps=False, multipliers=PENALTIES)]
+        if stuck and small and self._problem.stabilisation.enabled and not failed.flowing:
+            return [_Way(last, flowing=True)]
         return []
 
     def _attempt(self, way: _Way) -> tuple[NewtonResult, list[Culprit]]:

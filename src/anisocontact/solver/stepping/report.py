@@ -57,6 +57,7 @@ class Accepted:
             (k, 3), length; contacts without any are left out.
         turned: How far each body at small strain has turned, by name.
         imbalance: What is left open in the balance of energy.
+        relaxed: Whether penalties hold in it, as no multipliers were found.
     """
 
     step: str
@@ -73,6 +74,7 @@ class Accepted:
     ran_off: dict[str, Floats]
     turned: dict[str, Turned]
     imbalance: Imbalance
+    relaxed: bool = False
 
 
 @dataclass(frozen=True)

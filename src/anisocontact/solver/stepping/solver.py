@@ -23,7 +23,7 @@ from anisocontact.solver.stepping.report import Accepted, Cut, Progress, Stopped
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.strategies.choice import choose
-from anisocontact.solver.strategies.newton import NewtonResult, OptionValue
+from anisocontact.solver.strategies.newton import OptionValue
 from anisocontact.solver.strategies.strategy import IncrementSolver, Task
 from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.problem import Problem
@@ -217,7 +217,7 @@ class Solver:
                 self._cut(step, outcome)
                 continue
             increment, done, part = pace.increment, pace.end, pace.part
-            accepted = self._accepted(step, increment, done, outcome.result)
+            accepted = self._accepted(step, increment, done, outcome)
             pace.advance(outcome.result.iterations)
             pace.bound(min(self._turns.allowed(part), largest))
             place.before, place.spent = last, 0
@@ -289,7 +289,7 @@ class Solver:
     def _time(self, step: Step, increment: int, done: float) -> float:
         return self.place.time + _whole(increment, done) * (step.duration / step.increments)
 
-    def _accepted(self, step: Step, increment: int, done: float, result: NewtonResult) -> Accepted:
+    def _accepted(self, step: Step, increment: int, done: float, outcome: Outcome) -> Accepted:
         contacts, energies = self.problem.contacts, self.problem.energies()
         ran_off = {c.name: c.ran_off for c in contacts if len(c.ran_off)}
         return Accepted(
@@ -299,7 +299,7 @@ class Solver:
             done=done,
             time=self._time(step, increment, done),
             iterations=self.place.spent,
-            residuals=result.residuals,
+            residuals=outcome.result.residuals,
             contacts={c.name: c.counts() for c in contacts},
             resultants={c.name: c.resultant() for c in contacts},
             reactions=self.problem.reactions(),
@@ -307,6 +307,7 @@ class Solver:
             ran_off=ran_off,
             turned=self.problem.rotations.accepted,
             imbalance=self._energy.after(energies, bool(ran_off)),
+            relaxed=outcome.relaxed,
         )
 
 

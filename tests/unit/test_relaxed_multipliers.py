@@ -1,0 +1,96 @@
+"""Increments in which no multipliers are found: penalties hold there, unless they are asked for."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import main
+from anisocontact.contact.multipliers import NotHeldError
+from anisocontact.contact.nested import Nested
+from anisocontact.contact.semismooth import Semismooth
+
+PRESSED = """
+[mesh.box.block]
+origin = [0, 0, 0]
+size = [1, 1, 1]
+cells = [2, 2, 2]
+
+[material.block]
+model = "linear-elastic"
+E = 1000
+nu = 0
+
+[surface.table]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+
+[[contact]]
+slave = "block.bottom"
+master = "table"
+friction = { coefficients = 0 }
+METHOD
+
+[[step]]
+name = "press"
+increments = 1
+[step.displacement]
+"block.top" = { x = 0, y = 0, z = -0.02 }
+
+[solver]
+strategy = "direct"
+cuts = 1
+[output]
+pictures = false
+"""
+
+
+def run(folder: Path, method: str) -> int:
+    (folder / "case.toml").write_text(PRESSED.replace("METHOD", method))
+    return main(["run", str(folder / "case.toml"), "-o", str(folder / "out")])
+
+
+@pytest.fixture
+def never_held(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Multipliers that are never what the trial answers to them, in cycles either."""
+
+    def improve(*_: object) -> None:
+        raise NotHeldError("never")
+
+    monkeypatch.setattr(Semismooth, "held", lambda *_: False)
+    monkeypatch.setattr(Nested, "improve", improve)
+
+
+@pytest.mark.usefixtures("never_held")
+def test_penalties_hold_where_no_multipliers_are_found(tmp_path: Path) -> None:
+    """Each part adds its own overlap about the last multipliers, and then loses none of the force.
+
+    The bar of length 1 gives `E (d - overlap)` for the travel `d`, with the overlap of the last
+    part alone: a quarter of `d`, over 1 and `10 L/h`, the penalty over the stiffness of the bar.
+    """
+    assert run(tmp_path, "") == 0
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert any("as no multipliers were found" in line for line in summary["warnings"])
+    assert summary["relaxed"] == pytest.approx([0.25, 0.5, 0.75, 1.0])
+    force, last = summary["contacts"][0]["force"][2], summary["contacts"][0]["worst_penetration"]
+    assert force == pytest.approx(1000.0 * (0.02 - last), rel=1e-7)
+    assert 0.0 < last < 0.02 / 4 / 10
+
+
+@pytest.mark.usefixtures("never_held")
+@pytest.mark.parametrize("method", ['method = "augmented"', "tolerance = 1e-5"])
+def test_multipliers_that_are_asked_for_are_required(tmp_path: Path, method: str) -> None:
+    assert run(tmp_path, method) == 3
+
+
+def test_multipliers_are_exact(tmp_path: Path) -> None:
+    """The bar alone, to ten times the tolerance of Newton's method."""
+    assert run(tmp_path, "") == 0
+    summary = json.loads((tmp_path / "out" / "summary.json").read_text())
+    assert not summary["warnings"]
+    assert summary["contacts"][0]["force"][2] == pytest.approx(20.0, rel=1e-7)
