@@ -41,12 +41,12 @@ def points(x: npt.ArrayLike, columns: int, name: str = "x", rows: int | None = N
     return a
 
 
-def connected(count: int, links: npt.NDArray[np.integer]) -> npt.NDArray[np.int64]:
+def connected(count: int, *links: npt.NDArray[np.integer]) -> npt.NDArray[np.int64]:
     """Number of the connected part each of some things belongs to.
 
     Args:
         count: How many things there are.
-        links: Those that are connected, a row each: nodes of cells, for instance, (n, k).
+        links: Those that are connected, a row each: nodes of cells, for instance, (n, k) each.
 
     Returns:
         Parts, numbered by their first things, (count,).
@@ -56,7 +56,8 @@ def connected(count: int, links: npt.NDArray[np.integer]) -> npt.NDArray[np.int6
         [0, 1, 0, 1]
     """
     root = np.arange(count)
-    first, other = np.repeat(links[:, 0], links.shape[1] - 1), links[:, 1:].ravel()
+    first = np.concatenate([np.repeat(one[:, 0], one.shape[1] - 1) for one in links])
+    other = np.concatenate([one[:, 1:].ravel() for one in links])
     while len(first):
         first, other = root[first], root[other]
         apart = first != other

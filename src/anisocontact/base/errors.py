@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
-__all__ = ["InputError", "MachineError", "ModelWarning", "RunError", "one_line", "printable"]
+__all__ = [
+    "InputError",
+    "MachineError",
+    "ModelWarning",
+    "RunError",
+    "one_line",
+    "printable",
+    "within",
+]
 
 
 def printable(text: str) -> str:
@@ -64,6 +74,16 @@ class InputError(ValueError):
         said = line.removeprefix(f"{field}:").lstrip() if field else line
         super().__init__(printable(f"{field}: {said}" if field else said))
         self.field, self.said = field, printable(said)
+
+
+@contextmanager
+def within(place: str) -> Iterator[None]:
+    """Put a place, as one in the case file, in front of the field an error names."""
+    try:
+        yield
+    except InputError as error:
+        field = ".".join(part for part in (place, error.field) if part)
+        raise InputError(error.said, field=field) from None
 
 
 class MachineError(RuntimeError):

@@ -29,7 +29,16 @@ from anisocontact.mesh.node_groups import node_near, nodes_along
 from anisocontact.mesh.readers import file_arrays, is_mesh
 from anisocontact.mesh.selectors import with_groups
 from anisocontact.rigid import RigidBody
-from anisocontact.solver import CoupledFace, ElasticSupport, Problem, Solver, Spring, Step, Turn
+from anisocontact.solver import (
+    CoupledFace,
+    ElasticSupport,
+    Problem,
+    Solver,
+    Spring,
+    Step,
+    Tie,
+    Turn,
+)
 
 __all__ = ["Built", "build", "mesh_of"]
 
@@ -118,6 +127,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
         case.symmetry,
         stabilised=case.solver.stabilisation,
         coupled=_faces(case, model, bodies),
+        ties=[Tie(**dict(section)) for section in case.tie],
     )
     for name, section in case.output.probe.items():
         section.probe().places(model, f"output.probe.{name}")

@@ -24,6 +24,7 @@ from anisocontact.case.python_section import MaterialTable
 from anisocontact.case.quantity import AUTO
 from anisocontact.case.rigid_checks import check_rigid
 from anisocontact.case.section import near
+from anisocontact.case.ties import TieSection
 from anisocontact.case.units import check_units
 from anisocontact.interface.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.surfaces import Surface
@@ -119,6 +120,8 @@ def _named_groups(case: Case) -> Iterator[str]:
         yield from (group for _, group in step.groups())
     yield from (*case.symmetry, *case.elastic_support)
     yield from (group for body in case.rigid.values() for group in body.faces)
+    for tie in case.tie:
+        yield from (tie.slave, tie.master)
     for spring in case.spring.values():
         yield from (group for group in (spring.group, spring.to) if group is not None)
 
@@ -244,7 +247,9 @@ def _group(case: Case, name: str, field: str) -> Iterator[InputError]:
 
 
 def _held(case: Case) -> Iterator[InputError]:
-    """Symmetry planes, elastic supports and springs."""
+    """Ties, symmetry planes, elastic supports and springs."""
+    for i, tie in enumerate(case.tie):
+        yield from _tie(case, tie, f"tie[{i}]")
     for i, group in enumerate(case.symmetry):
         yield from _group(case, group, f"symmetry[{i}]")
         if group in case.symmetry[:i]:
@@ -263,6 +268,20 @@ def _held(case: Case) -> Iterator[InputError]:
             yield InputError(f'"{spring.to}" given, the group itself', field=f"{place}.to")
         if not any(spring.stiffness):
             yield InputError("all components are 0", field=f"{place}.stiffness")
+
+
+def _tie(case: Case, tie: TieSection, place: str) -> Iterator[InputError]:
+    yield from _group(case, tie.slave, f"{place}.slave")
+    if tie.master in case.surface:
+        text = (
+            f'"{tie.master}" given, a surface: facets that are bonded to a rigid body are its '
+            f'faces, [rigid.<name>] faces = ["{tie.slave}"], or have a displacement in the steps'
+        )
+        yield InputError(text, field=f"{place}.master")
+    elif tie.master == tie.slave:
+        yield InputError(f'"{tie.master}" given, the slave itself', field=f"{place}.master")
+    else:
+        yield from _group(case, tie.master, f"{place}.master")
 
 
 def _points_and_faces(case: Case) -> Iterator[InputError]:

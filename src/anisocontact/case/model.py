@@ -36,6 +36,7 @@ from anisocontact.case.registered import Key, OneOf
 from anisocontact.case.registries import Registries
 from anisocontact.case.rigid import Load, Motion, Rigid
 from anisocontact.case.section import Section, near
+from anisocontact.case.ties import TieSection
 from anisocontact.case.units import Units
 from anisocontact.interface.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.interface.augmentation import NEWTON, SCHEMES, UZAWA, Augmentation
@@ -223,6 +224,9 @@ class Case(Section):
         default_factory=dict, description="rigid bodies that carry surfaces, by name"
     )
     contact: list[Any] = Field(default_factory=list)
+    tie: list[TieSection] = Field(
+        default_factory=list, description="pairs of facet groups that are glued together"
+    )
     symmetry: list[str] = Field(
         default_factory=list, description='flat facet groups that stay in their plane, "body.group"'
     )

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, Protocol
 
 from anisocontact.anisotropy import DirectionField, make_directions
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import within
 from anisocontact.case.quantity import AUTO
 from anisocontact.case.registered import Registered
 from anisocontact.interface import ContactLaw, Interface
@@ -42,16 +40,6 @@ class Laws(Protocol):
     adhesion: Any
     friction: Any
     evolution: str
-
-
-@contextmanager
-def within(place: str) -> Iterator[None]:
-    """Put the place in the case file in front of the field an error names."""
-    try:
-        yield
-    except InputError as error:
-        field = ".".join(part for part in (place, error.field) if part)
-        raise InputError(error.said, field=field) from None
 
 
 def surface(section: Registered, place: str) -> Surface:

@@ -82,6 +82,9 @@ def contents(built: Built) -> list[str]:
             f"contact   {section.slave} on {section.master}: {model.count_facets(section.slave)} "
             f"slave facets{penalty}, {rule}, {_pass(contact)}"
         )
+    for tie in case.tie:
+        facets = model.count_facets(tie.slave)
+        lines.append(f"tie       {tie.slave} to {tie.master}: {facets} slave facets")
     lines += _points(built)
     for rigid in problem.rigid.bodies:
         how = "free where a step frees it" if rigid.free else "moved as prescribed"

@@ -19,8 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact.facet_mesh import FacetShapes
-from anisocontact.contact.overlap import facing
-from anisocontact.contact.sides import Sides
+from anisocontact.contact.overlap import Facing, facing
 from anisocontact.contact.slave_edges import SlaveEdges, line_rule, line_shapes
 from anisocontact.contact.slave_nodes import Patches
 
@@ -343,7 +342,7 @@ class LineNodes:
 
 
 def line_weights(
-    sides: Sides, around: Patches, now: Floats, more: Ints, *, current_area: bool
+    sides: Facing, around: Patches, now: Floats, more: Ints, *, current_area: bool
 ) -> LineNodes:
     """As of `mortar_weights`."""
     slave, master, sweep = sides.slave, sides.master, sides.slave.sweep

@@ -14,8 +14,7 @@ from anisocontact import _core
 from anisocontact.base.fenicsx import basix
 from anisocontact.contact.facet_mesh import FacetMesh, FacetShapes
 from anisocontact.contact.line_weights import line_weights
-from anisocontact.contact.overlap import facing, largest_radius
-from anisocontact.contact.sides import Sides
+from anisocontact.contact.overlap import Facing, facing, largest_radius
 from anisocontact.contact.slave_nodes import Patches
 
 Ints = npt.NDArray[np.int32]
@@ -78,7 +77,7 @@ class MortarWeights:
 
 
 def mortar_weights(
-    sides: Sides,
+    sides: Facing,
     around: Patches,
     now: Floats,
     more: Ints,

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,38 @@ ON_BORDER = 1e-10
 #: Newton iterations to the coordinates of a point on a facet; one on a parallelogram.
 ITERATIONS = 8
 CONVERGED = 1e-13
+
+
+class Facing(Protocol):
+    """Facets of two sides, see `Sides`."""
+
+    @property
+    def slave(self) -> FacetMesh:
+        """Facets of the slave."""
+
+    @property
+    def master(self) -> FacetMesh:
+        """Facets of the master."""
+
+    @property
+    def surface(self) -> FacetSurface:
+        """The same where it is."""
+
+    @property
+    def reach(self) -> float:
+        """Distance within which the master is searched, length."""
+
+    @property
+    def near(self) -> FacetSets | None:
+        """Facets of the master that each of the slave cannot meet; None where it can meet all."""
+
+    @property
+    def reference(self) -> Floats:
+        """Positions of the nodes in the reference configuration, (nodes, 3), length."""
+
+    @property
+    def threads(self) -> int:
+        """Threads of the kernel."""
 
 
 @dataclass(frozen=True)

@@ -20,6 +20,7 @@ from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.faces import CoupledFace
 from anisocontact.solver.terms.step import Step
+from anisocontact.solver.terms.tied_faces import Tie
 from anisocontact.solver.terms.turn import Turn
 
 __all__ = [
@@ -42,6 +43,7 @@ __all__ = [
     "StoppedError",
     "Strategy",
     "Task",
+    "Tie",
     "Turn",
     "amplitudes",
     "courses_of",

@@ -21,11 +21,12 @@ from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.faces import CoupledFace, CoupledFaces
 from anisocontact.solver.terms.loads import Loads
+from anisocontact.solver.terms.middles import follow_corners, middle_nodes
 from anisocontact.solver.terms.rigid import RigidBodies
 from anisocontact.solver.terms.stabilisation import Stabilisation
 from anisocontact.solver.terms.supports import Supports
 from anisocontact.solver.terms.symmetry import SymmetryPlanes
-from anisocontact.solver.terms.ties import tie, tied_nodes
+from anisocontact.solver.terms.tied_faces import Tie, TiedFaces
 
 
 @dataclass(frozen=True)
@@ -71,6 +72,7 @@ def make_parts(
     symmetry: Sequence[str],
     stabilised: bool,
     coupled: Sequence[CoupledFace] = (),
+    ties: Sequence[Tie] = (),
 ) -> Parts:
     """Parts of a problem, from the arguments of `Problem`.
 
@@ -82,19 +84,21 @@ def make_parts(
         model.idealisation.check_material(material, f"material.{name}")
     linear = all(material.linear for material in materials.values())
     bulk = LinearBulk(model, materials) if linear else NonlinearBulk(model, materials)
-    faces = CoupledFaces(coupled, model, materials, tied_nodes(model))
+    faces = CoupledFaces(coupled, model, materials, middle_nodes(model))
     bodies, rigid = Bodies(bulk), RigidBodies(contacts, model.mesh.comm, faces)
     layout = Layout(model.space, rigid.size)
     attached, supports, loads = Attachments(specs, model), Supports(model), Loads(model, materials)
     like = layout.new_vector()
-    planes = SymmetryPlanes(model, symmetry, like, tied_nodes(model))
+    planes = SymmetryPlanes(model, symmetry, like, middle_nodes(model))
     faces.check_planes(
         np.unique(np.concatenate([np.zeros(0, int), *(n for n, _ in planes.held())]))
     )
-    constraints = Constraints(like, tie(model, like), planes, faces)
+    tied = TiedFaces(ties, model, like) if ties else None
+    constraints = Constraints(like, follow_corners(model, like), tied, planes, faces)
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
     holders = {model.body_of(group) for one in specs for group in one.groups}
-    aid = Stabilisation(model, contacts, bodies.scale, attached, holders, stabilised, faces.links)
+    links = faces.links + ([] if tied is None else tied.links)
+    aid = Stabilisation(model, contacts, bodies.scale, attached, holders, stabilised, links)
     assembly = Assembly(
         layout,
         bodies,

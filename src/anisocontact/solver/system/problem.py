@@ -32,6 +32,7 @@ from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.faces import CoupledFace
 from anisocontact.solver.terms.persistent import Persistent, under
 from anisocontact.solver.terms.step import Step, check_courses
+from anisocontact.solver.terms.tied_faces import Tie
 
 Floats = npt.NDArray[np.float64]
 
@@ -55,6 +56,7 @@ class Problem(AssembledSystem):
         stabilised: Whether bodies that only contact can hold are kept in reach, see
             `Stabilisation`.
         coupled: Facet groups that follow rigid bodies.
+        ties: Facet groups that are glued together.
 
     Attributes:
         rigid: Rigid bodies of the contacts. The unknowns of free ones follow those of the mesh, on
@@ -90,9 +92,10 @@ class Problem(AssembledSystem):
         symmetry: Sequence[str] = (),
         stabilised: bool = True,
         coupled: Sequence[CoupledFace] = (),
+        ties: Sequence[Tie] = (),
     ) -> None:
         self._parts = parts = make_parts(
-            model, materials, contacts, attached, symmetry, stabilised, coupled
+            model, materials, contacts, attached, symmetry, stabilised, coupled, ties
         )
         self.model, self.materials = model, dict(materials)
         self.contacts, self.bulk, self.rigid = parts.contacts, parts.bulk, parts.rigid
@@ -103,7 +106,7 @@ class Problem(AssembledSystem):
         self.assembly = assembly = parts.assembly
         self.constraints, self.contact_term = assembly.constraints, assembly.contacts
         self.together = Together(self.comm)
-        self._tangent = Tangent(assembly, model.space, parts.attached.coupling)
+        self._tangent = Tangent(assembly, model.space, parts.attached.coupling or bool(ties))
         self._bodies = Configuration(parts)
         self.rotations = Rotations(model, materials)
         self.balance = ForceBalance.none(self.layout.owned)
@@ -197,7 +200,8 @@ class Problem(AssembledSystem):
         Raises:
             InputError: A step asks for what is not there, or cannot be.
         """
-        doubtful = check_courses(steps)
+        ties = self.constraints.ties
+        doubtful = check_courses(steps) + ([] if ties is None else ties.left_out())
         check_steps(self._parts, steps)
         for step in steps:
             self.attached.check(step)

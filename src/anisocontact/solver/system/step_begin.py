@@ -40,8 +40,10 @@ def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again:
     released[gone] = of_supports[gone]
     parts.assembly.terms.begin(step, released)
     planes.begin(supports.unknowns, supports.end, step.name)
-    _tell_contacts(parts, len(start))
     held = [*supports.held(), *planes.held()]
+    if parts.assembly.constraints.ties is not None:
+        parts.assembly.constraints.ties.begin(held, _on_bodies(parts))
+    _tell_contacts(parts, len(start))
     load = parts.loads.at_end(start.reshape(-1, 3)) if parts.attached else None
     frames = parts.rigid.held_frames()
     parts.stabilisation.find_free(held, step.name, load, not again, frames)
@@ -90,7 +92,15 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
         if parts.rigid.faces:
             parts.rigid.faces.check(supports.unknowns, step.name)
         held = [*supports.held(), *planes.held()]
+        if parts.assembly.constraints.ties is not None:
+            parts.assembly.constraints.ties.check(held, _on_bodies(parts))
         check_swallowed(parts.layout, step, loads.given(step), held)
+
+
+def _on_bodies(parts: Parts) -> npt.NDArray[np.int64]:
+    """Unknowns that follow rigid bodies, local numbers."""
+    faces = parts.rigid.faces
+    return np.zeros(0, dtype=np.int64) if faces is None else faces.followers
 
 
 def _check_motions(idealisation: Idealisation, step: Step) -> None:

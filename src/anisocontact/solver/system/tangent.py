@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.reachable import NodePairs
@@ -88,6 +89,8 @@ class Tangent:
             couplings += assembly.terms.couplings()
             if assembly.rigid.faces:
                 couplings += assembly.rigid.faces.room(couplings, self.coupled.first_extra)
+            pairs = [(rows, columns) for rows, columns, _ in couplings]
+            couplings += [(*one, _nothing(one)) for one in assembly.constraints.room(pairs)]
             grown = self.coupled.make_room(out, couplings, self._foreseen)
         assembly.terms.add_tangent(out)
         out.assemble()
@@ -101,4 +104,10 @@ class Tangent:
 
     def _foreseen(self) -> Sequence[NodePairs]:
         prediction = self._prediction
-        return [] if prediction is None else prediction.pairs(self._step, self._load_factor)
+        found = [] if prediction is None else prediction.pairs(self._step, self._load_factor)
+        return [*found, *self._assembly.constraints.room(found)]
+
+
+def _nothing(pairs: NodePairs) -> npt.NDArray[np.float64]:
+    """Blocks of zeros between single nodes."""
+    return np.zeros((len(pairs[0]), 3, 3))

@@ -1,15 +1,19 @@
-"""All multi-point constraints of a problem: ties of middle nodes, symmetry planes, faces."""
+"""All multi-point constraints of a problem: middle nodes, ties, symmetry planes, faces."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 import scipy
 
 from anisocontact.base.fenicsx import Mat, Vec
+from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.faces import CoupledFaces
 from anisocontact.solver.terms.symmetry import SymmetryPlanes
+from anisocontact.solver.terms.tied_faces import TiedFaces
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -20,7 +24,8 @@ class Constraints:
 
     Args:
         like: A vector of the unknowns; those of the mesh come first.
-        ties: Ties of middle nodes, if there are any.
+        middles: Middle nodes that follow corners, if there are any.
+        ties: Faces that are tied to others, if there are any.
         planes: Symmetry planes, if there are any.
         faces: Faces that follow rigid bodies, if there are any.
     """
@@ -28,11 +33,14 @@ class Constraints:
     def __init__(
         self,
         like: Vec,
-        ties: Constraint | None = None,
+        middles: Constraint | None = None,
+        ties: TiedFaces | None = None,
         planes: SymmetryPlanes | None = None,
         faces: CoupledFaces | None = None,
     ) -> None:
-        self._like, self._ties, self._planes = like, ties, planes
+        self._like, self._middles, self._planes = like, middles, planes
+        #: Faces that are tied to others; None if there are none.
+        self.ties = ties
         self._faces = faces if faces else None
 
     @property
@@ -43,8 +51,18 @@ class Constraints:
         return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
     def tied(self, force: Floats) -> Floats:
-        """Forces on the mesh, those of tied nodes handed to the corners they follow."""
-        return force if self._ties is None else self._handed(self._ties, force)
+        """Forces on the mesh, those of nodes that follow other nodes handed to these."""
+        for constraint in self._between_nodes():
+            force = self._handed(constraint, force)
+        return force
+
+    def room(self, pairs: Sequence[NodePairs]) -> list[NodePairs]:
+        """Nodes that ties couple, beside `pairs` and those of cells, see `TiedFaces.room`."""
+        return [] if self.ties is None else self.ties.room(pairs)
+
+    def links(self) -> Ints:
+        """Nodes that ties connect, (k, 2), see `TiedFaces.connected`."""
+        return np.zeros((0, 2), dtype=np.int64) if self.ties is None else self.ties.connected()
 
     def reduce(self, residual: Floats, x: Vec, scale: float) -> Floats:
         """Residual of the mesh with the constraints worked in, of the unknowns of this rank.
@@ -111,7 +129,11 @@ class Constraints:
         return columns
 
     def _all(self) -> list[Constraint]:
-        found = (self._ties, self._planes.constraint if self._planes else None)
+        planes = self._planes.constraint if self._planes else None
+        return self._between_nodes() + ([] if planes is None else [planes])
+
+    def _between_nodes(self) -> list[Constraint]:
+        found = (self._middles, None if self.ties is None else self.ties.constraint)
         return [constraint for constraint in found if constraint is not None]
 
     def _handed(self, constraint: Constraint, force: Floats) -> Floats:

@@ -51,7 +51,8 @@ class Condensed:
         n = len(starts) - 1
         self._stiffness = scipy.sparse.csr_array((values, columns, starts), shape=(n, n))
         self._gathering = problem.constraints.gathering()
-        self._part_of = np.repeat(connected(n // 3, problem.model.space.dofmap.list), 3)
+        cells = problem.model.space.dofmap.list
+        self._part_of = np.repeat(connected(n // 3, cells, problem.constraints.links()), 3)
         self._reach = Reach(problem.model, problem.contacts, steps, problem.attached.nodes)
         self._bulk: Condensation | None = None
         self._system: ContactSystem | None = None
@@ -337,9 +338,9 @@ class Condensed:
         return system
 
     def _reusable(self) -> Condensation | None:
-        """The condensation so far where parts of it may be good still; planes change the bulk."""
-        planes = self._problem.planes
-        if not planes or self._bulk is None:
+        """The condensation so far where parts of it are good still; constraints change the bulk."""
+        changes = bool(self._problem.planes) or self._problem.constraints.ties is not None
+        if not changes or self._bulk is None:
             return self._bulk
         self._bulk.close()
         return None

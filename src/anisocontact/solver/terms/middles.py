@@ -12,12 +12,12 @@ from anisocontact.solver.terms.constraint import Constraint
 Ints = npt.NDArray[np.int64]
 
 
-def tied_nodes(model: Model) -> Ints:
-    """Nodes this rank owns that are tied, local numbers."""
-    return np.unique(_ties(model)[0])
+def middle_nodes(model: Model) -> Ints:
+    """Nodes this rank owns that follow from corners, local numbers."""
+    return np.unique(shares_of_corners(model)[0])
 
 
-def tie(model: Model, like: Vec) -> Constraint | None:
+def follow_corners(model: Model, like: Vec) -> Constraint | None:
     """Constraint of the bodies whose displacement is of order 1.
 
     At a middle node `u = mean of u at the corners of its edge, face or cell`, so that the
@@ -32,7 +32,7 @@ def tie(model: Model, like: Vec) -> Constraint | None:
     """
     if not model.linear:
         return None
-    slaves, masters, weights = _ties(model)
+    slaves, masters, weights = shares_of_corners(model)
     index_map = model.space.dofmap.index_map
     # Unknowns of rigid bodies come last, so that those of the mesh keep their numbers.
     globally = index_map.local_to_global
@@ -47,7 +47,7 @@ def tie(model: Model, like: Vec) -> Constraint | None:
     )
 
 
-def _ties(model: Model) -> tuple[Ints, Ints, npt.NDArray[np.float64]]:
+def shares_of_corners(model: Model) -> tuple[Ints, Ints, npt.NDArray[np.float64]]:
     """Middle nodes this rank owns, corners and weights, each middle node once for each corner."""
     middle, weights = corner_weights(model.space)
     cells = np.concatenate([np.zeros(0, dtype=np.int32), *map(model.cells, model.linear)])

@@ -1,0 +1,80 @@
+"""Ties in the case file: what is wrong in one line, and words of other codes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import main
+from anisocontact.results import Results
+
+CASE = """
+[mesh.box]
+lower = { origin = [0, 0, 0], size = [1, 1, 1], cells = [2, 2, 1] }
+upper = { origin = [0, 0, 1], size = [1, 1, 1], cells = [3, 3, 1] }
+
+[material]
+lower = { model = "linear-elastic", E = 1000, nu = 0.3 }
+upper = { model = "linear-elastic", E = 1000, nu = 0.3 }
+
+[surface.floor]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+
+[[tie]]
+slave = "upper.bottom"
+master = "lower.top"
+
+[[step]]
+name = "lift"
+increments = 2
+displacement = { "lower.bottom" = { x = 0, y = 0, z = 0 } }
+force = { "upper.top" = { z = 3.0 } }
+
+[output]
+pictures = false
+resultant = { glue = { body = "upper", point = [0, 0, 1.1], normal = [0, 0, 1] } }
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ('master = "lower.top"', 'master = "lower.bottom"', "tie[0].tolerance: no facet of"),
+        ('master = "lower.top"', 'master = "upper.bottom"', "the slave itself"),
+        ('master = "lower.top"', 'master = "floor"', 'faces = ["upper.bottom"]'),
+        ('master = "lower.top"', 'master = "lover.top"', 'did you mean "lower"?'),
+        ('master = "lower.top"', 'master = "lower.tip"', "tie[0].master: "),
+        ('master = "lower.top"', 'target = "lower.top"', 'did you mean "master"?'),
+        ('slave = "upper', 'tolerance = -1.0\nslave = "upper', "tie[0].tolerance: -1.0 given"),
+        ("[[tie]]", "[[bonded]]", 'did you mean "tie"?'),
+        ("[[tie]]", "[tie]", "[[tie]]"),
+        ('"lower.bottom" = { x', '"upper.bottom" = { x', "tie[0]: its slave nodes are held"),
+    ],
+)
+def test_mistakes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, line: str
+):
+    """Requirement: one line that says where, and what to do."""
+    path = tmp_path / "case.toml"
+    assert old in CASE
+    path.write_text(CASE.replace(old, new))
+    assert main(["check", str(path)]) == 2
+    error = capsys.readouterr().err
+    assert line in error
+    assert "Traceback" not in error
+
+
+def test_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """Requirement: `check` says the tie; its resultant carries the load, and a run goes on."""
+    path, out = tmp_path / "case.toml", tmp_path / "out"
+    path.write_text(CASE)
+    assert main(["check", str(path)]) == 0
+    assert "tie       upper.bottom to lower.top: 9 slave facets" in capsys.readouterr().out
+    assert main(["run", str(path), "-o", str(out)]) == 0
+    force = Results(out).summary["resultants"]["glue"]["force"]
+    assert abs(force[2]) == pytest.approx(3.0, rel=1e-9)
