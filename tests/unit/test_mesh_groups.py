@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from anisocontact.mesh import (
     selectors,
 )
 from anisocontact.mesh.described import described
+from anisocontact.mesh.merge import lift
 from anisocontact.mesh.readers import file_arrays
 from anisocontact.mesh.selectors import _SELECTORS, Boundary, with_groups
 from anisocontact.mesh.write import write_mesh
@@ -237,3 +239,65 @@ def test_hexahedra_of_20_nodes_of_gmsh(tmp_path):
     assert found.degree == 2
     assert list(found.facets) == ["ring.one"]
     assert np.allclose(found.points[found.cells], other.points[other.cells], atol=1e-14)
+
+
+@pytest.mark.parametrize("suffix", ["msh", "vtu", "inp"])
+@pytest.mark.parametrize(("cell", "order"), [("hexahedron", 1), ("tetrahedron", 2)])
+def test_points_and_edges_of_files_are_groups_of_nodes(tmp_path, suffix, cell, order):
+    """The nodes of an edge and of a corner keep their names, also where the body is put."""
+    path = tmp_path / f"box.{suffix}"
+    if suffix == "inp":
+        path.write_text(TWO_CUBES)
+    else:
+        pytest.importorskip("meshio")
+        mesh = lift(box(cell, order)) if order == 2 else box(cell)
+        on = np.all(mesh.points[:, [0, 2]] == 0.0, axis=1)
+        edge = mesh.points[on]
+        groups = {"box.edge": edge, "box.corner": np.array([[1.0, 2.0, 1.0]])}
+        write_mesh(replace(mesh, nodes=groups), path)
+    file = MeshFile(path, rename={"box": "part"}, placement=Placement(2.0, move=(0, 0, 5.0)))
+    model = build_mesh([file])
+    x = model.space.tabulate_dof_coordinates()
+    edge = x[model.nodes("part.edge")]
+    assert len(edge) == (3 if suffix == "inp" else 4 * order + 1)
+    assert np.ptp(edge, axis=0) == pytest.approx([0.0, 4.0, 0.0])
+    assert edge[:, [0, 2]] == pytest.approx(np.tile([0.0, 5.0], (len(edge), 1)))
+    assert x[model.nodes("part.corner")] == pytest.approx(np.array([[2.0, 4.0, 7.0]]))
+    lines = described(file.arrays())
+    assert "nodes     part.corner: 1, box (2, 4, 7) to (2, 4, 7)" in lines
+
+
+#: Two cubes in a row along y.
+TWO_CUBES = """\
+*NODE
+ 1, 0., 0., 0.
+ 2, 1., 0., 0.
+ 3, 1., 1., 0.
+ 4, 0., 1., 0.
+ 5, 0., 0., 1.
+ 6, 1., 0., 1.
+ 7, 1., 1., 1.
+ 8, 0., 1., 1.
+ 9, 1., 2., 0.
+ 10, 0., 2., 0.
+ 11, 1., 2., 1.
+ 12, 0., 2., 1.
+*ELEMENT, TYPE=C3D8, ELSET=BOX
+ 1, 1, 2, 3, 4, 5, 6, 7, 8
+ 2, 4, 3, 9, 10, 8, 7, 11, 12
+*NSET, NSET=EDGE
+ 1, 4, 10
+*NSET, NSET=CORNER
+ 11
+*NSET, NSET=BELOW
+ 1, 2, 3, 4
+*SOLID SECTION, ELSET=BOX, MATERIAL=STEEL
+"""
+
+
+def test_a_group_of_facets_is_none_of_nodes(tmp_path):
+    path = tmp_path / "box.inp"
+    path.write_text(TWO_CUBES)
+    mesh = file_arrays(path)
+    assert sorted(mesh.nodes) == ["box.corner", "box.edge"]
+    assert list(mesh.facets) == ["box.below"]

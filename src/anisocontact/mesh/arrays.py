@@ -51,6 +51,8 @@ class MeshArrays:
         facets: "body.group" -> node numbers, vertices first, (facets, nodes of a facet).
         order: Order of the displacement.
         linear: Bodies whose displacement is of order 1 in a mesh of order 2.
+        nodes: Points and edges: "body.group" -> places of their nodes, all on every process,
+            (nodes, 3), length.
         comm: Processes that share the mesh; properties and functions of it are collective.
     """
 
@@ -62,6 +64,7 @@ class MeshArrays:
     facets: dict[str, Nodes]
     order: int
     linear: tuple[str, ...] = ()
+    nodes: dict[str, Floats] = field(default_factory=dict)
     comm: Any = field(default_factory=lambda: MPI.COMM_SELF)
 
     @property
@@ -188,11 +191,14 @@ def rename_bodies(mesh: MeshArrays, names: Mapping[str, str]) -> MeshArrays:
     if len(bodies) < len(mesh.bodies):
         given = ", ".join(names.get(name, name) for name in mesh.bodies)
         raise InputError(f"two bodies of one name: {given}", "rename")
-    facets = {}
-    for name, nodes in mesh.facets.items():
+
+    def renamed(name: str) -> str:
         body, _, group = name.partition(".")
-        facets[f"{names.get(body, body)}.{group}"] = nodes
-    return replace(mesh, bodies=bodies, facets=facets)
+        return f"{names.get(body, body)}.{group}"
+
+    facets = {renamed(name): found for name, found in mesh.facets.items()}
+    nodes = {renamed(name): places for name, places in mesh.nodes.items()}
+    return replace(mesh, bodies=bodies, facets=facets, nodes=nodes)
 
 
 def face_mesh(mesh: MeshArrays, group: str, cell: str) -> MeshArrays:

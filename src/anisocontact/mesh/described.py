@@ -14,7 +14,7 @@ Floats = npt.NDArray[np.float64]
 
 
 def described(mesh: MeshArrays) -> list[str]:
-    """What is in a mesh, a line for each body and each facet group.
+    """What is in a mesh, a line for each body and each group.
 
     Args:
         mesh: The mesh, of one process.
@@ -48,6 +48,9 @@ def described(mesh: MeshArrays) -> list[str]:
         area = _area(mesh.points[facets[:, : mesh.vertices_per_facet]])
         word = "length" if mesh.vertices_per_facet == 2 else "area"
         lines.append(f"group     {name}: {len(facets)} facets, {word} {area:.6g}")
+    for name, places in mesh.nodes.items():
+        low, high = _place(places.min(axis=0)), _place(places.max(axis=0))
+        lines.append(f"nodes     {name}: {len(places)}, box {low} to {high}")
     return lines
 
 

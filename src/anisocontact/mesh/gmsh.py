@@ -26,6 +26,7 @@ from anisocontact.mesh.stream import MshError
 from anisocontact.mesh.whole import WholeMesh
 
 Nodes = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
 
 # gmsh element type -> cell, degree
 CELLS = {
@@ -52,7 +53,8 @@ def read_gmsh(
 
     A surface group "block.bottom" belongs to body "block"; a group "bottom" gets the name of the
     body its facets bound (one group for each body where it bounds several). In a file without
-    volumes the same holds of surface groups, which are bodies, and of curve groups.
+    volumes the same holds of surface groups, which are bodies, and of curve groups. Groups of
+    points and of curves in space are nodes with a name.
 
     Args:
         path: File in format 4.1 or 2.2, text or binary, coordinates in length.
@@ -125,7 +127,11 @@ def _arrays(msh: MshFile, bodies: Sequence[str] | None, comm: Any) -> MeshArrays
     for name, block in _named(msh, dim - 1):
         surfaces.setdefault(name, []).append(block.nodes)
     groups = {name: known.fetch(compact, np.concatenate(parts)) for name, parts in surfaces.items()}
-    return replace(mesh, facets=_facet_groups(mesh, groups))
+    mesh = replace(mesh, facets=_facet_groups(mesh, groups))
+    lower: dict[str, list[Nodes]] = {}
+    for name, block in (one for below in range(dim - 1) for one in _named(msh, below)):
+        lower.setdefault(name, []).append(known.fetch(compact, block.nodes).reshape(-1))
+    return replace(mesh, nodes=_points_and_edges(mesh, lower))
 
 
 def _with_middles(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:
@@ -137,7 +143,30 @@ def _with_middles(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:
         mesh.add_cells("hexahedron", block.nodes[:, _IN_VTK], [name] * len(block.nodes))
     for name, block in _named(msh, 2):
         mesh.surfaces.setdefault(name, []).append(block.nodes[:, :4])
+    for name, block in (*_named(msh, 0), *_named(msh, 1)):
+        before = mesh.node_sets.get(name, np.zeros(0, dtype=np.int64))
+        mesh.node_sets[name] = np.union1d(before, block.nodes)
     return mesh.arrays(bodies)
+
+
+def _points_and_edges(mesh: MeshArrays, groups: dict[str, list[Nodes]]) -> dict[str, Floats]:
+    """Places of the nodes of groups of points and curves by full name; -1 for no node of a body."""
+    found = {}
+    for body, cells in mesh.bodies.items():
+        own = mesh.node_split.marked(mesh.cells[cells])
+        for name, parts in groups.items():
+            prefix, dot, _ = name.partition(".")
+            if dot and prefix in mesh.bodies and prefix != body:
+                continue
+            nodes = np.unique(np.concatenate(parts))
+            nodes = nodes[nodes >= 0]
+            nodes = nodes[mesh.node_split.fetch(own, nodes)]
+            places = mesh.node_split.fetch(mesh.points, nodes)
+            places = np.unique(np.concatenate(mesh.comm.allgather(places)), axis=0)
+            key = f"{body}.{name.removeprefix(f'{body}.')}"
+            if len(places) and key not in mesh.facets:
+                found[key] = places
+    return found
 
 
 def _volumes(msh: MshFile, dim: int, bodies: Sequence[str] | None) -> list[tuple[str, Block]]:

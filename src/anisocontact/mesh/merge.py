@@ -73,6 +73,7 @@ def _joined(parts: Sequence[MeshArrays]) -> MeshArrays:
         facets={
             k: v + n for p, n in zip(parts, node[:-1], strict=True) for k, v in p.facets.items()
         },
+        nodes={name: places for part in parts for name, places in part.nodes.items()},
     )
 
 

@@ -34,6 +34,8 @@ SOLIDS = {
 }
 #: Facets of meshio -> corners.
 FACETS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
+#: Points and edges of meshio -> dimension.
+LOWER = {"vertex": 0, "line": 1, "line3": 1}
 #: Names under which formats keep the group of each cell as a number.
 TAGS: tuple[str, ...] = (
     *("gmsh:physical", "medit:ref", "nastran:ref", "cell_tags", "ugrid:ref", "su2:tag"),
@@ -50,7 +52,8 @@ def read_by_meshio(path: Path) -> WholeMesh:
     Returns:
         The mesh. Bodies are the sets of volume cells, or the numbers that the format gives them as
         `body1`, `body2` and so on, or all of them as `body`; facet groups are the sets or numbers
-        (`surface1` ...) of surface cells, and sets of nodes that hold all corners of facets.
+        (`surface1` ...) of surface cells, and sets of nodes that hold all corners of facets; other
+        sets of nodes, and those of points and edges, are nodes with a name.
 
     Raises:
         InputError: meshio is not installed or cannot read the file, or no solid cell is in it.
@@ -65,6 +68,11 @@ def read_by_meshio(path: Path) -> WholeMesh:
         if block.type in SOLIDS:
             bodies = labels if any(labels) else ["body"] * len(nodes)
             mesh.add_cells(SOLIDS[block.type], nodes, bodies)
+        elif block.type in LOWER:
+            for name in dict.fromkeys(label for label in labels if label):
+                own = nodes[[label == name for label in labels]]
+                before = mesh.node_sets.get(name, np.zeros(0, dtype=np.int64))
+                mesh.node_sets[name] = np.union1d(before, own)
         elif block.type in FACETS:
             corners = nodes[:, : FACETS[block.type]]
             for name in dict.fromkeys(label for label in labels if label):
@@ -74,7 +82,9 @@ def read_by_meshio(path: Path) -> WholeMesh:
         found = ", ".join(f"{len(b.data)} {b.type}" for b in given.cells) or "none at all"
         raise InputError(f"no solid cell ({', '.join(SOLIDS)}); there are: {found}")
     for name, found in given.point_sets.items():
-        mesh.node_sets[_plain(name)] = np.unique(np.asarray(found, dtype=np.int64).ravel())
+        nodes = np.asarray(found, dtype=np.int64).ravel()
+        before = mesh.node_sets.get(_plain(name), np.zeros(0, dtype=np.int64))
+        mesh.node_sets[_plain(name)] = np.union1d(before, nodes)
     return mesh
 
 
@@ -142,8 +152,8 @@ def _tags(mesh: Any) -> Iterator[list[str]]:
         if key is None:
             yield []
             continue
-        dim = 3 if block.type in SOLIDS else 2
-        word = "body" if dim == 3 else "surface"
+        dim = 3 if block.type in SOLIDS else LOWER.get(block.type, 2)
+        word = {3: "body", 2: "surface"}.get(dim, "edge")
         numbers = np.asarray(mesh.cell_data[key][k]).astype(np.int64).tolist()
         yield [
             of_med.get(n) or known.get((dim, n)) or (f"{word}{n}" if n or dim == 3 else "")

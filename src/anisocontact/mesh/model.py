@@ -14,6 +14,7 @@ from anisocontact.base.fenicsx import MPI, create_mesh, fem, locate_entities, ve
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.idealisation import SOLID, Idealisation
+from anisocontact.mesh.node_groups import nodes_at
 from anisocontact.mesh.own_space import check_space, named_facets
 
 Ints = npt.NDArray[np.int32]
@@ -84,7 +85,11 @@ class Model:
         dim = mesh.topology.dim
         bodies = _located(mesh, dim, {name: own.cells[cells] for name, cells in own.bodies.items()})
         facets = _located(mesh, dim - 1, own.facets)
-        return cls(mesh, bodies, facets, arrays.order, arrays.linear, idealisation)
+        model = cls(mesh, bodies, facets, arrays.order, arrays.linear, idealisation)
+        for name, places in arrays.nodes.items():
+            if name not in facets:
+                model.name_nodes(name, nodes_at(model, name.partition(".")[0], places))
+        return model
 
     @classmethod
     def of(

@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
+import scipy
 
 from anisocontact.base.errors import InputError
 
-if TYPE_CHECKING:
-    from anisocontact.mesh.model import Model
-
-__all__ = ["node_near", "nodes_along"]
+__all__ = ["node_near", "nodes_along", "nodes_at"]
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -23,11 +21,11 @@ ROUNDED = 1e-5
 SAME = 1e-9
 
 
-def node_near(model: Model, body: str, point: npt.ArrayLike, field: str = "") -> Ints:
+def node_near(model: Any, body: str, point: npt.ArrayLike, field: str = "") -> Ints:
     """The node of a body that is nearest to a point; collective.
 
     Args:
-        model: The mesh.
+        model: The mesh, a `Model`.
         body: Name of the body.
         point: The point, (3,), length.
         field: Where it was written, for messages.
@@ -57,12 +55,12 @@ def node_near(model: Model, body: str, point: npt.ArrayLike, field: str = "") ->
 
 
 def nodes_along(
-    model: Model, body: str, start: npt.ArrayLike, end: npt.ArrayLike, field: str = ""
+    model: Any, body: str, start: npt.ArrayLike, end: npt.ArrayLike, field: str = ""
 ) -> Ints:
     """The nodes of a body on a straight line between two points; collective.
 
     Args:
-        model: The mesh.
+        model: The mesh, a `Model`.
         body: Name of the body.
         start: Where the line begins, (3,), length.
         end: Where it ends, (3,), length.
@@ -97,7 +95,24 @@ def nodes_along(
     return found
 
 
-def _nodes_of(model: Model, body: str, field: str) -> tuple[Ints, Floats, float]:
+def nodes_at(model: Any, body: str, places: Floats) -> Ints:
+    """The nodes of a body at some places; collective.
+
+    Args:
+        model: The mesh, a `Model`.
+        body: Name of the body.
+        places: The places, (n, 3), length.
+
+    Returns:
+        Their local numbers, those this rank owns.
+    """
+    nodes, x, size = _nodes_of(model, body, "")
+    distance, _ = scipy.spatial.KDTree(places).query(x)
+    found: Ints = nodes[distance <= ROUNDED * size]
+    return found
+
+
+def _nodes_of(model: Any, body: str, field: str) -> tuple[Ints, Floats, float]:
     """Nodes of a body that this rank owns, where they are, and the size of the body."""
     space, comm = model.space, model.mesh.comm
     nodes = np.unique(space.dofmap.list[model.cells(body, field)])

@@ -128,15 +128,19 @@ class Placement:
         if self == IN_PLACE:
             return mesh
         with np.errstate(over="ignore", invalid="ignore"):
-            points = self.scale * mesh.points
-            if self.rotate is not None:
-                points = self.rotate.apply(points)
-            placed = replace(mesh, points=points + np.asarray(self.move, dtype=float))
+            nodes = {name: self._placed(places) for name, places in mesh.nodes.items()}
+            placed = replace(mesh, points=self._placed(mesh.points), nodes=nodes)
         try:
             check_cells(placed)
         except InputError as error:
             raise InputError(f"after scale, rotate and move {error}") from None
         return placed
+
+    def _placed(self, points: Floats) -> Floats:
+        points = self.scale * points
+        if self.rotate is not None:
+            points = self.rotate.apply(points)
+        return np.asarray(points + np.asarray(self.move, dtype=float))
 
 
 def check_vector(name: str, given: Sequence[float]) -> None:

@@ -134,7 +134,20 @@ class WholeMesh:
         for name, found in self.node_sets.items():
             if name not in self.surfaces:
                 groups.add_nodes(name, numbers[found])
-        return replace(mesh, facets=groups.facets)
+        return replace(mesh, facets=groups.facets, nodes=self._points_and_edges(groups, numbers))
+
+    def _points_and_edges(self, groups: _Groups, numbers: Nodes) -> dict[str, Floats]:
+        """Sets of nodes of each body that hold no facets: places by "body.set"."""
+        mesh, found = groups.mesh, {}
+        for body, cells in mesh.bodies.items():
+            own = np.zeros(len(mesh.points) + 1, dtype=bool)  # the last one stands for no node
+            own[mesh.cells[cells]] = True
+            for name, nodes in self.node_sets.items():
+                key = f"{body}.{name.removeprefix(f'{body}.')}"
+                there = numbers[nodes][own[numbers[nodes]]]
+                if key not in groups.facets and len(there):
+                    found[key] = mesh.points[there]
+        return found
 
 
 def _in_order(cell: str, nodes: Nodes, points: Floats) -> tuple[Floats, Nodes, int]:
@@ -198,6 +211,7 @@ class _Groups:
     """
 
     def __init__(self, mesh: MeshArrays, names: Sequence[str]) -> None:
+        self.mesh = mesh
         local = CELL_FACETS[mesh.cell]
         sides = mesh.cells[:, local].reshape(-1, local.shape[1])
         keys, self._first, self._side, counts = np.unique(

@@ -6,10 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import middle_nodes
-from anisocontact.mesh.arrays import MeshArrays, Nodes
+from anisocontact.mesh.arrays import Floats, MeshArrays, Nodes
 from anisocontact.mesh.merge import facet_rows
 from anisocontact.mesh.meshio_files import GROUP, needed
 from anisocontact.mesh.whole import CORNERS, EDGES, FACES
@@ -41,7 +42,7 @@ _FACETS = {
 
 
 def write_mesh(mesh: MeshArrays, path: str | Path) -> None:
-    """Write a mesh with its bodies and facet groups, so that reading it gives the same names.
+    """Write a mesh with its bodies and groups, so that reading it gives the same names.
 
     gmsh's files have them as physical groups, the others as an array of 0 and 1 for each, called
     `group:<name>`.
@@ -61,7 +62,8 @@ def write_mesh(mesh: MeshArrays, path: str | Path) -> None:
     cell = _CELLS[mesh.cell, mesh.degree]
     blocks = [(cell, mesh.cells[rows][:, _vtk_order(mesh)]) for rows in mesh.bodies.values()]
     blocks += [_facets(mesh, rows) for rows in mesh.facets.values()]
-    names = [*mesh.bodies, *mesh.facets]
+    blocks += [("vertex", _numbers(mesh, *one)[:, None]) for one in mesh.nodes.items()]
+    names = [*mesh.bodies, *mesh.facets, *mesh.nodes]
     more = _numbered(mesh, blocks) if kind == "gmsh22" else _marked(names, blocks)
     options = {"binary": False} if kind == "gmsh22" else {}
     try:
@@ -75,6 +77,12 @@ def _facets(mesh: MeshArrays, rows: Nodes) -> tuple[str, Nodes]:
     nodes = facet_rows(mesh, mesh.cells, corners, mesh.degree)
     facet, order = _FACETS[mesh.vertices_per_facet, mesh.degree]
     return facet, nodes[:, order]
+
+
+def _numbers(mesh: MeshArrays, name: str, places: Floats) -> Nodes:
+    """Nodes of the body of a group at some places."""
+    own = np.unique(mesh.cells[mesh.bodies[name.partition(".")[0]]])
+    return np.asarray(own[scipy.spatial.KDTree(mesh.points[own]).query(places)[1]])
 
 
 def _vtk_order(mesh: MeshArrays) -> list[int]:
@@ -96,8 +104,8 @@ def _numbered(mesh: MeshArrays, blocks: list[tuple[str, Nodes]]) -> dict[str, An
     """Physical groups of gmsh."""
     numbers = [np.full(len(rows), k, dtype=np.int64) for k, (_, rows) in enumerate(blocks, 1)]
     dim = 2 if mesh.vertices_per_facet == 2 else 3
-    dims = [dim] * len(mesh.bodies) + [dim - 1] * len(mesh.facets)
-    names = [*mesh.bodies, *mesh.facets]
+    dims = [dim] * len(mesh.bodies) + [dim - 1] * len(mesh.facets) + [0] * len(mesh.nodes)
+    names = [*mesh.bodies, *mesh.facets, *mesh.nodes]
     return {
         "cell_data": {"gmsh:physical": numbers, "gmsh:geometrical": numbers},
         "field_data": {
