@@ -153,7 +153,7 @@ def test_rigid_surface(line: Any, kind: str, n: int, bound: float) -> None:
     assert p.alternation < 0.01
 
 
-@pytest.mark.parametrize("order", [1, 2])
+@pytest.mark.parametrize("order", [1, pytest.param(2, marks=pytest.mark.slow)])
 def test_error_falls(line: Any, order: int) -> None:
     """From 3 to 12 facets the largest error within 0.8 a falls with h^1.5 at least.
 
