@@ -39,6 +39,8 @@ from anisocontact.solver import Problem, Solver, Step
 STOP = 2
 #: Tolerance of Newton's method; multipliers that follow leave more round-off.
 TOLERANCE, FOLLOWING = 1e-13, 1e-12
+#: Cases of them.
+WITH_MULTIPLIERS = ("following", "following-plane", "mortar-following", "mortar-plane")
 #: Distance of the block from the mat.
 GAP_BELOW = 0.01
 
@@ -114,7 +116,7 @@ def _matching() -> Made:
     return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law(), two_half=True)])
 
 
-def _far() -> Made:
+def _far(slave: str = "block.bottom", master: str = "mat.top", **options: bool) -> Made:
     """A block that is drawn along a strip: it meets facets that were far away at the start."""
     model = build_box(
         {
@@ -122,10 +124,36 @@ def _far() -> Made:
             "mat": BoxSpec((-6, -1.5, -1), (12, 3, 1), (12, 3, 1)),
         }
     )
-    pair = Contact(model, "block.bottom", "mat.top", law=_law(), reach=0.4, two_half=True)
+    options = options or {"two_half": True}
+    pair = Contact(model, slave, master, law=_law(), reach=0.4, **options)
     problem, steps = _dragged(model, [pair])
     along = steps[0].displacement | {"block.top": {"x": 6.0, "y": 0.2, "z": -0.2}}
     return problem, [steps[0], Step("drag", 5, along)]
+
+
+def _mortar() -> Made:
+    """The slave is cut between processes, and so is what is around its nodes."""
+    model = _bodies("tetrahedron")
+    return _dragged(model, [Contact(model, "mat.top", "block.bottom", law=_law(), mortar=True)])
+
+
+def _mortar_second_order() -> Made:
+    model = _bodies("tetrahedron", 2)
+    return _dragged(model, [Contact(model, "mat.top", "block.bottom", law=_law(), mortar=True)])
+
+
+def _mortar_far() -> Made:
+    return _far("mat.top", "block.bottom", mortar=True)
+
+
+def _mortar_following() -> Made:
+    """Multipliers at slave nodes that follow every correction."""
+    model = _bodies(gap=0.0)
+    exact = Augmentation(tangential=False, multipliers="newton")
+    pair = Contact(
+        model, "mat.top", "block.bottom", law=_law(), augmentation=exact, mortar=True
+    )
+    return _dragged(model, [pair], "linear-elastic")
 
 
 def _augmented(multipliers: str = "uzawa") -> Made:
@@ -140,11 +168,16 @@ def _following() -> Made:
     return _augmented("newton")
 
 
-def _following_plane() -> Made:
+def _mortar_plane() -> Made:
+    return _following_plane(mortar=True)
+
+
+def _following_plane(**options: bool) -> Made:
     """The same on an analytic surface, with multipliers of friction too."""
     model = build_box({"block": BoxSpec((-2, -2, 0), (4, 4, 2), (4, 3, 2))})
     plane = make_interface(stiffness=(8.0, 16.0), penalty=20.0, coefficients=(0.2, 0.4), angle=0.5)
-    pair = Contact(model, "block.bottom", plane, augmentation=Augmentation(multipliers="newton"))
+    exact = Augmentation(multipliers="newton")
+    pair = Contact(model, "block.bottom", plane, augmentation=exact, **options)
     problem = Problem(model, {"block": make_material("linear-elastic", E=8.0, nu=0.3)}, [pair])
     steps = [
         Step("press", 2, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.2}}),
@@ -205,6 +238,11 @@ CASES: dict[str, Callable[[], Made]] = {
     "following-plane": _following_plane,
     "under-a-lid": _under_a_lid,
     "folded": _folded,
+    "mortar": _mortar,
+    "mortar-second-order": _mortar_second_order,
+    "mortar-far": _mortar_far,
+    "mortar-following": _mortar_following,
+    "mortar-plane": _mortar_plane,
 }
 
 
@@ -240,7 +278,7 @@ def run(name: str, folder: Path, mode: str) -> None:
     """One of `CASES`."""
     problem, steps = CASES[name]()
     ranks = problem.comm.size
-    tolerance = FOLLOWING if name.startswith("following") else TOLERANCE
+    tolerance = FOLLOWING if name in WITH_MULTIPLIERS else TOLERANCE
     solver = Solver(problem, steps, options={"snes_rtol": tolerance}, strategy="direct")
     if mode.startswith("from:"):
         stored = load_checkpoint(folder / f"{name}-{mode[5:]}-stop")

@@ -71,7 +71,8 @@ class AnalyticAnswer:
         if self.turned is not None:
             blocks -= quadrature.tangent_matrices(now.tangent_slave, areas)
         rows = quadrature.nodes[:, : quadrature.rows]
-        return [(rows, quadrature.nodes, blocks[:, : 3 * rows.shape[1]])]
+        columns = self.slave.coupled(quadrature.nodes)
+        return [(rows, columns, blocks[:, : 3 * rows.shape[1]])]
 
     def by_derivative(self, other: AnalyticAnswer, stiffness: Floats) -> Self:
         """As of `Answer`."""
@@ -90,7 +91,8 @@ class AnalyticAnswer:
         if self.body is None:
             raise ValueError("the surface is that of no rigid body")
         moved = self.there if self.slave.current_area else None
-        return body_blocks(self.slave.quadrature, moved, self.body, self.snapshot, self.turned)
+        found = body_blocks(self.slave.quadrature, moved, self.body, self.snapshot, self.turned)
+        return replace(found, nodes=self.slave.coupled(found.nodes))
 
 
 class AnalyticMaster(Master):
@@ -131,7 +133,7 @@ class AnalyticMaster(Master):
     def place(self, u: Floats, *histories: State) -> bool:
         self._way = self._slave.quadrature.at_points(u)
         if self._slave.current_area or self._sees_slave:
-            self._there = self._slave.quadrature.moved(u)
+            self._there = self._slave.quadrature.moved(self._slave.everywhere(u))
         return False
 
     @override
@@ -225,7 +227,8 @@ class AnalyticMaster(Master):
 
     @override
     def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
-        outward = self._slave.outward_of(self._slave.quadrature.moved(u))
+        moved = self._slave.quadrature.moved(self._slave.everywhere(u))
+        outward = self._slave.outward_of(moved)
         places, last = now.points, before.points
         if self.body is not None:
             last, places = self.body.to_body(last, accepted=True), self.body.to_body(places)

@@ -15,7 +15,7 @@ nodes, so that history is transported and tangents are exact as on any facet.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -56,6 +56,33 @@ class Opposite:
     gradient: Floats
     second: Floats
     edge: Floats
+
+    @classmethod
+    def none(cls, n: int, width: int) -> Opposite:
+        """Nothing opposite to n slave nodes, on facets of so many nodes."""
+        none = np.full((n, 1), -1, dtype=np.int32)
+        return cls(
+            none,
+            np.zeros((n, 1)),
+            none[:, 0],
+            np.zeros((n, width), dtype=np.int32),
+            np.zeros((n, width)),
+            np.zeros((n, 2, width)),
+            np.zeros((n, 2, 2, width)),
+            np.zeros((n, 2)),
+        )
+
+    def in_order(self, names: Ints | None = None) -> Opposite:
+        """The same with the nodes that have a share alone, in ascending order.
+
+        Args:
+            names: Other names of them, (n, k).
+        """
+        names = np.where(self.shares != 0.0, self.masters if names is None else names, -1)
+        count = max(int((names >= 0).sum(axis=1).max(initial=0)), 1)
+        order = np.argsort(np.where(names < 0, np.iinfo(np.int32).max, names), axis=1)[:, :count]
+        masters, shares = (np.take_along_axis(one, order, axis=1) for one in (names, self.shares))
+        return replace(self, masters=masters.astype(np.int32), shares=shares)
 
     def mean(self, x: Floats) -> Floats:
         """Mean position, (n, 3), length, of nodes at x, (nodes, 3)."""

@@ -76,10 +76,7 @@ class FacetMaster(MeshedMaster):
 
     def _gather(self, u: Floats, histories: tuple[State, ...]) -> bool:
         """Have all facets of the master that the points can reach; whether there are others."""
-        if not self._gathered.distributed:
-            return False
-        now = self._gathered.local(self.sides.reference) + u
-        anew = self.sides.outrun(now)
+        anew = self._outrun(u)
         if anew:
             # some of them can be one and the same
             states = {id(state): state for state in histories}.values()
@@ -88,20 +85,18 @@ class FacetMaster(MeshedMaster):
             named += [] if self._transfer is None else self._transfer.facets()
             for facets in named:
                 facets[:] = self._gathered.globally(facets)
-            self._number_anew(now, named)
+            self._number_anew(u, named)
         return anew
 
-    def _number_anew(self, now: Floats, named: Sequence[Ints]) -> None:
+    def _number_anew(self, u: Floats, named: Sequence[Ints]) -> None:
         """Have the facets that are near and those that are named; collective.
 
         Args:
-            now: Positions of the local nodes, (nodes, 3), length.
+            u: Displacements of the local nodes, (nodes, 3), length.
             named: Arrays of facets of the whole group, -1 for none; those of this process are
                 written.
         """
-        if self._gathered.distributed:
-            numbers = np.unique(np.concatenate(named)).astype(np.int64)
-            self.sides = self.sides.gather(now, numbers[numbers >= 0])
+        self._have(u, *named)
         for facets in named:
             facets[:] = self._gathered.renumbered(facets)
         if self._transfer is not None:
@@ -267,8 +262,7 @@ class FacetMaster(MeshedMaster):
         kept = {name: values.copy() for name, values in kept.items()}
         named = kept["state"]["facet"], kept["projection.facet"]
         u = self._gathered.moved(u)
-        now = self._gathered.local(self.sides.reference) + u
-        self._number_anew(now, named)
+        self._number_anew(u, named)
         ends = [v.max(initial=0.0) for v in (kept["transferred"], -kept["transferred"])]
         most, least = np.max(self._comm.allgather(ends), axis=0)
         self._transferred = float(most - least)

@@ -82,7 +82,7 @@ def near_facets(
 
     Args:
         mesh: The facets.
-        numbers: Their numbers on the surface, (m,).
+        numbers: Their numbers on the surface, -1 for one that is not part of it, (m,).
         surface: The surface they are part of, in the reference configuration.
         x: Positions of the local nodes there, (nodes, 3), length.
         apart: Facets nearer than this to the middle or a corner of a facet are near, and its
@@ -95,11 +95,12 @@ def near_facets(
     points = np.concatenate([corners, corners.mean(axis=1, keepdims=True)], axis=1)
     count, each, _ = points.shape
     found = surface.within(points.reshape(-1, 3), apart)
-    rings = surface.rings(numbers)
+    part = np.flatnonzero(numbers >= 0)
+    rings = surface.rings(numbers[part])
     owner = np.concatenate(
         [
             np.repeat(np.arange(count * each) // each, np.diff(found.offsets)),
-            np.repeat(np.arange(count), np.diff(rings.offsets)),
+            np.repeat(part, np.diff(rings.offsets)),
         ]
     )
     all_facets = len(surface)

@@ -7,19 +7,28 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
+import numpy as np
+import numpy.typing as npt
+
 from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import facet_keys
 from anisocontact.contact.analytic import AnalyticMaster
 from anisocontact.contact.facet_master import FacetMaster
-from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
+from anisocontact.contact.facet_mesh import facet_mesh, node_positions
 from anisocontact.contact.mortar_master import MortarMaster
 from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.poles import without_poles
-from anisocontact.contact.quadrature import FacetQuadrature, chosen_degree, facet_quadrature, inward
+from anisocontact.contact.quadrature import chosen_degree, facet_quadrature, inward
 from anisocontact.contact.sides import check_sides, make_sides
 from anisocontact.contact.slave_edges import SlaveEdges
-from anisocontact.contact.slave_nodes import Patches, SlaveNodes, nodes_of_facets
+from anisocontact.contact.slave_nodes import (
+    NodesOfFacets,
+    SlaveNodes,
+    around_own_nodes,
+    nodes_of_facets,
+)
 from anisocontact.contact.sweep import Sweep
 from anisocontact.contact.symmetric import check_symmetry
 from anisocontact.interface import ContactLaw, Interface
@@ -129,9 +138,8 @@ def _on_surface(
     comm = model.mesh.comm
     current = options.current_area is not False
     if options.mortar:
-        mesh = facet_mesh(model.space, facets, Sweep.of(model))
-        nodes = _slave_nodes(model, mesh, current, SlaveEdges.in_plane)
-        interface = without_poles(interface, nodes.quadrature.reference)
+        nodes = _slave_nodes(model, facets, current, SlaveEdges.in_plane)
+        interface = without_poles(interface, nodes.quadrature.reference, comm)
         points: SlavePoints = nodes
     else:
         flip = inward(model.space, facets, quadrature)
@@ -143,22 +151,24 @@ def _on_surface(
 
 def _slave_nodes(
     model: Model,
-    mesh: FacetMesh,
+    facets: npt.NDArray[np.int32],
     current_area: bool,
-    of_edges: Callable[[SlaveEdges], tuple[Patches, FacetQuadrature, float]],
+    of_edges: Callable[[SlaveEdges], NodesOfFacets],
 ) -> SlaveNodes:
     """Slave nodes of a mortar contact.
 
     Raises:
-        InputError: There are several processes.
+        InputError: The mesh has two dimensions, on several processes.
     """
-    comm, x = model.mesh.comm, node_positions(model.space)
-    if comm.size > 1:
-        text = f"mortar given, on {comm.size} processes points are needed: mortar works on one"
+    sweep, comm = Sweep.of(model), model.mesh.comm
+    if sweep is not None and comm.size > 1:
+        text = f"mortar given on {comm.size} processes: in two dimensions it needs a single one"
         raise InputError(text, "pass")
-    swept = mesh.sweep is not None
-    found = of_edges(SlaveEdges(mesh, x)) if swept else nodes_of_facets(mesh, x, comm)
-    return SlaveNodes(found, x, current_area=current_area, comm=comm)
+    mesh = facet_mesh(model.space, facets, sweep)
+    whole = around_own_nodes(model.space, mesh, facet_keys(model.mesh, np.sort(facets)))
+    x = whole.far.everywhere(node_positions(model.space))
+    found = nodes_of_facets(whole, x, comm) if sweep is None else of_edges(SlaveEdges(mesh, x))
+    return SlaveNodes(found, whole, x, current_area=current_area, comm=comm)
 
 
 def _check_in_space(model: Model, field: str) -> None:
@@ -246,23 +256,21 @@ def facet_pass(
     """
     _check_pair(model, options)
     check_sides(model, slave, master, options.apart)
+    current, nodes = options.current_area is not False, None
+    if options.mortar:
+        nodes = _slave_nodes(model, model.facets(slave), current, SlaveEdges.in_space)
     sides = make_sides(
         model,
         (slave, master),
         options.chosen_degree(model),
         options.reach,
         options.apart,
-        options.current_area is not False,
+        current,
         weight,
+        nodes,
     )
-    if options.mortar:
-        nodes = _slave_nodes(model, sides.slave, sides.points.current_area, SlaveEdges.in_space)
-        met = MortarMaster(
-            replace(sides, points=nodes, excluded=None),
-            law,
-            group=master,
-            size=facet_size(model, master),
-        )
+    if nodes is not None:
+        met = MortarMaster(sides, law, group=master, size=facet_size(model, master))
         return Pass(model.space, slave, nodes, met, law, **options.of_pass)
     found = FacetMaster(
         sides,

@@ -183,7 +183,7 @@ class Master(Protocol):
         return
 
     def immovable(self, fixed: Mask) -> bool:
-        """Whether it cannot give way where displacements of local nodes are fixed, (nodes, 3)."""
+        """Whether it cannot give way where local nodes are fixed, (nodes, 3); collective."""
         return self.body is None or not self.body.free
 
     def local_names(self, nodes: Ints) -> Ints:

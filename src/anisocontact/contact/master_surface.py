@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import facet_keys
 from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
+from anisocontact.contact.far_nodes import NONE, FarNodes, node_count, owned_among
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.sweep import Sweep
 from anisocontact.mesh.split import Route, Split, arranged
@@ -30,6 +31,7 @@ class MasterSurface:
         space: Vector Lagrange space of the displacement.
         facets: Local facets on the boundary.
         sweep: Of a mesh in the plane, on one process: "nodes" are then images of its nodes.
+        beside: Nodes of the whole mesh that each process has beside, before those it gathers.
 
     Attributes:
         own: Facets of the group on this process, with its local nodes.
@@ -41,16 +43,19 @@ class MasterSurface:
         distributed: Whether there are several processes.
     """
 
-    def __init__(self, space: Any, facets: Ints, sweep: Sweep | None = None) -> None:
+    def __init__(
+        self, space: Any, facets: Ints, sweep: Sweep | None = None, beside: Keys = NONE
+    ) -> None:
+        self._space, self._beside = space, beside
         self.own = own = facet_mesh(space, facets, sweep)
         self.comm = comm = space.mesh.comm
         self.distributed = bool(comm.size > 1)
         self._sweep, x = sweep, node_positions(space)
         #: Positions of the local nodes in the reference configuration, of all images of them.
         self.start = self.reference = x if sweep is None else sweep.positions(x)
-        self._keys = facet_keys(space.mesh, np.sort(facets))
-        self._own_numbers = _ranked(comm, self._keys)
-        self._order = np.argsort(self._keys)
+        keys = facet_keys(space.mesh, np.sort(facets))
+        self._ranks = _Ranks(comm, keys)
+        self._own_numbers = self._ranks.find(keys)
         if self.distributed:
             # All facets, an even share of them on every process, for those who ask.
             index_map = space.dofmap.index_map
@@ -58,12 +63,12 @@ class MasterSurface:
             total = comm.allreduce(len(nodes))
             self._table = arranged(comm, total, self._own_numbers, nodes, own.flip)
             self._rows = Split(comm, len(self._table[0]))
-            self._owners = Split(comm, index_map.size_local)
-            self.gather(np.zeros(0, dtype=np.int64))
+            self.gather(NONE)
         else:
-            self.numbers = np.arange(len(own.nodes))
-            nodes = np.ascontiguousarray(own.nodes[self._order])
-            self.facets = FacetMesh(own.topology, nodes, own.flip[self._order], sweep)
+            self.numbers, self._far = np.arange(len(own.nodes)), FarNodes(space, NONE)
+            order = np.argsort(keys)
+            nodes = np.ascontiguousarray(own.nodes[order])
+            self.facets = FacetMesh(own.topology, nodes, own.flip[order], sweep)
 
     def gather(self, numbers: Keys) -> None:
         """Have these facets instead of those before; collective.
@@ -72,12 +77,11 @@ class MasterSurface:
             numbers: Numbers in the whole group, ascending, (n,).
         """
         nodes, flip = (self._rows.fetch(values, numbers) for values in self._table)
-        self._ids, node = np.unique(nodes, return_inverse=True)
-        self._route = Route(self.comm, self._owners.owner(self._ids))
-        #: Local nodes that other processes have gathered.
-        self._asked = self._route.there(self._ids) - self._owners.first
+        found, node = np.unique(nodes, return_inverse=True)
+        self._far = FarNodes(self._space, np.concatenate([self._beside, found]))
         self.numbers = numbers
-        named = (len(self.start) + node.reshape(nodes.shape)).astype(np.int32)
+        first = len(self.start) + len(self._beside)
+        named = (first + node.reshape(nodes.shape)).astype(np.int32)
         self.facets = FacetMesh(self.own.topology, named, flip)
         self.reference = self.everywhere(self.start)
 
@@ -97,7 +101,7 @@ class MasterSurface:
         # The interior of a curved facet goes beyond its nodes, by less than its size.
         more = ends[1] - ends[0] if self.own.nodes.shape[1] > 4 else 0.0
         ends = ends[0] - more, ends[1] + more
-        to, found = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
+        to, found = [NONE], [NONE]
         for rank, (first, last) in enumerate(self.comm.allgather((low, high))):
             inside = np.all((ends[0] <= last) & (ends[1] >= first), axis=1)
             found.append(self._own_numbers[inside])
@@ -105,13 +109,20 @@ class MasterSurface:
         return np.unique(Route(self.comm, np.concatenate(to)).there(np.concatenate(found)))
 
     def number(self, facets: Keys) -> Ints:
-        """Numbers among those of this process of local facets that it has gathered.
+        """Numbers among those of this process of facets that it has, -1 for others; collective.
 
         Args:
             facets: Facets of `facet_keys`, (n,).
         """
-        place = np.searchsorted(self._keys, facets, sorter=self._order)
-        return self.renumbered(self._own_numbers[self._order[place]])
+        return self.renumbered(self._ranks.find(facets))
+
+    def owned(self, nodes: Ints) -> Ints:
+        """Nodes of the mesh that this process owns, among those any process names; collective.
+
+        Args:
+            nodes: Some of its local nodes, or images of them.
+        """
+        return owned_among(self._space, nodes[nodes < node_count(self._space)])
 
     def renumbered(self, numbers: npt.NDArray[Any]) -> Ints:
         """Numbers among those of this process of facets that it has; -1 for others.
@@ -128,18 +139,40 @@ class MasterSurface:
         """Numbers in the whole group of facets of this process, -1 for none, (n,)."""
         return np.asarray(np.append(self.numbers, -1)[facets], dtype=np.int32)
 
-    def everywhere(self, nodal: Floats) -> Floats:
-        """Vectors of the local nodes, then those of the nodes that were gathered.
+    def names(self, nodes: Ints) -> Ints:
+        """Nodes of facets of this process by the first of these and their place on it.
 
         Args:
-            nodal: Of the local nodes, (local nodes, 3).
+            nodes: Numbered as `reference`, -1 for none.
 
         Returns:
-            Numbered as `reference`, (nodes, 3); on one process the same array.
+            Numbers that do not depend on how the mesh is distributed, -1 for none.
         """
-        if not self.distributed:
-            return nodal
-        return np.concatenate([nodal, self._route.back(nodal[self._asked])])
+        known, first = np.unique(self.facets.nodes, return_index=True)
+        facet, place = np.divmod(first[np.searchsorted(known, nodes[nodes >= 0])], self._width)
+        names = np.full_like(nodes, -1)
+        names[nodes >= 0] = self._width * self.numbers[facet] + place
+        return names
+
+    def of_names(self, names: Ints) -> Ints:
+        """Nodes of `names`, whose facets this process has."""
+        there = names >= 0
+        nodes = np.full_like(names, -1)
+        facet, place = self.facets_of_names(names[there]), names[there] % self._width
+        nodes[there] = self.facets.nodes[self.renumbered(facet), place]
+        return nodes
+
+    def facets_of_names(self, names: Ints) -> Ints:
+        """Numbers in the whole group of the facets of `names`, -1 for none."""
+        return names // self._width
+
+    @property
+    def _width(self) -> int:
+        return int(self.own.nodes.shape[1])
+
+    def everywhere[T: np.generic](self, nodal: npt.NDArray[T]) -> npt.NDArray[T]:
+        """Values of the local nodes, then of those that were gathered, see `FarNodes`."""
+        return self._far.everywhere(nodal)
 
     def local(self, nodal: Floats) -> Floats:
         """Of what `everywhere` gave, that of the local nodes."""
@@ -159,10 +192,7 @@ class MasterSurface:
         """
         if self._sweep is not None:
             self._sweep.fold(forces, out)
-        if not self.distributed:
-            return
-        out += self.local(forces)
-        np.add.at(out, self._asked, self._route.there(forces[len(self.start) :]))
+        self._far.hand_back(forces, out)
 
     def coupled(self, nodes: Ints) -> Ints:
         """Nodes as `Couplings` name them: gathered ones by their number in the whole mesh.
@@ -175,13 +205,7 @@ class MasterSurface:
         """
         if self._sweep is not None:
             return self._sweep.named(nodes)
-        if not self.distributed:
-            return nodes
-        local = len(self.start)
-        far = nodes >= local
-        named = nodes.copy()
-        named[far] = local + self._ids[nodes[far] - local]
-        return named
+        return self._far.coupled(nodes)
 
     def moved(self, u: Floats) -> Floats:
         """Displacements of the nodes as they are numbered here, from those of the mesh."""
@@ -199,11 +223,27 @@ class MasterSurface:
         return self.coupled(rows), self.coupled(columns), blocks
 
 
-def _ranked(comm: Any, keys: Keys) -> Keys:
-    """Place of each key in the order of those of all processes, (n,)."""
-    end = max(comm.allgather(int(keys.max(initial=-1)))) + 1
-    route = Route(comm, keys * comm.size // max(end, 1))
-    there = route.there(keys)
-    numbers = np.empty(len(there), dtype=np.int64)
-    numbers[np.argsort(there)] = Split(comm, len(there)).numbers
-    return route.back(numbers)
+class _Ranks:
+    """Places of keys in the order of those of all processes; collective, as is `find`.
+
+    Args:
+        comm: Communicator.
+        keys: Keys of this process, each on one of them.
+    """
+
+    def __init__(self, comm: Any, keys: Keys) -> None:
+        self._comm, self._end = comm, max(comm.allgather(int(keys.max(initial=-1)))) + 1
+        self._there = np.sort(self._route(keys).there(keys))
+        self._first = Split(comm, len(self._there)).first
+
+    def find(self, keys: Keys) -> Keys:
+        """Place of each of some keys, -1 for one that is not there, (n,)."""
+        route = self._route(keys)
+        asked = route.there(keys)
+        place = np.searchsorted(self._there, asked)
+        known = np.append(self._there, -1)[place] == asked
+        return route.back(np.where(known, self._first + place, -1))
+
+    def _route(self, keys: Keys) -> Route:
+        size = self._comm.size
+        return Route(self._comm, np.minimum(keys * size // max(self._end, 1), size - 1))

@@ -88,7 +88,8 @@ class MeshedMaster(Master):
 
     @override
     def immovable(self, fixed: Mask) -> bool:
-        return bool(fixed[self._gathered.local_names(self._gathered.own.nodes)].all())
+        here = bool(fixed[self._gathered.local_names(self._gathered.own.nodes)].all())
+        return all(self._comm.allgather(here))
 
     @override
     def look(self, x: Floats) -> Seen:
@@ -114,6 +115,23 @@ class MeshedMaster(Master):
             look=sides.look,
             comm=self._comm,
         )
+
+    def _outrun(self, u: Floats) -> bool:
+        """Whether points may reach facets of other processes; displacements of local nodes."""
+        gathered = self._gathered
+        return gathered.distributed and self.sides.outrun(gathered.local(self.sides.reference) + u)
+
+    def _have(self, u: Floats, *facets: Ints) -> None:
+        """Have the facets of the master that are near, and others; collective.
+
+        Args:
+            u: Displacements of the local nodes, (nodes, 3), length.
+            *facets: Numbers in the whole group, -1 for none.
+        """
+        if self._gathered.distributed:
+            numbers = np.unique(np.concatenate([one.reshape(-1) for one in facets]))
+            now = self._gathered.local(self.sides.reference) + u
+            self.sides = self.sides.gather(now, numbers[numbers >= 0].astype(np.int64))
 
     def _go_to(self, now: Floats) -> None:
         """Bring the surface to positions of the nodes, (nodes, 3), length."""

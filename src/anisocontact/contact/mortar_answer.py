@@ -26,6 +26,7 @@ class MortarState:
     """Slave nodes, their weights and their planes where the nodes of both bodies are.
 
     Attributes:
+        gathered: The master as this process has it.
         quadrature: The slave nodes as points, with the nodes around each.
         weights: Mortar weights.
         planes: Contact planes.
@@ -34,6 +35,7 @@ class MortarState:
         reference: The same in the reference configuration.
     """
 
+    gathered: MasterSurface
     quadrature: FacetQuadrature
     weights: MortarWeights
     planes: ContactPlanes

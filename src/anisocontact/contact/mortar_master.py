@@ -47,6 +47,8 @@ COVERED = 1e-8
 ROUNDING = 1e-12
 #: Least cosine between the averaged normal and that of the master below a node.
 OPPOSED = 0.1
+#: Of `Opposite` what a checkpoint has.
+OPPOSITE = tuple(f.name for f in fields(Opposite) if f.name != "nodes")
 
 
 class MortarMaster(MeshedMaster):
@@ -66,19 +68,9 @@ class MortarMaster(MeshedMaster):
         assert isinstance(sides.points, SlaveNodes)
         self._points: SlaveNodes = sides.points
         self._resting: Sequence[Resting] = ()
-        n = len(sides.points.facet)
-        none = np.full((n, 1), -1, dtype=np.int32)
+        self._flags: Sequence[Resting] = ()
         width = sides.master.nodes.shape[1]
-        self._then = Opposite(
-            none,
-            np.zeros((n, 1)),
-            none[:, 0],
-            np.zeros((n, width), dtype=np.int32),
-            np.zeros((n, width)),
-            np.zeros((n, 2, width)),
-            np.zeros((n, 2, 2, width)),
-            np.zeros((n, 2)),
-        )
+        self._then = Opposite.none(len(sides.points.facet), width)
         super().__init__(sides, law, group=group, size=size, mirrored=False)
         self._at = self._placed()
 
@@ -100,7 +92,7 @@ class MortarMaster(MeshedMaster):
         x = points.positions(now)
         named = self._gathered.local_names
         under = replace(opposite, masters=named(opposite.masters))
-        held = held_directions(self._resting, points.nodes[:, 0], under, normal)
+        held = held_directions(self._flags, points.nodes[:, 0], under, normal)
         normal = across(held, normal)
         mean, mean_then = (
             y + (held @ (x - y)[..., None])[..., 0]
@@ -116,11 +108,15 @@ class MortarMaster(MeshedMaster):
             held,
         )
         both = opposite, self._then
-        return MortarState(points.quadrature, weights, planes, both, now, sides.reference)
+        return MortarState(
+            self._gathered, points.quadrature, weights, planes, both, now, sides.reference
+        )
 
     def _tangent_places(self) -> Opposite:
         """Places on the master that are closest to the slave nodes."""
         hit, nodes = self._hint, self.sides.master.nodes
+        if not len(nodes):
+            return Opposite.none(len(hit.facet), nodes.shape[1])
         there = hit.status <= FACET_STATUS.index("off")
         facet = np.where(there, hit.facet, -1).astype(np.int32)
         which = np.maximum(facet, 0)
@@ -156,7 +152,7 @@ class MortarMaster(MeshedMaster):
         state["xi"][located] = self._at.planes.xi[located]
         state["origin"] = state["xi"]
         state["gap"][located] = self._at.planes.gap[located]
-        self._then = self._at.opposite[0]
+        self._then = self._at.opposite[0].in_order()
         self._count_as_then(state)
         self._at = self._placed(self._at.weights)
         return state
@@ -164,15 +160,51 @@ class MortarMaster(MeshedMaster):
     def _count_as_then(self, state: State) -> None:
         """Let states refer to the planes of the accepted increment."""
         count = len(state)
-        state["facet"] = np.where(state["facet"] >= 0, state["facet"] % count + count, -1)
+        state["facet"] = np.where(state["facet"] >= 0, np.arange(count) + count, -1)
 
     @override
     def place(self, u: Floats, *histories: State) -> bool:
+        anew = self._outrun(u)
+        if anew:
+            hints = {id(hint): hint for hint in (self._hint, self._accepted[1])}.values()
+            for hint in hints:
+                hint.facet[:] = self._gathered.globally(hint.facet)
+            self._number_anew(u, self._named(), [hint.facet for hint in hints])
         moved = np.array(self._gathered.everywhere(self._gathered.moved(u)))
         self._nodes = Nodes(self.sides.reference + moved, moved)
         self._hint = self.sides.project(self._nodes.now, self._hint)
         self._at = self._placed()
-        return False
+        return anew
+
+    def _named(self) -> Opposite:
+        """What was opposite at the accepted increment, with numbers of any distribution."""
+        then, gathered = self._then, self._gathered
+        named = then.in_order(gathered.names(then.masters))
+        return replace(named, facet=gathered.globally(then.facet))
+
+    def _number_anew(self, u: Floats, then: Opposite, hints: Sequence[Ints]) -> None:
+        """Have the facets of the master that are near and those that are named; collective.
+
+        Args:
+            u: Displacements of the local nodes, (nodes, 3), length.
+            then: As of `_named`.
+            hints: Facets of the whole group, -1 for none; those of this process are written.
+        """
+        gathered = self._gathered
+        self._have(u, *hints, then.facet, gathered.facets_of_names(then.masters))
+        for facets in hints:
+            facets[:] = gathered.renumbered(facets)
+        facet, nodes = gathered.renumbered(then.facet), then.nodes
+        if len(gathered.facets.nodes):
+            nodes = gathered.facets.nodes[np.maximum(facet, 0)]
+        then = replace(then, masters=gathered.of_names(then.masters), facet=facet, nodes=nodes)
+        self._then = then.in_order()
+        self._spread_flags()
+
+    def _spread_flags(self) -> None:
+        """Take what rests among gathered nodes as well; collective."""
+        spread = self._gathered.everywhere
+        self._flags = [(spread(there), direction) for there, direction in self._resting]
 
     @override
     def answer(
@@ -249,6 +281,7 @@ class MortarMaster(MeshedMaster):
     @override
     def take_resting(self, resting: Sequence[Resting], state: State) -> None:
         self._resting = resting
+        self._spread_flags()
         self._at = self._placed(self._at.weights)
         axes, held = self._at.planes.then.axes, self._at.planes.held
         away = np.einsum("na,nai->ni", state["xi"], axes)
@@ -326,12 +359,13 @@ class MortarMaster(MeshedMaster):
     def commit(self, before: Snapshot, state: State, now: Snapshot | None) -> Floats:
         if now is None:
             return np.zeros((0, 3))
-        self._then = self._at.opposite[0]
+        self._then = self._at.opposite[0].in_order()
         self._count_as_then(now.response.state)
-        self._accepted = (self._nodes.now, self._hint)
+        self._accepted = (self._gathered.local(self._nodes.now), self._hint)
         self._at = self._placed(self._at.weights)
         lost = (state["facet"] >= 0) & (now.response.state["facet"] < 0)
-        return np.asarray(now.points[lost & (self._at.weights.area <= 0.0)])
+        gone = now.points[lost & (self._at.weights.area <= 0.0)]
+        return np.concatenate(self._comm.allgather(gone))
 
     @override
     def roll_back(self, tried: bool) -> None:
@@ -341,21 +375,33 @@ class MortarMaster(MeshedMaster):
 
     @override
     def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
-        hint, then = self._accepted[1], self._then
+        hint, then = self._accepted[1], self._named()
         kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
-        kept |= {f"opposite.{f.name}": getattr(then, f.name).copy() for f in fields(then)}
+        kept["projection.facet"] = self._gathered.globally(hint.facet)
+        kept["state"]["facet"] = np.minimum(kept["state"]["facet"], 0)
+        # as wide as on the process that has most
+        width = max(self._comm.allgather(then.masters.shape[1]))
+        more = [(0, 0), (0, width - then.masters.shape[1])]
+        then = replace(
+            then,
+            masters=np.pad(then.masters, more, constant_values=-1),
+            shares=np.pad(then.shares, more),
+        )
+        kept |= {f"opposite.{name}": getattr(then, name).copy() for name in OPPOSITE}
         return kept | {"reference": self._points.quadrature.reference.copy()}
 
     @override
     def restore(
         self, kept: Mapping[str, npt.NDArray[Any]], u: Floats
     ) -> Mapping[str, npt.NDArray[Any]]:
-        names = [f.name for f in fields(FacetProjections)]
-        self._hint = FacetProjections(*(np.array(kept[f"projection.{n}"]) for n in names))
-        self._then = Opposite(*(np.array(kept[f"opposite.{f.name}"]) for f in fields(Opposite)))
+        kept = {name: values.copy() for name, values in kept.items()}
+        self._hint = FacetProjections(*(kept[f"projection.{f.name}"] for f in fields(self._hint)))
+        then = replace(self._then, **{name: kept[f"opposite.{name}"] for name in OPPOSITE})
+        self._number_anew(u, then, [self._hint.facet])
+        self._count_as_then(kept["state"])
         moved = np.array(self._gathered.everywhere(self._gathered.moved(u)))
         self._go_to(self.sides.reference + moved)
         self._nodes = Nodes(self._nodes.now, moved)
-        self._accepted = (self._nodes.now, self._hint)
+        self._accepted = (self._gathered.local(self._nodes.now), self._hint)
         self._at = self._placed()
         return kept

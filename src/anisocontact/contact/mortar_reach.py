@@ -31,10 +31,10 @@ def mortar_reachable(
             for all, (w, n or 1, 3), length.
         margin: How far beside the way a node can be, length.
     """
-    nodes = sides.gathered.coupled(points.nodes)
+    nodes, named = sides.gathered.local_names(points.nodes), sides.gathered.coupled
     own = nodes[:, : points.quadrature.rows]
     if not (len(nodes) and len(sides.master.nodes)):
-        return [(own, nodes)]
+        return [(named(own), named(nodes))]
     x = points.positions(now)
     radius = np.linalg.norm(now[nodes] - x[:, None], axis=2).max()
     limit = sides.reach + float(np.linalg.norm(way, axis=2).max())
@@ -48,14 +48,14 @@ def mortar_reachable(
     below = _incidence(point, sides.gathered.coupled(sides.master.nodes)[facet], len(x))
     first, second = below.nonzero()
     both = (below.T @ below).nonzero()
-    own_rows, own_masters = own[first], second[:, None].astype(np.int32)
-    around = nodes[first]
-    return [
+    own_masters = second[:, None].astype(np.int32)
+    found = [
         (own, nodes),
-        (own_rows, own_masters),
-        (own_masters, around),
+        (own[first], own_masters),
+        (own_masters, nodes[first]),
         (both[0][:, None].astype(np.int32), both[1][:, None].astype(np.int32)),
     ]
+    return [(named(rows), named(columns)) for rows, columns in found]
 
 
 def _incidence(point: Numbers, nodes: npt.NDArray[np.int32], count: int) -> scipy.sparse.csr_array:

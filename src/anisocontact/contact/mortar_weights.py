@@ -84,7 +84,7 @@ def mortar_weights(
     *,
     current_area: bool,
 ) -> MortarWeights:
-    """Weights where the nodes are; the surface of the master has to be there already.
+    """Weights where the nodes are; the surface of the master has to be there already; collective.
 
     Args:
         sides: Slave and master.
@@ -93,12 +93,13 @@ def mortar_weights(
         more: Nodes of the master to have as well, (n, j), -1 for none.
         current_area: Whether areas are those of now or of the reference configuration.
     """
-    slave, master = sides.slave, sides.master
-    if slave.sweep is not None:
+    if sides.slave.sweep is not None:
         found = line_weights(sides, around, now, more, current_area=current_area)
         return MortarWeights(found.masters, found.area, found.weight, found)
+    slave, master = around.mesh, sides.master
     shapes = FacetShapes(slave.topology)
-    far = sides.reach + largest_radius(slave, now)
+    # the same on all processes, so that a facet counts on any number of them
+    far = sides.reach + max(sides.comm.allgather(largest_radius(slave, now)))
     f, g = facing(slave, shapes, now[slave.nodes], sides.surface, master, now, far, sides.near)
     order = np.lexsort((g, f))
     offsets = np.searchsorted(f[order], np.arange(len(slave.nodes) + 1)).astype(np.int64)

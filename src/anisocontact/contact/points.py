@@ -88,6 +88,14 @@ class SlavePoints:
         """Take the area of now, or that of the reference."""
         self.current_area = current
 
+    def everywhere(self, nodal: Floats) -> Floats:
+        """Values of the nodes as points number them from those of the local nodes; collective."""
+        return nodal
+
+    def coupled(self, nodes: Ints) -> Ints:
+        """Nodes as `Couplings` name them from those of points."""
+        return nodes
+
     @cached_property
     def nodes(self) -> Ints:
         """Local nodes of the facet of each point, (n, k)."""

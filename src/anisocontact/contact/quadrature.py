@@ -72,11 +72,12 @@ class FacetQuadrature:
     @cached_property
     def interpolation(self) -> scipy.sparse.csr_array:
         """Matrix that takes a nodal field to the points, (m q, local nodes touched)."""
-        m, q, k = self.basis.shape
-        columns = np.broadcast_to(self.nodes[:, None, :], (m, q, k))
+        basis, nodes = self.basis[:, :, : self.rows], self.nodes[:, : self.rows]
+        m, q, k = basis.shape
+        columns = np.broadcast_to(nodes[:, None, :], (m, q, k))
         starts = np.arange(0, m * q * k + 1, k)
-        shape = (m * q, int(self.nodes.max(initial=-1)) + 1)
-        entries = (self.basis.reshape(-1), columns.reshape(-1).astype(np.int64), starts)
+        shape = (m * q, int(nodes.max(initial=-1)) + 1)
+        entries = (basis.reshape(-1), columns.reshape(-1).astype(np.int64), starts)
         return scipy.sparse.csr_array(entries, shape=shape)
 
     @cached_property

@@ -20,10 +20,12 @@ from anisocontact.contact.facet_mesh import (
     isoparametric,
     near_facets,
 )
+from anisocontact.contact.far_nodes import NONE
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.overlap import largest_radius
 from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.slave_nodes import SlaveNodes
 from anisocontact.contact.sweep import Sweep
 from anisocontact.contact.whereabouts import Seen
 from anisocontact.interface import State
@@ -46,7 +48,7 @@ class Sides:
     """Slave points and master surface of one pass.
 
     Attributes:
-        slave: Facets of the slave on this rank.
+        slave: Facets of the slave on this rank, of which slave nodes need others as well.
         rule: Quadrature on them.
         points: Its points.
         gathered: The master as this rank has it.
@@ -54,8 +56,8 @@ class Sides:
         reach: Distance within which the master is searched, length.
         apart: Numbers in the whole group of facets that each facet of the slave cannot meet; None
             where it can meet all.
-        near: Those of them that this rank has.
-        excluded: The same for each point.
+        near: Those of them that this rank has; of all facets around slave nodes.
+        excluded: The same for each point; None for slave nodes.
         kinds: Code of the topology of each facet of the master, (m,).
         at: Where the local nodes were when facets were gathered, (nodes, 3), length.
         threads: Threads of the kernel.
@@ -148,9 +150,8 @@ class Sides:
         """
         found = []
         for side in (self.slave, self.gathered.own):
-            nodes = np.unique(self.gathered.local_names(side.nodes))
-            owned = diagonal[nodes[nodes < len(diagonal)]]
-            local = np.array([owned.mean(axis=1).sum(), group_area(side, self.reference)])
+            nodes = self.gathered.owned(self.gathered.local_names(side.nodes))
+            local = np.array([diagonal[nodes].mean(axis=1).sum(), group_area(side, self.reference)])
             total, area = self.comm.allreduce(local)
             found.append(float(total / area))
         return found
@@ -178,26 +179,33 @@ class Sides:
             now: Positions of the local nodes, (nodes, 3), length.
             more: Facets to have as well, numbers in the whole group.
         """
-        _collect(self.gathered, self.slave, now, 2.0 * self.reach, more)
+        _collect(self.gathered, self.slave, self.points, now, 2.0 * self.reach, more)
         near = None if self.apart is None else _there(self.apart, self.gathered)
         return replace(
             self,
             surface=_surface(self.gathered, now),
             near=near,
-            excluded=None if near is None else near.take(self.points.facet),
+            excluded=None
+            if near is None or self.excluded is None
+            else near.take(self.points.facet),
             kinds=_kinds(self.gathered.facets),
             at=now.copy(),
         )
 
 
 def _collect(
-    gathered: MasterSurface, slave: FacetMesh, now: Floats, far: float, more: npt.NDArray[np.int64]
+    gathered: MasterSurface,
+    slave: FacetMesh,
+    points: SlavePoints,
+    now: Floats,
+    far: float,
+    more: npt.NDArray[np.int64],
 ) -> None:
     """Gather what is near a slave, and more; all is there on one process."""
     if not gathered.distributed:
         return
     margin = far + max(gathered.comm.allgather(largest_radius(slave, now)))
-    x = now[np.unique(slave.nodes)]
+    x = points.everywhere(now)[np.unique(points.nodes)]
     low = x.min(axis=0, initial=np.inf) - margin
     high = x.max(axis=0, initial=-np.inf) + margin
     gathered.gather(np.union1d(gathered.within(low, high, now), more))
@@ -230,6 +238,7 @@ def make_sides(
     apart: float | None,
     current_area: bool,
     weight: float,
+    nodes: SlaveNodes | None = None,
 ) -> Sides:
     """Both sides in the reference configuration.
 
@@ -241,25 +250,35 @@ def make_sides(
         apart: See `Contact`.
         current_area: See `Contact`.
         weight: See `Contact`.
+        nodes: Slave nodes, where the law is not evaluated at points of the facets.
     """
     slave, master = (model.facets(group) for group in groups)
     comm = model.mesh.comm
     sweep = Sweep.of(model)
-    gathered = MasterSurface(model.space, master, sweep)
+    gathered = MasterSurface(
+        model.space, master, sweep, NONE if nodes is None else nodes.far.numbers
+    )
     reference = gathered.start
     own = facet_mesh(model.space, slave, sweep)
     rule = facet_rule(own.topology, degree, None if sweep is None else sweep.share)
-    quadrature = isoparametric(own, rule, reference)
-    points = SlavePoints(quadrature, own.flip, current_area=current_area, comm=comm, share=weight)
+    points = nodes or SlavePoints(
+        isoparametric(own, rule, reference),
+        own.flip,
+        current_area=current_area,
+        comm=comm,
+        share=weight,
+    )
     reach = reach if reach is not None else 2.0 * points.size
-    _collect(gathered, own, reference, max(reach, apart or 0.0) + reach, np.zeros(0, np.int64))
+    _collect(gathered, own, points, reference, max(reach, apart or 0.0) + reach, NONE)
     surface = _surface(gathered, reference)
     named = near = excluded = None
     if apart is not None:
-        numbers = gathered.number(facet_keys(model.mesh, np.sort(slave)))
-        near = near_facets(own, numbers, surface, reference, apart)
+        keys = facet_keys(model.mesh, np.sort(slave)) if nodes is None else nodes.keys
+        numbers = gathered.number(keys)
+        met = own if nodes is None else nodes.around.mesh
+        near = near_facets(met, numbers, surface, gathered.reference, apart)
         named = FacetSets(near.offsets, gathered.globally(near.facets))
-        excluded = near.take(points.facet)
+        excluded = near.take(points.facet) if nodes is None else None
     return Sides(
         slave=own,
         rule=rule,

@@ -15,7 +15,14 @@ import numpy.typing as npt
 from anisocontact.base.fenicsx import basix
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.quadrature import FacetQuadrature
-from anisocontact.contact.slave_nodes import LINES, ROUND, Patches, patches, transformed
+from anisocontact.contact.slave_nodes import (
+    LINES,
+    ROUND,
+    NodesOfFacets,
+    Patches,
+    patches,
+    transformed,
+)
 from anisocontact.contact.sweep import Sweep
 
 Ints = npt.NDArray[np.int32]
@@ -80,7 +87,7 @@ class SlaveEdges:
         count = self.nodes.shape[1]
         return ROUND if count == 3 and self.sweep.ideal.turn.any() else LINES[count]
 
-    def in_plane(self) -> tuple[Patches, FacetQuadrature, float]:
+    def in_plane(self) -> NodesOfFacets:
         """The edges around each node, the nodes as points, and the mean length of an edge."""
         edges = self.nodes
         around = patches(FacetMesh(self._topology, edges, self.facets.flip))
@@ -111,7 +118,7 @@ class SlaveEdges:
         )
         return around, points, float(length.sum() / max(len(edges), 1))
 
-    def in_space(self) -> tuple[Patches, FacetQuadrature, float]:
+    def in_space(self) -> NodesOfFacets:
         """The same with tangents across the plane by images of the nodes."""
         around, points, size = self.in_plane()
         images, factors = self.sweep.tangents(points.nodes, points.across[:, 0])

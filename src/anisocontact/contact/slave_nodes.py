@@ -16,12 +16,15 @@ from anisocontact.contact.facet_mesh import (
     facet_rule,
     isoparametric,
 )
+from anisocontact.contact.far_nodes import NONE, FarNodes, node_count
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import FacetQuadrature
+from anisocontact.mesh.split import Route, Split
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
+Numbers = npt.NDArray[np.int64]
 
 #: Share of the nodes of the edges that the vertices of a tri6 take, whose own functions have no
 #: mass [Popp Wohlmuth Gitterle Wall 2012, sec. 3.2]; as in cpp/include/anisocontact/mortar. An edge
@@ -34,6 +37,8 @@ PEAK = 0.05
 #: Times the pressure of a node at the edge of contact, over that beside it, with which it counts:
 #: so the area of a Hertz contact is right to 2 % at 4 facets across its radius.
 EDGE = 3.0
+#: Difference of the components of a unit vector that is none.
+ROUNDING = 1e-6
 #: Vertices beside the edges of a tri6.
 _ENDS = ((1, 2), (0, 2), (0, 1))
 #: Nodes that give a share, and the vertices that take it.
@@ -56,15 +61,18 @@ class Patches:
     """The facets around slave nodes, and the nodes of these.
 
     Attributes:
+        mesh: All facets around the nodes.
         offsets: Where the facets of each node begin, (n + 1,).
         facets: Facets around the nodes, one list after the other.
         local: Number of the node in each of these facets.
         nodes: Nodes of the facets around each, (n, k): those of its support first, filled up with
             itself to r, then the others, and itself again to k.
         support: Values at the first nodes whose combination is the slave point, (n, r).
-        pieces: Pieces of the facets with straight edges, as numbers of slave nodes, (m, corners).
+        pieces: Pieces of the facets with straight edges, as numbers of slave nodes, after which
+            come those of `WholeFacets.others`, (m, corners).
     """
 
+    mesh: FacetMesh
     offsets: npt.NDArray[np.int64]
     facets: Ints
     local: Ints
@@ -73,17 +81,64 @@ class Patches:
     pieces: Ints
 
 
-def patches(mesh: FacetMesh) -> Patches:
+@dataclass(frozen=True)
+class WholeFacets:
+    """All facets around the nodes of a surface that this process owns, wherever they live.
+
+    Attributes:
+        mesh: The facets; nodes that are not local have numbers after these.
+        far: Those nodes.
+        others: Nodes of the facets that other processes own, in ascending order of their numbers.
+        keys: Numbers of `facet_keys` of the facets.
+    """
+
+    mesh: FacetMesh
+    far: FarNodes
+    others: FarNodes
+    keys: Numbers
+
+
+def around_own_nodes(space: Any, mesh: FacetMesh, keys: Numbers) -> WholeFacets:
+    """The facets around nodes; on one process those that are given; collective.
+
+    Args:
+        space: Vector Lagrange space of the displacement.
+        mesh: Facets of the surface on this process, with its local nodes.
+        keys: Their numbers of `facet_keys`, whose order is that of the facets, (m,).
+    """
+    comm, index_map = space.mesh.comm, space.dofmap.index_map
+    if comm.size == 1:
+        none = FarNodes(space, NONE)
+        return WholeFacets(mesh, none, none, keys)
+    nodes = index_map.local_to_global(mesh.nodes.reshape(-1)).reshape(mesh.nodes.shape)
+    owner = Split(comm, index_map.size_local).owner(nodes)
+    facet, to = np.divmod(np.unique(np.arange(len(nodes))[:, None] * comm.size + owner), comm.size)
+    route = Route(comm, to)
+    keys, nodes, flip = (route.there(table[facet]) for table in (keys, nodes, mesh.flip))
+    order = np.argsort(keys)
+    nodes = nodes[order]
+    local = index_map.global_to_local(nodes.reshape(-1)).reshape(nodes.shape)
+    far = np.unique(nodes[local < 0])
+    named = np.where(local < 0, node_count(space) + np.searchsorted(far, nodes), local)
+    known, first = np.unique(named, return_index=True)
+    others = nodes.reshape(-1)[first[known >= index_map.size_local]]
+    found = FacetMesh(mesh.topology, named.astype(np.int32), flip[order])
+    return WholeFacets(found, FarNodes(space, far), FarNodes(space, others), keys[order])
+
+
+def patches(mesh: FacetMesh, owned: int | None = None) -> Patches:
     """The facets around the nodes of a surface, nodes in ascending order.
 
     Args:
         mesh: The facets.
+        owned: Nodes with lower numbers are looked at; all if None.
     """
     k = mesh.nodes.shape[1]
     flat = mesh.nodes.reshape(-1)
     order = np.argsort(flat, kind="stable")
+    order = order[: None if owned is None else np.searchsorted(flat, owned, sorter=order)]
     nodes, first = np.unique(flat[order], return_index=True)
-    offsets = np.append(first, len(flat)).astype(np.int64)
+    offsets = np.append(first, len(order)).astype(np.int64)
     facets, local = np.divmod(order, k)
     support = [_support(mesh, int(facets[a]), int(local[a])) for a in offsets[:-1]]
     rows = max((len(one) for one, _ in support), default=1)
@@ -97,6 +152,7 @@ def patches(mesh: FacetMesh) -> Patches:
     for i, (_, value) in enumerate(support):
         values[i, : len(value)] = value
     return Patches(
+        mesh,
         offsets,
         facets.astype(np.int32),
         local.astype(np.int32),
@@ -126,7 +182,7 @@ def transformed(topology: str, shape: Floats) -> Floats:
     return out
 
 
-def nodal_quadrature(mesh: FacetMesh, around: Patches, reference: Floats) -> FacetQuadrature:
+def nodal_quadrature(around: Patches, reference: Floats) -> FacetQuadrature:
     """Slave nodes as points of a quadrature, each with the nodes around it.
 
     The weight of a node is the integral of its dual function, that of the shape function. Tangents
@@ -134,11 +190,10 @@ def nodal_quadrature(mesh: FacetMesh, around: Patches, reference: Floats) -> Fac
     angles of the facets at the node: their normal is the averaged normal.
 
     Args:
-        mesh: The facets.
         around: The facets around each node.
-        reference: Positions of the local nodes in the reference configuration, (nodes, 3), length.
+        reference: Positions of the nodes in the reference configuration, (nodes, 3), length.
     """
-    n, k = around.nodes.shape
+    mesh, (n, k) = around.mesh, around.nodes.shape
     rule = facet_rule(mesh.topology, 2 * FacetShapes(mesh.topology).order)
     facets = isoparametric(mesh, rule, reference)
     mass = np.einsum("mq,mqa->ma", facets.weights, transformed(mesh.topology, facets.basis))
@@ -146,7 +201,7 @@ def nodal_quadrature(mesh: FacetMesh, around: Patches, reference: Floats) -> Fac
     weights = np.bincount(owner, mass[around.facets, around.local], minlength=n)
     basis = np.zeros((n, 1, k))
     basis[:, 0, : around.support.shape[1]] = around.support
-    gradient = _plane_gradients(mesh, around, owner, reference)
+    gradient = _plane_gradients(around, owner, reference)
     tangents = gradient.swapaxes(1, 2) @ reference[around.nodes]
     return FacetQuadrature(
         nodes=around.nodes,
@@ -159,27 +214,29 @@ def nodal_quadrature(mesh: FacetMesh, around: Patches, reference: Floats) -> Fac
     )
 
 
-def nodes_of_facets(
-    mesh: FacetMesh, reference: Floats, comm: Any
-) -> tuple[Patches, FacetQuadrature, float]:
+#: The facets around each node, the nodes as points, and the length of a facet.
+type NodesOfFacets = tuple[Patches, FacetQuadrature, float]
+
+
+def nodes_of_facets(whole: WholeFacets, reference: Floats, comm: Any) -> NodesOfFacets:
     """The facets around each node, the nodes as points, and the length of a facet; collective.
 
     Args:
-        mesh: Facets of the slave.
-        reference: Positions of the local nodes in the reference configuration, (nodes, 3), length.
+        whole: Facets of the slave.
+        reference: Positions of the nodes in the reference configuration, (nodes, 3), length.
         comm: Communicator of the mesh.
     """
-    around = patches(mesh)
-    points = nodal_quadrature(mesh, around, reference)
-    area, facets = comm.allreduce(np.array([points.weights.sum(), len(mesh.nodes)]))
+    around = patches(whole.mesh, whole.far.owned if comm.size > 1 else None)
+    points = nodal_quadrature(around, reference)
+    # every facet is around each of its nodes once
+    facets = len(around.facets) / whole.mesh.nodes.shape[1]
+    area, facets = comm.allreduce(np.array([points.weights.sum(), facets]))
     return around, points, float(np.sqrt(area / max(facets, 1.0)))
 
 
-def _plane_gradients(
-    mesh: FacetMesh, around: Patches, owner: npt.NDArray[np.int64], reference: Floats
-) -> Floats:
+def _plane_gradients(around: Patches, owner: Numbers, reference: Floats) -> Floats:
     """Mean gradients along two axes of a plane at each node, (n, k, 2)."""
-    n, k = around.nodes.shape
+    mesh, (n, k) = around.mesh, around.nodes.shape
     shapes = FacetShapes(mesh.topology)
     corners = np.asarray(basix.geometry(shapes.cell))
     local = _node_coordinates(mesh.topology, corners)
@@ -227,7 +284,9 @@ def _angles(topology: str, local: Ints, t: Floats) -> Floats:
 def _axes(normal: Floats) -> Floats:
     """Two axes across each vector, right-handed with it, (n, 2, 3)."""
     n = normal / np.linalg.norm(normal, axis=1)[:, None]
-    least = np.eye(3)[np.abs(n).argmin(axis=1)]
+    sizes = np.abs(n)
+    # the first of those that are as small as each other but for rounding
+    least = np.eye(3)[(sizes <= sizes.min(axis=1, keepdims=True) + ROUNDING).argmax(axis=1)]
     first = np.cross(least, n)
     first /= np.linalg.norm(first, axis=1)[:, None]
     return np.stack([first, np.cross(n, first)], axis=1)
@@ -255,20 +314,23 @@ class SlaveNodes(SlavePoints):
 
     Args:
         nodes: The facets around each node, the nodes as points, and the length of a facet.
-        reference: Positions of the local nodes in the reference configuration, (nodes, 3), length.
+        whole: Facets of the slave.
+        reference: Positions of the nodes in the reference configuration, (nodes, 3), length.
         current_area: Whether the area of a node is that of now or of the reference.
-        comm: Communicator of the mesh.
         share: Share of the area that counts.
 
     Attributes:
         around: The facets around each node.
+        far: Nodes of them that are not local.
+        keys: Numbers of `facet_keys` of the facets.
     """
 
     at_nodes = True
 
     def __init__(
         self,
-        nodes: tuple[Patches, FacetQuadrature, float],
+        nodes: NodesOfFacets,
+        whole: WholeFacets,
         reference: Floats,
         *,
         current_area: bool,
@@ -276,6 +338,7 @@ class SlaveNodes(SlavePoints):
         share: float = 1.0,
     ) -> None:
         self.around, quadrature, size = nodes
+        self.far, self.keys, self._others = whole.far, whole.keys, whole.others
         flip = np.zeros(len(quadrature.nodes), dtype=bool)
         super().__init__(quadrature, flip, current_area=current_area, comm=comm, share=share)
         self.facet = self.around.facets[self.around.offsets[:-1]].astype(np.int64)
@@ -284,7 +347,16 @@ class SlaveNodes(SlavePoints):
         near = reference[quadrature.nodes % max(len(reference), 1)]
         away = near - quadrature.reference[:, None]
         self.spread = float(np.linalg.norm(away, axis=2).max(initial=0.0))
-        self.polygons = self.around.pieces
+        pieces = self.around.pieces
+        self.polygons = pieces[(pieces < len(self.facet)).all(axis=1)]
+
+    @override
+    def everywhere(self, nodal: Floats) -> Floats:
+        return self.far.everywhere(nodal)
+
+    @override
+    def coupled(self, nodes: Ints) -> Ints:
+        return self.far.coupled(nodes)
 
     @override
     def peaks(self, areas: Floats) -> npt.NDArray[np.bool_]:
@@ -299,15 +371,22 @@ class SlaveNodes(SlavePoints):
         nearer it is the smaller its pressure. It counts with `EDGE` times its pressure over the
         largest of its neighbours, at most wholly.
         """
-        touches, corners = now.response.status != 0, self.polygons
-        pressure = np.where(touches, now.response.pressure, 0.0)
+        corners = self.around.pieces
+        touches = self._around(now.response.status != 0)
+        pressure = np.where(touches, self._around(now.response.pressure), 0.0)
         beside, at_edge = np.zeros(len(touches)), np.zeros(len(touches), dtype=bool)
         for node in corners.T:
             np.maximum.at(beside, node, pressure[corners].max(axis=1))
             np.logical_or.at(at_edge, node, ~touches[corners].all(axis=1))
         share = np.divide(EDGE * pressure, beside, out=np.ones(len(beside)), where=beside > 0.0)
         part = np.where(at_edge, share.clip(0.0, 1.0), 1.0)
-        return np.asarray(now.areas * touches * part)
+        return np.asarray(now.areas * (touches * part)[: len(now.areas)])
+
+    def _around[T: np.generic](self, values: npt.NDArray[T]) -> npt.NDArray[T]:
+        """Values of the slave nodes, (n,), then of others on the facets around them; collective."""
+        owned = np.zeros(self.far.owned, dtype=values.dtype)
+        owned[self.nodes[:, 0]] = values
+        return np.concatenate([values, self._others.everywhere(owned)[len(owned) :]])
 
     @override
     def covered(self, areas: Floats) -> Floats:

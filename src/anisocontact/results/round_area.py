@@ -60,6 +60,7 @@ def _planes(problem: Problem, contact: Contact) -> Iterator[tuple[Floats, float]
     comm, space = problem.model.mesh.comm, problem.model.space
     x = np.asarray(space.tabulate_dof_coordinates())
     slave = np.unique(contact.quadrature.nodes)
+    slave = slave[slave < len(x)]
     found: list[Floats] = []
     for nodes, normal in (*problem.supports.resting(), *problem.planes.held()):
         at, on = x[slave] @ normal, x[np.intersect1d(slave, nodes)] @ normal

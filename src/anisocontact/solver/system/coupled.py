@@ -11,6 +11,7 @@ import numpy.typing as npt
 import scipy
 
 from anisocontact.base.fenicsx import Mat, PETSc
+from anisocontact.contact.far_nodes import globally
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.reachable import NodePairs
 
@@ -51,7 +52,7 @@ class CoupledTangent:
         self._size = (own + added * (comm.rank == comm.size - 1), total + added)
         index_map = space.dofmap.index_map
         local = index_map.size_local + index_map.num_ghosts
-        self._global = index_map.local_to_global(np.arange(local, dtype=np.int32))
+        self._space = space
         #: What couplings call the first node beyond those of the mesh.
         self.first_extra = int(local + index_map.size_global)
         self._numbers = self.first_extra + extra
@@ -195,14 +196,7 @@ class CoupledTangent:
     def _places(self) -> tuple[Keys, Keys]:
         """Nodes of the rows and of the columns of the couplings, numbers in the whole system."""
         row, column = np.divmod(self._keys, self._numbers)
-        return self._globally(row), self._globally(column)
-
-    def _globally(self, nodes: Keys) -> Keys:
-        """Numbers in the whole mesh of nodes as couplings name them."""
-        found = nodes - len(self._global)
-        local = found < 0
-        found[local] = self._global[nodes[local]]
-        return found
+        return globally(row, self._space), globally(column, self._space)
 
 
 def _found(known: Keys, keys: Keys) -> npt.NDArray[np.bool_]:

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.contact.far_nodes import with_ghosts
 from anisocontact.mesh.idealisation import Idealisation
 from anisocontact.solver.system.parts import Parts
 from anisocontact.solver.system.swallowed import check_swallowed
@@ -53,13 +54,14 @@ def _tell_contacts(parts: Parts, count: int) -> None:
     """Let contacts know which nodes are prescribed, and which are held along which directions."""
     fixed = np.zeros(count, dtype=bool)
     fixed[parts.supports.unknowns] = True
-    resting = []
-    for nodes, direction in (*parts.supports.resting(), *parts.planes.held()):
-        there = np.zeros(count // 3, dtype=bool)
-        there[nodes] = True
-        resting.append((there, direction))
+    held = [*parts.supports.resting(), *parts.planes.held()]
+    there = np.zeros((count // 3, len(held)), dtype=bool)
+    for i, (nodes, _) in enumerate(held):
+        there[nodes, i] = True
+    flags = with_ghosts(parts.model.space, np.hstack([fixed.reshape(-1, 3), there]))
+    resting = [(flags[:, 3 + i], direction) for i, (_, direction) in enumerate(held)]
     for contact in parts.contacts:
-        contact.take_supports(fixed.reshape(-1, 3), resting)
+        contact.take_supports(flags[:, :3], resting)
 
 
 def _rehearsed(parts: Parts, steps: Sequence[Step]) -> Iterator[tuple[Step, Supports, Loads]]:

@@ -8,7 +8,9 @@ from typing import override
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact import Contact
+from anisocontact.contact.far_nodes import globally
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
@@ -62,6 +64,13 @@ class Contacts(Term):
     @override
     def couplings(self) -> list[Couplings]:
         return [found for one in self.passes for found in one.answer.couplings()]
+
+    @override
+    def add_tangent(self, matrix: Mat) -> None:
+        for half in self._smooth:
+            for *names, values in half.answer.couplings():
+                sides = (globally(one, half.space).astype(PETSc.IntType) for one in names)
+                matrix.setValuesBlockedRCV(*sides, values, PETSc.InsertMode.ADD_VALUES)
 
     @override
     def accept(self, u: Floats) -> float:

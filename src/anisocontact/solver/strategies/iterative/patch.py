@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import PETSc
+from anisocontact.contact.far_nodes import globally
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step
@@ -45,7 +46,7 @@ class Patch:
             found += [rows.ravel(), columns.ravel()]
         named = np.unique(np.concatenate(found))
         marks = problem.new_vector()
-        at = 3 * self._globally(named[named >= 0])
+        at = 3 * globally(named[named >= 0], problem.model.space)
         marks.setValues(at.astype(PETSc.IntType), np.ones(len(at)), PETSc.InsertMode.ADD_VALUES)
         marks.assemble()
         owned = (marks.array_r > 0.0) | problem.constraints.involved()
@@ -61,11 +62,3 @@ class Patch:
         if outside:
             self._reach.widen()
         return outside
-
-    def _globally(self, named: Ints) -> Ints:
-        """Numbers in the whole mesh of nodes as `CoupledTangent` names them."""
-        nodes = self._problem.model.space.dofmap.index_map
-        local = nodes.size_local + nodes.num_ghosts
-        near = named < local
-        there = nodes.local_to_global(named[near].astype(np.int32))
-        return np.concatenate([there, named[~near] - local])
