@@ -150,9 +150,7 @@ def _mortar_following() -> Made:
     """Multipliers at slave nodes that follow every correction."""
     model = _bodies(gap=0.0)
     exact = Augmentation(tangential=False, multipliers="newton")
-    pair = Contact(
-        model, "mat.top", "block.bottom", law=_law(), augmentation=exact, mortar=True
-    )
+    pair = Contact(model, "mat.top", "block.bottom", law=_law(), augmentation=exact, mortar=True)
     return _dragged(model, [pair], "linear-elastic")
 
 

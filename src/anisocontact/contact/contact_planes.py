@@ -81,8 +81,8 @@ class Opposite:
         names = np.where(self.shares != 0.0, self.masters if names is None else names, -1)
         count = max(int((names >= 0).sum(axis=1).max(initial=0)), 1)
         order = np.argsort(np.where(names < 0, np.iinfo(np.int32).max, names), axis=1)[:, :count]
-        masters, shares = (np.take_along_axis(one, order, axis=1) for one in (names, self.shares))
-        return replace(self, masters=masters.astype(np.int32), shares=shares)
+        masters = np.take_along_axis(names, order, axis=1).astype(np.int32)
+        return replace(self, masters=masters, shares=np.take_along_axis(self.shares, order, axis=1))
 
     def mean(self, x: Floats) -> Floats:
         """Mean position, (n, 3), length, of nodes at x, (nodes, 3)."""

@@ -49,13 +49,13 @@ def mortar_reachable(
     first, second = below.nonzero()
     both = (below.T @ below).nonzero()
     own_masters = second[:, None].astype(np.int32)
-    found = [
+    pairs = [
         (own, nodes),
         (own[first], own_masters),
         (own_masters, nodes[first]),
         (both[0][:, None].astype(np.int32), both[1][:, None].astype(np.int32)),
     ]
-    return [(named(rows), named(columns)) for rows, columns in found]
+    return [(named(rows), named(columns)) for rows, columns in pairs]
 
 
 def _incidence(point: Numbers, nodes: npt.NDArray[np.int32], count: int) -> scipy.sparse.csr_array:
