@@ -45,7 +45,7 @@ def mortar_reachable(
     point = np.repeat(found, np.diff(near.offsets)) % len(x)
     count = len(sides.master.nodes)
     point, facet = np.divmod(np.unique(point * count + near.facets), count)
-    below = _incidence(point, sides.gathered.coupled(sides.master.nodes)[facet], len(x))
+    below = _incidence(point, sides.gathered.local_names(sides.master.nodes)[facet], len(x))
     first, second = below.nonzero()
     both = (below.T @ below).nonzero()
     own_masters = second[:, None].astype(np.int32)
