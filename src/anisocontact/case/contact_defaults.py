@@ -58,7 +58,7 @@ def _for_points(
 ) -> Iterator[bool]:
     """What speaks for integration points."""
     yield section.self_contact or section.degree is not None
-    yield model.mesh.comm.size > 1
+    yield model.mesh.comm.size > 1 and model.idealisation.dim == 2
     if section.meshed:
         slave, master = materials
         finer = facet_size(model, section.slave) < FINER * facet_size(model, section.master)

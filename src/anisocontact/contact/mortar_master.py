@@ -25,6 +25,7 @@ from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
 from anisocontact.contact.mortar_reach import mortar_reachable
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
+from anisocontact.contact.overlap import largest_radius
 from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import Sides
@@ -84,8 +85,12 @@ class MortarMaster(MeshedMaster):
         opposite = self._tangent_places()
         if weights is None:
             more = np.concatenate([opposite.named(), self._then.named()], axis=1)
+            # the same on all processes, so that a facet counts on any number of them
+            radius = max(self._comm.allgather(largest_radius(sides.slave, now)))
             area = points.current_area
-            weights = mortar_weights(sides, points.around, now, more, current_area=area)
+            weights = mortar_weights(
+                sides, points.around, now, more, radius=radius, current_area=area
+            )
         opposite = replace(opposite, masters=weights.masters, shares=weights.shares)
         tangents = points.at(now).tangents[:, 0]
         normal = averaged_normal(tangents)

@@ -14,7 +14,7 @@ from anisocontact import _core
 from anisocontact.base.fenicsx import basix
 from anisocontact.contact.facet_mesh import FacetMesh, FacetShapes
 from anisocontact.contact.line_weights import line_weights
-from anisocontact.contact.overlap import Facing, facing, largest_radius
+from anisocontact.contact.overlap import Facing, facing
 from anisocontact.contact.slave_nodes import Patches
 
 Ints = npt.NDArray[np.int32]
@@ -82,15 +82,17 @@ def mortar_weights(
     now: Floats,
     more: Ints,
     *,
+    radius: float,
     current_area: bool,
 ) -> MortarWeights:
-    """Weights where the nodes are; the surface of the master has to be there already; collective.
+    """Weights where the nodes are; the surface of the master has to be there already.
 
     Args:
         sides: Slave and master.
         around: The facets around each slave node.
         now: Positions of the nodes, (nodes, 3), length.
         more: Nodes of the master to have as well, (n, j), -1 for none.
+        radius: Largest distance of a slave node from the middle of its facet, length.
         current_area: Whether areas are those of now or of the reference configuration.
     """
     if sides.slave.sweep is not None:
@@ -98,8 +100,7 @@ def mortar_weights(
         return MortarWeights(found.masters, found.area, found.weight, found)
     slave, master = around.mesh, sides.master
     shapes = FacetShapes(slave.topology)
-    # the same on all processes, so that a facet counts on any number of them
-    far = sides.reach + max(sides.comm.allgather(largest_radius(slave, now)))
+    far = sides.reach + radius
     f, g = facing(slave, shapes, now[slave.nodes], sides.surface, master, now, far, sides.near)
     order = np.lexsort((g, f))
     offsets = np.searchsorted(f[order], np.arange(len(slave.nodes) + 1)).astype(np.int64)

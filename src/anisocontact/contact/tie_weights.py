@@ -21,6 +21,7 @@ import scipy
 from anisocontact.base.errors import InputError
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
+from anisocontact.contact.overlap import largest_radius
 from anisocontact.contact.slave_nodes import Patches, nodal_quadrature, patches
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.surfaces import default_threads
@@ -109,12 +110,13 @@ def tie_conditions(
 def _conditions(groups: WholeGroups, sides: _Sides, cells: Ints, closed: float) -> TieConditions:
     around = patches(sides.slave)
     none = np.zeros((len(around.nodes), 0), dtype=np.int32)
-    weights = mortar_weights(sides, around, sides.reference, none, current_area=True)
+    radius = largest_radius(sides.slave, sides.reference)
+    weights = mortar_weights(sides, around, sides.reference, none, radius=radius, current_area=True)
     count = len(groups.x)
     nodes, row = np.unique(around.nodes[:, 0].astype(np.int64) % count, return_inverse=True)
     shape = (len(nodes), count)
     weight = np.bincount(row, weights.area, minlength=len(nodes))
-    whole = nodal_quadrature(sides.slave, around, sides.reference).weights[:, 0]
+    whole = nodal_quadrature(around, sides.reference).weights[:, 0]
     covered = weight > COVERED * np.bincount(row, whole, minlength=len(nodes))
     own, other = _shares(around, weights, row, shape)
     apart = np.zeros((len(nodes), 3))
