@@ -241,6 +241,7 @@ CASES: dict[str, Callable[[], Made]] = {
     "mortar-far": _mortar_far,
     "mortar-following": _mortar_following,
     "mortar-plane": _mortar_plane,
+    "mortar-iterative": _mortar,
 }
 
 
@@ -277,7 +278,8 @@ def run(name: str, folder: Path, mode: str) -> None:
     problem, steps = CASES[name]()
     ranks = problem.comm.size
     tolerance = FOLLOWING if name in WITH_MULTIPLIERS else TOLERANCE
-    solver = Solver(problem, steps, options={"snes_rtol": tolerance}, strategy="direct")
+    strategy = "iterative" if name.endswith("iterative") else "direct"
+    solver = Solver(problem, steps, options={"snes_rtol": tolerance}, strategy=strategy)
     if mode.startswith("from:"):
         stored = load_checkpoint(folder / f"{name}-{mode[5:]}-stop")
         assert stored is not None

@@ -117,8 +117,13 @@ class TwoLevel:
         """The same interpolation for bodies that have changed."""
         assert self._coarse is not None and self._split is not None and self._smoother is not None
         scale = self._problem.assembly.scale
-        interior_matrix(tangent, self._split, scale, self._interior)
+        before = self._interior
+        # on several processes emptied rows and columns are left out of what could be overwritten
+        again = before if self._problem.comm.size == 1 else None
+        self._interior = interior_matrix(tangent, self._split, scale, again)
         self._smoother.setOperators(self._interior)
+        if again is None and before is not None:
+            before.destroy()
         self._coarse.renew(tangent)
 
     def _new_smoother(self) -> PETSc.KSP:
