@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -27,8 +28,8 @@ STRATEGIES = ["direct", "condensed", "iterative"]
 def _always_flows(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every attempt starts from the accepted state and flows."""
 
-    def ways(self: Attempts, first: Any, last: Any) -> list[Any]:
-        return [attempts._Way(last, flowing=True)]
+    def ways(self: Attempts, searching: Any, full: Any) -> list[Any]:
+        return [replace(full, flowing=True)]
 
     monkeypatch.setattr(Attempts, "_ways", ways)
 

@@ -10,6 +10,7 @@ from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.acceptance import refused
 from anisocontact.solver.stepping.continuation import Continuation
 from anisocontact.solver.stepping.culprits import failed_point, find_culprits
+from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.turned import TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.strategies.newton import NewtonResult
@@ -44,6 +45,11 @@ class Outcome:
     hint: str = ""
     failed: FailedPoint | None = None
     relaxed: bool = False
+
+    @property
+    def iterations(self) -> int:
+        """Newton iterations that show how hard the part was: searching multipliers does not."""
+        return len(self.result.residuals) - 1 if self.relaxed else self.result.iterations
 
 
 @dataclass(frozen=True)
@@ -80,8 +86,8 @@ class Attempts:
     status of points alternated, a further one takes a share of each correction: half as much as
     before where it still alternates, twice as much where it does not. Where that does not help
     either and the part is small, the last one lets the bodies flow, see `Flow`. Where a part is
-    tiny, both are tried whatever was in the way. Before, penalties hold in a small part where
-    multipliers are not required. Where contact may
+    tiny, both are tried whatever was in the way. Where multipliers are not required and a cut did
+    not lead to them, penalties come before these last ones. Where contact may
     hold free bodies without springs, an attempt without them comes before all these. Multipliers
     that follow every correction have ways of their own, see `_following`.
 
@@ -104,17 +110,15 @@ class Attempts:
         self._failed: FailedPoint | None = None
         self._continuation = Continuation(problem, newton)
 
-    def solve(
-        self, first: Vec, last: Vec, ratio: float, small: bool = False, tiny: bool = False
-    ) -> Outcome:
+    def solve(self, first: Vec, last: Vec, ratio: float, pace: Pace) -> Outcome:
         """Solve and commit, or roll back.
 
         Args:
             first: Extrapolated state.
             last: Accepted state.
             ratio: Size of this part over that of the last one, 0 where nothing is extrapolated.
-            small: Whether no smaller part will be tried, or is likely to help.
-            tiny: Whether the part is so small that everything is tried, whatever failed.
+            pace: How large the part is: in a small one, that is not likely to get smaller, more is
+                tried, in a tiny one everything, whatever failed.
 
         Returns:
             Whether one converged, and what kept the others from it.
@@ -122,48 +126,47 @@ class Attempts:
         spent, self._failed = 0, None
         found: list[Culprit] = []
         seen: set[str] = set()
-        ways = self._ways(first, last, ratio)
+        searching, full = _Way(first, ratio, full_steps=False), _Way(last)
+        relaxed = [replace(way, multipliers=PENALTIES) for way in (searching, full)]
+        if not (pace.may_relax and PENALTIES in self._problem.contact_term.ways):
+            relaxed = []
+        ways = self._ways(searching, full)
+        if relaxed:
+            ways = [*(ways[:1] if pace.relaxed else ways), *relaxed]
         for way in ways:
             result, culprits = self._attempt(way)
             spent += result.iterations
             if not result.reason:
-                relaxed = way.multipliers == PENALTIES
-                return Outcome(replace(result, iterations=spent), relaxed=relaxed)
+                result = replace(result, iterations=spent)
+                return Outcome(result, relaxed=way.multipliers == PENALTIES)
             if self._turns.objects:  # nothing but a smaller part can help
                 return Outcome(replace(result, iterations=spent))
             found = _graver(found, culprits)
             seen |= {culprit.kind for culprit in culprits}
             alternates = "flipping" in seen and not seen & PLAIN
-            if way is ways[-1] and not self._final:
-                ways += self._last_resorts(way, last, small, alternates or tiny)
+            if way is ways[-1] and not self._final and (alternates or pace.tiny):
+                ways += self._last_resorts(way, pace)
         result = replace(result, iterations=spent, reason=_reason(result.reason, found))
         hint = self._continuation.hint()
         return Outcome(result, tuple(found), self._final, hint, self._failed)
 
-    def _ways(self, first: Vec, last: Vec, ratio: float) -> list[_Way]:
-        searching, full = _Way(first, ratio, full_steps=False), _Way(last)
+    def _ways(self, searching: _Way, full: _Way) -> list[_Way]:
         trusts = self._problem.stabilisation.trusts
         if self._problem.contact_term.follows:
             ways = _following(searching, full, IN_CYCLES in self._problem.contact_term.ways, trusts)
         else:
             ways = [searching, searching, full] if trusts else [searching, full]
         if self._continuation.stiff():
-            ways.insert(2 if trusts else 1, _Way(last, layered=True))
+            ways.insert(2 if trusts else 1, replace(full, layered=True))
         return ways
 
-    def _last_resorts(self, failed: _Way, last: Vec, small: bool, stuck: bool) -> list[_Way]:
-        """What is left to be tried where the status of points alternates, or parts are small."""
-        relaxed = failed.multipliers == PENALTIES
-        if stuck and not (failed.damped or failed.flowing or relaxed):
+    def _last_resorts(self, failed: _Way, pace: Pace) -> list[_Way]:
+        """What is left to be tried where the status of points alternates, or parts are tiny."""
+        if not failed.damped and not failed.flowing:
             return [replace(failed, damped=True)]
-        if (
-            small
-            and PENALTIES in self._problem.contact_term.ways
-            and not (failed.flowing or relaxed)
-        ):
-            return [_Way(last, full_steps=False, multipliers=PENALTIES)]
-        if stuck and small and self._problem.stabilisation.enabled and not failed.flowing:
-            return [_Way(last, flowing=True)]
+        if pace.small and self._problem.stabilisation.enabled and not failed.flowing:
+            relaxed = failed.multipliers == PENALTIES
+            return [_Way(failed.start, flowing=True, multipliers=PENALTIES if relaxed else USUAL)]
         return []
 
     def _attempt(self, way: _Way) -> tuple[NewtonResult, list[Culprit]]:

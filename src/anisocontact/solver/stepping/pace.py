@@ -33,6 +33,7 @@ class Pace:
         last: Size of the last part that converged, 0 at the start of a step.
         streak: Parts in a row that converged.
         cuts: Number of cuts within this increment.
+        relaxed: Whether penalties held in the last part, as no multipliers were found.
 
     Example:
         >>> limits = Limits()
@@ -51,6 +52,7 @@ class Pace:
     last: float = 0.0
     streak: int = 0
     cuts: int = 0
+    relaxed: bool = False
 
     @property
     def end(self) -> float:
@@ -80,17 +82,24 @@ class Pace:
         """Whether the limits allow to make the next part smaller."""
         return self.cuts < self.limits.cuts and self.part > self.limits.smallest
 
+    @property
+    def may_relax(self) -> bool:
+        """Whether penalties may hold in the next part: a cut has not led to multipliers."""
+        return self.small or self.relaxed or self.cuts > 0
+
     def bound(self, size: float) -> None:
         """Make the next parts no larger than a size, as far as the limits allow."""
         self.size = min(self.size, max(size, self.limits.smallest))
 
-    def advance(self, iterations: int) -> None:
+    def advance(self, iterations: int, relaxed: bool = False) -> None:
         """Go on behind a part that has converged.
 
         Args:
             iterations: Newton iterations that it took.
+            relaxed: Whether penalties held in it.
         """
         end, self.last = self.end, self.part
+        self.relaxed = relaxed
         self.done = end
         self.streak += 1
         if self.streak >= STREAK and iterations <= HARD:

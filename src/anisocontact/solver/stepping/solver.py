@@ -218,7 +218,7 @@ class Solver:
                 continue
             increment, done, part = pace.increment, pace.end, pace.part
             accepted = self._accepted(step, increment, done, outcome)
-            pace.advance(outcome.result.iterations)
+            pace.advance(outcome.iterations, outcome.relaxed)
             pace.bound(min(self._turns.allowed(part), largest))
             place.before, place.spent = last, 0
             place.lost = None if done == 1.0 else place.lost
@@ -236,7 +236,7 @@ class Solver:
             ratio = pace.part / pace.last
             first = (1.0 + ratio) * last - ratio * before
         self._turns.permitted = pace.cuttable
-        return attempts.solve(first, last, ratio, pace.small, pace.tiny)
+        return attempts.solve(first, last, ratio, pace)
 
     def _cut(self, step: Step, outcome: Outcome) -> None:
         """Make the next part smaller, or give up."""
