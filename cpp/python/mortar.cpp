@@ -28,6 +28,11 @@ surface::Topology named(const std::string& name) {
 using Rows = nb::ndarray<const double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
 using Cube = nb::ndarray<const double, nb::shape<-1, -1, -1>, nb::c_contig, nb::device::cpu>;
 
+/// Memory of tangents, from one evaluation to the next.
+struct MortarMemory {
+  std::shared_ptr<Pool> pool{std::make_shared<Pool>()};
+};
+
 /// Arrays of Python that the weights refer to as long as they are there.
 struct Given {
   surface::Topology slave_topology, master_topology;
@@ -44,6 +49,7 @@ struct Given {
   Coordinates skew_points;
   Scalars skew_weights;
   bool current_area;
+  std::shared_ptr<Pool> pool;
 };
 
 /// Mortar weights of the nodes of slave facets, see cpp/include/anisocontact/mortar/.
@@ -129,7 +135,10 @@ nb::tuple MortarWeights::tangent(const Indices& which, const Cube& by, const Cub
   for (const auto& [first, named, values] : moving)
     parts.push_back(
         {first, values.shape(1), values.shape(2), named ? named->data() : nullptr, values.data()});
-  Array<double> slopes({p, n.columns(), 3, 3}, unset);
+  std::vector<std::size_t> start{0};
+  for (const auto& one : facets_)
+    start.push_back(start.back() + mortar::FacetBlocks::size(slaves, one.masters.size()));
+  Array<double> of_facets({start.back()}, given_.pool), slopes({p, n.columns(), 3, 3}, given_.pool);
   std::vector<mortar::FacetBlocks> blocks(facets_.size());
   std::vector<std::vector<std::int32_t>> columns;
   std::optional<mortar::ForceRows> rows;
@@ -146,7 +155,8 @@ nb::tuple MortarWeights::tangent(const Indices& which, const Cube& by, const Cub
     kernel::parallel_for(facets_.size(), threads, [&](std::size_t f) {
       const std::int32_t* const own = place.data() + f * slaves;
       if (std::any_of(own, own + slaves, [](std::int32_t q) { return q >= 0; }))
-        blocks[f] = mortar::facet_blocks(n, chosen, f, weights(f, true), own);
+        blocks[f] =
+            mortar::facet_blocks(n, chosen, f, weights(f, true), own, of_facets.data + start[f]);
     });
     kernel::parallel_for(p, threads, [&](std::size_t q) {
       mortar::traction_slopes(n, blocks, parts, chosen, q,
@@ -161,7 +171,7 @@ nb::tuple MortarWeights::tangent(const Indices& which, const Cube& by, const Cub
     for (const auto& one : columns) offset.push_back(offset.back() + one.size());
   }
   Array<std::int32_t> row({offset.back(), 1}, unset), column({offset.back(), 1}, unset);
-  Array<double> values({offset.back(), 1, 1, 3, 3}, unset);
+  Array<double> values({offset.back(), 1, 1, 3, 3}, given_.pool);
   {
     nb::gil_scoped_release free;
     kernel::parallel_pieces(columns.size(), threads, [&](std::size_t first, std::size_t last) {
@@ -180,6 +190,7 @@ nb::tuple MortarWeights::tangent(const Indices& which, const Cube& by, const Cub
 }  // namespace
 
 void bind_mortar(nb::module_& m) {
+  nb::class_<MortarMemory>(m, "MortarMemory").def(nb::init<>());
   nb::class_<MortarWeights>(m, "MortarWeights")
       .def(
           "__init__",
@@ -190,13 +201,14 @@ void bind_mortar(nb::module_& m) {
              const Indices& around_local, const Rows& support, const Offsets& more_offsets,
              const Indices& more_nodes, const Coordinates& straight_points,
              const Scalars& straight_weights, const Coordinates& skew_points,
-             const Scalars& skew_weights, bool current_area, std::size_t threads) {
-            new (self)
-                MortarWeights({named(slave_topology), named(master_topology), slave, master, now,
-                               reference, pair_offsets, pair_facets, patch, around_offsets,
-                               around_facets, around_local, support, straight_points,
-                               straight_weights, skew_points, skew_weights, current_area},
-                              more_offsets, more_nodes, threads);
+             const Scalars& skew_weights, bool current_area, const MortarMemory& memory,
+             std::size_t threads) {
+            new (self) MortarWeights(
+                {named(slave_topology), named(master_topology), slave, master, now, reference,
+                 pair_offsets, pair_facets, patch, around_offsets, around_facets, around_local,
+                 support, straight_points, straight_weights, skew_points, skew_weights,
+                 current_area, memory.pool},
+                more_offsets, more_nodes, threads);
           },
           nb::arg("slave_topology"), nb::arg("slave"), nb::arg("master_topology"),
           nb::arg("master"), nb::arg("now"), nb::arg("reference"), nb::arg("pair_offsets"),
@@ -204,7 +216,7 @@ void bind_mortar(nb::module_& m) {
           nb::arg("around_facets"), nb::arg("around_local"), nb::arg("support"),
           nb::arg("more_offsets"), nb::arg("more_nodes"), nb::arg("straight_points"),
           nb::arg("straight_weights"), nb::arg("skew_points"), nb::arg("skew_weights"),
-          nb::arg("current_area"), nb::arg("threads"))
+          nb::arg("current_area"), nb::arg("memory"), nb::arg("threads"))
       .def_prop_ro("masters", &MortarWeights::masters, nb::rv_policy::reference)
       .def_prop_ro("area", &MortarWeights::area, nb::rv_policy::reference)
       .def_prop_ro("weight", &MortarWeights::weight, nb::rv_policy::reference)

@@ -283,6 +283,9 @@ class FacetInterface:
         outputs: NDArray[numpy.float64] | None = None,
     ) -> dict[str, NDArray[Any]]: ...
 
+class MortarMemory:
+    def __init__(self) -> None: ...
+
 class MortarWeights:
     def __init__(
         self,
@@ -306,6 +309,7 @@ class MortarWeights:
         skew_points: NDArray[numpy.float64],
         skew_weights: NDArray[numpy.float64],
         current_area: bool,
+        memory: MortarMemory,
         threads: int,
     ) -> None: ...
     @property

@@ -128,6 +128,7 @@ def mortar_weights(
         skew_points=skew[0],
         skew_weights=skew[1],
         current_area=current_area,
+        memory=around.memory,
         threads=sides.threads,
     )
     return MortarWeights(core.masters, core.area, core.weight, core)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, override
 
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact import _core
 from anisocontact.base.fenicsx import basix
 from anisocontact.contact.facet_mesh import (
     FacetMesh,
@@ -70,6 +71,7 @@ class Patches:
         support: Values at the first nodes whose combination is the slave point, (n, r).
         pieces: Pieces of the facets with straight edges, as numbers of slave nodes, after which
             come those of `WholeFacets.others`, (m, corners).
+        memory: Of tangents, from one evaluation to the next.
     """
 
     mesh: FacetMesh
@@ -79,6 +81,7 @@ class Patches:
     nodes: Ints
     support: Floats
     pieces: Ints
+    memory: _core.MortarMemory = field(default_factory=_core.MortarMemory)
 
 
 @dataclass(frozen=True)

@@ -32,12 +32,19 @@ struct Chosen {
   const double* traction;  ///< (p, 3)
 };
 
-/// Blocks of a facet; none where no node of it is chosen.
+/// What the weights of a facet give, by the nodes of the facet and then its masters, (3 c); none where no
+/// node of it is chosen.
 struct FacetBlocks {
-  std::vector<std::int32_t> nodes;  ///< of the facet, then masters: columns, and rows of the force
+  std::vector<std::int32_t> nodes;  ///< columns, and rows of the force
   std::vector<bool> acting;         ///< which of these rows are not all zero
-  std::vector<double> lift;         ///< of tractions of its nodes through weights, (slaves, c, 9)
-  std::vector<double> force;        ///< of forces through weights, (c, c, 9)
+  double *lift{nullptr},
+      *force{nullptr};  ///< of tractions of its nodes, (slaves, 3, 3 c), and (c, 3, 3 c)
+
+  /// How many numbers both have.
+  static std::size_t size(std::size_t slaves, std::size_t masters) {
+    const std::size_t count = slaves + masters;
+    return masters == 0 ? 0 : (slaves + count) * block_size * count;
+  }
 };
 
 /// Weights of slave nodes and what they were found from.
@@ -61,36 +68,39 @@ ANISOCONTACT_INLINE void add_block(double factor, const double* from, double* to
   for (std::size_t x = 0; x < block_size; ++x) to[x] += factor * from[x];
 }
 
-/// Adds vector times row, (3 c), to blocks, (c, 9).
-ANISOCONTACT_INLINE void add_outer(const double* v, const double* row, std::size_t count,
+/// Adds vector times row, (width,), to three rows.
+ANISOCONTACT_INLINE void add_outer(const double* v, const double* row, std::size_t width,
                                    double* to) {
-  for (std::size_t c = 0; c < count; ++c)
-    for (std::size_t x = 0; x < 3; ++x)
-      for (std::size_t j = 0; j < 3; ++j) to[block_size * c + 3 * x + j] += v[x] * row[3 * c + j];
+  for (std::size_t x = 0; x < 3; ++x)
+    for (std::size_t c = 0; c < width; ++c) to[x * width + c] += v[x] * row[c];
+}
+
+/// Adds column c of three rows, (3, width), to a block.
+ANISOCONTACT_INLINE void add_column(const double* rows, std::size_t width, std::size_t c,
+                                    double* to) {
+  for (std::size_t x = 0; x < 3; ++x)
+    for (std::size_t j = 0; j < 3; ++j) to[3 * x + j] += rows[x * width + 3 * c + j];
 }
 
 }  // namespace detail
 
-/// Blocks of a facet, whose nodes have these places among those that are chosen, -1 for none.
+/// Blocks of a facet, whose nodes have these places among those that are chosen, -1 for none, written
+/// to memory of `FacetBlocks::size`.
 inline FacetBlocks facet_blocks(const Nodes& n, const Chosen& chosen, std::size_t f,
-                                const DualWeights& own, const std::int32_t* place) {
+                                const DualWeights& own, const std::int32_t* place, double* memory) {
   FacetBlocks out;
   const std::size_t slaves = n.in.slave.width(), masters = own.masters.size(),
-                    count = slaves + masters;
+                    count = slaves + masters, width = 3 * count;
   if (masters == 0) return out;
   for (std::size_t a = 0; a < slaves; ++a) out.nodes.push_back(n.in.slave.node(f, a));
   out.nodes.insert(out.nodes.end(), own.masters.begin(), own.masters.end());
   out.acting.assign(count, false);
-  out.lift.assign(slaves * count * block_size, 0.0);
-  out.force.assign(count * count * block_size, 0.0);
-  const auto row = [](const DualWeights::Matrix& m, std::size_t r) {
-    return m.data() + r * static_cast<std::size_t>(m.cols());
-  };
-  for (std::size_t s = 0; s < slaves; ++s) {
-    if (place[s] < 0) continue;
-    const auto q = static_cast<std::size_t>(place[s]);
-    const auto i = static_cast<std::size_t>(chosen.which[q]);
+  std::fill_n(memory, FacetBlocks::size(slaves, masters), 0.0);
+  out.lift = memory;
+  out.force = memory + slaves * 3 * width;
+  const auto node = [&](std::size_t s, std::size_t q, std::size_t i) ANISOCONTACT_INLINE_LAMBDA {
     const double* const t = chosen.traction + 3 * q;
+    const double* const grown = own.d_area.data() + s * width;
     for (std::size_t r = 0; r < n.rows; ++r) {
       const double share = -n.support[i * n.rows + r];
       if (share == 0.0) continue;
@@ -98,18 +108,23 @@ inline FacetBlocks facet_blocks(const Nodes& n, const Chosen& chosen, std::size_
           std::find(out.nodes.begin(), out.nodes.end(), n.patch(i)[r]) - out.nodes.begin());
       out.acting[a] = true;
       const std::array<double, 3> v{share * t[0], share * t[1], share * t[2]};
-      detail::add_outer(v.data(), row(own.d_area, s), count,
-                        out.force.data() + a * count * block_size);
+      detail::add_outer(v.data(), grown, width, out.force + a * 3 * width);
     }
     for (std::size_t k = 0; k < masters; ++k) {
       out.acting[slaves + k] = true;
-      const double* const dw = row(own.d_weight, s * masters + k);
-      detail::add_outer(t, dw, count, out.force.data() + (slaves + k) * count * block_size);
-      const double* const lift =
-          chosen.lift + 3 * (q * n.weights.most + n.place(i, own.masters[k]));
-      detail::add_outer(lift, dw, count, out.lift.data() + s * count * block_size);
+      const double* const dw = own.d_weight.data() + (s * masters + k) * width;
+      detail::add_outer(t, dw, width, out.force + (slaves + k) * 3 * width);
+      detail::add_outer(chosen.lift + 3 * (q * n.weights.most + n.place(i, own.masters[k])), dw,
+                        width, out.lift + s * 3 * width);
     }
-  }
+  };
+  with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
+    for (std::size_t s = 0; s < slaves; ++s) {
+      if (place[s] < 0) continue;
+      const auto q = static_cast<std::size_t>(place[s]);
+      node(s, q, static_cast<std::size_t>(chosen.which[q]));
+    }
+  });
   return out;
 }
 
@@ -133,14 +148,14 @@ inline void traction_slopes(const Nodes& n, const std::vector<FacetBlocks>& bloc
   for (std::size_t e = 0; e < n.patches.facet.size(i); ++e) {
     const FacetBlocks& b = blocks[static_cast<std::size_t>(n.patches.facet.begin(i)[e])];
     const std::size_t count = b.nodes.size(), slaves = n.in.slave.width();
-    const double* from =
-        b.lift.data() + static_cast<std::size_t>(n.patches.local.begin(i)[e]) * count * block_size;
-    for (std::size_t c = 0; c < count; ++c, from += block_size) {
+    const double* const from =
+        b.lift + static_cast<std::size_t>(n.patches.local.begin(i)[e]) * block_size * count;
+    for (std::size_t c = 0; c < count; ++c) {
+      const auto patch = n.patch(i);
       const std::size_t to =
-          c < slaves ? static_cast<std::size_t>(
-                           std::find(n.patch(i), n.patch(i) + width, b.nodes[c]) - n.patch(i))
+          c < slaves ? static_cast<std::size_t>(std::find(patch, patch + width, b.nodes[c]) - patch)
                      : width + n.place(i, b.nodes[c]);
-      detail::add_block(1.0, from, out + to * block_size);
+      detail::add_column(from, 3 * count, c, out + to * block_size);
     }
   }
 }
@@ -148,10 +163,9 @@ inline void traction_slopes(const Nodes& n, const std::vector<FacetBlocks>& bloc
 /// Rows of the tangent of the forces, each with the slave nodes and facets that add to it.
 class ForceRows {
  public:
-  /// A row of blocks, (columns, 9), times a factor.
   struct Term {
-    std::size_t of;  ///< chosen slave node, or facet
-    const double* blocks;
+    std::size_t of;        ///< chosen slave node, or facet
+    const double* blocks;  ///< (columns, 9) of a node, (3, 3 c) of a facet
     double factor;
   };
 
@@ -175,7 +189,7 @@ class ForceRows {
         const std::size_t count = facets[f].nodes.size();
         for (std::size_t a = 0; a < count; ++a)
           if (facets[f].acting[a])
-            put(facets[f].nodes[a], Term{f, facets[f].force.data() + a * count * block_size, 1.0});
+            put(facets[f].nodes[a], Term{f, facets[f].force + a * count * block_size, 1.0});
       }
     };
     by_node_.fill(each_node);
@@ -212,22 +226,23 @@ class ForceRows {
     std::fill_n(out, columns.size() * block_size, 0.0);
     for (std::size_t c = 0; c < columns.size(); ++c)
       place[static_cast<std::size_t>(columns[c])] = static_cast<std::int32_t>(c);
-    const auto add = [&](const Term& term, const std::int32_t* nodes, std::size_t count,
-                         std::size_t first) ANISOCONTACT_INLINE_LAMBDA {
-      for (std::size_t c = 0; c < count && nodes[c] >= 0; ++c)
-        detail::add_block(
-            term.factor, term.blocks + (first + c) * block_size,
-            out + static_cast<std::size_t>(place[static_cast<std::size_t>(nodes[c])]) * block_size);
+    const auto to = [&](std::int32_t node) ANISOCONTACT_INLINE_LAMBDA {
+      return out + static_cast<std::size_t>(place[static_cast<std::size_t>(node)]) * block_size;
     };
     with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
       for (const Term& term : by_node_.of(row)) {
         const auto i = static_cast<std::size_t>(chosen_.which[term.of]);
-        add(term, n_.patch(i), n_.patches.width, 0);
-        add(term, n_.masters(i), n_.weights.most, n_.patches.width);
+        const double* from = term.blocks;
+        for (std::size_t c = 0; c < n_.patches.width; ++c, from += block_size)
+          detail::add_block(term.factor, from, to(n_.patch(i)[c]));
+        for (std::size_t k = 0; k < n_.weights.most && n_.masters(i)[k] >= 0;
+             ++k, from += block_size)
+          detail::add_block(term.factor, from, to(n_.masters(i)[k]));
       }
       for (const Term& term : by_facet_.of(row)) {
         const auto& nodes = facets_[term.of].nodes;
-        add(term, nodes.data(), nodes.size(), 0);
+        for (std::size_t c = 0; c < nodes.size(); ++c)
+          detail::add_column(term.blocks, 3 * nodes.size(), c, to(nodes[c]));
       }
     });
     for (const std::int32_t node : columns) place[static_cast<std::size_t>(node)] = -1;
