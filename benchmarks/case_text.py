@@ -26,7 +26,7 @@ def box(
 
 
 def coulomb(pair: bool, penalty: float, friction: float, more: str = "") -> str:
-    """Coulomb friction below the block, on the base or on the plane.
+    """Coulomb friction below the block, on the base or on the plane, at integration points.
 
     Args:
         pair: Whether it is on the base.
@@ -38,7 +38,8 @@ def coulomb(pair: bool, penalty: float, friction: float, more: str = "") -> str:
 [[contact]]
 slave = "block.bottom"
 master = "{"base.top" if pair else "plane"}"
-{more}normal = {{ penalty = {penalty} }}
+{more}pass = "single"
+normal = {{ penalty = {penalty} }}
 adhesion = {{ stiffness = [{penalty}, {penalty}] }}
 friction = {{ coefficients = [{friction}, {friction}] }}
 """

@@ -10,8 +10,9 @@ from pathlib import Path
 CASES = Path(__file__).parent / "cases"
 #: What is written into the contacts of a case, by name.
 METHODS = {
-    "penalty": 'method = "penalty"\n',
-    "augmented": 'method = "augmented"\n',
+    "auto": "",
+    "penalty": 'pass = "single"\nmethod = "penalty"\n',
+    "augmented": 'pass = "single"\nmethod = "augmented"\n',
     "mortar": 'pass = "mortar"\nmethod = "penalty"\n',
     "mortar-augmented": 'pass = "mortar"\nmethod = "augmented"\n',
 }
@@ -53,6 +54,7 @@ class HardCase:
         >>> print(case.written(Way("augmented", "direct")).partition("title")[2])
          = "A"
         [[contact]]
+        pass = "single"
         method = "augmented"
         <BLANKLINE>
         [solver]
