@@ -106,6 +106,7 @@ def solved(
 class Line:
     """The functions of this file, for the tests beside it."""
 
+    lifted = Lifted
     half_planes = staticmethod(half_planes)
     solved = staticmethod(solved)
 
