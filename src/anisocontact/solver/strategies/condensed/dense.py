@@ -14,6 +14,7 @@ import numpy.typing as npt
 import scipy
 
 from anisocontact.contact.quadrature import Couplings
+from anisocontact.solver.strategies.condensed.wear import Wear
 from anisocontact.solver.terms.persistent import Arrays
 
 Ints = npt.NDArray[np.int64]
@@ -21,14 +22,19 @@ Floats = npt.NDArray[np.float64]
 Singles = npt.NDArray[np.float32]
 Block = tuple[slice, Floats]
 
-#: Krylov iterations after which the factor is renewed: a new one costs as much as some fifty.
+#: Krylov iterations after which the factor is renewed, if it costs no more.
 PATIENCE = 24
+#: Unknowns over solutions that cost as much as a factorisation: 2/3 n^3 operations at 70 Gflop/s
+#: for n^2 entries read at 4.4 G/s, OpenBLAS on one core, and a quarter more for GMRES.
+_SIZE_PER_SOLUTION = 30.0
+#: See `Wear`: between increments much changes at once.
+_LAST, _MARGIN = 1, 1.0
 #: Residual that Krylov iterations in single precision reach before they begin anew.
 _SINGLE = 1e-4
 #: Most of such beginnings with one factor.
 _ROUNDS = 4
-#: Names of the tangent of the kept factor: entries, columns and starts of the rows.
-_KEPT = ("tangent", "tangent_columns", "tangent_starts")
+#: Names of the tangent of the kept factor: entries, columns and starts of the rows; its wear.
+_KEPT, _SPENT = ("tangent", "tangent_columns", "tangent_starts"), "tangent_spent"
 
 
 def blocks_times(blocks: Sequence[Block], x: Floats) -> Floats:
@@ -182,6 +188,9 @@ class KeptFactor:
         self._tangent = tangent
         self._solve: Callable[[Singles], Singles] | None = None
         self._made_of: scipy.sparse.csr_array | None = None
+        self._factor_cost = tangent.count / _SIZE_PER_SOLUTION
+        self._patience = max(PATIENCE, int(self._factor_cost))
+        self._wear = Wear(_LAST, _MARGIN)
         self.factors = 0
         self.iterations = 0
 
@@ -192,16 +201,16 @@ class KeptFactor:
             b: Right-hand side, (c,).
             rtol: Norm of the residual over that of `b` at which to stop.
         """
-        known, left = np.zeros_like(b), 1.0
-        if self._solve is not None:
-            known, left = self._improved(known, b, rtol, PATIENCE)
+        known = np.zeros_like(b)
+        if self._solve is not None and not self._wear.worn:
+            known, left = self._improved(known, b, rtol)
             if left <= rtol:
                 return known
         try:
             self._make(self._tangent.summed)
         except ZeroDivisionError:
             return None
-        known, left = self._improved(known, b, rtol, PATIENCE)
+        known, left = self._improved(known, b, rtol)
         # what single precision cannot do better is still a direction for the line search
         return known if left < 0.5 else None
 
@@ -211,7 +220,7 @@ class KeptFactor:
         if made is None:
             return {}
         parts = (made.data, made.indices, made.indptr)
-        return dict(zip(_KEPT, parts, strict=True))
+        return dict(zip(_KEPT, parts, strict=True)) | {_SPENT: self._wear.persistent()}
 
     def restore(self, kept: Arrays) -> None:
         """Make the factor of `persistent` again."""
@@ -219,14 +228,16 @@ class KeptFactor:
             n = self._tangent.count
             parts = tuple(kept[name] for name in _KEPT)
             self._make(scipy.sparse.csr_array(parts, shape=(n, n)))
+            self._wear.restore(kept[_SPENT])
 
     def _make(self, contact: scipy.sparse.csr_array) -> None:
         self._solve = None  # gives the memory back
         self._solve = self._tangent.factor(contact)
         self._made_of = contact
+        self._wear.begin(self._factor_cost)
         self.factors += 1
 
-    def _improved(self, x: Floats, b: Floats, rtol: float, most: int) -> tuple[Floats, float]:
+    def _improved(self, x: Floats, b: Floats, rtol: float) -> tuple[Floats, float]:
         """Krylov iterations from `x` on; the norm of the residual over that of `b` comes with it.
 
         In single precision, begun anew with the residual in double precision. With the kept factor
@@ -242,7 +253,7 @@ class KeptFactor:
             direction = solve(v)
             return direction, v + change @ direction
 
-        norm = float(np.linalg.norm(b)) or 1.0
+        norm, most = float(np.linalg.norm(b)) or 1.0, self._patience
         rest, left = b - self._tangent.times(x) if x.any() else b, 1.0
         for _ in range(_ROUNDS):
             size = float(np.linalg.norm(rest)) or 1.0
@@ -253,11 +264,13 @@ class KeptFactor:
             better = x + y.astype(np.float64) * (size / self._tangent.scale)
             rest = b - self._tangent.times(better)
             now = float(np.linalg.norm(rest))
+            most -= used
             if not now < size:
                 break
-            x, left, most = better, now / norm, most - used
+            x, left = better, now / norm
             if left <= rtol or most <= 0:
                 break
+        self._wear.add(self._patience - most, left)
         return x, left
 
 

@@ -13,6 +13,7 @@ from anisocontact.solver.strategies.condensed.bordered import BorderedLU
 from anisocontact.solver.strategies.condensed.dense import gmres
 from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.touched import Touched
+from anisocontact.solver.strategies.condensed.wear import Wear
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
@@ -24,10 +25,8 @@ _MATRIX, _OLD, _CHANGE = "lagged.matrix", "lagged.old", "lagged.change"
 _PARTS = ("data", "indices", "indptr")
 #: Most Krylov iterations of a correction before a new factor is made, if that costs no more.
 _PATIENCE = 20
-#: Corrections whose cost is the cost of now: one alone depends on how many points change.
-_LAST = 10
-#: ... and how far above the average it has to be, as it scatters.
-_MARGIN = 1.15
+#: See `Wear`: the cost of a correction alone depends on how many points change.
+_LAST, _MARGIN = 10, 1.15
 #: Residual of a correction over its right-hand side that is still a direction for a line search.
 _USEFUL = 0.5
 
@@ -39,9 +38,7 @@ class LaggedFactor:
     `P = J_old + C - C_old` with C what acts on the unknowns that contact can couple. All that
     changes at once is in it, and what it lacks is the change of the bodies since.
 
-    A factor is made anew where a decimal of the residual costs more now than on average since the
-    last one, with that one counted in: no other moment costs less in the long run, as long as the
-    cost grows with the age of the factor.
+    A factor is made anew where it is worn, see `Wear`.
 
     Args:
         problem: The problem, on one process.
@@ -62,7 +59,7 @@ class LaggedFactor:
         self._old = scipy.sparse.csr_array((0, 0))
         self._of_factor = self._old
         self._single, self._due = True, True
-        self._spent: list[tuple[float, float]] = []
+        self._wear = Wear(_LAST, _MARGIN)
         self.factors = 0
         self.krylov: list[int] = []
         if kept and f"{_MATRIX}.data" in kept:
@@ -79,7 +76,7 @@ class LaggedFactor:
         change = factor.change
         out = {
             "lagged.unknowns": touched.unknowns,
-            "lagged.spent": np.array(self._spent).reshape(-1, 2),
+            "lagged.spent": self._wear.persistent(),
             "lagged.flags": np.array([self._single, self._due, change is not None]),
         }
         change = self._old if change is None else change
@@ -94,7 +91,7 @@ class LaggedFactor:
             for name, size in ((_MATRIX, n), (_OLD, len(unknowns)), (_CHANGE, len(unknowns)))
         )
         self._single, self._due, changed = map(bool, kept["lagged.flags"])
-        self._spent = [(float(a), float(b)) for a, b in kept["lagged.spent"]]
+        self._wear.restore(kept["lagged.spent"])
         tangent = aij(matrix, 3)
         self._factor = BorderedLU(tangent, unknowns, self._single)
         tangent.destroy()
@@ -158,11 +155,9 @@ class LaggedFactor:
         if not np.isfinite(left):
             return
         if fresh:
-            self._spent = [(factor.solutions_per_factor, 0.0)]
-        self._spent.append((cost, -np.log10(max(left, 1e-16))))
-        total, last = np.sum(self._spent, axis=0), np.sum(self._spent[-_LAST:], axis=0)
-        worn = last[0] * total[1] > _MARGIN * last[1] * total[0]
-        self._due = len(self._spent) > _LAST and bool(worn)
+            self._wear.begin(factor.solutions_per_factor)
+        self._wear.add(cost, left)
+        self._due = self._wear.worn
 
     def _renewed(self, tangent: Mat) -> bool:
         """Make a factor of this tangent; the old one stays where there is none."""

@@ -104,9 +104,7 @@ class Reach:
         """Motion of slave and master that is allowed for, length."""
         bodies = [self._ranges[name.partition(".")[0]] for name in half.groups]
         planned = sum(float(np.linalg.norm(extent)) for extent in bodies)
-        return float(
-            self._factor * (planned + _SLACK * half.slave_points.size) + half.slave_points.spread
-        )
+        return float(self._factor * (planned + _SLACK * half.slave_points.size))
 
     def _select_pass(self, half: Any, x: Floats) -> None:
         from scipy.spatial import cKDTree  # slow to import, and not needed for analytic masters
@@ -122,7 +120,7 @@ class Reach:
         nearest = np.where(near, np.minimum(nearest, np.abs(half.state["gap"])), nearest)
         able = np.flatnonzero(nearest <= half.master.reach + motion + radius)
         self.nodes[half.master.local_names(half.slave_points.nodes[able])] = True
-        limit = nearest[able] + 2.0 * motion
+        limit = nearest[able] + 2.0 * motion + half.slave_points.spread
         lists = tree.query_ball_point(points[able], limit + radius)
         facet = np.concatenate([np.zeros(0, dtype=np.int64), *map(np.asarray, lists)]).astype(int)
         point = np.repeat(np.arange(len(able)), [len(found) for found in lists])

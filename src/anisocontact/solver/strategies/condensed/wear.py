@@ -1,0 +1,69 @@
+"""When a factor that preconditions a matrix which moves away from it is to be made anew."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+
+class Wear:
+    """What corrections have cost since a factor was made, in solutions with it.
+
+    A factor is worn where a decimal of the residual costs more now than on average since it was
+    made, with the factor counted in: no other moment to make the next one costs less in the long
+    run, as long as the cost grows with the age of the factor.
+
+    Args:
+        last: Corrections whose cost is the cost of now.
+        margin: How far above the average it has to be, as it scatters.
+
+    Attributes:
+        spent: Cost of the factor and decimals that it gained, none, then those of each correction.
+
+    Example:
+        >>> wear = Wear(1, 1.0)
+        >>> wear.begin(10.0)
+        >>> for used in (2, 4, 8, 16):
+        ...     wear.add(used, 1e-4)
+        ...     print(wear.worn)
+        False
+        False
+        False
+        True
+    """
+
+    def __init__(self, last: int, margin: float) -> None:
+        self._last, self._margin = last, margin
+        self.spent: list[tuple[float, float]] = []
+
+    def begin(self, cost: float) -> None:
+        """Take it that a factor has been made.
+
+        Args:
+            cost: What it has cost, in solutions.
+        """
+        self.spent = [(cost, 0.0)]
+
+    def add(self, cost: float, left: float) -> None:
+        """Count a correction.
+
+        Args:
+            cost: What it has cost, in solutions.
+            left: Residual over the right-hand side.
+        """
+        self.spent.append((cost, -np.log10(max(left, 1e-16))))
+
+    @property
+    def worn(self) -> bool:
+        """Whether a new factor pays."""
+        total, last = np.sum(self.spent, axis=0), np.sum(self.spent[-self._last :], axis=0)
+        dearer = last[0] * total[1] > self._margin * last[1] * total[0]
+        return len(self.spent) > self._last and bool(dearer)
+
+    def persistent(self) -> npt.NDArray[np.float64]:
+        """What `restore` goes on from, (k, 2)."""
+        return np.array(self.spent).reshape(-1, 2)
+
+    def restore(self, kept: npt.NDArray[np.float64]) -> None:
+        """Go on from what `persistent` gave."""
+        self.spent = [(float(cost), float(gained)) for cost, gained in kept]
