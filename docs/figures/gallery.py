@@ -261,6 +261,25 @@ def tribometer(folder: Path) -> Path:
     return scene.save("tribometer", (-0.3, -1.0, 1.1), zoom=1.15)
 
 
+def cup(folder: Path) -> Path:
+    """The cup in three states, its plastic strain, and the direction of rolling."""
+    scene = Scene(folder)
+    results = Results(folder)
+    scale = bar("plastic strain", 4)
+    for place, depth in enumerate((8.0, 16.0, 26.0)):
+        z = -results.history["rigid.punch.translation.z"]
+        time = results.history["time"][np.searchsorted(z, depth - 1e-9)]
+        (state,) = parts(results.fields(int(np.abs(np.array(results.times) - time).argmin())))
+        half = state.merge(state.reflect((1, 0, 0)))
+        scene.bodies["sheet"] = half.merge(half.reflect((0, 1, 0)))
+        scene.bodies["sheet"].points += (68.0 * place - 5.0 * place**2, 0.0, depth)
+        style = {"scalars": "plastic_strain", "cmap": "YlOrRd", "clim": (0.0, 0.6)}
+        scene.body("sheet", **style, show_scalar_bar=place == 2, scalar_bar_args=scale)
+    scene.arrow((-12, -42, 8), (24, 0, 0), INK)
+    scene.label((-12, -42, 2), "rolled", INK)
+    return scene.save("cup", (0.0, -1.0, 0.75), zoom=1.5)
+
+
 PICTURES: dict[str, Callable[[Path], Path]] = {
     "ironing": ironing,
     "belt": belt,
@@ -269,6 +288,7 @@ PICTURES: dict[str, Callable[[Path], Path]] = {
     "ball_on_sheet": ball_on_sheet,
     "corrugated": corrugated,
     "tribometer": tribometer,
+    "cup": cup,
 }
 
 
