@@ -34,6 +34,7 @@ from anisocontact.bulk.point_law import (
 from anisocontact.bulk.rubber import MooneyRivlin, Yeoh
 from anisocontact.bulk.user_law import UserLaw, user_material
 from anisocontact.bulk.viscoelastic import Viscoelastic
+from anisocontact.bulk.volume import Volume
 
 __all__ = [
     "PLASTIC_STRAIN",
@@ -66,6 +67,7 @@ __all__ = [
     "UserLaw",
     "UserStress",
     "Viscoelastic",
+    "Volume",
     "Yeoh",
     "bare",
     "cauchy_stress",

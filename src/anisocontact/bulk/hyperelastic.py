@@ -8,7 +8,8 @@ from typing import Any
 
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.bulk.materials import Density, Isotropic, reduced_degree, small_strain
+from anisocontact.bulk.materials import Density, Isotropic, constant, small_strain
+from anisocontact.bulk.volume import Volume, volume_of, volume_ratio
 
 _MODULI = (
     Parameter("E", "scalar", "stress", "Young's modulus at rest", "positive"),
@@ -28,36 +29,26 @@ def deformation_gradient(u: Any) -> Any:
     return ufl.Identity(3) + ufl.grad(u)
 
 
-def cauchy_stress(material: Any, u: Any) -> Any:
+def cauchy_stress(material: Any, u: Any, pressure: Any = None) -> Any:
     """True stress of any material, UFL: `P F^T / J` at finite strain.
 
     Args:
         material: The material.
         u: UFL displacement.
+        pressure: That of the cells where the material keeps its change of volume apart, UFL; that
+            of every point if left out.
 
     Returns:
         Stress tensor, (3, 3), stress.
     """
-    if material.linear:
-        return material.stress(u)
+    stress = material.stress(u) if material.linear else material.piola(u)
+    if pressure is not None:
+        volume = material.volume(u)
+        stress += volume.stress(u, pressure) - volume.stress(u)
     if small_strain(material):
-        return material.piola(u)
+        return stress
     gradient = deformation_gradient(u)
-    return material.piola(u) * gradient.T / ufl.det(gradient)
-
-
-def volumetric(u: Any, bulk: Any, change: Any) -> Density:
-    """`K/2 e^2` of a change of volume e, integrated so that cells do not lock: `reduced_degree`.
-
-    Args:
-        u: Displacement, a DOLFINx function.
-        bulk: Bulk modulus K, UFL, stress.
-        change: Change of volume such as J - 1, UFL.
-
-    Returns:
-        The term and the degree of its quadrature.
-    """
-    return 0.5 * bulk * change**2, reduced_degree(u)
+    return stress * gradient.T / ufl.det(gradient)
 
 
 class Hyperelastic(ABC):
@@ -68,7 +59,9 @@ class Hyperelastic(ABC):
     def piola(self, u: Any) -> Any:
         """First Piola-Kirchhoff stress, the derivative of the energy with respect to F, UFL."""
         gradient = ufl.variable(deformation_gradient(u))
-        return ufl.diff(sum(w for w, _ in self._terms(u, gradient)), gradient)
+        stress = ufl.diff(sum(w for w, _ in self._terms(u, gradient)), gradient)
+        volume = volume_of(self, u)
+        return stress if volume is None else stress + volume.stress(u)
 
     def energy(self, u: Any) -> list[Density]:
         """Terms of the energy with the degree of the quadrature each asks for."""
@@ -130,13 +123,11 @@ class NeoHookean(Isotropic, Hyperelastic):
 
 
 class NeoHookeanIncompressible(Isotropic, Hyperelastic):
-    """`W = G/2 (J^(-2/3) tr C - 3) + K/2 (J - 1)^2`, nearly incompressible without locking.
-
-    The volumetric term is integrated at fewer points, see `volumetric`.
+    """`W = G/2 (J^(-2/3) tr C - 3) + K/2 (J - 1)^2`, incompressible or nearly so, see `Volume`.
 
     Args:
         E: Young's modulus at rest, > 0, stress.
-        nu: Poisson's ratio at rest, -1 < nu < 0.5; its stiffness grows as 1 / (1 - 2 nu).
+        nu: Poisson's ratio at rest, -1 < nu <= 0.5, see `Isotropic`.
         field: Where the material was written, for messages.
 
     Raises:
@@ -146,16 +137,18 @@ class NeoHookeanIncompressible(Isotropic, Hyperelastic):
     entry = Entry(
         "neo-hookean-incompressible",
         "material",
-        "nearly incompressible neo-Hookean rubber, volume term by reduced integration",
+        "neo-Hookean rubber with a pressure in every cell, nu up to 0.5",
         _MODULI,
     )
+    incompressible = True
 
     def _terms(self, u: Any, gradient: Any) -> list[Density]:
-        lame, shear = self.constants(u)
-        j = ufl.det(gradient)
-        first = ufl.tr(gradient.T * gradient)
-        distortion = 0.5 * shear * (j ** (-2.0 / 3.0) * first - 3.0)
-        return [(distortion, None), volumetric(u, lame + 2.0 / 3.0 * shear, j - 1.0)]
+        shear, first = constant(u, self.shear), ufl.tr(gradient.T * gradient)
+        return [(0.5 * shear * (ufl.det(gradient) ** (-2.0 / 3.0) * first - 3.0), None)]
+
+    def volume(self, u: Any) -> Volume:
+        """`J - 1`."""
+        return Volume(constant(u, self.bulk_modulus), volume_ratio)
 
 
 class UserEnergy(Hyperelastic):

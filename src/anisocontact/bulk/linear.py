@@ -6,11 +6,12 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-from anisocontact.base.fenicsx import Mat, Vec, compiled, create_stiffness, ufl
+from anisocontact.base.fenicsx import Mat, Vec, compiled, create_stiffness, fem, ufl
 from anisocontact.base.form_matrix import add_matrix
 from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.materials import Material, body_measure, linear_parts
+from anisocontact.bulk.pressures import Pressures
 from anisocontact.mesh import Model
 
 
@@ -44,9 +45,14 @@ class LinearBulk:
     heated: Mapping[str, Heated] = MappingProxyType({})
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
-        self.stiffness = create_stiffness(
-            compiled(_bilinear_form(model, materials), model.mesh.comm)
-        )
+        dx = body_measure(model)
+        form = compiled(_bilinear_form(model, materials, dx), model.mesh.comm)
+        self.stiffness = create_stiffness(form)
+        self._u: Any = fem.Function(model.space)
+        self._pressures = Pressures(model, materials, self._u, dx)
+        self._pressures.add_tangent(self.stiffness)
+        #: As of `Pressures`.
+        self.pressures = self._pressures.of
         self._force = self.stiffness.createVecLeft()
         #: Diagonal of K: the scale of forces that displacements of one unit make.
         self.diagonal = self.stiffness.getDiagonal()
@@ -74,6 +80,11 @@ class LinearBulk:
         """
         return 0.5 * float(u.dot(self.force(u)))
 
+    def set_pressures(self, u: Any) -> None:
+        """Bring `pressures` to a displacement, a DOLFINx function; collective."""
+        self._u.x.array[:] = u.x.array
+        self._pressures.evaluate()
+
     def dissipated(self) -> float:
         """Linear materials dissipate nothing."""
         return 0.0
@@ -95,9 +106,9 @@ class LinearBulk:
         out.assemble()
 
 
-def _bilinear_form(model: Model, materials: Mapping[str, Material]) -> Any:
+def _bilinear_form(model: Model, materials: Mapping[str, Material], dx: Any) -> Any:
     u, v = ufl.TrialFunction(model.space), ufl.TestFunction(model.space)
-    dx, ideal = body_measure(model), model.idealisation
+    ideal = model.idealisation
     if model.mesh.topology.cell_name() in ("hexahedron", "quadrilateral") or ideal.turn.any():
         # full integration; UFL's own estimate counts the bending of the cell's sides, three times
         # the points

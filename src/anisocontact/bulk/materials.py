@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 
@@ -10,6 +10,7 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.bulk.volume import Volume
 from anisocontact.mesh import Model
 
 
@@ -19,6 +20,9 @@ class Material(Protocol):
     Linear materials have `stress(u)`, the stress conjugate to `sym(grad(v))`. The others have
     `piola(u)`, the first Piola-Kirchhoff stress conjugate to `grad(v)`, and `energy(u)`, terms of
     the energy per reference volume, or one of the two.
+
+    With `volume(u)`, a `Volume`, a material keeps the energy of its change of volume apart, so that
+    cells do not lock: it is in `stress` and `piola`, and not in `parts` and `energy`.
 
     Attributes:
         linear: Whether the stress is linear in the displacement, so that the stiffness is constant.
@@ -42,22 +46,6 @@ def small_strain(material: Any) -> bool:
 type Density = tuple[Any, int | None]
 
 
-def reduced_degree(u: Any) -> int:
-    """Degree of a quadrature with so few points that cells do not lock.
-
-    One point of a cell, of second-order hexahedra eight: as many constraints as the displacement
-    can meet [Malkus Hughes 1978, equivalence of reduced integration and a pressure of lower order].
-    Hexahedra and second-order tetrahedra do not lock with it; first-order tetrahedra have one point
-    anyway, and do.
-
-    Args:
-        u: Displacement, a DOLFINx function or an argument of a form.
-    """
-    element = u.ufl_function_space().element.basix_element
-    tensor = element.cell_type.name in ("hexahedron", "quadrilateral")
-    return 2 if tensor and element.degree == 2 else 1
-
-
 def linear_parts(material: Any, u: Any) -> list[tuple[Any, int | None]]:
     """Stresses whose sum is that of a linear material, with the degree of quadrature of each."""
     return material.parts(u) if hasattr(material, "parts") else [(material.stress(u), None)]
@@ -70,8 +58,20 @@ def body_measure(model: Model) -> Any:
     return ufl.Measure("dx", domain=model.mesh, subdomain_data=cells)
 
 
+def constant(u: Any, value: float) -> Any:
+    """A number of a form, so that one compiled form serves all values, UFL."""
+    return fem.Constant(ufl.domain.extract_unique_domain(u), value)
+
+
+#: Largest Poisson's ratio.
+INCOMPRESSIBLE = 0.4999995
+
+
 class Isotropic:
     """A material of two moduli at rest.
+
+    Where it is `incompressible`, nu = 0.5 is allowed and taken as `INCOMPRESSIBLE`, with a bulk
+    modulus of 1e6 G: a pressure of the size of G changes the volume by 1e-6.
 
     Args:
         E: Young's modulus at rest, > 0, stress.
@@ -84,13 +84,16 @@ class Isotropic:
     """
 
     entry: Entry
+    incompressible: ClassVar[bool] = False
 
     def __init__(self, *, E: float, nu: float, field: str = "", **others: Any) -> None:
         given = registry.values(self.entry, {"E": E, "nu": nu, **others}, field)
         (self.young,), (self.nu,) = given["E"], given["nu"]
+        if self.incompressible and INCOMPRESSIBLE < self.nu <= 0.5:
+            self.nu = INCOMPRESSIBLE
         if not -1.0 < self.nu < 0.5:
-            path = f"{field}.nu" if field else "nu"
-            raise InputError(f"{nu!r} given, must be > -1 and < 0.5", field=path)
+            path, bound = f"{field}.nu" if field else "nu", "<=" if self.incompressible else "<"
+            raise InputError(f"{nu!r} given, must be > -1 and {bound} 0.5", field=path)
         self._given = given
 
     @property
@@ -117,8 +120,7 @@ class Isotropic:
         Returns:
             Lame constant and shear modulus, UFL, stress.
         """
-        domain = ufl.domain.extract_unique_domain(u)
-        return fem.Constant(domain, self.lame), fem.Constant(domain, self.shear)
+        return constant(u, self.lame), constant(u, self.shear)
 
 
 class LinearElastic(Isotropic):
@@ -164,11 +166,11 @@ class LinearElastic(Isotropic):
 
 
 class LinearElasticIncompressible(LinearElastic):
-    """`sigma = 2 G dev(eps) + K tr(eps) I` whose second term is integrated at fewer points.
+    """`sigma = 2 G dev(eps) + K tr(eps) I`, incompressible or nearly so, see `Volume`.
 
     Args:
         E: Young's modulus, > 0, stress.
-        nu: Poisson's ratio, -1 < nu < 0.5; its stiffness grows as 1 / (1 - 2 nu).
+        nu: Poisson's ratio, -1 < nu <= 0.5, see `Isotropic`.
         field: Where the material was written, for messages.
 
     Raises:
@@ -178,14 +180,23 @@ class LinearElasticIncompressible(LinearElastic):
     entry = Entry(
         "linear-elastic-incompressible",
         "material",
-        "nearly incompressible linear elasticity, volume term by reduced integration",
-        LinearElastic.entry.parameters,
+        "linear elasticity with a pressure in every cell, nu up to 0.5",
+        (
+            LinearElastic.entry.parameters[0],
+            Parameter("nu", "scalar", "1", "Poisson's ratio, from above -1 to 0.5"),
+        ),
     )
+    incompressible = True
 
     def parts(self, u: Any) -> list[tuple[Any, int | None]]:
-        """Deviator, and pressure at the points of `reduced_degree`, (3, 3) each, UFL, stress."""
-        domain = ufl.domain.extract_unique_domain(u)
-        bulk, (_, shear) = fem.Constant(domain, self.bulk_modulus), self.constants(u)
-        strain = ufl.sym(ufl.grad(u))
-        deviator = 2.0 * shear * (strain - ufl.tr(strain) / 3.0 * ufl.Identity(3))
-        return [(deviator, None), (bulk * ufl.tr(strain) * ufl.Identity(3), reduced_degree(u))]
+        """The deviator alone, (3, 3), UFL, stress."""
+        return [(2.0 * constant(u, self.shear) * ufl.dev(ufl.sym(ufl.grad(u))), None)]
+
+    def stress(self, u: Any) -> Any:
+        """UFL stress of the displacement `u`, with the pressure of every point."""
+        ((deviator, _),) = self.parts(u)
+        return deviator + self.volume(u).stress(u)
+
+    def volume(self, u: Any) -> Volume:
+        """`tr(eps)`."""
+        return Volume(constant(u, self.bulk_modulus), ufl.tr)

@@ -20,6 +20,7 @@ from anisocontact.bulk.expansion import Expanding, Heated, bare
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure, linear_parts
 from anisocontact.bulk.point_law import BodyPoints
+from anisocontact.bulk.pressures import Pressures
 from anisocontact.mesh import Idealisation, Model
 
 
@@ -47,18 +48,28 @@ class NonlinearBulk:
             for name, law in materials.items()
             if isinstance(law, Expanding)
         }
+        dx = body_measure(model)
+        self._pressures = Pressures(model, given, self._u, dx, self.heated)
+        #: As of `Pressures`.
+        self.pressures = self._pressures.of
         self.histories: dict[str, BodyHistory | BodyPoints] = {}
         for name, law in given.items():
             if hasattr(law, "history"):
-                kind: Any = BodyPoints if hasattr(law, "update") else BodyHistory
-                seen = self.heated.get(name)
-                self.histories[name] = kind(law, model, name, self._u, self._dt, full, seen)
+                bound = (law, model, name, self._u, self._dt, full, self.heated.get(name))
+                self.histories[name] = (
+                    BodyPoints(*bound, self.pressures.get(name))
+                    if hasattr(law, "update")
+                    else BodyHistory(*bound)
+                )
         self._points = [b for b in self.histories.values() if isinstance(b, BodyPoints)]
         laws = {**given, **self.histories}
-        forms = _Forms(model, laws, self.heated, self._u, v, du, full)
+        forms = _Forms(model, laws, self.heated, self._u, v, du, dx, full)
+        work = forms.work + self._pressures.work(v)
         self._comm = model.mesh.comm
-        self._work = compiled(forms.work, self._comm)
-        self._tangent = FormMatrix(compiled(forms.tangent, self._comm))
+        self._work = compiled(work, self._comm)
+        tangent = ufl.derivative(work, self._u, du) + forms.slope
+        self._tangent = FormMatrix(compiled(tangent, self._comm))
+        self._pressures.add_tangent(self._tangent.matrix)
         self._energy = None if forms.energy is None else compiled(forms.energy, self._comm)
         self._dissipated = compiled(forms.dissipated, self._comm) if forms.dissipated else None
         #: Whether `energy` is that of all bodies: every material has one.
@@ -81,6 +92,7 @@ class NonlinearBulk:
             The force; the vector is overwritten by the next call.
         """
         self._set(u)
+        self._pressures.evaluate()
         for body in self._points:
             body.evaluate()
         assemble_force(self._work, self._force)
@@ -99,7 +111,8 @@ class NonlinearBulk:
         if self._energy is None:
             return 0.0
         self._set(u)
-        return float(self._comm.allreduce(fem.assemble_scalar(self._energy)))
+        own = fem.assemble_scalar(self._energy) + self._pressures.energy()
+        return float(self._comm.allreduce(own))
 
     def dissipated(self) -> float:
         """What materials have dissipated until the accepted state, over all ranks."""
@@ -116,6 +129,7 @@ class NonlinearBulk:
         for body in self._points:
             body.write_tangent()
         self._tangent.write(out)
+        self._pressures.add_tangent(out)
 
     def set_time(self, dt: float) -> None:
         """Take over the time increment of the next states."""
@@ -129,8 +143,14 @@ class NonlinearBulk:
         """
         if self.histories:
             self._set(u)
+            self._pressures.evaluate()
         for history in self.histories.values():
             history.commit()
+
+    def set_pressures(self, u: Any) -> None:
+        """Bring `pressures` to a displacement, a DOLFINx function; collective."""
+        self._u.x.array[:] = u.x.array
+        self._pressures.evaluate()
 
     def _set(self, u: Vec) -> None:
         self._u.x.array[: len(u.array_r)] = u.array_r
@@ -146,11 +166,13 @@ def _cell_size(model: Model) -> float:
 
 
 class _Forms:
-    """Virtual work of the stresses, its derivative, and the energies as far as materials tell them.
+    """Virtual work of the stresses, and the energies as far as materials tell them.
+
+    Changes of volume that materials keep apart are not in it, see `Pressures`.
 
     Attributes:
         work: Linear form.
-        tangent: Its derivative.
+        slope: What of its derivative the work does not show: that of laws at points.
         energy: What bodies store; None where a material has a stress but no energy.
         dissipated: What they have dissipated; 0 where no material has a history.
     """
@@ -163,11 +185,11 @@ class _Forms:
         u: Any,
         v: Any,
         du: Any,
+        dx: Any,
         full: int,
     ) -> None:
-        dx = body_measure(model)
         weight = model.idealisation.weight(model.mesh)
-        work, energy, slope, self.dissipated = 0, 0, 0, 0
+        work, energy, self.slope, self.dissipated = 0, 0, 0, 0
         # what heats a body from outside is not counted
         told = not heated
         for i, name in enumerate(model.body_names()):
@@ -181,7 +203,7 @@ class _Forms:
                 work += ufl.derivative(part, u, v)
             if isinstance(law, BodyPoints):
                 work += weight * stretch**2 * law.work(v) * here
-                slope += weight * stretch * law.slope(du, v) * here
+                self.slope += weight * stretch * law.slope(du, v) * here
             elif not (law.linear or hasattr(law, "energy")):
                 stress = stretch**2 * ideal.seen(law.piola(u), u)
                 work += weight * ufl.inner(stress, ideal.gradient(v)) * here
@@ -191,7 +213,6 @@ class _Forms:
                 energy += volume * law.stored * here
                 self.dissipated += volume * law.dissipated * here
         self.work, self.energy = work, energy if told else None
-        self.tangent = ufl.derivative(work, u, du) + slope
 
 
 def _stored(ideal: Idealisation, law: Any, u: Any) -> Sequence[Density]:

@@ -10,12 +10,13 @@ import numpy as np
 
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.bulk.at_points import Floats
+from anisocontact.bulk.materials import constant
 from anisocontact.bulk.point_law import ElasticVolume, PointResult, PointState
 from anisocontact.bulk.rubber import BULK
 from anisocontact.bulk.strain import spectral, turned
+from anisocontact.bulk.volume import Volume, volume_ratio
 
 
 class Ogden(ElasticVolume):
@@ -29,8 +30,7 @@ class Ogden(ElasticVolume):
         mu: A modulus for each term, stress.
         alpha: As many exponents, none of them 0; the shear modulus at rest,
             `sum mu_p alpha_p / 2`, has to be > 0.
-        bulk_modulus: K, > 0, stress; its term is integrated at fewer points, so that cells do not
-            lock.
+        bulk_modulus: K, > 0, stress; its pressure is one of every cell, see `Volume`.
         field: Where the material was written, for messages.
 
     Raises:
@@ -46,7 +46,7 @@ class Ogden(ElasticVolume):
     entry = Entry(
         "ogden",
         "material",
-        "rubber by powers of its principal stretches, volume term by reduced integration",
+        "rubber by powers of its principal stretches, with a pressure in every cell",
         (
             Parameter("mu", "array", "stress", "modulus of each term"),
             Parameter("alpha", "array", "1", "exponent of each term, none of them 0"),
@@ -78,8 +78,9 @@ class Ogden(ElasticVolume):
             raise InputError(text, f"{field}.mu" if field else "mu")
         self.young = 9.0 * self.bulk * shear / (3.0 * self.bulk + shear)
 
-    def _change(self, gradient: Any) -> Any:
-        return ufl.det(ufl.Identity(3) + gradient) - 1.0
+    def volume(self, u: Any) -> Volume:
+        """`J - 1`."""
+        return Volume(constant(u, self.bulk), volume_ratio)
 
     def update(self, state: PointState) -> PointResult:
         """Stress, tangent and energy of the distortion; see `PointLaw`."""

@@ -13,11 +13,12 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from anisocontact.base.fenicsx import fem, ufl
+from anisocontact.base.fenicsx import ufl
 from anisocontact.bulk.at_points import AtPoints, Floats
-from anisocontact.bulk.hyperelastic import cauchy_stress, volumetric
-from anisocontact.bulk.materials import Density, small_strain
+from anisocontact.bulk.hyperelastic import cauchy_stress
+from anisocontact.bulk.materials import constant, small_strain
 from anisocontact.bulk.strain import STRAINS, Strain
+from anisocontact.bulk.volume import Volume, volume_of
 from anisocontact.mesh import Idealisation, Model
 
 
@@ -61,8 +62,8 @@ class PointResult:
 class PointLaw(Protocol):
     """What is asked of a law of points, beside `linear = False` and `young`.
 
-    A law that is elastic against a change of volume may have `energy(u)` and `piola(u)` of that
-    part in UFL beside it, see `ElasticVolume`.
+    A law that is elastic against a change of volume may have `volume(u)` of that part in UFL beside
+    it, see `ElasticVolume`.
 
     Attributes:
         strain: Word for its strain, "small" or "logarithmic".
@@ -80,8 +81,8 @@ class PointLaw(Protocol):
 class ElasticVolume:
     """The part `K/2 tr(E)^2` of a law whose own stress does not depend on the change of volume.
 
-    It is integrated at so few points that cells do not lock where the material flows, or is nearly
-    incompressible; see `volumetric`.
+    It has a pressure in every cell, so that cells do not lock where the material flows, or is
+    nearly incompressible; see `Volume`.
 
     Attributes:
         strain: Word for the strain E.
@@ -92,22 +93,10 @@ class ElasticVolume:
     strain = "small"
     bulk: float
 
-    def energy(self, u: Any) -> list[Density]:
-        """The term with the degree of its quadrature."""
-        return [volumetric(u, self._bulk(u), self._change(ufl.grad(u)))]
-
-    def piola(self, u: Any) -> Any:
-        """First Piola-Kirchhoff stress of this part, UFL."""
-        gradient = ufl.variable(ufl.grad(u))
-        return ufl.diff(0.5 * self._bulk(u) * self._change(gradient) ** 2, gradient)
-
-    def _bulk(self, u: Any) -> Any:
-        return fem.Constant(ufl.domain.extract_unique_domain(u), self.bulk)
-
-    def _change(self, gradient: Any) -> Any:
-        """Change of volume of a displacement gradient, UFL."""
+    def volume(self, u: Any) -> Volume:
+        """`tr(E)`."""
         kind: Any = STRAINS[self.strain]
-        return kind.dilatation(gradient)
+        return Volume(constant(u, self.bulk), kind.dilatation)
 
 
 class BodyPoints(AtPoints):
@@ -121,6 +110,7 @@ class BodyPoints(AtPoints):
         dt: Time increment, a constant of DOLFINx.
         degree: Degree of the quadrature at whose points the law is evaluated.
         ideal: How gradients are seen; as those of the mesh if left out.
+        pressure: That of the cells, UFL, where the law is elastic against a change of volume.
 
     Attributes:
         stores: Whether the law says what it stores.
@@ -135,11 +125,12 @@ class BodyPoints(AtPoints):
         dt: Any,
         degree: int,
         ideal: Idealisation | None = None,
+        pressure: Any = None,
     ) -> None:
         super().__init__(model, body, law.history, degree, ideal)
         self._law, self._dt = law, dt
         self.small_strain = small_strain(law)
-        self._elastic: Any = law if hasattr(law, "energy") else None
+        self._volume, self._pressure = volume_of(law, u), pressure
         self._gradient = self._at_points(self._ideal.seen(ufl.grad(u), u))
         self._piola, self._slope = self._zero((3, 3)), self._zero((3, 3, 3, 3))
         self._true_stress = self._at_points(self._ideal.seen(cauchy_stress(self, u), u))
@@ -148,13 +139,11 @@ class BodyPoints(AtPoints):
         self.write_tangent()
         self.stores = self._last[1].stored is not None
 
-    def energy(self, u: Any) -> list[Density]:
-        """Terms of the energy that stand in UFL."""
-        return [] if self._elastic is None else list(self._elastic.energy(u))
-
     def piola(self, u: Any) -> Any:
         """First Piola-Kirchhoff stress at the points, (3, 3), UFL, stress."""
-        return self._piola if self._elastic is None else self._piola + self._elastic.piola(u)
+        if self._volume is None:
+            return self._piola
+        return self._piola + self._volume.stress(u, self._pressure)
 
     def work(self, v: Any) -> Any:
         """Virtual work of the stress of the law per reference volume, UFL."""

@@ -11,10 +11,11 @@ from typing import Any
 
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import fem, ufl
+from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.bulk.hyperelastic import Hyperelastic, volumetric
-from anisocontact.bulk.materials import Density
+from anisocontact.bulk.hyperelastic import Hyperelastic
+from anisocontact.bulk.materials import Density, constant
+from anisocontact.bulk.volume import Volume, volume_ratio
 
 BULK = Parameter(
     "bulk_modulus", "scalar", "stress", "bulk modulus K of the energy K/2 (J - 1)^2", "positive"
@@ -42,13 +43,16 @@ class _Rubber(Hyperelastic):
         return 2.0 * self._values[0]
 
     def _terms(self, u: Any, gradient: Any) -> list[Density]:
-        domain = ufl.domain.extract_unique_domain(u)
-        *constants, bulk = (fem.Constant(domain, v) for v in self._values)
+        constants = [constant(u, v) for v in self._values[:-1]]
         j, c = ufl.det(gradient), gradient.T * gradient
         trace = ufl.tr(c)
         first = j ** (-2.0 / 3.0) * trace
         second = 0.5 * j ** (-4.0 / 3.0) * (trace**2 - ufl.inner(c, c))
-        return [(self._distortion(constants, first, second), None), volumetric(u, bulk, j - 1.0)]
+        return [(self._distortion(constants, first, second), None)]
+
+    def volume(self, u: Any) -> Volume:
+        """`J - 1`."""
+        return Volume(constant(u, self._values[-1]), volume_ratio)
 
     @abstractmethod
     def _distortion(self, constants: list[Any], first: Any, second: Any) -> Any:
@@ -62,8 +66,7 @@ class MooneyRivlin(_Rubber):
         C10: Constant of the first invariant, stress.
         C01: Constant of the second invariant, stress; the shear modulus at rest, 2 (C10 + C01),
             has to be > 0.
-        bulk_modulus: K, > 0, stress; its term is integrated at fewer points, so that cells do not
-            lock.
+        bulk_modulus: K, > 0, stress; its pressure is one of every cell, see `Volume`.
         field: Where the material was written, for messages.
 
     Raises:
@@ -78,7 +81,7 @@ class MooneyRivlin(_Rubber):
     entry = Entry(
         "mooney-rivlin",
         "material",
-        "rubber by the two invariants of its distortion, volume term by reduced integration",
+        "rubber by the two invariants of its distortion, with a pressure in every cell",
         (
             Parameter("C10", "scalar", "stress", "constant of the first invariant"),
             Parameter("C01", "scalar", "stress", "constant of the second invariant"),
@@ -101,8 +104,7 @@ class Yeoh(_Rubber):
         C10: Half of the shear modulus at rest, > 0, stress.
         C20: Constant of the square, stress.
         C30: Constant of the cube, stress.
-        bulk_modulus: K, > 0, stress; its term is integrated at fewer points, so that cells do not
-            lock.
+        bulk_modulus: K, > 0, stress; its pressure is one of every cell, see `Volume`.
         field: Where the material was written, for messages.
 
     Raises:
@@ -116,7 +118,7 @@ class Yeoh(_Rubber):
     entry = Entry(
         "yeoh",
         "material",
-        "rubber by powers of the first invariant, volume term by reduced integration",
+        "rubber by powers of the first invariant, with a pressure in every cell",
         (
             Parameter("C10", "scalar", "stress", "half of the shear modulus at rest"),
             Parameter("C20", "scalar", "stress", "constant of the square"),

@@ -86,6 +86,7 @@ class Bodies:
 
     def stress(self) -> Floats:
         """Stress of the accepted state at the nodes, XX YY ZZ XY YZ XZ, (nodes, 6); collective."""
+        self.problem.bulk.set_pressures(self.problem.u)
         for expression, cells in self._expressions:
             self._stress.interpolate(expression, cells0=cells)
         values = self._stress.x.array.reshape(-1, len(_SYMMETRIC))
@@ -193,7 +194,8 @@ def slave_points(contacts: Iterable[Contact], chosen: Collection[str] = ()) -> D
 
 def _stress_at(problem: Problem, body: str, space: Any) -> Any:
     ideal, u = problem.bulk.heated.get(body, problem.model.idealisation), problem.u
-    stress = ideal.at_nodes(cauchy_stress(bare(problem.materials[body]), u), u)
+    pressure = problem.bulk.pressures.get(body)
+    stress = ideal.at_nodes(cauchy_stress(bare(problem.materials[body]), u, pressure), u)
     components = ufl.as_vector([stress[i, j] for i, j in _SYMMETRIC])
     points = space.element.interpolation_points
     return compiled_expression(components, points, problem.model.mesh.comm)

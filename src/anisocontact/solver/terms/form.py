@@ -43,6 +43,8 @@ class FormBulk:
     histories: Mapping[str, AtPoints] = MappingProxyType({})
     #: Nor is its temperature known.
     heated: Mapping[str, Heated] = MappingProxyType({})
+    #: Pressures are among the unknowns of the form.
+    pressures: Mapping[str, Any] = MappingProxyType({})
 
     def __init__(self, F: Any, u: Any, J: Any = None) -> None:
         space = u.function_space
@@ -62,6 +64,9 @@ class FormBulk:
     def energy(self, u: Vec) -> float:
         """Unknown: a form has none."""
         return 0.0
+
+    def set_pressures(self, u: Any) -> None:
+        """Nothing: the form has its own."""
 
     def dissipated(self) -> float:
         """Unknown as well."""

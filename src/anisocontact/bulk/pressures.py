@@ -1,0 +1,153 @@
+"""Changes of volume of cells: pressures of their own in every cell, so that cells do not lock.
+
+The energy `K/2 e^2` of a change of volume e at every point would hold a cell in more ways than it
+has displacements for. Here it is that of the projection of e onto pressures of lower order that
+do not go on from cell to cell, `K/2 <Pe, Pe>` with `<q, Pe> = <q, e>` for all such q: displacement
+and pressure in a mixed form, of which the pressure `p = K Pe` is eliminated in each cell [Malkus
+Hughes 1978; Simo Taylor Pister 1985]. What is constant in a cell is its own projection, whatever
+the shape of the cell, so that a patch test holds.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.fenicsx import (
+    Mat,
+    assemble_into,
+    basix,
+    compiled,
+    create_stiffness,
+    fem,
+    ufl,
+)
+from anisocontact.base.form_matrix import add_matrix
+from anisocontact.bulk.expansion import Heated
+from anisocontact.bulk.volume import volume_of
+from anisocontact.mesh import Model
+
+Floats = npt.NDArray[np.float64]
+
+
+def pressure_element(space: Any) -> Any:
+    """Element of the pressures below displacements, of an order that is stable with them.
+
+    A constant in cells of order 1, the mean dilatation Q1/P0, and in simplices; a linear function
+    in hexahedra and quadrilaterals of order 2, Q2/P1 [Boffi Brezzi Fortin 2013, section 8.6].
+
+    Args:
+        space: Space of the displacements.
+    """
+    element = space.element.basix_element
+    linear = element.cell_type.name in ("hexahedron", "quadrilateral") and element.degree == 2
+    kind = ("DPC", 1) if linear else ("DG", 0)
+    return basix.ufl.element(kind[0], element.cell_type, kind[1], dtype=np.float64)
+
+
+class Pressures:
+    """Pressures of all bodies whose material keeps its change of volume apart.
+
+    Args:
+        model: Mesh of the bodies.
+        laws: Material of each body.
+        u: Displacement, a DOLFINx function.
+        dx: Measure over the bodies, numbered in the order of their names.
+        heated: How gradients of bodies that expand are seen, by name.
+
+    Attributes:
+        of: The pressure of each of these bodies by name, a DOLFINx function.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        laws: Mapping[str, Any],
+        u: Any,
+        dx: Any,
+        heated: Mapping[str, Heated] = MappingProxyType({}),
+    ) -> None:
+        self._u, comm, self._rises = u, model.mesh.comm, bool(heated)
+        space = fem.functionspace(model.mesh, pressure_element(model.space))
+        pressure: Any = fem.Function(space)
+        self._pressure, self._width = pressure, space.element.space_dimension
+        q, p = ufl.TestFunction(space), ufl.TrialFunction(space)
+        weight, self.of = model.idealisation.weight(model.mesh), {}
+        mass, change, self._work = 0, 0, 0
+        for i, name in enumerate(model.body_names()):
+            here, volume = dx(i, degree=2 * model.order), volume_of(laws[name], u)
+            if volume is None:
+                mass += q * p * here
+                continue
+            self.of[name] = pressure
+            stretch = heated[name].stretch if name in heated else 1.0
+            ideal = heated.get(name, model.idealisation)
+            size, e = weight * stretch**3, ideal.seen(volume.change(ufl.grad(u)), u)
+            mass += size / volume.bulk * q * p * here
+            change += size * q * e * here
+            self._work += size * pressure * e * here
+        if not self.of:
+            return
+        self._change = compiled(change, comm)
+        self._slope_form = compiled(ufl.derivative(change, u), comm)
+        self._slope = create_stiffness(self._slope_form)
+        self._mass_form = compiled(mass, comm)
+        self._mass = create_stiffness(self._mass_form)
+        self._inverse: Mat = self._mass.duplicate()
+        self._invert()
+        self._stiffness: Mat = self._inverse.ptap(self._slope)
+
+    def work(self, v: Any) -> Any:
+        """Virtual work of the pressures along a displacement, a linear form in UFL."""
+        return ufl.derivative(self._work, self._u, v) if self.of else 0
+
+    def evaluate(self) -> None:
+        """Bring the pressures to where the displacement is now; collective."""
+        if not self.of:
+            return
+        if self._rises:
+            _assemble_anew(self._mass, self._mass_form)
+            self._invert()
+        change = self._changes()
+        self._pressure.x.array[: change.size] = (self._blocks @ change).reshape(-1)
+        self._pressure.x.scatter_forward()
+
+    def energy(self) -> float:
+        """`K/2 <Pe, Pe>` on the cells of this rank at the displacement of now."""
+        if not self.of:
+            return 0.0
+        change = self._changes()
+        return 0.5 * float((change * (self._blocks @ change)).sum())
+
+    def add_tangent(self, out: Mat) -> None:
+        """Add what the pressures change by to a matrix: `K <P de, P de>`; collective."""
+        if not self.of:
+            return
+        _assemble_anew(self._slope, self._slope_form)
+        self._inverse.ptap(self._slope, result=self._stiffness)
+        add_matrix(out, self._stiffness)
+        out.assemble()
+
+    def _changes(self) -> Floats:
+        """`<q, e>` of the cells of this rank, (cells, pressures of a cell, 1)."""
+        owned = self._pressure.x.index_map.size_local
+        return np.asarray(fem.assemble_vector(self._change).array[:owned]).reshape(
+            -1, self._width, 1
+        )
+
+    def _invert(self) -> None:
+        """Inverse of `<q, p> / K`, in which no two cells meet."""
+        starts, columns, values = self._mass.getValuesCSR()
+        self._blocks: Floats = np.linalg.inv(values.reshape(-1, self._width, self._width))
+        self._inverse.setValuesCSR(starts, columns, self._blocks.reshape(-1))
+        self._inverse.assemble()
+
+
+def _assemble_anew(matrix: Mat, form: Any) -> None:
+    matrix.zeroEntries()
+    assemble_into(matrix, form)
+    matrix.assemble()
