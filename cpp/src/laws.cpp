@@ -31,8 +31,19 @@ Tangent2<S, P, P> flat_metric() {
   return {{{{S(1.0), S(0.0)}, {S(0.0), S(1.0)}}}};
 }
 
+/// Adhesion as it is at a point, where a penalty may be stiffer.
+law::LinearModel adhesion_at(const InterfaceLaw& l, const PointState& state) {
+  law::LinearModel m = law::linear_model(l.adhesion);
+  if (state.stiffer[1] == 0.0) return m;
+  for (auto* rate : {&m.b, &m.c})
+    for (auto& row : *rate)
+      for (double& x : row) x *= 1.0 + state.stiffer[1];
+  return m;
+}
+
 /// The trial force and what it is made of.
 struct FrameTrial {
+  law::LinearModel model;
   law::AxesComponents<double> axes;  ///< of the tensors
   law::LinearTensors<double> tensors;
   law::Trial<double> trial;
@@ -48,12 +59,12 @@ Vector<double> counted(const ContactFrame& in) {
   return in.total ? Vector<double>{in.elastic} + increment : increment;
 }
 
-FrameTrial frame_trial(const InterfaceLaw& l, const ContactFrame& in) {
+FrameTrial frame_trial(const law::LinearModel& model, const ContactFrame& in) {
   const auto axes = frame_axes(in.rate_axes);
-  const auto tensors = law::pull_back(law::linear_model(l.adhesion), axes);
+  const auto tensors = law::pull_back(model, axes);
   const Covector<double> stored{in.stored};
   const Vector<double> elastic{in.elastic}, slip = counted(in);
-  return {axes, tensors,
+  return {model, axes, tensors,
           in.connection ? law::trial(tensors, *in.connection, stored, elastic, slip, in.dt)
                         : law::trial(tensors, stored, elastic, slip, in.dt)};
 }
@@ -84,8 +95,8 @@ CoContra<double> turned_mixed(const law::AxesMatrix& m, std::size_t k,
 }
 
 /// By (w + dt A) T_tr = w T_n + Q dxi + dt C dxi_el,n and (w + dt A) S = -Q with Q = B + dt C.
-TrialSlopes trial_slopes(const InterfaceLaw& l, const ContactFrame& in, const FrameTrial& t) {
-  const law::LinearModel& m = law::linear_model(l.adhesion);
+TrialSlopes trial_slopes(const ContactFrame& in, const FrameTrial& t) {
+  const law::LinearModel& m = t.model;
   const Vector<double> increment = counted(in), elastic{in.elastic};
   law::AxesMatrix q;
   for (std::size_t i = 0; i < 2; ++i)
@@ -241,7 +252,7 @@ void put_connection_slopes(const InterfaceLaw& l, const ContactFrame& in, const 
 void put_slopes(const InterfaceLaw& l, const ContactFrame& in, const FrameTrial& t,
                 const law::SlideProblem<double>& p, const law::SlideResult<double>& solved,
                 const Dual<1>& share, const Dual<1>& time, const Flat& whole, Reaction& r) {
-  const TrialSlopes by_angle = trial_slopes(l, in, t);
+  const TrialSlopes by_angle = trial_slopes(in, t);
   const bool slips = r.status == Contact::slip;
   std::array<Flat, 3> by_force{Flat{1.0, 0.0}, Flat{0.0, 1.0}, Flat{0.0, 0.0}};
   if (law::frictionless(l.friction)) {
@@ -277,7 +288,7 @@ void react(const InterfaceLaw& l, const PointState& state, ContactFrame in, Reac
     in.dt = time.v;
     for (double& x : in.increment) x *= share.v;
   }
-  const FrameTrial t = frame_trial(l, in);
+  const FrameTrial t = frame_trial(adhesion_at(l, state), in);
   law::SlideProblem<double> p;
   put_friction(l, fixed<double>(in.friction_axes), second_axes<double>(l, in), p);
   p.stiffness = t.trial.stiffness;
@@ -291,8 +302,8 @@ void react(const InterfaceLaw& l, const PointState& state, ContactFrame in, Reac
     return;
   }
   const Vector<double> elastic = p.elastic - solved.slip;
-  const auto energies = law::energies(law::linear_model(l.adhesion), frame_axes(in.adhesion_axes),
-                                      solved.stored, elastic, p.increment - solved.slip, in.dt);
+  const auto energies = law::energies(t.model, frame_axes(in.adhesion_axes), solved.stored, elastic,
+                                      p.increment - solved.slip, in.dt);
   r.traction = solved.traction.c;
   r.stored = solved.stored.c;
   r.elastic = elastic.c;

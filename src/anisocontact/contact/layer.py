@@ -21,8 +21,8 @@ from typing import Any, ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.multipliers import ContactTrial, Frames
-from anisocontact.contact.semismooth import RATIO, Semismooth
+from anisocontact.contact.multipliers import RATIO, ContactTrial, Frames
+from anisocontact.contact.semismooth import Semismooth
 from anisocontact.interface import STATUS, Response, State
 from anisocontact.interface.series import History
 

@@ -28,6 +28,11 @@ Floats = npt.NDArray[np.float64]
 
 #: Change of the multipliers over the tractions, both as norms over the area, that is good enough.
 SHARE = 1e-5
+#: What the penalties are multiplied with in the derivative of multipliers that follow.
+RATIO = 1e4
+#: Tractions that are none, as a share of what the tolerance stands for: 1e-9 of the stiffness of
+#: the bodies times the facet size.
+ROUNDING = 1e-3
 #: What the gap of a point that is apart is multiplied with at the start of an increment.
 FAR = 1e8
 #: Sliding rule whose history is another force than the one that acts: no fixed point of a step.
@@ -143,6 +148,8 @@ class ContactTrial:
         axes: Axes of adhesion as the frames have them, (n, 2, 3); zero at open points.
         immovable: Points that supports hold along the normal, which no multiplier can bring to no
             gap, (n,).
+        covered: Share of the weight of each point that the master covers, above 0, (n,).
+        shared: Points that are slaves of other contacts with multipliers as well, (n,).
     """
 
     start: State
@@ -152,6 +159,17 @@ class ContactTrial:
     before: Frames
     axes: Floats
     immovable: npt.NDArray[np.bool_]
+    covered: Floats
+    shared: npt.NDArray[np.bool_]
+
+    @property
+    def kept(self) -> Floats:
+        """What multipliers are of the tractions, (n, 1): a little less where points are shared.
+
+        Several contacts would say more of one node than it can do: compliance, `RATIO` times as
+        stiff as the penalties, makes their multipliers unique.
+        """
+        return np.where(self.shared, 1.0 - 1.0 / RATIO, 1.0)[:, None]
 
     @property
     def remembers(self) -> npt.NDArray[np.bool_]:
@@ -277,9 +295,10 @@ class Multipliers:
     def values(self, step: ContactTrial) -> tuple[Floats, Floats]:
         """Multipliers, and what they should be: as of `answers`, but for points that cannot move.
 
-        Supports hold these along the normal: they keep their penalty.
+        Supports hold these along the normal: they keep their penalty. Shared ones are compliant.
         """
         given, found = self.answers(step)
+        found *= step.kept
         found[step.immovable, 0] = given[step.immovable, 0]
         return given, found
 
@@ -293,21 +312,28 @@ class Multipliers:
         given = np.hstack([step.start["multiplier"][:, None], old])
         return given, np.hstack([step.answer.pressure[:, None], force])
 
-    def _violation(self, change: Floats) -> float:
-        """Largest penetration or elastic slip over all ranks that a change stands for, length."""
+    def _violation(self, change: Floats, covered: Floats) -> float:
+        """Largest penetration or elastic slip over all ranks that a change stands for, length.
+
+        It is weighted: what a node counts of which next to nothing is covered is that little.
+        """
         stiffness = np.array(self._penalties) * self.factors
         each = np.maximum(
             np.abs(change[:, 0]) / stiffness[0],
             np.linalg.norm(change[:, 1:], axis=1) / stiffness[1],
         )
-        return float(max(self._comm.allgather(float(each.max(initial=0.0)))))
+        return float(max(self._comm.allgather(float((covered * each).max(initial=0.0)))))
 
     def _norms(self, change: Floats, step: ContactTrial) -> tuple[float, float]:
-        """Norms over the area of a change of the multipliers and of the tractions."""
+        """Norms over the area of a change of the multipliers and of the tractions.
+
+        Tractions are at least what rounding leaves of them where bodies come to rest without force.
+        """
         traction, areas = step.answer.traction, step.areas
-        squares = np.array([areas @ (change**2).sum(axis=1), areas @ (traction**2).sum(axis=1)])
-        changed, carried = np.sqrt(self._comm.allreduce(squares))
-        return float(changed), float(carried)
+        squares = [areas @ (change**2).sum(axis=1), areas @ (traction**2).sum(axis=1), areas.sum()]
+        changed, carried, whole = np.sqrt(self._comm.allreduce(np.array(squares)))
+        rounding = ROUNDING * self._penalties[0] * self.factors[0] * self._limit * whole
+        return float(changed), float(max(carried, rounding))
 
 
 class NotHeldError(RuntimeError):

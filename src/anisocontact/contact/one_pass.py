@@ -91,7 +91,7 @@ class Pass:
         self.accepted: Snapshot = self.answer.snapshot
         self._trial: Snapshot | None = None
         self._gained: Floats = np.zeros_like(self.last.traction)
-        self.trials = Trials(master, law, self.state, self._comm)
+        self.trials = Trials(points, master, law, self.state, self._comm)
         check_start(self, points.size)
         if augmentation is not None:
             self.trials.augment(augmentation, points.size)

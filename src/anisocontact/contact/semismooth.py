@@ -20,13 +20,18 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.multipliers import OPEN, SHARE, STICK, ContactTrial, Frames, Multipliers
+from anisocontact.contact.multipliers import (
+    OPEN,
+    RATIO,
+    SHARE,
+    STICK,
+    ContactTrial,
+    Frames,
+    Multipliers,
+)
 from anisocontact.interface import State
 
 Floats = npt.NDArray[np.float64]
-
-#: What the penalties are multiplied with in the derivative.
-RATIO = 1e4
 
 
 @dataclass(frozen=True)
@@ -37,11 +42,13 @@ class Base:
         multiplier: lambda as a vector, (n, 3), stress.
         traction: P, (n, 3), stress.
         residual: Change of P that takes the violation away, (n, 3), stress.
+        kept: What lambda is of P, (n, 1).
     """
 
     multiplier: Floats
     traction: Floats
     residual: Floats
+    kept: Floats
 
     def after(self, change: Floats, share: float) -> Floats:
         """Multiplier after a step.
@@ -54,7 +61,8 @@ class Base:
             lambda as a vector, (n, 3), stress.
         """
         rest = (1.0 - share) * self.multiplier
-        return np.asarray(rest + share * (self.traction + self.residual) + change)
+        new = share * (self.traction + self.residual) + change
+        return np.asarray(rest + self.kept * new)
 
 
 class Semismooth(Multipliers):
@@ -116,7 +124,10 @@ class Semismooth(Multipliers):
         """Whether the multipliers are what the trial answers to them."""
         given, found = self.values(step)
         changed, carried = self._norms(found - given, step)
-        return self._violation(found - given) <= self._limit and changed <= SHARE * carried
+        return (
+            self._violation(found - given, step.covered) <= self._limit
+            and changed <= SHARE * carried
+        )
 
     def stiff(self, step: ContactTrial) -> tuple[State, Floats]:
         """Where to take the derivative, and the violation that a step is to take away.
@@ -129,23 +140,41 @@ class Semismooth(Multipliers):
             displacement of the slave points that would make the trial exact, (n, 3), length.
         """
         given, found = self.answers(step)
-        shifted = given + (1.0 - self.ratio) * (found - given)
+        ratio = self._ratios(step)
+        shifted = given + (1.0 - ratio[:, [0, 1, 1, 1]]) * (found - given)
         # an open point stays open, however little its gap may be closed
         apart = step.answer.pressure == 0.0
         shifted[apart, 0] = np.minimum(shifted[apart, 0], 0.0)
         shifted[apart, 1:] = 0.0
         state, trial = step.start.copy(), step.answer.state
         state["multiplier"] = shifted[:, 0]
-        deep = (given[:, 0] - found[:, 0]) / (self.factors[0] * self._penalties[0])
+        state["stiffer"] = ratio / self.ratio - 1.0
+        left = np.where(step.shared[:, None], 1.0, 1.0 - 1.0 / ratio)
+        deep = left[:, 0] * (given[:, 0] - step.kept[:, 0] * found[:, 0])
+        deep /= self.factors[0] * self._penalties[0]
         deep[step.immovable] = 0.0
         slip = deep[:, None] * step.now.normal
         if self.tangential:
             state["stored"] = np.einsum("nid,nd->ni", step.before.tangents, shifted[:, 1:])
             kept = step.before.turned_to(step.now, step.before.moved(step.start["elastic"]))
             more = step.now.moved(trial["elastic"]) - kept
+            given_way = (1.0 - step.kept) * step.now.vector(trial["stored"])
+            more = left[:, 1:] * more + given_way / (self.factors[1] * self._penalties[1])
             slip += np.where(step.remembers, step.now.chord(more, trial["spin"]), 0.0)
         slip[apart] = 0.0
-        return state, (1.0 - 1.0 / self.ratio) * slip
+        return state, slip
+
+    def _ratios(self, step: ContactTrial) -> Floats:
+        """What penalties are multiplied with at the points, normal and tangential, (n, 2).
+
+        The force of a node changes as much where little of its weight is covered; where supports
+        hold a point along the normal its penalty is what it is.
+        """
+        ratio = np.repeat(self.ratio / step.covered[:, None], 2, axis=1)
+        ratio[step.immovable, 0] = 1.0
+        if not self.tangential:
+            ratio[:, 1] = self.ratio
+        return ratio
 
     def advance(self, start: State, traction: Floats, now: Frames, before: Frames) -> State:
         """State with other multipliers.

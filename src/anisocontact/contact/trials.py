@@ -11,20 +11,32 @@ import numpy.typing as npt
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.master import Answer, Linear, Master
-from anisocontact.contact.multipliers import STICK, AugmentedLaw, ContactTrial, Frames, Multipliers
+from anisocontact.contact.multipliers import (
+    RATIO,
+    STICK,
+    AugmentedLaw,
+    ContactTrial,
+    Frames,
+    Multipliers,
+)
+from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.schemes import USUAL, make_multipliers
-from anisocontact.contact.semismooth import RATIO, Base, Semismooth
+from anisocontact.contact.semismooth import Base, Semismooth
 from anisocontact.interface import State
 from anisocontact.interface.augmentation import Augmentation
 
 Floats = npt.NDArray[np.float64]
+
+#: Least share of its weight that a point counts with.
+LEAST = 1e-6
 
 
 class Trials:
     """Laws at slave points from a state on: as the user gave them, augmented, or with a layer.
 
     Args:
-        master: What the points meet.
+        points: The points.
+        master: What they meet.
         law: Laws, as the user gave them.
         state: Committed state.
         comm: Communicator of the mesh.
@@ -35,14 +47,17 @@ class Trials:
         start: State from which trials start.
     """
 
-    def __init__(self, master: Master, law: Any, state: State, comm: Any) -> None:
+    def __init__(
+        self, points: SlavePoints, master: Master, law: Any, state: State, comm: Any
+    ) -> None:
+        self._points = points
         self.master, self.interface, self.start, self._comm = master, law, state, comm
         self._laws: AugmentedLaw = law
         self._stiff_laws: AugmentedLaw = law
         self._ways: Mapping[str, Multipliers] = {}
         self._multipliers: Multipliers | None = None
         self._layer: Layer | None = None
-        self._immovable = np.zeros(len(state), dtype=bool)
+        self._immovable = self._shared = np.zeros(len(state), dtype=bool)
         self._linear: Linear | None = None
         self._base: Base
         self._slip: Floats
@@ -184,7 +199,8 @@ class Trials:
         answer: Answer = master.settled(trial.by_derivative(stiff, stiffness))
         self._linear = master.linear(answer)
         traction = master.into_frame(trial.snapshot.response.traction)
-        self._base = Base(follower.vector(step), traction, self._linear.slipped(self._slip))
+        slipped = self._linear.slipped(self._slip)
+        self._base = Base(follower.vector(step), traction, slipped, step.kept)
         return answer
 
     def _follow(self, follower: Semismooth | Layer, dt: float) -> None:
@@ -207,6 +223,10 @@ class Trials:
     def take_immovable(self, points: npt.NDArray[np.bool_]) -> None:
         """Leave points to their penalty that supports hold along the normal, (n,)."""
         self._immovable = points
+
+    def take_shared(self, points: npt.NDArray[np.bool_]) -> None:
+        """Learn which points are slaves of other contacts with multipliers too, (n,)."""
+        self._shared = points
 
     def add_multiplier_residual(self, out: Floats) -> None:
         """Add the condensed residual of the multipliers: what a step takes beyond the trial.
@@ -331,6 +351,8 @@ class Trials:
             self._frames(self.start),
             self.master.axes(trial.response),
             self._immovable,
+            self._points.covered(trial.areas).clip(LEAST, 1.0),
+            self._shared,
         )
 
     def _frames(self, state: State) -> Frames:

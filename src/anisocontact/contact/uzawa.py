@@ -102,7 +102,7 @@ class Uzawa(Multipliers):
 
     def _held(self, change: Floats, step: ContactTrial) -> bool:
         changed, carried = self._norms(change, step)
-        largest = self._violation(change)
+        largest = self._violation(change, step.covered)
         if largest <= self._limit and changed <= SHARE * carried:
             return True
         self._count(largest)

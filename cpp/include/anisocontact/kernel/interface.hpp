@@ -55,7 +55,10 @@ S time_in_contact(const S& fraction, double dt) {
 /// the gap at once takes the mean rate of the step, for it would jump where the gap closes.
 template <class S>
 S normal_pressure(const law::NormalModel& m, const PointState& state, const S& gap, double dt) {
-  if (m.w == 0.0) return law::pressure(m, gap, state.gap, state.pressure, dt, state.multiplier);
+  if (m.w == 0.0) {
+    const law::NormalModel here{m.w, m.a, m.b, (1.0 + state.stiffer[0]) * m.c};
+    return law::pressure(here, gap, state.gap, state.pressure, dt, state.multiplier);
+  }
   const S time = time_in_contact(contact_fraction(state, gap), dt);
   return law::pressure(m, gap, state.gap, state.pressure, time, state.multiplier);
 }

@@ -31,6 +31,7 @@ using KeptPair = std::array<double, 4>;
 ///  energy_adhesion, energy_normal: elastic energy of the tangential law and of the normal law, per
 ///    area; not a number where a law stores none, as what is viscous
 ///  multiplier: N at no gap, the normal multiplier of an augmented Lagrangian
+///  stiffer: by what share penalties are stiffer at this point, the normal and the tangential one
 ///  facet: of a meshed master; -1 on an analytic one
 #define ANISOCONTACT_POINT_STATE(FIELD)  \
   FIELD(Components, xi, {})              \
@@ -52,6 +53,7 @@ using KeptPair = std::array<double, 4>;
   FIELD(double, energy_normal, {})       \
   FIELD(double, offset, {})              \
   FIELD(double, multiplier, {})          \
+  FIELD(Components, stiffer, {})         \
   FIELD(std::int64_t, status, {})        \
   FIELD(std::int64_t, facet, {-1})
 

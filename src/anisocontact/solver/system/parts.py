@@ -10,6 +10,7 @@ import numpy as np
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk, small_strain
 from anisocontact.contact import Contact
+from anisocontact.contact.shared_nodes import tell_shared
 from anisocontact.mesh import Model
 from anisocontact.solver.system.assembly import Assembly
 from anisocontact.solver.system.layout import Layout
@@ -128,7 +129,8 @@ def make_parts(
 
 
 def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) -> None:
-    """Tell contacts how stiff their bodies are, and which of them are at finite strain."""
+    """Tell contacts how stiff their bodies are, which are at finite strain, and what they share."""
+    tell_shared(contacts)
     diagonal = np.array(bodies.bulk.diagonal.array_r).reshape(-1, 3)
     for contact, is_finite in zip(contacts, finite, strict=True):
         for half in contact.passes:

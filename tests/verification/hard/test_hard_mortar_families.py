@@ -1,0 +1,171 @@
+"""Families of mortar contacts with multipliers: members at random, not cases that were chosen."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+PAIR = """
+[mesh.box.block]
+origin = [{x}, {y}, 0]
+size = [1, 1, 0.6]
+cells = [{n}, {n}, 2]
+cell = "{cell}"
+order = {order}
+rotate = {{ axis = [0, 1, 0], angle_deg = {tilt} }}
+
+[mesh.box.base]
+origin = [-1, -1, -0.8]
+size = [3, 3, 0.8]
+cells = [{m}, {m}, 2]
+cell = "{cell}"
+order = {order}
+rotate = {{ axis = [0, 1, 0], angle_deg = {tilt} }}
+
+[material.block]
+model = "{model}"
+E = {young}
+nu = {nu}
+
+[material.base]
+model = "{model}"
+E = 1000
+nu = 0.3
+
+[[contact]]
+slave = "{slave}"
+master = "{master}"
+pass = "mortar"
+method = "{method}"
+friction.coefficients = [{mu}, {across}]
+friction.directions = {{ kind = "constant", vector = [1, 0, 0], angle_deg = 20 }}
+
+[[step]]
+name = "press"
+increments = {increments}
+{press}
+
+[[step]]
+name = "drag"
+increments = 3
+{drag}
+"""
+#: What a block that is led, or pressed by a traction, is given in both steps.
+LED = """[step.displacement]
+"base.bottom" = {{ x = 0, y = 0, z = 0 }}
+"block.top" = {{ {led} }}"""
+LOADED = """[step.pressure]
+"block.top" = {pressure}
+[step.displacement]
+"base.bottom" = {{ x = 0, y = 0, z = 0 }}"""
+
+
+def member(
+    seed: int, method: str = "augmented", model: str = "linear-elastic"
+) -> tuple[str, float]:
+    """Case file of a member, and its larger coefficient of friction.
+
+    Facets, their ratio and offset, cells, order, stiffness, friction, tilt and load are random; the
+    softer body is the slave.
+    """
+    rng = np.random.default_rng(seed)
+    order, n = (2, 2) if rng.random() < 0.25 else (1, int(rng.integers(2, 6)))
+    young = 1000.0 * 10.0 ** rng.uniform(-3.0, 3.0)
+    tilt = float(rng.choice([0.0, rng.uniform(5.0, 40.0)]))
+    softer = min(young, 1000.0)
+    c, s = np.cos(np.radians(tilt)), np.sin(np.radians(tilt))
+    deep, far = rng.uniform(0.003, 0.02), rng.uniform(0.01, 0.08)
+    mu = rng.uniform(0.1, 0.9)
+    across = mu * rng.uniform(0.4, 1.0)
+    sides = ("block.bottom", "base.top")
+    if young > 1000.0:
+        sides = sides[::-1]
+    if rng.random() < 0.3:
+        load = LOADED.format(pressure=deep * softer)
+        press, drag = load, load.replace(str(deep * softer), str(2.0 * deep * softer))
+    else:
+        towards = -deep * np.array([s, 0, c])
+        ways = (towards, towards + far * np.array([c, 0.5, -s]))
+        press, drag = (LED.format(led="x = {}, y = {}, z = {}".format(*way)) for way in ways)
+    text = PAIR.format(
+        order=order,
+        n=n,
+        m=int(rng.integers(3, 8)),
+        cell=str(rng.choice(["hexahedron", "tetrahedron"], p=[0.7, 0.3])),
+        tilt=tilt,
+        x=rng.uniform(-0.4, 0.4),
+        y=rng.uniform(-0.4, 0.4),
+        model=model,
+        young=young,
+        nu=rng.uniform(0.0, 0.45),
+        slave=sides[0],
+        master=sides[1],
+        mu=mu,
+        across=across,
+        method=method,
+        increments=int(rng.integers(1, 3)),
+        press=press,
+        drag=drag,
+    )
+    return text, mu
+
+
+def _asked(run, mu: float) -> None:
+    """What every member has to have: multipliers that hold, and friction within its cone."""
+    contact = run.problem.contacts[0]
+    last, size = contact.last, contact.passes[0].slave_points.size
+    covered = contact.passes[0].slave_points.covered(contact.areas)
+    touches = last.status != 0
+    assert touches.any()
+    assert np.abs(covered * contact.state["gap"])[touches].max() < 1e-6 * size
+    normal = np.einsum("nd,nd->n", last.traction, last.normal)
+    tangential = np.linalg.norm(last.traction - normal[:, None] * last.normal, axis=1)
+    assert (tangential <= (1.0 + 1e-8) * mu * np.abs(normal)).all()
+
+
+def _members(fast: int, count: int) -> list:
+    """Numbers of members, of which the first ones are run by default."""
+    slow = [pytest.param(i, marks=pytest.mark.slow) for i in range(fast, count)]
+    return [*range(fast), *slow]
+
+
+@pytest.mark.parametrize("seed", _members(3, 200))
+def test_pairs(to_the_end, seed):
+    """Block on base, stiffness ratio 1e-3 to 1e3, meshes that do not match: none fails or cuts.
+
+    Requirement: multipliers at slave nodes are as safe as penalties, at most 30 iterations an
+    increment (25 is where an attempt ends), 1e-6 of a facet of penetration weighted with what is
+    covered, the default tolerance; friction within the cone to rounding.
+    """
+    text, mu = member(seed)
+    run = to_the_end(text)
+    assert not run.cuts
+    assert max(a.iterations for a in run.accepted) <= 30
+    _asked(run, mu)
+
+
+@pytest.mark.parametrize("strategy", ["condensed", "iterative"])
+@pytest.mark.parametrize("seed", _members(1, 12))
+def test_strategies(to_the_end, seed, strategy):
+    """The same members by the other strategies: forces of `direct`, to 1e-5 as of the multipliers.
+
+    Both leave violations of 1e-6 of a facet, which are forces of 1e-6 E h; bodies are pressed in
+    by some hundredths of a facet and more.
+    """
+    text, mu = member(seed)
+    run, direct = to_the_end(text, f'strategy = "{strategy}"'), to_the_end(text)
+    assert run.strategy == strategy
+    assert not run.cuts
+    _asked(run, mu)
+    ours, theirs = (one.force("drag") for one in (run, direct))
+    assert np.linalg.norm(ours - theirs) < 1e-5 * np.linalg.norm(theirs)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(20))
+def test_finite_strain(to_the_end, seed):
+    """The first members with bodies at finite strain."""
+    text, mu = member(seed, model="neo-hookean")
+    run = to_the_end(text)
+    assert not run.cuts
+    _asked(run, mu)
