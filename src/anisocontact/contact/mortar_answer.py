@@ -106,10 +106,10 @@ class MortarState:
         named = np.maximum(masters, 0)
         way = self.now[named] - opposite.mean(self.now)[:, None]
         material = self.reference[named] - opposite.mean(self.reference)[:, None]
-        way -= (material @ opposite.dual_tangents(self.reference).swapaxes(1, 2)) @ planes.now.axes
-        area = self.weights.area[:, None, None]
-        there = (masters >= 0)[:, :, None] & (area > 0.0)
-        return np.asarray(np.divide(way, area, out=np.zeros_like(way), where=there))
+        dual, area = opposite.dual_tangents(self.reference), self.weights.area
+        way -= material @ (dual.swapaxes(1, 2) @ planes.now.axes)
+        share = np.divide(1.0, area, out=np.zeros_like(area), where=area > 0.0)
+        return way * ((masters >= 0) * share[:, None])[..., None]
 
     def tangent(
         self, by_nodes: Floats, which: Ints, traction: Floats
@@ -136,8 +136,9 @@ class MortarState:
             by[:, :, 0, 0] += held
         p = len(which)
         turn, along, lean = (one[which] for one in self._place_slopes)
-        by_place = np.einsum("piaj,pabj->pib", by[:, :, 1, 1:], turn)
-        by[:, :, 1, 1:] += np.einsum("pib,pbaj->piaj", by_place, lean)
+        by_tangents = by[:, :, 1, 1:].reshape(p, 3, 6)
+        by_place = by_tangents @ turn.swapaxes(2, 3).reshape(p, 6, 2)
+        by[:, :, 1, 1:] += (by_place @ lean.reshape(p, 2, 6)).reshape(p, 3, 2, 3)
         by_foot = by_place @ along
         by[:, :, 0, 0] += by_foot
         flat = np.concatenate([by.reshape(p, 3, 9, 3), -by_foot[:, :, None]], axis=2)

@@ -179,10 +179,11 @@ def facing(
     g = sets.facets.astype(np.int64)
     normal, other = _normals(shapes, slave, now), _outward(master, now)
     centre, size = _ball(now[master.nodes])
-    apart = centre[g] - middle[f]
-    along = np.sum(apart * normal[f], axis=1)[:, None] * normal[f]
-    near = np.linalg.norm(apart - along, axis=1) <= radius[f] + size[g]
-    kept = near & (np.sum(normal[f] * other[g], axis=1) < 0.0)
+    apart, normals = centre[g] - middle[f], normal[f]
+    along = np.einsum("pi,pi->p", apart, normals)
+    beside = np.einsum("pi,pi->p", apart, apart) - along**2
+    kept = beside <= (radius[f] + size[g]) ** 2
+    kept &= np.einsum("pi,pi->p", normals, other[g]) < 0.0
     if excluded is not None:
         n = len(master.nodes)
         who = np.repeat(np.arange(len(x)), np.diff(excluded.offsets))
