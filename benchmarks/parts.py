@@ -18,7 +18,7 @@ PRINTED = "printed"
 SCRIPTS = {
     "growth": "time and memory against contact unknowns, points and steps",
     "kernel_rates": "points per second and core of laws, projections and interfaces",
-    "mortar_rates": "ms of an evaluation of a contact of two meshes, at points and at mortar nodes",
+    "mortar_rates": "ms of an evaluation of a contact of two meshes, at points and mortar nodes",
     "pair_rates": "million slave points per second and core of two meshed sheets",
     "search": "closest points per second and core on a sheet of facets",
 }
