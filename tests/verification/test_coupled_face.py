@@ -281,3 +281,48 @@ def test_processes_change_nothing():
         found.append(np.array(done.stdout.split(), dtype=float).reshape(2, -1))
     values = np.concatenate(found)
     assert np.abs(values - values[0]).max() < 1e-8 * np.abs(values).max()
+
+
+@pytest.mark.parametrize(("mortar", "bound"), [(True, 1e-4), (False, 1e-8)])
+def test_a_meshed_tool_that_follows_a_point_is_rigid(mortar, bound):
+    """A plate whose skin follows a reference point is pressed on a block, and turned.
+
+    Requirement: force and moment on the block are those of a rigid plane that moves alike.
+    Tolerance: of the force 1e-8 at points, whose feet are those on the plane; 1e-4 at nodes, whose
+    slip is a mean over facets of the block that the pressure has bent.
+    """
+    from anisocontact.bulk import make_material
+    from anisocontact.contact import Contact
+    from anisocontact.interface import ContactLaw
+    from anisocontact.laws import Adhesion, Friction, NormalLaw
+    from anisocontact.mesh import Body, build_mesh, make_selector, make_shape
+    from anisocontact.rigid import MovingSurface, RigidBody
+    from anisocontact.solver import CoupledFace, Problem, Step
+    from anisocontact.surfaces import make_surface
+
+    block = make_shape("box", origin=(0, 0, 0), size=(1, 1, 1), cells=(3, 3, 2))
+    plate = make_shape("box", origin=(-0.5, -0.5, 1), size=(2, 2, 0.5), cells=(4, 5, 1))
+    law = ContactLaw(
+        NormalLaw(penalty=1e4), Adhesion(stiffness=(1e3, 1e3)), Friction(coefficients=(0.2, 0.2))
+    )
+    # the plate turns by any angle
+    kinds = {"block": "linear-elastic", "plate": "neo-hookean"}
+    steps = (
+        Step("press", 1, {"block.bottom": NOTHING}, motion={"tool": {"z": -0.01}}),
+        Step("turn", 2, motion={"tool": {"rz": 0.02}}),
+    )
+    found = []
+    for rigid in (False, True):
+        tool = RigidBody("tool", (0.5, 0.5, 1.0), free=not rigid)
+        bodies = [Body("block", block)] + ([] if rigid else [Body("plate", plate)])
+        skin = {} if rigid else {"plate.skin": [make_selector("all")]}
+        model = build_mesh(bodies, skin)
+        surface = make_surface("plane", point=(0, 0, 1), normal=(0, 0, -1))
+        master = MovingSurface(surface, tool) if rigid else "plate.bottom"
+        contact = Contact(model, "block.top", master, law, mortar=mortar, current_area=False)
+        materials = {b: make_material(kinds[b], E=1000.0, nu=0.3) for b in model.body_names()}
+        coupled = [] if rigid else [CoupledFace("plate.skin", tool)]
+        run(Problem(model, materials, [contact], coupled=coupled), *steps)
+        assert contact.counts()["slip"] > 0
+        found.append(np.concatenate(contact.resultant((0.5, 0.5, 1.0))))
+    assert found[0] == pytest.approx(found[1], abs=bound * abs(found[1][2]))

@@ -105,7 +105,13 @@ class Tangent:
     def _foreseen(self) -> Sequence[NodePairs]:
         prediction = self._prediction
         found = [] if prediction is None else prediction.pairs(self._step, self._load_factor)
-        return [*found, *self._assembly.constraints.room(found)]
+        found = [*found, *self._assembly.constraints.room(found)]
+        faces = self._assembly.rigid.faces
+        if faces and self.coupled is not None:
+            couplings = [(*one, _nothing(one)) for one in found]
+            room = faces.room(couplings, self.coupled.first_extra)
+            found += [(rows, columns) for rows, columns, _ in room]
+        return found
 
 
 def _nothing(pairs: NodePairs) -> npt.NDArray[np.float64]:
