@@ -35,12 +35,13 @@ class SlavePoints:
         current_area: As given, until `take_area`.
         size: Length of a facet over all ranks, see `mean_size`.
         spread: How far from a point its traction acts, length.
+        beside: How far points that stand for nodes are from these, length.
         at_nodes: Whether points are nodes of the mesh.
         polygons: Points around the pieces of facets on which fields go on between nodes, seen from
             outside, (m, corners); none of integration points.
     """
 
-    spread = 0.0
+    spread = beside = 0.0
     at_nodes = False
     polygons: Ints = np.zeros((0, 3), dtype=np.int32)
 

@@ -288,9 +288,11 @@ class Writer:
         self.summary["stress"] = self._bodies.extremes()
         self.summary["status"] = status
         self.summary["message"] = message
-        found = at_end(self._problem.contacts, self.summary["contacts"], self.summary["energy"])
+        contacts, shown = self._problem.contacts, self.summary["contacts"]
+        relaxed = bool(self.summary.get("relaxed"))
+        found = at_end(contacts, shown, self.summary["energy"], relaxed)
         if status == "done":  # a run that stopped has its reason
-            found += soft(self._problem.contacts, self.summary["contacts"])
+            found += soft(contacts, shown, relaxed)
         self.summary["warnings"] = [*self._at_start, *found, *of_models(self.summary)]
         self._write_summary()
         if self._vtkhdf:
