@@ -108,8 +108,7 @@ class ContactView:
         self.touching = self.data["status"] > 0
         if "covered" in self.data:
             self.touching &= self.data["covered"] > PEAK
-        facets = polygons_of(points, chosen)
-        self._facets = FacetMap(self.flat, facets) if len(facets) else None
+        self._polygons = polygons_of(points, chosen)
 
     def _seen_against(self) -> Floats:
         """Mean normal, or an axis of space where the master is closed and the mean means nothing.
@@ -130,6 +129,11 @@ class ContactView:
         share = np.mean(normal**2, axis=0)
         axis = np.flatnonzero(share >= 0.99 * share.max())[-1]
         return np.asarray(-np.eye(3)[axis] if axis == 1 else np.eye(3)[axis])
+
+    @cached_property
+    def _facets(self) -> FacetMap | None:
+        """The facets between the points, where there are any."""
+        return FacetMap(self.flat, self._polygons) if len(self._polygons) else None
 
     @cached_property
     def flat(self) -> Floats:
@@ -222,9 +226,12 @@ class ContactView:
         return self._facets.smooth(axes, shown, **style)
 
     def _frame_in(self, axes: Axes) -> None:
-        """Show the box of the view, true to scale."""
+        """Show the box of the view, true to scale; panels in common axes have an agreed one."""
+        axes.set_aspect("equal")
+        if len(axes.get_shared_x_axes().get_siblings(axes)) > 1:
+            return
         (left, bottom), (right, top) = self.box.tolist()
-        axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+        axes.set(xlim=(left, right), ylim=(bottom, top))
 
 
 def _straight(normal: Floats) -> Floats:
