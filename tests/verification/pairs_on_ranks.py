@@ -44,6 +44,9 @@ WITH_MULTIPLIERS = ("following", "following-plane", "mortar-following", "mortar-
 #: Distance of the block from the mat.
 GAP_BELOW = 0.01
 
+#: Sides of a quarter that lie in planes of symmetry, and what is held there.
+PLANES = (("left", "x"), ("front", "y"))
+
 type Made = tuple[Problem, list[Step]]
 
 
@@ -146,6 +149,24 @@ def _mortar_far() -> Made:
     return _far("mat.top", "block.bottom", mortar=True)
 
 
+def _mortar_symmetric() -> Made:
+    """A quarter of two bodies: slave nodes and masters rest across the planes of symmetry."""
+    model = build_box(
+        {
+            "block": BoxSpec((0, 0, 0), (2, 2, 1), (3, 3, 1), order=2),
+            "mat": BoxSpec((0, 0, -1), (3, 3, 1), (4, 4, 1), order=2),
+        }
+    )
+    pair = Contact(model, "mat.top", "block.bottom", law=_law(), mortar=True)
+    problem, _ = _dragged(model, [pair], "linear-elastic")
+    planes = {f"{body}.{side}": {axis: 0.0} for body in ("block", "mat") for side, axis in PLANES}
+    held = planes | {"mat.bottom": {"z": 0.0}}
+    return problem, [
+        Step("press", 2, held | {"block.top": {"z": -0.05}}),
+        Step("on", 1, held | {"block.top": {"z": -0.1}}),
+    ]
+
+
 def _mortar_following() -> Made:
     """Multipliers at slave nodes that follow every correction."""
     model = _bodies(gap=0.0)
@@ -184,7 +205,11 @@ def _following_plane(**options: bool) -> Made:
     return problem, steps
 
 
-def _under_a_lid() -> Made:
+def _mortar_under_a_lid() -> Made:
+    return _under_a_lid(mortar=True)
+
+
+def _under_a_lid(**options: bool) -> Made:
     """A free rigid lid presses the block on the mat: unknowns beyond those of the mesh."""
     model = _bodies()
     lid = RigidBody("lid", (0, 0, 2), free=True, springs={"x": 4.0, "y": 4.0, "rz": 40.0})
@@ -195,8 +220,8 @@ def _under_a_lid() -> Made:
         penalty=20.0,
         angle=0.3,
     )
-    pair = Contact(model, "block.bottom", "mat.top", law=_law(), current_area=False)
-    top = Contact(model, "block.top", MovingSurface(plane, lid))
+    pair = Contact(model, "block.bottom", "mat.top", law=_law(), current_area=False, **options)
+    top = Contact(model, "block.top", MovingSurface(plane, lid), **options)
     problem, _ = _dragged(model, [pair, top], "linear-elastic")
     held = {"mat.bottom": dict.fromkeys("xyz", 0.0)}
     free = {"lid": dict.fromkeys(("x", "y", "rz"))}
@@ -242,6 +267,8 @@ CASES: dict[str, Callable[[], Made]] = {
     "mortar-following": _mortar_following,
     "mortar-plane": _mortar_plane,
     "mortar-iterative": _mortar,
+    "mortar-under-a-lid": _mortar_under_a_lid,
+    "mortar-symmetric": _mortar_symmetric,
 }
 
 

@@ -23,6 +23,9 @@ __all__ = ["Observer", "laws", "named_groups"]
 
 Floats = npt.NDArray[np.float64]
 
+#: Share of a pressure by which others are as large: rounding.
+ALIKE = 1e-9
+
 
 class Observer:
     """Takes the numbers of a problem after each accepted increment.
@@ -155,12 +158,18 @@ class _ContactNow(SlavePoints):
 
     def place_of_peak(self) -> Floats:
         """Where the largest pressure is, (3,); no number where nothing touches."""
-        contact = self.contact
+        contact, comm = self.contact, self.contact.space.mesh.comm
         pressure = np.where(contact.counted(), self.last.pressure, 0.0)
-        best = int(np.argmax(pressure)) if len(pressure) else -1
-        own = (float(pressure[best]), contact.points[best]) if best >= 0 else (0.0, np.zeros(3))
-        most, place = max(contact.space.mesh.comm.allgather(own), key=lambda one: one[0])
-        return np.asarray(place) if most > 0.0 else np.full(3, np.nan)
+        most = contact.extreme(pressure)
+        if not most > 0.0:
+            return np.full(3, np.nan)
+        # of those that differ by rounding the first by its place at rest, on any number of processes
+        best = np.flatnonzero(pressure >= (1.0 - ALIKE) * most)
+        rest = np.concatenate([p.slave_points.quadrature.reference for p in contact.passes])[best]
+        rest = np.round(rest / contact.facet_size, 6) + 0.0
+        own = [(place.tolist(), contact.points[i]) for place, i in zip(rest, best, strict=True)]
+        found = [one for each in comm.allgather(own) for one in each]
+        return np.asarray(min(found, key=lambda one: one[0])[1])
 
     def radius(self) -> float:
         """Radius of the area that touches, no number where it is not round."""
