@@ -163,7 +163,7 @@ class _ContactNow(SlavePoints):
         most = contact.extreme(pressure)
         if not most > 0.0:
             return np.full(3, np.nan)
-        # of those that differ by rounding the first by its place at rest, on any number of processes
+        # of those alike the first by its place at rest, on any number of processes
         best = np.flatnonzero(pressure >= (1.0 - ALIKE) * most)
         rest = np.concatenate([p.slave_points.quadrature.reference for p in contact.passes])[best]
         rest = np.round(rest / contact.facet_size, 6) + 0.0
