@@ -43,7 +43,7 @@ _PUBLIC = {
     "Yeoh cauchy_stress deformation_gradient make_material register_material small_strain",
     "contact": "Contact facet_directions facet_size",
     "solver": "Accepted Amplitude ContactProblem ElasticSupport Limits Newton Path Problem Solver "
-    "Spring Step Strategy Tie Turn make_amplitude make_path register_amplitude register_path "
+    "Spring Step Strategy Tie Turn Until make_amplitude make_path register_amplitude register_path "
     "register_strategy",
 }
 _ROOM_OF = {name: room for room, names in _PUBLIC.items() for name in names.split()}

@@ -50,6 +50,7 @@ _SAME = {
     "tie": "ties tied bonded bond bonded_contact glue glued mesh_tying mpc",
     "symmetry": "xsymm ysymm zsymm symmetry_planes symmetric",
     "elastic_support": "foundation elastic_foundation bedding",
+    "until": "event stop_when terminate termination end_on stop_criterion stopping_criterion",
     "smallest_increment": "min_increment minimum_increment minimum_time_increment dtmin",
     "largest_increment": "max_increment maximum_increment maximum_time_increment dtmax",
     "linear-elastic": "elastic linear isotropic linear_elasticity hooke hookean lame",

@@ -38,6 +38,7 @@ from anisocontact.solver import (
     Step,
     Tie,
     Turn,
+    Until,
 )
 
 __all__ = ["Built", "build", "mesh_of"]
@@ -335,5 +336,6 @@ def _step(
         temperature={body: schedule.value(v, begun) for body, v in section.temperature.items()},
         rotation=turns,
         body_force=led("body_force") | weights,
+        until=None if section.until is None else Until(**dict(section.until)),
         **{kind: led(kind) for kind in kinds},
     )

@@ -38,6 +38,7 @@ from anisocontact.case.rigid import Load, Motion, Rigid
 from anisocontact.case.section import Section, near
 from anisocontact.case.ties import TieSection
 from anisocontact.case.units import Units
+from anisocontact.case.until import UntilSection
 from anisocontact.interface.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.interface.augmentation import NEWTON, SCHEMES, UZAWA, Augmentation
 
@@ -56,6 +57,7 @@ class StepSection(Loading):
     name: str = Field(description="name of the step, used once")
     increments: Annotated[int, _number("integer", "1", "number of equal increments", "positive")]
     duration: Annotated[float, _number("scalar", "time", "time the step takes", "positive")] = 1.0
+    until: UntilSection | None = Field(None, description=str(UntilSection.__doc__))
     motion: dict[str, Motion] = Field(
         default_factory=dict, description="prescribed and freed motion by rigid body"
     )

@@ -257,6 +257,7 @@ def accepted_line(accepted: Accepted, numbers: dict[str, Any]) -> str:
     return (
         f"{accepted.step} {accepted.increment}{part}  {accepted.iterations} iterations  "
         f"residual {accepted.residuals[-1]:.1e}  {contacts}"
+        + (f"  ends: {accepted.event}" if accepted.event else "")
     )
 
 

@@ -32,6 +32,7 @@ from anisocontact.results.surfaces import Surfaces
 from anisocontact.results.vtkhdf import write_vtkhdf
 from anisocontact.results.warnings import at_end, at_start, of_models, soft, worst, worst_of_models
 from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
+from anisocontact.solver.stepping.alarms import missed_event
 from anisocontact.solver.terms.persistent import Persistent
 
 __all__ = ["Writer"]
@@ -230,6 +231,8 @@ class Writer:
         before, self.summary["time"] = self.summary["time"], accepted.time
         self._take(numbers)
         self.summary.update(worst_of_models(accepted, self.summary))
+        if accepted.event or accepted.missed:
+            self.summary["events"].append(_event(accepted))
         if accepted.done == 1.0:
             self._increments += 1
         if self._is_due(accepted, before):
@@ -242,6 +245,8 @@ class Writer:
         if any(before < time <= accepted.time for time in self._times):
             return True
         step = self._steps[accepted.step_index]
+        if accepted.event:
+            return not self._only or step.name in self._only
         if accepted.done < 1.0 or (self._only and step.name not in self._only):
             return False
         return accepted.increment == step.increments or self._increments % self._every == 0
@@ -293,6 +298,8 @@ class Writer:
         found = at_end(contacts, shown, self.summary["energy"], relaxed)
         if status == "done":  # a run that stopped has its reason
             found += soft(contacts, shown, relaxed)
+        missed = [event["text"] for event in self.summary["events"] if not event["happened"]]
+        found = [*missed, *found]
         self.summary["warnings"] = [*self._at_start, *found, *of_models(self.summary)]
         self._write_summary()
         if self._vtkhdf:
@@ -344,6 +351,7 @@ class Writer:
             "newton_iterations": 0,
             "time": 0.0,
             "cuts": [],
+            "events": [],
             "warnings": [],
         }
 
@@ -391,3 +399,10 @@ def _finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [_finite(one) for one in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _event(accepted: Accepted) -> dict[str, Any]:
+    """What has become of the event of a step, for the summary."""
+    text = accepted.event or f"step {accepted.step!r}: {missed_event(accepted)}"
+    happened = bool(accepted.event)
+    return {"step": accepted.step, "time": accepted.time, "happened": happened, "text": text}

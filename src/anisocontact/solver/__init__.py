@@ -22,6 +22,7 @@ from anisocontact.solver.terms.faces import CoupledFace
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.tied_faces import Tie
 from anisocontact.solver.terms.turn import Turn
+from anisocontact.solver.terms.until import Until
 
 __all__ = [
     "Accepted",
@@ -45,6 +46,7 @@ __all__ = [
     "Task",
     "Tie",
     "Turn",
+    "Until",
     "amplitudes",
     "courses_of",
     "make_amplitude",

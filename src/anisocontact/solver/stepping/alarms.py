@@ -29,6 +29,11 @@ class Alarms:
         return [f"{where}: {text}" for text in fresh]
 
 
+def missed_event(accepted: Accepted) -> str:
+    """What is said of a step that ends without its event."""
+    return f"the step ends without its event, {accepted.missed}: it took all its increments"
+
+
 def _found(accepted: Accepted) -> Iterator[tuple[str, str]]:
     """Reasons for a warning, by what they are about."""
     for name, turned in accepted.turned.items():
@@ -36,5 +41,7 @@ def _found(accepted: Accepted) -> Iterator[tuple[str, str]]:
             yield f"turned {name}", f"body {name!r}, at small strain, {turned}; {CURE}"
     if accepted.imbalance.large:
         yield "energy", str(accepted.imbalance)
+    if accepted.missed:
+        yield f"missed {accepted.step}", missed_event(accepted)
     if accepted.relaxed:
         yield "relaxed", RELAXED

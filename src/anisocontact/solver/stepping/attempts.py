@@ -10,6 +10,7 @@ from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.acceptance import refused
 from anisocontact.solver.stepping.continuation import Continuation
 from anisocontact.solver.stepping.culprits import failed_point, find_culprits
+from anisocontact.solver.stepping.events import EventWatch
 from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.turned import TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
@@ -102,6 +103,8 @@ class Attempts:
         self, problem: Problem, newton: IncrementSolver, watch: StatusWatch, turns: TurnWatch
     ) -> None:
         self._turns = turns
+        #: Looks for the event of the step.
+        self.events: EventWatch | None = None
         self._problem = problem
         self._newton = newton
         self._watch = watch
@@ -139,7 +142,8 @@ class Attempts:
             if not result.reason:
                 result = replace(result, iterations=spent)
                 return Outcome(result, relaxed=way.multipliers == PENALTIES)
-            if self._turns.objects:  # nothing but a smaller part can help
+            # nothing but a smaller part can help
+            if self._turns.objects or (self.events is not None and self.events.objects):
                 return Outcome(replace(result, iterations=spent))
             found = _graver(found, culprits)
             seen |= {culprit.kind for culprit in culprits}
@@ -187,6 +191,8 @@ class Attempts:
             refusal = None if result.reason else refused(problem, x)
             if not result.reason and refusal is None:
                 refusal = self._turns.objection(problem)
+            if not result.reason and refusal is None and self.events is not None:
+                refusal = self.events.objection(x)
             if not result.reason and refusal is None:
                 problem.commit(x)
                 return result, []

@@ -34,6 +34,7 @@ class Pace:
         streak: Parts in a row that converged.
         cuts: Number of cuts within this increment.
         relaxed: Whether penalties held in the last part, as no multipliers were found.
+        goal: Share of the increment at which the next part ends, if it is that large; 0 for none.
 
     Example:
         >>> limits = Limits()
@@ -53,6 +54,7 @@ class Pace:
     streak: int = 0
     cuts: int = 0
     relaxed: bool = False
+    goal: float = 0.0
 
     @property
     def end(self) -> float:
@@ -60,7 +62,8 @@ class Pace:
         left = 1.0 - self.done
         # Round-off in a size is no reason for one more part.
         count = math.ceil(left / self.size * (1.0 - 1e-9))
-        return 1.0 if count <= 1 else self.done + left / count
+        end = 1.0 if count <= 1 else self.done + left / count
+        return min(end, self.goal) if self.goal > 0.0 else end
 
     @property
     def part(self) -> float:
@@ -100,7 +103,7 @@ class Pace:
         """
         end, self.last = self.end, self.part
         self.relaxed = relaxed
-        self.done = end
+        self.done, self.goal = end, 0.0
         self.streak += 1
         if self.streak >= STREAK and iterations <= HARD:
             self.size = min(GROWTH * self.size, self.limits.largest)

@@ -58,6 +58,8 @@ class Accepted:
         turned: How far each body at small strain has turned, by name.
         imbalance: What is left open in the balance of energy.
         relaxed: Whether penalties hold in it, as no multipliers were found.
+        event: What has happened where an event ends the step here, in words.
+        missed: What has not, where a step that waits for an event ends without it.
     """
 
     step: str
@@ -75,6 +77,8 @@ class Accepted:
     turned: dict[str, Turned]
     imbalance: Imbalance
     relaxed: bool = False
+    event: str = ""
+    missed: str = ""
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from typing import NoReturn
 
 import numpy as np
@@ -16,6 +16,7 @@ from anisocontact.solver.stepping.alarms import Alarms
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.stepping.culprits import NAMED
 from anisocontact.solver.stepping.energy_watch import EnergyWatch
+from anisocontact.solver.stepping.events import EventWatch, check_events
 from anisocontact.solver.stepping.overload import too_much_load
 from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
@@ -43,6 +44,8 @@ class RunPosition:
         before: State before the last accepted part of this step; None at its beginning.
         spent: Newton iterations since the last accepted part.
         lost: What came of a part of this increment in which equilibrium was lost for good.
+        stopped: Fractions at which steps that an event ended did, by number.
+        events: Looks for the event of the step; None before it has begun.
     """
 
     step: int
@@ -52,6 +55,8 @@ class RunPosition:
     before: Vec | None = None
     spent: int = 0
     lost: Outcome | None = None
+    stopped: dict[int, float] = field(default_factory=dict)
+    events: EventWatch | None = None
 
 
 class Solver:
@@ -104,6 +109,7 @@ class Solver:
         self.steps = list(steps)
         self.limits = limits or Limits()
         self._doubtful = problem.check(self.steps)
+        check_events(problem, self.steps)
         turns = prescribed_turns(problem.model, problem.materials, self.steps)
         self.cautions = [*self._doubtful, *turns]
         self.place = self._beginning(0, 0.0)
@@ -111,6 +117,7 @@ class Solver:
         self.choice = choose(strategy, self._task)
         self._newton: IncrementSolver | None = None
         self._kept: Arrays = {}
+        self._waiting: Arrays = {}
         self._on_iteration: Callable[[Progress], None] | None = None
         self._on_cut: Callable[[Cut], None] | None = None
         self._watch = StatusWatch(problem.contacts)
@@ -157,7 +164,7 @@ class Solver:
                     for text in alarms.of(accepted):
                         warn(text)
                     yield accepted
-                self.place = self._beginning(self.place.step + 1, self.place.time + step.duration)
+                self._go_on(step)
         except (Exception, KeyboardInterrupt):
             self.problem.together.met()
             raise
@@ -175,7 +182,10 @@ class Solver:
         del numbers["limits"]
         numbers |= {"step": place.step, "time": place.time, "begun": place.begun}
         numbers["kink"] = self._turns.kink
+        kept.common["stopped"] = np.array([*place.stopped.items()]).reshape(-1, 2)
         kept.common.update({f"place.{name}": np.array(v) for name, v in numbers.items()})
+        if place.events is not None:
+            kept.common.update(place.events.persistent())
         if place.before is not None:
             kept.nodal["before"], kept.common["before"] = self.problem.layout.split(place.before)
         kept.strategy.update(self._kept if self._newton is None else self._newton.persistent())
@@ -188,17 +198,29 @@ class Solver:
         step, time, begun = (numbers.pop(name) for name in ("step", "time", "begun"))
         self._turns.kink = numbers.pop("kink")
         before = None
-        self.problem.restore(kept, self.steps[: step + begun])
+        stopped = {int(i): float(factor) for i, factor in kept.common["stopped"]}
+        self.problem.restore(kept, self.steps[: step + begun], stopped)
         self._energy.restore(kept.common["energy_watch"])
+        self._waiting = {n: v for n, v in kept.common.items() if n == "event"}
         self._kept = kept.strategy and kept.strategy | under(PENDING, kept.nodal)
         # without its interior it is no state to extrapolate from
         goes_on = bool(self._kept) and self.choice.strategy.reduces
         if "before" in kept.nodal and (goes_on or not self.problem.reduction.pending()):
             before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
-        self.place = RunPosition(step, time, Pace(self.limits, **numbers), begun, before)
+        pace = Pace(self.limits, **numbers)
+        self.place = RunPosition(step, time, pace, begun, before, stopped=stopped)
 
     def _beginning(self, step: int, time: float) -> RunPosition:
         return RunPosition(step, time, Pace(self.limits, self.limits.largest))
+
+    def _go_on(self, step: Step) -> None:
+        """Go to the step after one that is done, or that an event has ended."""
+        place, stopped = self.place, self.place.stopped
+        factor = stopped.get(place.step, 1.0)
+        if place.step in stopped:
+            self.problem.end_at(factor)
+        self.place = self._beginning(place.step + 1, place.time + factor * step.duration)
+        self.place.stopped = stopped
 
     def _step(self, attempts: Attempts, step: Step) -> Iterator[Accepted]:
         place, pace = self.place, self.place.pace
@@ -209,16 +231,27 @@ class Solver:
         prescribed = self.problem.rigid.prescribed_turn(step) / step.increments
         largest = PRESCRIBED / max(prescribed, PRESCRIBED)
         pace.bound(largest)
+        place.events = events = EventWatch(self.problem, step, self.limits.smallest)
+        events.restore(self._waiting)
+        self._waiting = {}
         while pace.increment <= step.increments:
             last = self.problem.accepted()
+            pace.goal = events.goal(pace.done)
+            attempts.events = events
+            events.begin(pace.part, pace.end)
             outcome = self._part(attempts, step, last)
             place.spent += outcome.result.iterations
             if outcome.result.reason:
-                self._cut(step, outcome)
+                if not events.objects:
+                    self._cut(step, outcome)
                 continue
             increment, done, part = pace.increment, pace.end, pace.part
-            accepted = self._accepted(step, increment, done, outcome)
+            events.accept(done == 1.0)
+            accepted = self._accepted(step, increment, done, outcome, events)
             pace.advance(outcome.iterations, outcome.relaxed)
+            if events.happened:
+                place.stopped[place.step] = _whole(increment, done) / step.increments
+                pace.increment = step.increments + 1
             pace.bound(min(self._turns.allowed(part), largest))
             place.before, place.spent = last, 0
             place.lost = None if done == 1.0 else place.lost
@@ -289,7 +322,10 @@ class Solver:
     def _time(self, step: Step, increment: int, done: float) -> float:
         return self.place.time + _whole(increment, done) * (step.duration / step.increments)
 
-    def _accepted(self, step: Step, increment: int, done: float, outcome: Outcome) -> Accepted:
+    def _accepted(
+        self, step: Step, increment: int, done: float, outcome: Outcome, events: EventWatch
+    ) -> Accepted:
+        last = increment == step.increments and done == 1.0
         contacts, energies = self.problem.contacts, self.problem.energies()
         ran_off = {c.name: c.ran_off for c in contacts if len(c.ran_off)}
         return Accepted(
@@ -308,6 +344,8 @@ class Solver:
             turned=self.problem.rotations.accepted,
             imbalance=self._energy.after(energies, bool(ran_off)),
             relaxed=outcome.relaxed,
+            event=events.text if events.happened else "",
+            missed=events.text if last and events.waits else "",
         )
 
 

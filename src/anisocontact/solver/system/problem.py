@@ -191,6 +191,11 @@ class Problem(AssembledSystem):
         begin_step(self._parts, step, start, self._accepted.reaction, again)
         self._tangent.begin(step)
 
+    def end_at(self, factor: float) -> None:
+        """End the step that has begun at a fraction of it: what it leads stays where it is."""
+        self.supports.stop()
+        self.assembly.terms.end_at(factor)
+
     def check(self, steps: Sequence[Step]) -> list[str]:
         """Go through all steps without solving.
 
@@ -339,16 +344,21 @@ class Problem(AssembledSystem):
         common |= {"rotations": self.rotations.persistent()} | self._tangent.persistent()
         return Persistent(nodal, self.assembly.terms.histories(), common)
 
-    def restore(self, kept: Persistent, steps: Sequence[Step]) -> None:
+    def restore(
+        self, kept: Persistent, steps: Sequence[Step], stopped: Mapping[int, float]
+    ) -> None:
         """Go on from what `persistent` gave.
 
         Args:
             kept: The state, of this rank.
             steps: Steps that had been begun, the last one not necessarily done.
+            stopped: Fractions at which those that an event ended did, by number.
         """
-        for step in steps[:-1]:
+        for i, step in enumerate(steps[:-1]):
             # What a step prescribes at its end does not depend on where it began.
             self.begin(step, again=True)
+            if i in stopped:
+                self.end_at(stopped[i])
         self._memory.restore(kept, BEGUN)
         for step in steps[-1:]:
             self.begin(step, again=True)

@@ -43,20 +43,25 @@ class Reduction(Protocol):
         """Bring the state of all unknowns up to date with `Whole.complete`."""
         ...
 
-    def reactions(self) -> dict[str, Floats]:
-        """Force of the supports of each facet group on the bodies, (3,), force."""
+    def reactions(self, x: Vec | None = None) -> dict[str, Floats]:
+        """Force of the supports of each facet group on the bodies, (3,), force.
+
+        Args:
+            x: All unknowns of the trial in equilibrium; the accepted state if not given.
+        """
         ...
 
     def elastic(self) -> float:
         """Elastic energy of the accepted state."""
         ...
 
-    def mean(self, group: str, weights: Floats) -> Floats:
-        """Sum of the accepted displacements of all nodes times their weights, (3,), length.
+    def mean(self, group: str, weights: Floats, x: Vec | None = None) -> Floats:
+        """Sum of the displacements of all nodes times their weights, (3,), length.
 
         Args:
             group: Name under which the weights are known.
             weights: Weight of each node, (nodes,).
+            x: All unknowns of a trial in equilibrium; the accepted state if not given.
         """
         ...
 

@@ -86,10 +86,16 @@ class Whole:
         tied = assembly.constraints.tied
         self._accepted.take(tied(outside), tied(load))
 
-    def reactions(self) -> dict[str, Floats]:
+    def reactions(self, x: Vec | None = None) -> dict[str, Floats]:
         """As of `Reduction`."""
-        self.recover()
-        across, rest = self._parts.planes.forces(self._accepted.reaction)
+        if x is None:
+            self.recover()
+            force = self._accepted.reaction
+        else:
+            self._system.evaluate_at(x)
+            balance = self._system.balance
+            force = balance.outside - balance.load
+        across, rest = self._parts.planes.forces(force)
         sums = self._parts.supports.reactions(rest)
         for name, force in across.items():
             sums[name] = sums.get(name, 0.0) + force
@@ -100,9 +106,12 @@ class Whole:
         self.recover()
         return self._parts.assembly.bodies.energy(self._bodies.nodal)
 
-    def mean(self, group: str, weights: Floats) -> Floats:
+    def mean(self, group: str, weights: Floats, x: Vec | None = None) -> Floats:
         """As of `Reduction`."""
-        self.recover()
+        if x is None:
+            self.recover()
+        else:
+            self._system.evaluate_at(x)
         return np.asarray(self._parts.layout.comm.allreduce(weights @ self._bodies.nodal))
 
     def turned(self, rotations: Rotations, x: Vec, last: bool) -> dict[str, Turned]:

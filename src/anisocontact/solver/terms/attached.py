@@ -228,6 +228,10 @@ class _SpringTerm(Attached):
             self._led.lead(AXES.index(axis), value)
 
     @override
+    def end_at(self, factor: float) -> None:
+        self._led.stop(factor)
+
+    @override
     def set_load_factor(self, factor: float, dt: float) -> None:
         self._anchor = self._led.at(factor)
 

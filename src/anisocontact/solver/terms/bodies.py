@@ -67,6 +67,11 @@ class Bodies(Term):
             self._temperatures[name].lead(0, value)
 
     @override
+    def end_at(self, factor: float) -> None:
+        for led in self._temperatures.values():
+            led.stop(factor)
+
+    @override
     def set_load_factor(self, factor: float, dt: float) -> None:
         self.bulk.set_time(dt)
         for name, led in self._temperatures.items():

@@ -69,6 +69,19 @@ class Drive:
             return np.asarray(self._motion.start + change)
         return np.where(self.held, self._motion.at(fraction), 0.0)
 
+    def stop(self, fraction: float) -> None:
+        """End the step at a fraction of it: loads stay as they are there."""
+        self._load.stop(fraction)
+
+    @property
+    def last_load(self) -> Floats:
+        """Loads at the end of the step, from which the next one goes on, (6,)."""
+        return self._load.end
+
+    @last_load.setter
+    def last_load(self, values: Floats) -> None:
+        self._load.end = values.copy()
+
     def largest_turn(self) -> float:
         """Rotation along the step where it is prescribed, at its fastest pace, radian."""
         places = _PLACES if self._motion.follows else 1

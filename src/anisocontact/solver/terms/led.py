@@ -55,6 +55,11 @@ class Led:
             self._courses.pop(i, None)
             self.end[i] = float(goal)
 
+    def stop(self, fraction: float) -> None:
+        """End the step at a fraction of it: the values there are those at its end."""
+        self.end = self.at(fraction)
+        self._courses = {}
+
     @property
     def follows(self) -> bool:
         """Whether a component follows a course."""

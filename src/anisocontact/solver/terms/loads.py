@@ -33,11 +33,13 @@ class DeadLoads(Term):
         self._values: dict[tuple[str, str], Led] = {}
         index_map = model.space.dofmap.index_map
         self._released: Floats = np.zeros(3 * (index_map.size_local + index_map.num_ghosts))
+        self._left = np.zeros_like(self._released)
         self._now = self._released.reshape(-1, 3)
 
     @override
     def begin(self, step: Step, released: Floats) -> None:
-        self._released = released
+        self._released = released + self._left
+        self._left = np.zeros_like(released)
         for led in self._values.values():
             led.begin(step.duration)
         for kind, share in _SHARES.items():
@@ -58,6 +60,12 @@ class DeadLoads(Term):
         for key, led in self._values.items():
             nodal += self._shares[key][:, None] * led.at(factor)
         self._now = nodal
+
+    @override
+    def end_at(self, factor: float) -> None:
+        self._left = (1.0 - factor) * self._released
+        for led in self._values.values():
+            led.stop(factor)
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:

@@ -55,6 +55,11 @@ class Pressures(Term):
                 self._values[group].begin(step.duration)
             self._values[group].lead(0, value)
 
+    @override
+    def end_at(self, factor: float) -> None:
+        for led in self._values.values():
+            led.stop(factor)
+
     def given(self, step: Step) -> Iterator[Given]:
         """Pressures of a step that has begun, other than zero, as they act in the reference."""
         rest = np.zeros((len(self._model.space.tabulate_dof_coordinates()), 3))

@@ -129,6 +129,11 @@ class RigidBodies(Term):
     def set_load_factor(self, factor: float, dt: float) -> None:
         self._load_factor = factor
 
+    @override
+    def end_at(self, factor: float) -> None:
+        for drive in self._drives.values():
+            drive.stop(factor)
+
     def place(self, unknowns: Floats) -> None:
         """Bring the bodies to their unknowns, (size,), and to what is prescribed."""
         for body in self.bodies:
@@ -264,11 +269,18 @@ class RigidBodies(Term):
             "rigid.rotation": np.array([pose.rotation for pose in poses]).reshape(-1, 3, 3),
             "rigid.outside": self._accepted_outside.copy(),
             "rigid.load": self._accepted_load.copy(),
+            "rigid.last_load": self._last_loads(),
             "rigid.faces": self._accepted_of_faces.copy(),
         }
 
+    def _last_loads(self) -> Floats:
+        found = [self._drives[body].last_load for body in self.bodies]
+        return np.array(found).reshape(-1, 6)
+
     @override
     def restore(self, kept: Arrays) -> None:
+        for body, load in zip(self.bodies, kept["rigid.last_load"], strict=True):
+            self._drives[body].last_load = load
         pairs = zip(self.bodies, kept["rigid.values"], kept["rigid.rotation"], strict=True)
         for body, values, rotation in pairs:
             body.accepted = body.trial = Pose(

@@ -10,6 +10,7 @@ from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.rigid import turns_in_radian
 from anisocontact.solver.terms.turn import Turn
+from anisocontact.solver.terms.until import Until
 
 AXES = ("x", "y", "z")
 # Fields of a step that are forces with a direction.
@@ -52,6 +53,7 @@ class Step:
         temperature: Body whose material has an expansion -> temperature at the end, over that at
             which it has no stress.
         anchor: Spring -> axis -> displacement of its end on ground at the end, length.
+        until: Event at which the step ends, before its end; what it leads then stays where it is.
 
     Raises:
         InputError: A value is out of range or no number.
@@ -76,6 +78,7 @@ class Step:
     rotation: Mapping[str, Turn] = field(default_factory=dict)
     anchor: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
     temperature: Mapping[str, Goal] = field(default_factory=dict)
+    until: Until | None = None
 
     def __post_init__(self) -> None:
         if isinstance(self.increments, bool) or not isinstance(self.increments, int):
@@ -195,6 +198,8 @@ def check_courses(steps: Sequence[Step]) -> list[str]:
                     )
             except InputError as error:
                 raise InputError(error.said, field) from None
+            if step.until is not None:  # where it ends is not known beforehand
+                known[place] = None
             if place[0] == "motion":  # a load on what is freed begins with what held it
                 known["load", *place[1:]] = None if goal is None else 0.0
     return said

@@ -123,6 +123,10 @@ class Supports:
         """Local unknowns that each support holds on this rank: none of them twice."""
         return self._owner
 
+    def stop(self) -> None:
+        """The step ends where it is: what it leads stays there."""
+        self._goals = dict.fromkeys(self._goals)
+
     def set_load_factor(self, factor: float) -> None:
         """Go to a fraction of the step."""
         values = (1.0 - factor) * self.start + factor * self.end

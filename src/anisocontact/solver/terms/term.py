@@ -47,6 +47,9 @@ class Term:
     def add_force(self, u: Floats, out: Floats) -> None:
         """Add the forces on the bodies at the displacement `u`, force."""
 
+    def end_at(self, factor: float) -> None:
+        """The step ends at a fraction of it: what it leads stays where it is."""
+
     def force(self, u: Floats) -> Floats:
         """The forces on the bodies at the displacement `u`, (nodes, 3), force."""
         out = np.zeros(u.shape)
@@ -127,6 +130,11 @@ class TermGroup(Term):
     def set_load_factor(self, factor: float, dt: float) -> None:
         for term in self.terms:
             term.set_load_factor(factor, dt)
+
+    @override
+    def end_at(self, factor: float) -> None:
+        for term in self.terms:
+            term.end_at(factor)
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:

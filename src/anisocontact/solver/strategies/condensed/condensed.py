@@ -234,11 +234,12 @@ class Condensed:
         u[fixed] = x.array_r[fixed]  # without rounding
         return u if self._gathering is None else self._gathering.T @ u
 
-    def reactions(self) -> dict[str, Floats]:
-        """Force of the supports of each facet group on the bodies, (3,), force."""
-        assert self._state is not None
-        outside = self.system.patterns.outside(self._state)
-        load = self.system.handed(self._load)
+    def reactions(self, x: Vec | None = None) -> dict[str, Floats]:
+        """As of `Reduction`."""
+        state = self._state if x is None else self._trial(x)
+        assert state is not None
+        outside = self.system.patterns.outside(state)
+        load = self.system.handed(self._load if x is None else self._trial_load)
         sums: dict[str, Floats] = {}
         for (group, axis), unknowns in self._problem.supports.owners.items():
             total = outside[self._held[group, axis]] - load[unknowns].sum()

@@ -1,0 +1,119 @@
+"""Steps that end on an event in the case file: mistakes, what a run says, a run that goes on."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.case import load
+from anisocontact.case.build import build
+from anisocontact.case.run import Listener, run
+from anisocontact.cli import main
+from anisocontact.results.checkpoint import load_checkpoint
+
+CASE = """
+[mesh.box]
+block = { origin = [0, 0, 0], size = [1, 1, 0.5], cells = [2, 2, 1] }
+
+[material]
+block = { model = "linear-elastic", E = 1000, nu = 0.3 }
+
+[surface.floor]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 0, 1]
+
+[[contact]]
+slave = "block.bottom"
+master = "floor"
+friction = { coefficients = 0.3 }
+
+[[step]]
+name = "press"
+increments = 2
+displacement = { "block.top" = { x = 0, y = 0, z = -0.01 } }
+until = { reaction = "block.top", value = 10.0 }
+
+[[step]]
+name = "drag"
+increments = 2
+displacement = { "block.top" = { x = 0.05 } }
+until = { contact = "block.bottom", event = "sliding" }
+
+[[step]]
+name = "on"
+increments = 2
+displacement = { "block.top" = { y = 0.01 } }
+until = { contact = "block.bottom", event = "lost" }
+
+[output]
+pictures = false
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ('event = "sliding"', 'event = "slides"', "step[1].until.event: "),
+        ('"block.bottom", event', '"block.side", event', "contacts: block.bottom"),
+        ('reaction = "block.top"', 'reaction = "block.left"', "groups with supports: block.top"),
+        (", value = 10.0", "", "step[0].until: with reaction one of value is needed"),
+        ("value = 10.0", "value = -10.0", "step[0].until.value: -10.0 given without along"),
+    ],
+)
+def test_mistakes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, line: str
+):
+    """Requirement: one line that says where, before the run."""
+    path = tmp_path / "case.toml"
+    assert old in CASE
+    path.write_text(CASE.replace(old, new))
+    assert main(["check", str(path)]) == 2
+    error = capsys.readouterr().err
+    assert line in error
+    assert "Traceback" not in error
+
+
+class _Stops(Listener):
+    """Ends a run after some accepted parts."""
+
+    def __init__(self, after: int = 1000) -> None:
+        self.left = after
+
+    def accepted(self, accepted: Any, summary: Any) -> None:
+        self.left -= 1
+
+    def lost(self) -> str:
+        return "enough" if self.left <= 0 else ""
+
+
+def test_run_that_goes_on(tmp_path: Path):
+    """The summary and the history say when events happened; stopped anywhere, a run goes on alike.
+
+    Requirement: the same events and the same history, to the bit. Source: what a checkpoint keeps.
+    """
+    path = tmp_path / "case.toml"
+    path.write_text(CASE)
+    whole = tmp_path / "whole"
+    assert run(build(load(path)), whole, _Stops()).status == "done"
+    expected = json.loads((whole / "summary.json").read_text())
+    press, drag, lost = expected["events"]
+    assert press["happened"] and drag["happened"] and not lost["happened"]
+    assert 0.0 < press["time"] < 1.0
+    assert lost["time"] == pytest.approx(drag["time"] + 1.0)
+    assert any("step 'on': the step ends without its event" in w for w in expected["warnings"])
+    rows = (whole / "history.csv").read_text().splitlines()
+    for after in range(1, len(rows) - 1, 5):
+        folder = tmp_path / f"part{after}"
+        assert run(build(load(path)), folder, _Stops(after)).status == "stopped"
+        checkpoint = load_checkpoint(folder)
+        assert run(build(load(path)), folder, _Stops(), checkpoint).status == "done"
+        assert json.loads((folder / "summary.json").read_text())["events"] == expected["events"]
+        found = (folder / "history.csv").read_text().splitlines()
+        assert len(found) == len(rows)
+        assert found == rows

@@ -1,0 +1,221 @@
+"""Steps that end on an event: sliding, forces, gaps, displacements; what comes after; restart."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from anisocontact.base.errors import InputError
+from anisocontact.bulk import make_material
+from anisocontact.contact import Contact
+from anisocontact.interface import Interface
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.rigid import MovingSurface, RigidBody
+from anisocontact.solver import Accepted, Problem, Solver, Step, Until
+from anisocontact.surfaces import make_surface
+
+E, PENALTY, MU = 1000.0, 1e4, 0.3
+PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
+
+
+def block(height: float = 0.0, nu: float = 0.0, **given: Any) -> Problem:
+    """A block of 1 x 1 x 0.5 over a plane, or a rigid one that moves."""
+    model = build_box({"block": BoxSpec((0, 0, height), (1, 1, 0.5), (2, 2, 1))})
+    laws = NormalLaw(penalty=PENALTY), Adhesion(stiffness=PENALTY), Friction(coefficients=MU)
+    plane = Interface(make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)), *laws)
+    body = given.pop("body", None)
+    master = plane if body is None else MovingSurface(plane, body)
+    contact = Contact(model, "block.bottom", master)
+    elastic = make_material(given.pop("material", "linear-elastic"), E=E, nu=nu)
+    return Problem(model, {"block": elastic}, [contact], **given)
+
+
+def run(problem: Problem, *steps: Step, strategy: str = "direct") -> list[Accepted]:
+    """All accepted parts."""
+    solver = Solver(problem, list(steps), options={"snes_rtol": 1e-12}, strategy=strategy)
+    return list(solver.run())
+
+
+def stiffness() -> float:
+    """Force of the block per displacement of its top, block and penalty in series."""
+    return 1.0 / (0.5 / E + 1.0 / PENALTY)
+
+
+@pytest.mark.parametrize("strategy", ["direct", "condensed", "iterative"])
+def test_sliding_begins_at_mu_n(strategy: str):
+    """A block pressed by a uniform pressure and dragged until all of it slides.
+
+    Requirement: the step ends where Q = mu N, the drag at most a thousandth of an increment
+    further: 1 %; the next step goes on from there. Source: Coulomb. Tolerance: points do not
+    begin to slide at once, as the drag at the top turns the block.
+    """
+    press = Step(
+        "press", 1, {"block.top": {"x": 0.0, "y": 0.0}}, traction={"block.top": {"z": -20.0}}
+    )
+    drag = Step(
+        "drag",
+        3,
+        {"block.top": {"x": 0.05}},
+        until=Until(contact="block.bottom", event="sliding"),
+    )
+    found = run(block(), press, drag, Step("rest", 1), strategy=strategy)
+    ends = [a for a in found if a.event]
+    assert len(ends) == 1
+    force = ends[0].resultants["block.bottom"][0]
+    assert abs(force[0]) == pytest.approx(MU * 20.0, rel=1e-9)
+    before = found[found.index(ends[0]) - 1]
+    assert before.contacts["block.bottom"]["stick"] > 0
+    assert ends[0].time - before.time <= 1.01e-3 / 3.0
+    assert 1.0 < ends[0].time < 2.0
+    assert found[-1].step == "rest"
+    assert found[-1].time == pytest.approx(ends[0].time + 1.0, rel=1e-12)
+    assert found[-1].resultants["block.bottom"][0] == pytest.approx(force, rel=1e-6)
+
+
+@pytest.mark.parametrize("strategy", ["direct", "condensed", "iterative"])
+@pytest.mark.parametrize("what", ["contact", "reaction"])
+def test_force_is_reached(what: str, strategy: str):
+    """A block pressed by its top until a force is reached, in a linear contact.
+
+    Requirement: the displacement is force over stiffness, 1e-3 of the force; what is led stays
+    there in the next step, and is led on from there in the one after. Source: springs in series.
+    Tolerance: that of the event.
+    """
+    name = {"contact": "block.bottom", "reaction": "block.top"}[what]
+    sign = {"contact": 1.0, "reaction": -1.0}[what]
+    until = Until(**{what: name}, value=4.0 * sign, along=(0, 0, 1))
+    problem = block()
+    steps = [
+        Step("press", 2, PRESS, until=until),
+        Step("rest", 1),
+        Step("lift", 1, {"block.top": {"z": -0.001}}),
+    ]
+    found = run(problem, *steps, strategy=strategy)
+    press, rest, lift = ([a for a in found if a.step == s.name][-1] for s in steps)
+    assert press.event == f"{until.text}"
+    force = press.reactions["block.top"][2]
+    assert force == pytest.approx(-4.0, rel=1e-3)
+    assert press.time == pytest.approx(-force / stiffness() / 0.01, rel=1e-9)
+    assert rest.reactions["block.top"][2] == pytest.approx(force, rel=1e-9)
+    assert rest.time == pytest.approx(press.time + 1.0, rel=1e-12)
+    assert lift.reactions["block.top"][2] == pytest.approx(-0.001 * stiffness(), rel=1e-9)
+
+
+def test_loads_stay_where_the_event_found_them():
+    """A traction that presses until the top has moved by a distance, released after that.
+
+    Requirement: the load of the event acts on in the next step, and goes to zero from there.
+    Source: springs in series. Tolerance: that of the event; Newton.
+    """
+    problem = block()
+    until = Until(displacement="block.top", value=0.003)
+    held = {"block.top": {"x": 0.0, "y": 0.0}}
+    found = run(
+        problem,
+        Step("press", 2, held, traction={"block.top": {"z": -20.0}}, until=until),
+        Step("rest", 1),
+        Step("release", 2, traction={"block.top": {"z": 0.0}}),
+    )
+    press, rest, half, free = (
+        next(a for a in reversed(found) if a.step == "press"),
+        *[a for a in found if a.step != "press"],
+    )
+    forces = [a.resultants["block.bottom"][0][2] for a in (press, rest, half, free)]
+    assert forces[0] == pytest.approx(0.003 * stiffness(), rel=1e-3)
+    assert press.time == pytest.approx(forces[0] / 20.0, rel=1e-9)
+    assert forces[1:] == pytest.approx([forces[0], 0.5 * forces[0], 0.0], rel=1e-8, abs=1e-9)
+
+
+def test_contact_begins_and_is_lost():
+    """A rigid plane comes to a block, presses it and leaves it.
+
+    Requirement: steps end within a thousandth of an increment of the contact that begins and
+    ends. Source: the gap, 0.02. Tolerance: that of the event.
+    """
+    die = RigidBody("die", (0.5, 0.5, 0.0))
+    problem = block(height=0.02, body=die)
+    clamp = {"block.top": dict.fromkeys("xyz", 0.0)}
+    closed, lost = (Until(contact="block.bottom", event=e) for e in ("closed", "lost"))
+    found = run(
+        problem,
+        Step("come", 2, clamp, motion={"die": {"z": 0.05}}, until=closed),
+        Step("press", 1, motion={"die": {"z": 0.03}}),
+        Step("leave", 3, motion={"die": {"z": 0.0}}, until=lost),
+    )
+    come, leave = (a for a in found if a.event)
+    assert 0.4 < come.time < 0.4 + 1.01e-3 / 2.0
+    press = next(a for a in found if a.step == "press")
+    assert press.time == pytest.approx(come.time + 1.0)
+    left = leave.time - press.time
+    assert 1.0 / 3.0 < left < 1.0 / 3.0 + 1.01e-3 / 3.0
+
+
+def test_finite_strain_force_with_course_and_rigid_load():
+    """A free die loaded until the block has given way; loads on rigid bodies stay as well.
+
+    Requirement: the displacement to the tolerance, the load of the event after it. Source: balance.
+    Tolerance: 1e-4 as asked for; Newton.
+    """
+    die = RigidBody("die", (0.5, 0.5, 0.0), free=True)
+    problem = block(body=die, material="neo-hookean")
+    clamp = {"block.top": dict.fromkeys("xyz", 0.0)}
+    until = Until(displacement="block.bottom", value=0.01, along=(0, 0, 2), tolerance=1e-4)
+    found = run(
+        problem,
+        Step("touch", 1, clamp, motion={"die": {"z": 0.001}}),
+        Step("push", 3, motion={"die": {"z": None}}, load={"die": {"z": 60.0}}, until=until),
+        Step("rest", 1),
+    )
+    push = next(a for a in found if a.event)
+    force = push.resultants["block.bottom"][0][2]
+    x = problem.model.space.tabulate_dof_coordinates()
+    u = problem.u.x.array.reshape(-1, 3)[np.isclose(x[:, 2], 0.0), 2]
+    assert u == pytest.approx(0.01, rel=1e-4)
+    assert found[-1].resultants["block.bottom"][0][2] == pytest.approx(force, rel=1e-8)
+
+
+def test_an_event_that_never_comes():
+    """Requirement: the step takes all its increments and says so, as a warning too."""
+    said: list[str] = []
+    until = Until(contact="block.bottom", event="lost")
+    solver = Solver(block(), [Step("press", 2, PRESS, until=until), Step("rest", 1)])
+    found = list(solver.run(on_warning=said.append))
+    assert [a.missed for a in found] == ["", until.text, ""]
+    assert found[-1].time == 2.0
+    assert any("ends without its event, contact is lost" in text for text in said)
+
+
+@pytest.mark.parametrize(
+    ("given", "text"),
+    [
+        ({}, "nothing given, one of contact, reaction, displacement"),
+        ({"contact": "a", "reaction": "b", "value": 1.0}, "contact and reaction given"),
+        ({"contact": "a"}, "one of event, value"),
+        ({"reaction": "a", "event": "lost"}, "one of value"),
+        ({"contact": "a", "event": "open"}, "'open' given, must be one of closed"),
+        ({"reaction": "a", "value": 1.0, "along": (0, 0, 0)}, "not all 0"),
+        ({"reaction": "a", "value": -1.0}, "must be >= 0"),
+        ({"reaction": "a", "value": 1.0, "tolerance": 0.0}, "must be > 0"),
+    ],
+)
+def test_mistakes(given: dict[str, Any], text: str):
+    """Requirement: one line."""
+    with pytest.raises(InputError, match=text):
+        Until(**given)
+
+
+@pytest.mark.parametrize(
+    ("until", "text"),
+    [
+        (Until(contact="block.side", event="lost"), "contacts: block.bottom"),
+        (Until(displacement="block.side", value=1.0), "block.side"),
+        (Until(reaction="block.left", value=1.0), "groups with supports: block.top"),
+    ],
+)
+def test_unknown_places(until: Until, text: str):
+    """Requirement: one line before the run begins."""
+    with pytest.raises(InputError, match=text):
+        Solver(block(), [Step("press", 2, PRESS, until=until)])
