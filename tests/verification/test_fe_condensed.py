@@ -27,9 +27,19 @@ from anisocontact.interface import (
     PythonLaw,
 )
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import Body, BoxSpec, Model, Placement, Rotation, build_box, build_mesh
+from anisocontact.mesh import (
+    Body,
+    BoxSpec,
+    Model,
+    Placement,
+    PlaneStrain,
+    Rotation,
+    build_box,
+    build_mesh,
+    make_shape,
+)
 from anisocontact.rigid import MovingSurface, RigidBody
-from anisocontact.solver import Accepted, ElasticSupport, Problem, Solver, Spring, Step
+from anisocontact.solver import Accepted, ElasticSupport, Problem, Solver, Spring, Step, Turn
 from anisocontact.solver.stepping import attempts
 from anisocontact.solver.strategies.condensed import reach
 from anisocontact.surfaces import make_surface
@@ -362,3 +372,19 @@ def test_law_in_python() -> None:
         return Problem(model, {"block": elastic}, [Contact(model, "block.bottom", interface)])
 
     _same(make, [Step("press", 2, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}), DRAG])
+
+
+def test_group_that_turns_in_the_plane() -> None:
+    """A turn names the axis across the plane too, along which nothing moves anyway."""
+
+    def make() -> Problem:
+        upper = make_shape("rectangle", origin=(0.2, 0.0), size=(1.0, 0.5), cells=(5, 2))
+        lower = make_shape("rectangle", origin=(0.0, -0.5), size=(1.5, 0.5), cells=(6, 2))
+        bodies = [Body("block", upper), Body("base", lower)]
+        model = build_mesh(bodies, idealisation=PlaneStrain())
+        contact = Contact(model, "block.bottom", "base.top", ContactLaw(*LAWS), mortar=True)
+        return Problem(model, {"block": ELASTIC, "base": ELASTIC}, [contact])
+
+    press = {"base.bottom": {"x": 0.0, "y": 0.0}, "block.top": {"x": 0.0, "y": -0.01}}
+    turn = Turn((0, 0, 1), -0.01, point=(0.7, 0.5, 0.0))
+    _same(make, [Step("press", 2, press), Step("turn", 2, rotation={"block.top": turn})])

@@ -92,15 +92,11 @@ def half_planes(
 
 
 def solved(
-    model: Model,
-    materials: dict[str, Any],
-    contacts: Sequence[Contact],
-    *steps: Step,
-    strategy: str = "auto",
+    model: Model, materials: dict[str, Any], contacts: Sequence[Contact], *steps: Step
 ) -> int:
     """Run; number of Newton iterations."""
     problem = Problem(model, materials, contacts)
-    return sum(one.iterations for one in Solver(problem, list(steps), strategy=strategy).run())
+    return sum(one.iterations for one in Solver(problem, list(steps)).run())
 
 
 class Line:

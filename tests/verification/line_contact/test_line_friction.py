@@ -108,7 +108,7 @@ def rolled(line: Any, n: int) -> Shear:
     move = (WAY * (1.0 - CREEP), 0.0, 0.0)
     turn = Turn((0, 0, 1), -WAY / RADIUS, point=(0.0, RADIUS, 0.0), move=move)
     roll = Step("roll", int(WAY * n), {"lower.bottom": FIXED}, rotation={"upper.top": turn})
-    line.solved(model, materials, [contact], press, roll, strategy="direct")
+    line.solved(model, materials, [contact], press, roll)
     return Shear.of(contact, n, WAY, forward=True)
 
 

@@ -242,8 +242,9 @@ class Condensed:
         load = self.system.handed(self._load if x is None else self._trial_load)
         sums: dict[str, Floats] = {}
         for (group, axis), unknowns in self._problem.supports.owners.items():
-            total = outside[self._held[group, axis]] - load[unknowns].sum()
-            sums.setdefault(group, np.zeros(3))[axis] = total
+            total = sums.setdefault(group, np.zeros(3))
+            if len(unknowns):  # a group that turns in the plane has none of its own across it
+                total[axis] = outside[self._held[group, axis]] - load[unknowns].sum()
         return sums
 
     def elastic(self) -> float:
