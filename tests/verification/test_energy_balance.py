@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -13,7 +14,6 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.cli import main
 from anisocontact.solver import Solver, Step
-from anisocontact.solver.stepping import attempts
 from anisocontact.solver.stepping.attempts import Attempts
 from anisocontact.solver.stepping.energy_watch import CAUSES
 
@@ -35,8 +35,8 @@ def test_a_jump_over_the_limit_of_friction(
     flow left 9 to 13 % in one increment, 2 to 3 % in two.
     """
 
-    def flowing(self: Attempts, first: Any, last: Any) -> list[Any]:
-        return [attempts._Way(last, flowing=True)]
+    def flowing(self: Attempts, searching: Any, full: Any) -> list[Any]:
+        return [replace(full, flowing=True)]
 
     monkeypatch.setattr(Attempts, "_ways", flowing)
     for increments in (1, 2, 4):

@@ -8,6 +8,7 @@ solution answers to it. Source: `direct`, an independent way to solve the same e
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -206,6 +207,29 @@ def test_loads_and_supports_that_come_and_go() -> None:
     assert sum("condensing" in note for note in notes) == 4
 
 
+def test_a_body_that_contact_alone_holds() -> None:
+    """`auto` condenses a body that nothing but contact holds; forces, iterations as of `direct`.
+
+    Source: `direct`. Tolerance 1e-8 of the force: both find equilibrium to 1e-11 of it, with other
+    springs until contact holds.
+    """
+    held = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
+    steps = [
+        Step("press", 2, held, {"block.top": {"z": -10.0}}),
+        Step("drag", 3, held, {"block.top": {"x": 1.5}}),
+    ]
+    found, spent = [], []
+    for strategy in ("auto", "direct"):
+        solver = Solver(_pair(_model()), steps, options={"snes_rtol": 1e-11}, strategy=strategy)
+        assert solver.choice.name == {"auto": "condensed"}.get(strategy, strategy)
+        done = list(solver.run())
+        found.append(np.array([a.resultants["block.bottom"][0] for a in done]))
+        spent.append([a.iterations for a in done])
+    _close(found[0], found[1], np.abs(found[1]).max())
+    assert sum(spent[0]) <= sum(spent[1]) + 2
+    np.testing.assert_allclose(found[0][-1], [-1.5, 0.0, 10.0], atol=1e-6)
+
+
 def test_lifted_and_pressed_again() -> None:
     """No contact at all for a while: equilibrium of the bulk alone."""
     steps = [
@@ -251,7 +275,7 @@ def test_flow_that_leaves_the_reach_begins_anew(monkeypatch: pytest.MonkeyPatch)
     model = _model(n=3, length=3.0)
     laws = (*LAWS[:2], Friction(coefficients=(1e-9, 5e-10), directions=MARKS))
     *_, wanted = _run(_pair(model, laws, reach=0.2), [PRESS, away], "direct")
-    flowing = lambda _, __, last: [attempts._Way(last, flowing=True)]  # noqa: E731
+    flowing = lambda _, __, full: [replace(full, flowing=True)]  # noqa: E731
     monkeypatch.setattr(attempts.Attempts, "_ways", flowing)
     notes: list[str] = []
     ours, _, found = _run(_pair(model, laws, reach=0.2), [PRESS, away], "condensed", notes)

@@ -46,8 +46,6 @@ class CondensedStrategy:
         problem = task.problem
         if not problem.linear and problem.unknowns < LEAST_LAGGED:
             yield f"{problem.unknowns} unknowns: a factorisation costs no more than iterations"
-        if problem.linear and problem.check_held(task.steps):
-            yield "a body is held by contact alone"
         count = contact_unknowns(problem, task.steps)
         if count > MOST_CONTACT:
             yield (
