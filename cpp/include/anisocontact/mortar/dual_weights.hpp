@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "anisocontact/mortar/overlap.hpp"
+#include "anisocontact/mortar/integrator.hpp"
 #include "anisocontact/tensor/inline.hpp"
 
 namespace anisocontact::mortar {
