@@ -350,7 +350,7 @@ class SlaveNodes(SlavePoints):
         near = reference[quadrature.nodes % max(len(reference), 1)]
         away = near - quadrature.reference[:, None]
         self.spread = float(np.linalg.norm(away, axis=2).max(initial=0.0))
-        if quadrature.rows > 1:  # nodes of edges of a tri6, see `EDGE_SHARE`
+        if (quadrature.rows or 1) > 1:  # nodes of edges of a tri6, see `EDGE_SHARE`
             self.beside = float(np.linalg.norm(away[:, 0], axis=1).max(initial=0.0))
         pieces = self.around.pieces
         self.polygons = pieces[(pieces < len(self.facet)).all(axis=1)]
