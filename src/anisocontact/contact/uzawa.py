@@ -7,7 +7,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.multipliers import SHARE, ContactTrial, Multipliers, NotHeldError
+from anisocontact.contact.multipliers import (
+    SHARE,
+    ContactTrial,
+    Frames,
+    Multipliers,
+    NotHeldError,
+)
 from anisocontact.contact.penalty import PENALTY_FACTOR
 from anisocontact.interface import State
 from anisocontact.interface.augmentation import Augmentation
@@ -150,9 +156,9 @@ class Uzawa(Multipliers):
 
 
 class Once(Uzawa):
-    """A single cycle: penalties about the multipliers of the accepted state, whatever they leave.
+    """A single cycle from no multipliers: a penalty carries the pressure.
 
-    The penetration is the change of the pressure in the increment over the penalty.
+    Penalties about multipliers of the accepted state would hold bodies that lose their balance.
     """
 
     def suit(self, stiffness: float) -> None:
@@ -162,8 +168,22 @@ class Once(Uzawa):
     def commit(self) -> None:
         """Keep nothing."""
 
+    def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
+        """What the trials of the next increment start from, see `Multipliers.begin`."""
+        start = super().begin(state, located)
+        start["multiplier"] = 0.0
+        return start
+
+    def extrapolated(self, start: State, change: Floats, frames: Frames) -> State:
+        """What the trials start from: the multipliers of `begin`, which are none."""
+        return start
+
     def improve(self, _: ContactTrial) -> State | None:
         """What equilibrium with penalties leaves stays."""
+        return None
+
+    def soften(self, _: State) -> State | None:
+        """Nothing softer stands for a contact that does not penetrate."""
         return None
 
 
