@@ -6,9 +6,9 @@ from typing import Annotated
 
 from pydantic import Field
 
+from anisocontact.base.until import CONTACT_EVENTS, Until
 from anisocontact.case.quantity import number, word
 from anisocontact.case.section import Section
-from anisocontact.solver.terms.until import CONTACT_EVENTS, Until
 
 __all__ = ["UntilSection"]
 

@@ -9,6 +9,7 @@ from anisocontact.base.amplitudes import (
 from anisocontact.base.course import Course, courses_of
 from anisocontact.base.limits import Limits
 from anisocontact.base.paths import Path, make_path, paths, register_path
+from anisocontact.base.until import Until
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
 from anisocontact.solver.stepping.script import ContactProblem
 from anisocontact.solver.stepping.solver import Solver
@@ -22,7 +23,6 @@ from anisocontact.solver.terms.faces import CoupledFace
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.tied_faces import Tie
 from anisocontact.solver.terms.turn import Turn
-from anisocontact.solver.terms.until import Until
 
 __all__ = [
     "Accepted",

@@ -9,6 +9,7 @@ import numpy as np
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
+from anisocontact.base.until import Until
 from anisocontact.contact import Contact
 from anisocontact.solver.stepping.acceptance import Refusal
 from anisocontact.solver.system.problem import Problem
@@ -16,7 +17,6 @@ from anisocontact.solver.system.reduction import Reduction
 from anisocontact.solver.terms.loads import mean_shares
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
-from anisocontact.solver.terms.until import Until
 
 #: Value of a state, the trial at these unknowns or the accepted one; collective.
 type _Measure = Callable[[Vec | None], float]

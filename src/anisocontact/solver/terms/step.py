@@ -8,9 +8,9 @@ from dataclasses import dataclass, field, replace
 
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
+from anisocontact.base.until import Until
 from anisocontact.rigid import turns_in_radian
 from anisocontact.solver.terms.turn import Turn
-from anisocontact.solver.terms.until import Until
 
 AXES = ("x", "y", "z")
 # Fields of a step that are forces with a direction.

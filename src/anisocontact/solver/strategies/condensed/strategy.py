@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+import numpy as np
+
 from anisocontact.base.strategies import CONDENSED, strategy_entry
 from anisocontact.solver.strategies.condensed import bordered
 from anisocontact.solver.strategies.condensed.condensed import Condensed
@@ -12,12 +14,15 @@ from anisocontact.solver.strategies.condensed.newton import CondensedNewton
 from anisocontact.solver.strategies.condensed.reach import contact_unknowns
 from anisocontact.solver.strategies.costs import memory_needed, too_large
 from anisocontact.solver.strategies.strategy import Task
+from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 
 #: Contact unknowns beyond which their dense matrix costs more than it saves.
 MOST_CONTACT = 8000
 #: Unknowns up to which a factorisation of bodies that are not linear is as cheap.
 LEAST_LAGGED = 2000
+#: Gap over the facet size up to which a contact holds what it is about to hold.
+CLOSED = 0.1
 
 
 class CondensedStrategy:
@@ -46,6 +51,8 @@ class CondensedStrategy:
         problem = task.problem
         if not problem.linear and problem.unknowns < LEAST_LAGGED:
             yield f"{problem.unknowns} unknowns: a factorisation costs no more than iterations"
+        if problem.linear and problem.check_held(task.steps) and not _touches(problem):
+            yield "contact alone will hold a body, and does not touch it yet"
         count = contact_unknowns(problem, task.steps)
         if count > MOST_CONTACT:
             yield (
@@ -70,3 +77,9 @@ class CondensedStrategy:
             return LaggedNewton(task.problem, task.prefix, task.options, on_iteration, note, kept)
         condensed = Condensed(task.problem, task.steps, note, kept)
         return CondensedNewton(condensed, task.prefix, task.options, on_iteration)
+
+
+def _touches(problem: Problem) -> bool:
+    """Whether a contact is closed where the bodies are, or next to it."""
+    least = (c.state["gap"].min(initial=np.inf) / c.facet_size for c in problem.contacts)
+    return any(gap <= CLOSED for gap in least)
