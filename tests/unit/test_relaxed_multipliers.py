@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -40,7 +41,7 @@ METHOD
 name = "press"
 increments = 1
 [step.displacement]
-"block.top" = { x = 0, y = 0, z = -0.02 }
+"block.top" = { y = 0, z = -0.02 }
 
 [solver]
 strategy = "direct"
@@ -82,6 +83,18 @@ def test_penalties_hold_where_no_multipliers_are_found(tmp_path: Path) -> None:
     assert 0.0 < contact["worst_penetration"] < 0.1 * 0.02
     force = 1000.0 * (0.02 - contact["worst_penetration"])
     assert contact["force"][2] == pytest.approx(force, rel=1e-7)
+
+
+@pytest.mark.usefixtures("never_held")
+def test_a_run_goes_on_within_a_part_that_penalties_hold(tmp_path: Path, gone_on: Any) -> None:
+    """Requirement: bit by bit, with the increments told in which penalties held."""
+    (tmp_path / "case.toml").write_text(
+        PRESSED.replace("METHOD", "").replace("z = -", "x = 0.01, z = -")
+    )
+    whole, out = gone_on(tmp_path / "case.toml", 2)
+    assert (whole / "history.csv").read_bytes() == (out / "history.csv").read_bytes()
+    ours, theirs = (json.loads((f / "summary.json").read_text()) for f in (whole, out))
+    assert ours["relaxed"] == theirs["relaxed"] and len(ours["relaxed"]) > 2
 
 
 @pytest.mark.usefixtures("never_held")
