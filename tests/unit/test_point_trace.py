@@ -258,3 +258,17 @@ def test_imports_are_light(code: str, heavy: str) -> None:
     code = f"{code}; import sys; print(*(set({heavy.split()!r}) & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == ""
+
+
+def test_a_trace_with_pictures_needs_no_finite_elements(tmp_path: Path) -> None:
+    """Requirement: the base dependencies are enough for a whole trace, its report included."""
+    (tmp_path / "case.toml").write_text(CASE.replace("pictures = false", "pictures = true"))
+    code = (
+        "import sys; sys.modules.update(dict.fromkeys(['mpi4py', 'petsc4py', 'dolfinx', 'ufl'])); "
+        "from anisocontact.cli import main; sys.exit(main(['trace', 'case.toml', '-o', 'out']))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert list((tmp_path / "out").rglob("*.png"))

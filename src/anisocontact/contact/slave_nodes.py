@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.base.fenicsx import basix
+from anisocontact.base.peaks import PEAK
 from anisocontact.contact.facet_mesh import (
     FacetMesh,
     FacetShapes,
@@ -33,8 +34,6 @@ Numbers = npt.NDArray[np.int64]
 EDGE_SHARE = 0.2
 #: Edges by their number of nodes, and those of order 2 of a body of revolution.
 LINES, ROUND = {2: "line2", 3: "line3"}, "line3 of revolution"
-#: Share of its weight that has to be covered for the traction of a node to count among peaks.
-PEAK = 0.05
 #: Times the pressure of a node at the edge of contact, over that beside it, with which it counts:
 #: so the area of a Hertz contact is right to 2 % at 4 facets across its radius.
 EDGE = 3.0

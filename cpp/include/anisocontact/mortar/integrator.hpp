@@ -240,7 +240,8 @@ class Integrator {
     for (std::size_t q = 0; q < rule.count; ++q) {
       auto& to = points_[q];
       const std::size_t n = triangle * rule.count + q;
-      const auto &at = at_[n / batch], l = n % batch;
+      const auto& at = at_[n / batch];
+      const std::size_t l = n % batch;
       const double s = rule.points[2 * q], t = rule.points[2 * q + 1];
       to.weight = rule.weights[q];
       to.vertex = {1.0 - s - t, s, t};

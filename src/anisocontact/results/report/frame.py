@@ -12,7 +12,7 @@ from matplotlib.colors import ListedColormap
 from scipy.spatial import KDTree
 
 from anisocontact.base.figure_style import STATUS_COLOURS
-from anisocontact.contact.slave_nodes import PEAK
+from anisocontact.base.peaks import PEAK
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.report.facet_map import FacetMap, polygons_of
 
