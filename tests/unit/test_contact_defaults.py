@@ -107,3 +107,10 @@ def test_check_says_what_was_taken(tmp_path: Path, capsys: pytest.CaptureFixture
         assert main(["check", str(tmp_path / "case.toml")]) == 0
         (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("contact "))
         assert line.endswith(f", maximum-dissipation, {said}")
+
+
+def test_slave_nodes_have_no_degree(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A degree is for integration points: with slave nodes it would say nothing."""
+    (tmp_path / "case.toml").write_text(text(f'{FRICTION}pass = "mortar"\ndegree = 3'))
+    assert main(["check", str(tmp_path / "case.toml")]) == 2
+    assert capsys.readouterr().err.startswith('error: contact[0].degree: given with pass "mortar"')

@@ -152,6 +152,9 @@ def _contact(
 ) -> Iterator[InputError]:
     yield from _group(case, contact.slave, f"{place}.slave")
     yield from _method(contact, place)
+    if contact.mortar and contact.degree is not None:
+        text = f'given with pass "{MORTAR}", whose slave nodes have no quadrature of a degree'
+        yield InputError(text, field=f"{place}.degree")
     if contact.apart is not None and not contact.self_contact:
         text = "given without self_contact = true, which it belongs to"
         yield InputError(text, field=f"{place}.apart")

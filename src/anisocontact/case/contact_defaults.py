@@ -1,4 +1,4 @@
-"""What "auto" means for a contact: where its law is evaluated, and whether penalties are exact."""
+"""What "auto" means for a contact: where its law is evaluated, and how exactly it holds."""
 
 from __future__ import annotations
 
@@ -35,8 +35,10 @@ def chosen(
     Returns:
         The table, with names of a pass and of a method.
     """
-    where = section.where if section.where != AUTO else _where(section, model, materials)
-    taken = section.model_copy(update={"pass": where})
+    taken = section
+    if section.pass_ == AUTO:
+        points = any(_for_points(section, model, materials))
+        taken = section.model_copy(update={"pass": SINGLE if points else MORTAR})
     if taken.method == AUTO:
         taken = taken.model_copy(update={"method": _method(taken, law)})
     return taken
@@ -48,15 +50,10 @@ def physical_adhesion(section: ContactSection) -> bool:
     return python or bool(section.adhesion.parameters().get("stiffness") != AUTO)
 
 
-def _where(section: ContactSection, model: Model, materials: Sequence[Material]) -> str:
-    """Slave nodes, unless something speaks for integration points."""
-    return SINGLE if any(_for_points(section, model, materials)) else MORTAR
-
-
 def _for_points(
     section: ContactSection, model: Model, materials: Sequence[Material]
 ) -> Iterator[bool]:
-    """What speaks for integration points."""
+    """What speaks for integration points, not slave nodes."""
     yield section.self_contact or section.degree is not None
     yield model.mesh.comm.size > 1 and model.idealisation.dim == 2
     if section.meshed:

@@ -192,8 +192,8 @@ class ContactSection(Section):
         return "." in self.master
 
     @property
-    def where(self) -> str:
-        """The `pass`."""
+    def pass_(self) -> str:
+        """The `pass`, which is no name for an attribute in Python."""
         return str(getattr(self, "pass"))
 
     @property
@@ -204,12 +204,12 @@ class ContactSection(Section):
     @property
     def half_passes(self) -> bool:
         """Whether each of two bodies is slave and master for half of the work."""
-        return self.where == TWO_HALF
+        return self.pass_ == TWO_HALF
 
     @property
     def mortar(self) -> bool:
         """Whether the law is evaluated at slave nodes with mortar weights."""
-        return self.where == MORTAR
+        return self.pass_ == MORTAR
 
 
 class Case(Section):

@@ -105,6 +105,8 @@ def passes_of(
     options: Options,
 ) -> tuple[Pass, ...]:
     """The passes of a contact, see `Contact`."""
+    if options.mortar and options.degree is not None:
+        raise InputError("given, but slave nodes have no quadrature of a degree", "degree")
     if not isinstance(master, str):
         return (_on_surface(model, slave, master, law, options),)
     laws = _laws(law)

@@ -8,7 +8,7 @@ from typing import Any
 from anisocontact.contact.multipliers import AugmentedLaw, Multipliers, check, follows
 from anisocontact.contact.nested import Nested
 from anisocontact.contact.semismooth import Semismooth, Softer
-from anisocontact.contact.uzawa import Once, Uzawa
+from anisocontact.contact.uzawa import Penalties, Uzawa
 from anisocontact.interface.augmentation import AUTO, NEWTON, UZAWA, Augmentation
 
 #: Ways of an increment, the usual one and what is tried where that fails: with smaller penalties,
@@ -42,5 +42,5 @@ def make_multipliers(
         name = NEWTON if follows(augmentation, law) else UZAWA
     ways = dict(SCHEMES[name])
     if not augmentation.required:
-        ways[PENALTIES] = Once
+        ways[PENALTIES] = Penalties
     return {way: kind(augmentation, size, law.penalties(), comm) for way, kind in ways.items()}

@@ -155,7 +155,7 @@ class Uzawa(Multipliers):
         self._status = status
 
 
-class Once(Uzawa):
+class Penalties(Uzawa):
     """A single cycle from no multipliers: a penalty carries the pressure.
 
     Penalties about multipliers of the accepted state would hold bodies that lose their balance.

@@ -232,12 +232,12 @@ class Solver:
         largest = PRESCRIBED / max(prescribed, PRESCRIBED)
         pace.bound(largest)
         place.events = events = EventWatch(self.problem, step, self.limits.smallest)
+        attempts.events = events
         events.restore(self._waiting)
         self._waiting = {}
         while pace.increment <= step.increments:
             last = self.problem.accepted()
             pace.goal = events.goal(pace.done)
-            attempts.events = events
             events.begin(pace.part, pace.end)
             outcome = self._part(attempts, step, last)
             place.spent += outcome.result.iterations
