@@ -40,7 +40,6 @@ class FacetMaster(MeshedMaster):
             master: the other way round.
         overlaps: Whether forces on the master are integrated over the overlaps of the facets (see
             `Transfer`) or act at the feet of the slave points.
-
     """
 
     def __init__(

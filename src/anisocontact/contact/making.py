@@ -173,12 +173,6 @@ def _slave_nodes(
     return SlaveNodes(found, whole, x, current_area=current_area, comm=comm)
 
 
-def _check_in_space(model: Model, field: str) -> None:
-    """Refuse what bodies of two dimensions do not have: a slave that is a master as well."""
-    if model.idealisation.dim == 2:
-        raise InputError("given; a mesh of two dimensions has one pass", field)
-
-
 def _check_pair(model: Model, options: Options) -> None:
     """Refuse what pairs of bodies of two dimensions do not have."""
     ideal, comm = model.idealisation, model.mesh.comm
@@ -186,7 +180,7 @@ def _check_pair(model: Model, options: Options) -> None:
         return
     for name in ("two_half", "self_contact", "overlaps"):
         if getattr(options, name):
-            _check_in_space(model, name)
+            raise InputError("given; a mesh of two dimensions has one pass", name)
     if ideal.lateral and ideal.turn.any():
         text = "facets given with twist; a surface is needed, or lateral = false"
         raise InputError(text, "master")

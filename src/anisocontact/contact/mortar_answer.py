@@ -156,7 +156,6 @@ class MortarAnswer:
 
     Attributes:
         at: The nodes where they are.
-        gathered: The master as this rank has it.
         snapshot: The nodes as points.
         stiffness: Size of the derivative of the force of each, (n,), force/length.
         which: Slave nodes in contact, (p,).
@@ -164,7 +163,6 @@ class MortarAnswer:
     """
 
     at: MortarState
-    gathered: MasterSurface
     snapshot: Snapshot
     stiffness: Floats
     which: Ints
@@ -187,13 +185,13 @@ class MortarAnswer:
     def add_traction(self, which: Ints, traction: Floats, out: Floats) -> None:
         """Add the forces of tractions on the slave, (p, 3), of some slave nodes, (p,)."""
         rows, weights = self.at.rows[which], self.at.row_weights[which]
-        there, forces = rows >= 0, self.gathered.zeros(out)
+        there, forces = rows >= 0, self.at.gathered.zeros(out)
         np.add.at(forces, rows[there], (weights[:, :, None] * traction[:, None])[there])
-        self.gathered.hand_back(forces, out)
+        self.at.gathered.hand_back(forces, out)
 
     def couplings(self) -> list[Couplings]:
         """As of `Answer`: a block for each pair of nodes."""
-        return [self.gathered.couplings(self._tangent[1:])]
+        return [self.at.gathered.couplings(self._tangent[1:])]
 
     def by_derivative(self, other: MortarAnswer, stiffness: Floats) -> MortarAnswer:
         """As of `Answer`."""

@@ -239,7 +239,7 @@ class MortarMaster(MeshedMaster):
         if tangent:
             by_nodes = -free[which] @ found["tangent"][which, :3]
         stiffness = found["stiffness"] * at.weights.area
-        return MortarAnswer(at, self._gathered, snapshot, stiffness, which, by_nodes)
+        return MortarAnswer(at, snapshot, stiffness, which, by_nodes)
 
     def _batch(self, state: State, tangent: bool = True) -> FacetBatch:
         """Slave nodes and planes as the core takes them."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -57,7 +58,6 @@ class Sides:
         apart: Numbers in the whole group of facets that each facet of the slave cannot meet; None
             where it can meet all.
         near: Those of them that this rank has; of all facets around slave nodes.
-        excluded: The same for each point; None for slave nodes.
         kinds: Code of the topology of each facet of the master, (m,).
         at: Where the local nodes were when facets were gathered, (nodes, 3), length.
         threads: Threads of the kernel.
@@ -72,11 +72,17 @@ class Sides:
     reach: float
     apart: FacetSets | None
     near: FacetSets | None
-    excluded: FacetSets | None
     kinds: npt.NDArray[np.int8]
     at: Floats
     threads: int
     comm: Any
+
+    @cached_property
+    def excluded(self) -> FacetSets | None:
+        """`near` of the facet of each point; None for slave nodes, which are on several."""
+        if self.near is None or self.points.at_nodes:
+            return None
+        return self.near.take(self.points.facet)
 
     @property
     def reference(self) -> Floats:
@@ -185,9 +191,6 @@ class Sides:
             self,
             surface=_surface(self.gathered, now),
             near=near,
-            excluded=None
-            if near is None or self.excluded is None
-            else near.take(self.points.facet),
             kinds=_kinds(self.gathered.facets),
             at=now.copy(),
         )
@@ -271,14 +274,13 @@ def make_sides(
     reach = reach if reach is not None else 2.0 * points.size
     _collect(gathered, own, points, reference, max(reach, apart or 0.0) + reach, NONE)
     surface = _surface(gathered, reference)
-    named = near = excluded = None
+    named = near = None
     if apart is not None:
         keys = facet_keys(model.mesh, np.sort(slave)) if nodes is None else nodes.keys
         numbers = gathered.number(keys)
         met = own if nodes is None else nodes.around.mesh
         near = near_facets(met, numbers, surface, gathered.reference, apart)
         named = FacetSets(near.offsets, gathered.globally(near.facets))
-        excluded = near.take(points.facet) if nodes is None else None
     return Sides(
         slave=own,
         rule=rule,
@@ -288,7 +290,6 @@ def make_sides(
         reach=reach,
         apart=named,
         near=near,
-        excluded=excluded,
         kinds=_kinds(gathered.facets),
         at=reference,
         threads=default_threads(),
