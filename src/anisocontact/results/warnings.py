@@ -62,7 +62,7 @@ def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> d
     Returns:
         "worst_penetration", "worst_elastic_slip", length, "worst_turn", radian, and each with
         "_time"; the penetration also with "_approach", how far the bodies had come towards each
-        other since they touched.
+        other since they touched. What there is at the start is no equilibrium, and none of them.
     """
     first = before.get("initial_gap", entry["least_gap"])
     found: dict[str, float] = {"initial_gap": first}
@@ -72,7 +72,8 @@ def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> d
     else:
         found[come] = before[come]
     for name in ("penetration", "elastic_slip", "turn"):
-        key, when, now = f"worst_{name}", f"worst_{name}_time", entry[f"max_{name}"]
+        key, when = f"worst_{name}", f"worst_{name}_time"
+        now = entry[f"max_{name}"] if before else 0.0
         grown = key not in before or now > before[key]
         found |= {key: now, when: time} if grown else {key: before[key], when: before[when]}
     return found
@@ -153,8 +154,7 @@ def at_end(
             if share > DEEP:
                 found.append(
                     f"{_pair(entry)}: the {name} was up to {share:.0%} of the facet size, at time "
-                    f"{entry[f'{key}_time']:.4g}; {cure} makes it smaller, "
-                    'method = "augmented" takes it away'
+                    f"{entry[f'{key}_time']:.4g}; {_cure(contact, cure)}"
                 )
         if entry["worst_turn"] > TURNED:
             found.append(
@@ -202,10 +202,19 @@ def soft(
         found.append(
             f"{_pair(entry)}: the penetration was up to {deep / come:.0%} of the {come:.3g} that "
             f"the bodies came towards each other, at time {entry['worst_penetration_time']:.4g}, "
-            "and the force is off by about as much; a larger normal penalty makes it smaller, "
-            'method = "augmented" takes it away'
+            f"and the force is off by about as much; {_cure(contact, 'a larger normal penalty')}"
         )
     return found
+
+
+def _cure(contact: Contact, stiffer: str) -> str:
+    """What helps against a penetration, or elastic slip, of penalties."""
+    if _exact(contact):  # penalties held where no multipliers were found
+        return "smaller increments, in which multipliers are found, take it away"
+    if contact.slave == contact.master:
+        return f"{stiffer} makes it smaller"
+    taken = 'pass = "mortar" with ' if len(contact.passes) > 1 else ""
+    return f'{stiffer} makes it smaller, {taken}method = "augmented" takes it away'
 
 
 #: Energies that are no part of what was to be computed, and what is said of them.
