@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
@@ -18,8 +18,7 @@ from anisocontact.base.errors import InputError, printable
 from anisocontact.contact import facet_size
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.results.checkpoint import keep_checkpoint
-from anisocontact.results.collection import Collection
-from anisocontact.results.dataset import DataSet
+from anisocontact.results.fields import FieldFiles
 from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
 from anisocontact.results.no_energy import told
@@ -93,9 +92,7 @@ class Writer:
         self._began = time.perf_counter()
         self._problem = problem
         self._steps = list(steps)
-        self._every, self._only, self._times = every, list(only), list(times)
         self._pictures, self._vtkhdf = pictures, vtkhdf
-        self._increments = 0
         self._kept = 0
         self._disk = Disk(problem.model.mesh.comm)
         self.folder = Path(folder)
@@ -111,15 +108,14 @@ class Writer:
             for name, probe in probes.items()
         }
         surfaces = Surfaces(problem.contacts, comm, quantities)
-        #: Name of each sort of fields, its files, and what is in them now.
-        self._fields: dict[str, tuple[Collection, Callable[[], DataSet | None]]] = {
-            name: (Collection(self.folder / f"{name}.pvd", suffix, comm), now)
-            for name, suffix, now in (
-                ("fields", ".vtu", bodies.grid),
-                ("contact", ".vtp", lambda: slave_points(problem.contacts, quantities)),
-                ("surfaces", ".vtp", surfaces.mesh),
-            )
+        now = {
+            "fields": bodies.grid,
+            "contact": lambda: slave_points(problem.contacts, quantities),
+            "surfaces": surfaces.mesh,
         }
+        self._fields = FieldFiles(
+            self.folder, self._disk, comm, self._steps, now, every=every, only=only, times=times
+        )
         self.summary: dict[str, Any] = self._head(title) | {"units": dict(units)}
         if resumed is None:
             self._begin()
@@ -145,7 +141,7 @@ class Writer:
         self._at_start = at_start(self._problem.contacts, self.summary["contacts"])
         for warning in self._at_start:
             self.log(f"warning: {warning}")
-        self._write_fields(0.0)
+        self._fields.write(0.0)
 
     def _resume(self, state: Mapping[str, Any]) -> None:
         """Take up the files where they were at a checkpoint."""
@@ -156,15 +152,12 @@ class Writer:
         self.summary["energy"] = {n: math.nan if v is None else v for n, v in energy.items()}
         self._began -= state["summary"]["wall_time_s"]
         self._at_start = list(state["at_start"])
-        self._increments, self._written = state["increments"], state["written"]
         self._kept = state["kept"]
         self._disk.write(lambda: self._history.resume(state["history"]))
         for name, table in self._probes.items():
             if name in state.get("probes", {}):
                 self._disk.write(partial(table.history.resume, state["probes"][name]))
-        for name, (files, _) in self._fields.items():
-            files.resume(state[name])
-            self._disk.write(files.tidy)
+        self._fields.resume(state)
         self.log(f"goes on after {self.summary['steps']} accepted increments")
 
     def state(self) -> dict[str, Any]:
@@ -172,12 +165,10 @@ class Writer:
         return {
             "summary": self.summary,
             "at_start": self._at_start,
-            "increments": self._increments,
             "kept": self._kept,
-            "written": self._written,
             "history": self._history.state(),
             "probes": {name: table.history.state() for name, table in self._probes.items()},
-        } | {name: files.state() for name, (files, _) in self._fields.items()}
+        } | self._fields.state()
 
     def keep(self, kept: Persistent, facts: Mapping[str, Any]) -> None:
         """Write a checkpoint, from which the run can go on.
@@ -233,23 +224,9 @@ class Writer:
         self.summary.update(worst_of_models(accepted, self.summary))
         if accepted.event or accepted.missed:
             self.summary["events"].append(_event(accepted))
-        if accepted.done == 1.0:
-            self._increments += 1
-        if self._is_due(accepted, before):
-            self._write_fields(accepted.time)
+        self._fields.accept(accepted, before)
         self._write_summary()
         self._disk.check()
-
-    def _is_due(self, accepted: Accepted, before: float) -> bool:
-        """Whether the fields of an increment are written; `before` is the time it began."""
-        if any(before < time <= accepted.time for time in self._times):
-            return True
-        step = self._steps[accepted.step_index]
-        if accepted.event:
-            return not self._only or step.name in self._only
-        if accepted.done < 1.0 or (self._only and step.name not in self._only):
-            return False
-        return accepted.increment == step.increments or self._increments % self._every == 0
 
     def _write_probes(self, when: Mapping[str, Any]) -> None:
         for table in self._probes.values():
@@ -288,8 +265,7 @@ class Writer:
             status: "done" or "stopped".
             message: Why it stopped.
         """
-        if self._written != self.summary["time"]:
-            self._write_fields(self.summary["time"])
+        self._fields.close(self.summary["time"])
         self.summary["stress"] = self._bodies.extremes()
         self.summary["status"] = status
         self.summary["message"] = message
@@ -362,11 +338,6 @@ class Writer:
         for entry, old in zip(contacts, before, strict=True):
             entry.update(worst(entry, old, self.summary["time"]))
         self.summary.update(numbers, contacts=contacts)
-
-    def _write_fields(self, at: float) -> None:
-        for files, now in self._fields.values():
-            files.add(self._disk, at, now())
-        self._written = at
 
     def _write_summary(self) -> None:
         self.summary["wall_time_s"] = round(time.perf_counter() - self._began, 3)
