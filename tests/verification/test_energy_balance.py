@@ -213,3 +213,12 @@ def test_the_end_of_a_master_is_named(fe: Any) -> None:
     assert jump.cause == CAUSES[1]
     assert jump.share == pytest.approx(0.5 / 3.0)
     assert np.isclose(watch.persistent()[1], 3.0)
+
+
+def test_a_press_fit_is_named(fe: Any) -> None:
+    """A block drawn below its plane: what it stores is no work of supports, and that is said."""
+    block = fe.block(fe.interface(point=(0.0, 0.0, 0.01)), cells=(2, 2, 1))
+    hold = Step("fit", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": 0.0}})
+    (accepted,) = Solver(block.problem, [hold]).run()
+    assert accepted.imbalance.share > 0.5
+    assert accepted.imbalance.cause == CAUSES[4]

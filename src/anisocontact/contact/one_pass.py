@@ -26,13 +26,10 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
 Mask = npt.NDArray[np.bool_]
 
-#: Fields of a point's state that are energies per area, by their name in the balance.
-ENERGIES = {
-    "adhesion": "energy_adhesion",
-    "normal": "energy_normal",
-    "friction": "dissipation",
-    "viscous": "dissipation_viscous",
-}
+#: Fields of a point's state that are energies per area, by their name in the balance: what is
+#: stored, and what is dissipated, which grows by increments on the area of each.
+_STORED = {"adhesion": "energy_adhesion", "normal": "energy_normal"}
+_DISSIPATED = {"friction": "dissipation", "viscous": "dissipation_viscous"}
 
 #: What of a response is kept beside its state.
 _KEPT = ("traction", "normal", "directions_adhesion", "directions_friction", "failure")
@@ -91,6 +88,7 @@ class Pass:
         self.accepted: Snapshot = self.answer.snapshot
         self._trial: Snapshot | None = None
         self._gained: Floats = np.zeros_like(self.last.traction)
+        self._dissipated: Floats = np.zeros((len(self.state), len(_DISSIPATED)))
         self.trials = Trials(points, master, law, self.state, self._comm)
         check_start(self, points.size)
         if augmentation is not None:
@@ -235,6 +233,8 @@ class Pass:
             self.accepted = self._trial
             if self._way:
                 self.last.state["dissipation"] = dissipated(self.state, self._way, self.last.state)
+            for i, name in enumerate(_DISSIPATED.values()):
+                self._dissipated[:, i] += self.areas * (self.last.state[name] - self.state[name])
             self.state = self.last.state
             if not self.trials.does_work:
                 self.state["energy_adhesion"] = 0.0
@@ -282,8 +282,10 @@ class Pass:
             "viscous" (dissipated since the start), with overlaps "transfer" (see `Transfer`), force
             times length.
         """
-        local = np.array([self.areas @ self.state[name] for name in ENERGIES.values()])
-        own = dict(zip(ENERGIES, self._comm.allreduce(local).tolist(), strict=True))
+        stored = [self.areas @ self.state[name] for name in _STORED.values()]
+        local = np.array([*stored, *self._dissipated.sum(axis=0)])
+        values = self._comm.allreduce(local).tolist()
+        own = dict(zip((*_STORED, *_DISSIPATED), values, strict=True))
         return own | self.master.energies()
 
     def whereabouts(self, u: Floats) -> Whereabouts:
@@ -307,6 +309,7 @@ class Pass:
             "points": now.points,
             "areas": now.areas,
             "gained": self._gained,
+            "dissipated": self._dissipated,
             "level": np.full(len(now.areas), self.trials.level),
         }
         kept = {name: values.copy() for name, values in (own | fields).items()}
@@ -328,5 +331,6 @@ class Pass:
         )
         self.accepted = Snapshot(np.array(kept["points"]), np.array(kept["areas"]), response)
         self._gained, self._trial = np.array(kept["gained"]), None
+        self._dissipated = np.array(kept["dissipated"])
         self.trials.level = max(self._comm.allgather(float(kept["level"].max(initial=0.0))))
         self._begin()

@@ -12,6 +12,7 @@ from collections.abc import Mapping
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.contact import initial_overlap
 from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.problem import Problem
 
@@ -19,12 +20,13 @@ Floats = npt.NDArray[np.float64]
 
 #: Share of points that begin or end contact in an increment beyond which they make the residual.
 MANY = 0.05
-#: What makes a residual, the first that applies to an increment.
+#: What makes a residual, the first that applies to an increment; the last one to the first.
 CAUSES = (
     "slave points slid off the end of a master",
     "bodies jumped to another equilibrium",
     "contact began or ended within increments, more of them are needed where it does",
     "too few increments, forces at their ends stand for those on the way",
+    "bodies overlapped at the start, what pushes them apart is no work from outside",
 )
 _ROUND_OFF = 4.0 * float(np.finfo(np.float64).eps)
 
@@ -41,7 +43,7 @@ class EnergyWatch:
         self._work = self._external = self._residual = self._flow = 0.0
         self._open = np.zeros(len(problem.contacts), dtype=np.int64)
         self._parts = np.zeros(len(CAUSES))
-        self._begun = False
+        self._begun = self._overlap = False
 
     def begin(self) -> None:
         """Start from the accepted state, unless a run goes on."""
@@ -52,6 +54,7 @@ class EnergyWatch:
         self._take(energies)
         self._work = abs(self._external)
         self._open = self._counted()
+        self._overlap = any([initial_overlap(c, c.facet_size) for c in self._problem.contacts])
 
     def after(self, energies: Mapping[str, float], ran_off: bool) -> Imbalance:
         """The balance after an accepted increment.
@@ -66,7 +69,9 @@ class EnergyWatch:
         opened, self._open = self._open, self._counted()
         changed = np.abs(self._open - opened).sum() > MANY * self._points()
         signs = (ran_off, self._flow != before[2], changed, True)
-        self._parts[signs.index(True)] += self._residual - before[0]
+        cause = len(CAUSES) - 1 if self._overlap else signs.index(True)
+        self._parts[cause] += self._residual - before[0]
+        self._overlap = False
         share = self._share(energies)
         return Imbalance(share, CAUSES[int(np.abs(self._parts).argmax())] if share > 0.0 else "")
 
