@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import resource
 from collections.abc import Callable
 from pathlib import Path
@@ -16,8 +17,10 @@ from anisocontact.solver import Problem, Solver, Step
 from anisocontact.solver.strategies import costs
 from anisocontact.solver.strategies.choice import Choice
 from anisocontact.solver.strategies.condensed import strategy
-from anisocontact.solver.strategies.condensed.dense import ContactTangent, KeptFactor, gmres
+from anisocontact.solver.strategies.condensed.dense import ContactTangent
 from anisocontact.solver.strategies.condensed.eliminate import WAYS
+from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
+from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.parts import Condensation
 from anisocontact.solver.strategies.condensed.patterns import InteriorState, Patterns
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
@@ -167,11 +170,75 @@ def test_contact_tangent_and_its_factor() -> None:
     x = rng.random(4)
     np.testing.assert_allclose(tangent.times(x), dense @ x, atol=1e-12)
     single = (dense @ x / tangent.scale).astype(np.float32)
-    np.testing.assert_allclose(tangent.factor(tangent.summed)(single), x, atol=1e-5)
+    solve = tangent.front().factor(tangent.summed)
+    np.testing.assert_allclose(solve(single), x, atol=1e-5)
     kept = KeptFactor(tangent)
     np.testing.assert_allclose(kept.solve(dense @ x, 1e-12), x, atol=1e-10)
     assert kept.factors == 1
     bulk.close()
+
+
+def _dual(rng: np.random.Generator) -> tuple[ContactTangent, Any]:
+    """Two bodies, 40 slave nodes and 30 master nodes; how to hold the slave with given shares."""
+    blocks, ends = [], (0, 120, 210)
+    for first, last in itertools.pairwise(ends):
+        half = rng.random((last - first, last - first)) / (last - first)
+        blocks.append((slice(first, last), np.asfortranarray(half @ half.T + np.eye(last - first))))
+    tangent = ContactTangent(blocks, np.arange(210), 210)
+    slave = np.arange(40, dtype=np.int32)
+    masters = np.array([rng.choice(28, 6, replace=False) + 40 for _ in slave], dtype=np.int32)
+
+    def hold(shares: np.ndarray, stiffness: np.ndarray, spring: float = 0.0) -> None:
+        rows = np.concatenate([slave[:, None], masters], axis=1)
+        weights = np.concatenate([np.ones((40, 1)), -shares], axis=1)
+        values = np.einsum("na,nb,nij->naibj", weights, weights, stiffness).reshape(40, 21, 21)
+        last = np.full((1, 1), 69, dtype=np.int32)
+        couplings = [(rows, rows, values), (last, last, spring * np.eye(3)[None])]
+        tangent.take(couplings, [(slave, masters, shares)])
+
+    return tangent, hold
+
+
+def test_masters_are_eliminated_once() -> None:
+    """Where slave nodes stick and slip, and what is opposite moves, few iterations are enough.
+
+    A factor that knows nothing of what is opposite takes `PATIENCE` iterations and a new factor of
+    all unknowns: stiffnesses of contact are 1e4 times those of the bodies.
+    """
+    rng = np.random.default_rng(3)
+    tangent, hold = _dual(rng)
+    kept = KeptFactor(tangent)
+    shares = rng.dirichlet(np.ones(6), 40)
+    for k in range(6):
+        moved = shares + 0.01 * k * (rng.dirichlet(np.ones(6), 40) - shares)
+        normal = rng.random((40, 3))
+        stick = rng.random(40) < 0.5
+        each = np.einsum("ni,nj->nij", normal, normal)
+        each[stick] = np.eye(3)
+        hold(moved, 1e4 * each)
+        x, before = rng.random(210), kept.iterations
+        found = kept.solve(tangent.times(x), 1e-12)
+        np.testing.assert_allclose(found, x, rtol=0.0, atol=1e-6)
+        assert kept.iterations - before <= 8
+    front = tangent.front()
+    assert len(front.unknowns) == 120
+    again = KeptFactor(tangent)
+    again.restore(kept.persistent())
+    b = rng.random(210)
+    np.testing.assert_array_equal(again.solve(b, 1e-9), kept.solve(b, 1e-9))
+
+
+def test_bodies_that_only_springs_hold_are_not_eliminated() -> None:
+    """Two nodes of the master that only a soft spring holds: the factor is that of all unknowns."""
+    rng = np.random.default_rng(4)
+    tangent, hold = _dual(rng)
+    _, master = tangent._blocks[1]
+    loose = np.kron([[1.0, -1.0], [-1.0, 1.0]], np.eye(3))
+    master[-6:], master[:, -6:] = 0.0, 0.0
+    master[-6:, -6:] = loose
+    hold(rng.dirichlet(np.ones(6), 40), np.tile(1e4 * np.eye(3), (40, 1, 1)), spring=0.05)
+    kept, x = KeptFactor(tangent), rng.random(210)
+    np.testing.assert_allclose(kept.solve(tangent.times(x), 1e-12), x, rtol=0.0, atol=1e-6)
 
 
 def test_gmres() -> None:

@@ -194,6 +194,15 @@ class Master(Protocol):
         """Local nodes of the master below points of the trial."""
         return np.zeros(0, dtype=np.int32)
 
+    def opposite(self) -> tuple[Ints, Ints, Floats] | None:
+        """What each slave node is held against in the trial, where points are slave nodes.
+
+        Returns:
+            Local slave nodes (n,), those of the master (n, k), -1 for none, and the share of each
+            in the place opposite; None where forces follow no such mean.
+        """
+        return None
+
     def below(self, state: State) -> Ints:
         """Local nodes of the master below points of a state."""
         return np.zeros(0, dtype=np.int32)

@@ -336,6 +336,11 @@ class MortarMaster(MeshedMaster):
         return np.unique(named[named >= 0])
 
     @override
+    def opposite(self) -> tuple[Ints, Ints, Floats]:
+        named, weights = self._gathered.local_names, self._at.weights
+        return named(self._at.quadrature.nodes[:, 0]), named(weights.masters), weights.shares
+
+    @override
     def below(self, state: State) -> Ints:
         named = self._gathered.local_names(self._then.named()[self.located(state)])
         return np.unique(named[named >= 0])

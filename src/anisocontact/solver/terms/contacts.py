@@ -16,6 +16,7 @@ from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int32]
 
 
 class Contacts(Term):
@@ -109,6 +110,11 @@ class Contacts(Term):
         """Local nodes of the master facets that are below slave points in the trial."""
         found = [half.master.feet() for half in self.passes]
         return np.concatenate([np.zeros(0, dtype=np.int64), *found])
+
+    def opposite(self) -> list[tuple[Ints, Ints, Floats]]:
+        """Slave nodes and what they are held against in the trial, see `Master.opposite`."""
+        found = [half.master.opposite() for half in self.passes]
+        return [one for one in found if one is not None]
 
     def improve(self) -> bool:
         """Better multipliers from equilibrium; whether any changed.

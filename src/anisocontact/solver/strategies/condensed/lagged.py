@@ -10,8 +10,8 @@ import scipy
 
 from anisocontact.base.fenicsx import Mat
 from anisocontact.solver.strategies.condensed.bordered import BorderedLU
-from anisocontact.solver.strategies.condensed.dense import gmres
 from anisocontact.solver.strategies.condensed.factor import aij
+from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.touched import Touched
 from anisocontact.solver.strategies.condensed.wear import Wear
 from anisocontact.solver.system.problem import Problem

@@ -9,7 +9,8 @@ import numpy.typing as npt
 import scipy
 
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
-from anisocontact.solver.strategies.condensed.dense import ContactTangent, KeptFactor
+from anisocontact.solver.strategies.condensed.dense import ContactTangent
+from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
 from anisocontact.solver.strategies.condensed.parts import Condensation
 from anisocontact.solver.strategies.condensed.patterns import InteriorState, Patterns
 from anisocontact.solver.strategies.forcing import Forcing
@@ -191,7 +192,7 @@ class ContactSystem(AssembledSystem):
         self.evaluate(x)
         couplings = self._rigid.body_couplings(len(self._v) // 3)
         couplings += [*self._assembly.acting.blocks(), *self._assembly.acting.couplings()]
-        self._tangent.take(couplings)
+        self._tangent.take(couplings, self.contact_term.opposite())
         out.assemble()
         return False
 

@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from anisocontact.solver.strategies.condensed.dense import Places
+from anisocontact.solver.strategies.condensed.places import Places
 from anisocontact.solver.system.problem import Problem
 
 Ints = npt.NDArray[np.int64]

@@ -1,0 +1,97 @@
+"""Generalised minimal residuals in the precision of the vectors."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+Floats = npt.NDArray[np.float64]
+
+
+def gmres[T: (np.float32, np.float64)](
+    step: Callable[[npt.NDArray[T]], tuple[npt.NDArray[T], npt.NDArray[T]]],
+    b: npt.NDArray[T],
+    rtol: float,
+    most: int,
+) -> tuple[npt.NDArray[T], float, int]:
+    """Generalised minimal residuals, preconditioned from the right, without restart.
+
+    Args:
+        step: Approximate solution with the matrix, and the product of the matrix with it.
+        b: Right-hand side, (n,); its precision is that of the vectors.
+        rtol: Norm of the residual over that of `b` at which to stop.
+        most: Most iterations.
+
+    Returns:
+        Solution, norm of its residual over that of `b`, number of iterations.
+
+    Example:
+        >>> gmres(lambda v: (v, 2.0 * v), np.array([4.0]), 1e-12, 5)
+        (array([2.]), 0.0, 1)
+    """
+    norm = float(np.linalg.norm(b))
+    if norm == 0.0:
+        return np.zeros_like(b), 0.0, 0
+    # SciPy's library alone: threads of NumPy's would wait for each other with those of SciPy's
+    (product,) = scipy.linalg.get_blas_funcs(("gemv",), (b,))
+    basis = np.empty((len(b), most + 1), dtype=b.dtype, order="F")
+    directions = np.empty((len(b), most), dtype=b.dtype, order="F")
+    basis[:, 0] = b / norm
+    reduced = _Reduced(norm, most)
+    left, used = 1.0, 0
+    while used < most:
+        directions[:, used], w = step(basis[:, used])
+        used += 1
+        column = np.zeros(used + 1)
+        for _ in range(2):  # twice is enough for orthogonality to rounding
+            shares = product(1.0, basis[:, :used], w, trans=1)
+            column[:used] += shares
+            w = product(-1.0, basis[:, :used], shares, beta=1.0, y=w)
+        length = float(np.linalg.norm(w))
+        column[used] = length
+        left = reduced.add(column) / norm
+        if left <= rtol or length == 0.0 or not np.isfinite(left):
+            break
+        basis[:, used] = w / length
+    y = reduced.solution().astype(b.dtype)
+    return product(1.0, directions[:, :used], y), left, used
+
+
+class _Reduced:
+    """Small problem of least squares in GMRES, made triangular by rotations as columns come.
+
+    Source: Saad, Iterative methods for sparse linear systems, 6.5.3.
+
+    Args:
+        norm: Norm of the right-hand side.
+        most: Most columns.
+    """
+
+    def __init__(self, norm: float, most: int) -> None:
+        self._triangle = np.zeros((most, most))
+        self._right = [norm]
+        self._turns: list[tuple[float, float]] = []
+
+    def add(self, column: Floats) -> float:
+        """Take the next column of the Hessenberg matrix; the norm of the residual with it."""
+        values = column.tolist()
+        for i, (c, s) in enumerate(self._turns):
+            upper, lower = values[i : i + 2]
+            values[i : i + 2] = c * upper + s * lower, c * lower - s * upper
+        upper, lower = values[-2:]
+        size = math.hypot(upper, lower)
+        c, s = (upper / size, lower / size) if size != 0.0 else (0.0, 1.0)
+        self._turns.append((c, s))
+        last = len(self._turns)
+        self._triangle[:last, last - 1] = [*values[:-2], size]
+        self._right[-1:] = [c * self._right[-1], -s * self._right[-1]]
+        return abs(self._right[-1])
+
+    def solution(self) -> Floats:
+        """The coefficients that make the residual smallest."""
+        count = len(self._turns)
+        return np.linalg.lstsq(self._triangle[:count, :count], self._right[:-1])[0]

@@ -1,0 +1,106 @@
+"""Where couplings of nodes go in a matrix of the contact unknowns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from anisocontact.contact.quadrature import Couplings
+
+Ints = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.bool_]
+#: Slave nodes, master nodes and their shares, as of `Contacts.opposite`.
+Opposite = tuple[npt.NDArray[np.int32], npt.NDArray[np.int32], Floats]
+
+
+class Places:
+    """Where couplings of nodes go in a matrix of the contact unknowns.
+
+    They are found once for couplings of the same nodes, which most iterations have.
+
+    Args:
+        number: Row and column of each unknown of the nodes, -1 for those without, (n,).
+    """
+
+    def __init__(self, number: Ints) -> None:
+        # one more node stands for "no node"
+        self._number = np.append(number, [-1] * 3).reshape(-1, 3)
+        self._keys: Ints = np.full(1, -1)
+
+    def total(self, couplings: Sequence[Couplings], size: int) -> scipy.sparse.csr_array:
+        """The sum of all couplings, (size, size)."""
+        nodes = len(self._number)
+        keys, blocks = [np.zeros(0, np.int64)], [np.zeros((0, 9))]
+        for rows, columns, values in couplings:
+            row, column = (side.astype(np.int64) % nodes for side in (rows, columns))
+            keys.append((row[:, :, None] * nodes + column[:, None, :]).ravel())
+            blocks.append(_pairs(values, rows.shape[1], columns.shape[1]))
+        key = np.concatenate(keys)
+        if not np.array_equal(key, self._keys):
+            self._locate(key, size)
+        if not len(key):
+            return scipy.sparse.csr_array((size, size))
+        sums = self._sum @ np.concatenate(blocks)
+        parts = (sums.ravel()[self._entry.data], self._entry.indices, self._entry.indptr)
+        return scipy.sparse.csr_array(parts, shape=(size, size))
+
+    def shares(
+        self, opposite: Sequence[Opposite], size: int
+    ) -> tuple[scipy.sparse.csr_array, Flags]:
+        """How unknowns of slave nodes follow those of what is opposite to them.
+
+        Args:
+            opposite: What slave nodes are held against.
+            size: Number of unknowns of the matrix.
+
+        Returns:
+            Shares in single precision, (size, size), without rows of unknowns that follow slave
+            nodes; and which unknowns are those of slave nodes.
+        """
+        slaves = np.zeros(size + 1, dtype=np.bool_)
+        rows, columns = np.zeros(0, np.int64), np.zeros(0, np.int64)
+        values = np.zeros(0, np.float32)
+        for slave, masters, shares in opposite:
+            own = self._number[slave]
+            slaves[own] = True
+            row, column, share = np.broadcast_arrays(
+                own[:, None], self._number[masters], shares[..., None].astype(np.float32)
+            )
+            there = (row >= 0) & (column >= 0) & (share != 0.0)
+            rows, columns = np.append(rows, row[there]), np.append(columns, column[there])
+            values = np.append(values, share[there])
+        slaves = slaves[:size]
+        again = np.isin(rows, rows[slaves[columns]])
+        found = (values[~again], (rows[~again], columns[~again]))
+        return scipy.sparse.csr_array(found, shape=(size, size)), slaves
+
+    def _locate(self, key: Ints, size: int) -> None:
+        """Sort pairs of nodes, each of them a number."""
+        self._keys = key
+        order = np.argsort(key, kind="stable")
+        first = np.flatnonzero(np.diff(key[order], prepend=-1))
+        starts = np.append(first, len(key))
+        self._sum = scipy.sparse.csr_array(
+            (np.ones(len(key)), order, starts), shape=(len(first), len(key))
+        )
+        pairs = np.divmod(key[order][first], len(self._number))
+        row, column = (self._number[node] for node in pairs)
+        shape = (len(first), 3, 3)
+        rows, columns = (
+            np.broadcast_to(row[:, :, None], shape),
+            np.broadcast_to(column[:, None, :], shape),
+        )
+        there = (rows >= 0) & (columns >= 0)
+        entry = np.arange(there.size).reshape(shape)[there]
+        self._entry = scipy.sparse.csr_array((entry, (rows[there], columns[there])), (size, size))
+
+
+def _pairs(values: Floats, r: int, c: int) -> Floats:
+    """Blocks of `Couplings` of r by c nodes as those of their pairs, (p r c, 9)."""
+    if values.ndim == 3:
+        values = values.reshape(-1, r, 3, c, 3).swapaxes(2, 3)
+    return values.reshape(-1, 9)
