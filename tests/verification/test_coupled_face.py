@@ -326,3 +326,55 @@ def test_a_meshed_tool_that_follows_a_point_is_rigid(mortar, bound):
         assert contact.counts()["slip"] > 0
         found.append(np.concatenate(contact.resultant((0.5, 0.5, 1.0))))
     assert found[0] == pytest.approx(found[1], abs=bound * abs(found[1][2]))
+
+
+@pytest.mark.parametrize("kind", ["neo-hookean", "plastic"])
+def test_what_a_rigid_tool_is_made_of_changes_nothing(kind):
+    """A plate whose skin follows a point, under a follower pressure on its top, free along z.
+
+    Requirement: all of its nodes move rigidly, whatever it is made of; the block carries the
+    pressure times the area, and a plate a million times as stiff gives the same. Tolerance:
+    Newton's, 1e-8 of the force.
+    """
+    from anisocontact.bulk import make_material
+    from anisocontact.contact import Contact
+    from anisocontact.interface import ContactLaw
+    from anisocontact.laws import Adhesion, Friction, NormalLaw
+    from anisocontact.mesh import Body, build_mesh, make_selector, make_shape
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import CoupledFace, Problem, Step
+
+    block = make_shape("box", origin=(0, 0, 0), size=(1, 1, 1), cells=(2, 2, 2), order=2)
+    plate = make_shape("box", origin=(-0.5, -0.5, 1), size=(2, 2, 0.5), cells=(3, 3, 2), order=2)
+    law = ContactLaw(
+        NormalLaw(penalty=1e4), Adhesion(stiffness=(1e3, 1e3)), Friction(coefficients=(0.2, 0.2))
+    )
+    more = {"yield_stress": 1e-3, "hardening": 0.1} if kind == "plastic" else {}
+    free = {"tool": dict.fromkeys(("x", "y", "rx", "ry"), 0.0) | {"z": None, "rz": 0.05}}
+    steps = (
+        Step("press", 1, {"block.bottom": NOTHING}, motion={"tool": {"z": -0.01}}),
+        Step("load", 2, motion=free, pressure={"plate.top": 2.0}),
+    )
+    found = []
+    for young in (1.0, 1e6):
+        bodies = [Body("block", block), Body("plate", plate)]
+        model = build_mesh(bodies, {"plate.skin": [make_selector("all")]})
+        tool = RigidBody("tool", (0.5, 0.5, 1.0), free=True)
+        contact = Contact(model, "block.top", "plate.bottom", law, mortar=True)
+        materials = {
+            "block": make_material("neo-hookean", E=100.0, nu=0.3),
+            "plate": make_material(kind, E=young, nu=0.3, **more),
+        }
+        problem = Problem(model, materials, [contact], coupled=[CoupledFace("plate.skin", tool)])
+        run(problem, *steps)
+        own = np.unique(model.space.dofmap.list[model.cells("plate")])
+        arms = model.space.tabulate_dof_coordinates()[own] - tool.reference
+        pose = tool.accepted
+        at = pose.translation + arms @ pose.rotation.T - arms
+        if kind == "plastic":  # at small strain
+            at = pose.translation + np.cross(pose.turn, arms)
+        assert problem.u.x.array.reshape(-1, 3)[own] == pytest.approx(at, abs=1e-12)
+        force, _ = contact.resultant()
+        assert force[2] == pytest.approx(-8.0, rel=1e-8)
+        found.append(np.concatenate(contact.resultant((0.5, 0.5, 1.0))))
+    assert found[0] == pytest.approx(found[1], abs=1e-8 * abs(found[1][2]))

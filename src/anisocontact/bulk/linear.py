@@ -20,7 +20,7 @@ class LinearBulk:
 
     Args:
         model: Mesh with its bodies.
-        materials: Body name -> linear material, one for each body.
+        materials: Body name -> linear material, for each body that has a stiffness.
 
     Example:
         >>> import numpy as np
@@ -118,5 +118,6 @@ def _bilinear_form(model: Model, materials: Mapping[str, Material], dx: Any) -> 
     return sum(
         weight * ufl.inner(ideal.stress(stress, u), strain) * dx(i, degree=degree)
         for i, name in enumerate(model.body_names())
+        if name in law
         for stress, degree in linear_parts(law[name], u)
     )

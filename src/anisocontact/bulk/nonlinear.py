@@ -29,7 +29,8 @@ class NonlinearBulk:
 
     Args:
         model: Mesh with its bodies.
-        materials: Body name -> material, one for each body; linear ones may be among them.
+        materials: Body name -> material, for each body that has a stiffness; linear ones may be
+            among them.
 
     Attributes:
         histories: What bodies whose material has a history have gone through, by body name.
@@ -193,6 +194,8 @@ class _Forms:
         # what heats a body from outside is not counted
         told = not heated
         for i, name in enumerate(model.body_names()):
+            if name not in laws:
+                continue
             law, here = laws[name], dx(i, degree=full)
             ideal = heated.get(name, model.idealisation)
             stretch = heated[name].stretch if name in heated else 1.0

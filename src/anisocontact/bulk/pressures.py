@@ -79,7 +79,8 @@ class Pressures:
         weight, self.of = model.idealisation.weight(model.mesh), {}
         mass, change, self._work = 0, 0, 0
         for i, name in enumerate(model.body_names()):
-            here, volume = dx(i, degree=2 * model.order), volume_of(laws[name], u)
+            here = dx(i, degree=2 * model.order)
+            volume = volume_of(laws[name], u) if name in laws else None
             if volume is None:
                 mass += q * p * here
                 continue

@@ -152,14 +152,14 @@ class Sides:
 
         Args:
             diagonal: Diagonal of the stiffness of the bodies, of the nodes this rank owns,
-                (nodes, 3), force/length.
+                (nodes, 3), force/length; zero where all of a body is rigid.
         """
         found = []
         for side in (self.slave, self.gathered.own):
             nodes = self.gathered.owned(self.gathered.local_names(side.nodes))
             local = np.array([diagonal[nodes].mean(axis=1).sum(), group_area(side, self.reference)])
             total, area = self.comm.allreduce(local)
-            found.append(float(total / area))
+            found.append(float(total / area) if total > 0.0 else np.inf)
         return found
 
     def outrun(self, now: Floats) -> bool:

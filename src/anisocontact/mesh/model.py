@@ -242,6 +242,22 @@ class Model:
             )
         return facets
 
+    def encloses(self, name: str) -> bool:
+        """Whether a facet group is the whole boundary of its body; the call is collective.
+
+        Args:
+            name: "body.group".
+        """
+        topology = self.mesh.topology
+        dim = topology.dim
+        topology.create_connectivity(dim, dim - 1)
+        sides = topology.connectivity(dim, dim - 1)
+        of_body = [sides.links(cell) for cell in self.cells(self.body_of(name))]
+        outer = np.unique(np.concatenate([np.zeros(0, dtype=np.int32), *of_body]))
+        outer = outer[outer < topology.index_map(dim - 1).size_local]
+        local = len(outer) - _with_two_cells(self.mesh, outer)
+        return bool(self.count_facets(name) == self.mesh.comm.allreduce(local))
+
     def body_of(self, facet_group: str, field: str = "") -> str:
         """Name of the body a facet group bounds.
 

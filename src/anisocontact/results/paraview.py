@@ -50,7 +50,7 @@ class Bodies:
         self._expressions = [
             (_stress_at(problem, body, discontinuous), model.cells(body))
             for body in model.body_names()
-            if body not in problem.bulk.histories
+            if body in problem.deformable and body not in problem.bulk.histories
         ]
         self._histories = [
             (history, _from_points(discontinuous, history.points))

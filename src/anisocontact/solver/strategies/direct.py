@@ -32,7 +32,7 @@ class DirectStrategy:
 
         On meshes of two dimensions it always does: factors have n log n entries [George 1973].
         """
-        count = task.problem.unknowns
+        count = task.problem.solved_for
         if task.problem.model.idealisation.dim < SPACE:
             return
         yield from too_large(f"a factorisation of {count} unknowns", factor_bytes(count))

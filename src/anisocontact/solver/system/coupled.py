@@ -191,7 +191,8 @@ class CoupledTangent:
     def _named(self, pairs: Sequence[NodePairs]) -> Keys:
         """Each pair of nodes once, as one number."""
         found = [_keys(rows, columns, self._numbers) for rows, columns in pairs]
-        return np.unique(np.concatenate([self._keys[:0], *found]))
+        named = np.unique(np.concatenate([self._keys[:0], *found]))
+        return named[named >= 0]
 
     def _places(self) -> tuple[Keys, Keys]:
         """Nodes of the rows and of the columns of the couplings, numbers in the whole system."""

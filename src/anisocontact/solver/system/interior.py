@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import PETSc, Vec
-from anisocontact.solver.terms.bodies import Bulk
+from anisocontact.solver.terms.bodies import Bulk, mean_diagonal
 
 Floats = npt.NDArray[np.float64]
 
@@ -33,8 +33,7 @@ def with_interior(
     u.array[:], right.array[:] = values, force
     first, _ = stiffness.getOwnershipRange()
     rows = (first + np.flatnonzero(known)).astype(PETSc.IntType)
-    scale = bulk.diagonal.sum() / bulk.diagonal.getSize()
-    stiffness.zeroRowsColumns(rows, scale, u, right)
+    stiffness.zeroRowsColumns(rows, mean_diagonal(bulk), u, right)
     _solve(stiffness, right, u)
     found = np.array(u.array_r)
     found[known] = values[known]  # without rounding

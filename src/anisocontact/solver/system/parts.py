@@ -83,9 +83,12 @@ def make_parts(
     _check(model, materials, contacts)
     for name, material in materials.items():
         model.idealisation.check_material(material, f"material.{name}")
-    linear = all(material.linear for material in materials.values())
-    bulk = LinearBulk(model, materials) if linear else NonlinearBulk(model, materials)
     faces = CoupledFaces(coupled, model, materials, middle_nodes(model))
+    soft = {name: law for name, law in materials.items() if name not in faces.whole}
+    if not soft:
+        raise InputError("all bodies follow rigid ones as a whole: nothing deforms", "coupled")
+    linear = all(material.linear for material in soft.values())
+    bulk = LinearBulk(model, soft) if linear else NonlinearBulk(model, soft)
     bodies, rigid = Bodies(bulk), RigidBodies(contacts, model.mesh.comm, faces)
     layout = Layout(model.space, rigid.size)
     attached, supports, loads = Attachments(specs, model), Supports(model), Loads(model, materials)

@@ -134,6 +134,12 @@ class Problem(AssembledSystem):
         return int(self._accepted.x.getSize())
 
     @property
+    def solved_for(self) -> int:
+        """Number of unknowns over all ranks that do not follow from those of rigid bodies."""
+        local = 0 if self.rigid.faces is None else len(self.rigid.faces.followers)
+        return self.unknowns - int(self.comm.allreduce(local))
+
+    @property
     def comm(self) -> Any:
         """Communicator of the mesh."""
         return self.model.mesh.comm
@@ -158,6 +164,12 @@ class Problem(AssembledSystem):
     def holding(self) -> list[str]:
         """Names in `reactions` of what holds the bodies for the whole run."""
         return [*self.planes.groups, *self.attached.names]
+
+    @property
+    def deformable(self) -> list[str]:
+        """Names of the bodies that have a stiffness: not all of their nodes follow rigid ones."""
+        rigid = [face.whole for face in self.rigid.faces.faces] if self.rigid.faces else []
+        return [name for name in self.model.body_names() if name not in rigid]
 
     @property
     def coupled(self) -> list[str]:

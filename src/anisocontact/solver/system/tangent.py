@@ -88,6 +88,8 @@ class Tangent:
             couplings = assembly.rigid.body_couplings(self.coupled.first_extra)
             couplings += assembly.terms.couplings()
             if assembly.rigid.faces:
+                for one in assembly.rigid.faces.handed_rows(self.coupled.first_extra):
+                    couplings = one.couplings(couplings)
                 couplings += assembly.rigid.faces.room(couplings, self.coupled.first_extra)
             pairs = [(rows, columns) for rows, columns, _ in couplings]
             couplings += [(*one, _nothing(one)) for one in assembly.constraints.room(pairs)]
@@ -108,6 +110,8 @@ class Tangent:
         found = [*found, *self._assembly.constraints.room(found)]
         faces = self._assembly.rigid.faces
         if faces and self.coupled is not None:
+            for one in faces.handed_rows(self.coupled.first_extra):
+                found = one.pairs(found)
             couplings = [(*one, _nothing(one)) for one in found]
             room = faces.room(couplings, self.coupled.first_extra)
             found += [(rows, columns) for rows, columns, _ in room]

@@ -19,9 +19,15 @@ from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
 
-
 #: What forces inside bodies come from.
 type Bulk = LinearBulk | NonlinearBulk | FormBulk
+
+
+def mean_diagonal(bulk: Bulk) -> float:
+    """Mean diagonal of the tangent at rest of nodes that have a stiffness, force/length."""
+    here: Floats = np.array(bulk.diagonal.array_r)
+    comm = bulk.stiffness.comm.tompi4py()
+    return float(comm.allreduce(here.sum()) / comm.allreduce(np.count_nonzero(here)))
 
 
 class Bodies(Term):
@@ -38,7 +44,7 @@ class Bodies(Term):
 
     def __init__(self, bulk: Bulk) -> None:
         self.bulk = bulk
-        self.scale = float(bulk.diagonal.sum() / bulk.diagonal.getSize())
+        self.scale = mean_diagonal(bulk)
         self._u = bulk.stiffness.createVecRight()
         self._temperatures = {name: Led(1) for name in bulk.heated}
 

@@ -11,11 +11,13 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, Vec, fem
 from anisocontact.bulk import Material, small_strain
+from anisocontact.contact.facet_mesh import facet_mesh
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
 from anisocontact.rigid import RigidBody
 from anisocontact.rigid.rotation import skew
 from anisocontact.solver.terms.constraint import Constraint
+from anisocontact.solver.terms.handed_rows import HandedRows
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -63,21 +65,47 @@ class FaceOnBody:
         body: The rigid body.
         nodes: Local numbers of the nodes, (n,).
         arms: Their places in the first configuration from the reference point, (n, 3), length.
+        skin: Nodes of the facets of this rank where the group is the whole boundary of its body,
+            which then follows with all of its nodes, (m, k); else None.
     """
 
     def __init__(self, spec: CoupledFace, model: Model, linear: bool, tied: Ints) -> None:
         space = model.space
-        nodes = fem.locate_dofs_topological(space, 2, model.facets(spec.group, "coupled"))
+        facets = model.facets(spec.group, "coupled")
+        self.skin: Ints | None = None
+        if model.encloses(spec.group):
+            self.skin = facet_mesh(space, facets).nodes.astype(np.int64)
+            nodes = np.unique(space.dofmap.list[model.cells(model.body_of(spec.group))])
+        else:
+            nodes = fem.locate_dofs_topological(space, 2, facets)
         owned = nodes[nodes < space.dofmap.index_map.size_local].astype(np.int64)
         self.group, self.body, self._linear = spec.group, spec.body, linear
         self.nodes: Ints = np.setdiff1d(owned, tied)
         self.arms: Floats = space.tabulate_dof_coordinates()[self.nodes] - spec.body.reference
         self._force = np.zeros((len(self.nodes), 3))
+        #: Body that has no strain, as all of it follows; empty where one face alone does.
+        self.whole = "" if self.skin is None else model.body_of(spec.group)
         flags = fem.Function(space)
         flags.x.array.reshape(-1, 3)[self.nodes] = 1.0
         flags.x.scatter_forward()
         #: Which of the local nodes are coupled, those of other ranks too.
         self.marked = flags.x.array.reshape(-1, 3)[:, 0] > 0.5
+
+    def of_its_own(self, there: npt.NDArray[np.int32]) -> list[Couplings]:
+        """Places for the rows of a body that has no stiffness, and for what acts on its skin.
+
+        Args:
+            there: What couplings call the two nodes of the rigid body.
+        """
+        skin = np.zeros((0, 0), dtype=np.int64) if self.skin is None else self.skin
+        nodes, width = self.nodes.astype(np.int32)[:, None], 3 * skin.shape[1]
+        facets = skin.astype(np.int32)
+        on_body = np.tile(there, (len(nodes), 1))
+        return [
+            (nodes, on_body, np.zeros((len(nodes), 3, 6))),
+            (nodes, nodes, np.zeros((len(nodes), 3, 3))),
+            (facets, facets, np.zeros((len(facets), width, width))),
+        ]
 
     @property
     def unknowns(self) -> Ints:
@@ -169,6 +197,11 @@ class CoupledFaces:
         return bool(self.faces)
 
     @property
+    def whole(self) -> list[str]:
+        """Deformable bodies all of whose nodes follow."""
+        return [face.whole for face in self.faces if face.whole]
+
+    @property
     def followers(self) -> Ints:
         """Unknowns of this rank that follow from those of bodies, local numbers."""
         return np.concatenate([np.zeros(0, dtype=np.int64), *(f.unknowns for f in self.faces)])
@@ -255,6 +288,9 @@ class CoupledFaces:
             on = np.zeros(first, dtype=bool)
             on[: len(face.marked)] = face.marked
             reached = [cells[on[cells].any(axis=1)].ravel(), face.nodes]
+            if face.skin is not None:
+                reached = [face.skin.ravel(), face.nodes]
+                found += face.of_its_own(there.astype(np.int32))
             for rows, columns, _ in couplings:
                 own = (rows >= 0) & (rows < first)
                 reached.append(columns[(on[np.where(own, rows, 0)] & own).any(axis=1)].ravel())
@@ -263,6 +299,23 @@ class CoupledFaces:
             body = np.tile(there.astype(np.int32), (len(nodes), 1))
             none = np.zeros((len(nodes), 3, 6))
             found += [(nodes, body, none), (body, nodes, none.swapaxes(1, 2))]
+        return found
+
+    def handed_rows(self, first: int) -> list[HandedRows]:
+        """Rows of bodies that follow as a whole, see `HandedRows`; on one process.
+
+        Args:
+            first: As of `room`.
+        """
+        found = []
+        for face in self.faces if self._comm.size == 1 else ():
+            if face.skin is None:
+                continue
+            at, scale = self._places[face.body.name]
+            there = first + at // 3 - self._model.space.dofmap.index_map.size_global + np.arange(2)
+            place = np.full(first + 2 * len(self._places), -1, dtype=np.int64)
+            place[face.nodes] = np.arange(len(face.nodes))
+            found.append(HandedRows(place, face.gathering() / scale, there.astype(np.int32)))
         return found
 
     def _linearised(self, like: Vec, moments: bool) -> Constraint:
