@@ -8,7 +8,6 @@ be loaded before them.
 from __future__ import annotations
 
 import contextlib
-import ctypes
 import re
 import time
 from collections.abc import Callable, Sequence
@@ -45,8 +44,6 @@ except ImportError as missing:
     ) from missing
 
 from anisocontact.base.compiler import FAST, lack_of_compiler, machine_key
-from anisocontact.base.errors import MachineError
-from anisocontact.base.machine import MEMORY
 
 __all__ = [
     "MPI",
@@ -58,10 +55,8 @@ __all__ = [
     "assemble_into",
     "basix",
     "body_shares",
-    "call_petsc",
     "cell_nodes",
     "cell_permutation",
-    "check_memory",
     "compiled",
     "compiled_expression",
     "corner_weights",
@@ -75,7 +70,6 @@ __all__ = [
     "facet_sides",
     "fem",
     "geometry",
-    "has_petsc",
     "la",
     "locate_entities",
     "middle_nodes",
@@ -392,57 +386,3 @@ def prescribed_rows(bcs: Sequence[Any]) -> Ints:
     """Owned unknowns that Dirichlet conditions prescribe, local numbers."""
     rows = [dofs[:owned] for dofs, owned in (bc.dof_indices() for bc in bcs)]
     return np.unique(np.concatenate([np.empty(0, dtype=np.int32), *rows])).astype(np.int32)
-
-
-#: What MUMPS calls INFOG(1) where it could allocate no memory, or no more than it was allowed to.
-_NO_MEMORY = (-5, -7, -13, -19)
-#: ... and where the workspace that it had estimated was too small.
-_TOO_SMALL = (-8, -9, -11, -12, -14, -15, -17, -20)
-
-
-def check_memory(pc: Any) -> None:
-    """Say so where a factorisation has failed for memory, and not for its matrix.
-
-    Args:
-        pc: Preconditioner that has failed; the call is collective.
-
-    Raises:
-        MachineError: There was too little memory.
-    """
-    direct = pc.getType() in (PETSc.PC.Type.LU, PETSc.PC.Type.CHOLESKY)
-    mumps = direct and pc.getFactorSolverType() == PETSc.Mat.SolverType.MUMPS
-    code = pc.getFactorMatrix().getMumpsInfog(1) if mumps else 0
-    if code in _TOO_SMALL:
-        raise MachineError(
-            f"the workspace of MUMPS was too small (INFOG(1) = {code})",
-            "solver.options = { mat_mumps_icntl_14 = 200 } gives it three times as much",
-        )
-    if code in _NO_MEMORY or pc.getFailedReason() == PETSc.PC.FailedReason.FACTOR_OUTMEMORY:
-        name = f"MUMPS (INFOG(1) = {code})" if mumps else "PETSc"
-        raise MachineError(f"{name} had no memory for the factors of a matrix", MEMORY)
-
-
-def has_petsc(*functions: str) -> bool:
-    """Whether PETSc has these functions of its C interface."""
-    return all(hasattr(_petsc_library(), name) for name in functions)
-
-
-def call_petsc(function: str, *arguments: Any) -> None:
-    """Call a function of PETSc's C interface that petsc4py has no name for.
-
-    Args:
-        function: Its name.
-        arguments: PETSc objects, or what ctypes passes on.
-
-    Raises:
-        PETSc.Error: It failed.
-    """
-    passed = [ctypes.c_void_p(a.handle) if hasattr(a, "handle") else a for a in arguments]
-    code = getattr(_petsc_library(), function)(*passed)
-    if code != 0:
-        raise PETSc.Error(code)
-
-
-def _petsc_library() -> ctypes.CDLL:
-    """The library that petsc4py is linked to: a search in it goes on to what it needs."""
-    return ctypes.CDLL(_PETSc.__file__)

@@ -9,7 +9,8 @@ from typing import Any, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec, check_memory
+from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
+from anisocontact.base.petsc_calls import check_memory
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.system.assembly import ForceBalance
 from anisocontact.solver.system.culprit import Culprit, LostError

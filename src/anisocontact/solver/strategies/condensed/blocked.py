@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from anisocontact.base.fenicsx import PETSc, check_memory
+from anisocontact.base.fenicsx import PETSc
+from anisocontact.base.petsc_calls import check_memory
 from anisocontact.solver.strategies.condensed.factor import Eliminated, aij, singular, solves
 
 Ints = npt.NDArray[np.int64]

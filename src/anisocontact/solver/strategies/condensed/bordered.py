@@ -11,7 +11,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from anisocontact.base.fenicsx import Mat, PETSc, Vec, call_petsc, check_memory, has_petsc
+from anisocontact.base.fenicsx import Mat, PETSc, Vec
+from anisocontact.base.petsc_calls import call_petsc, check_memory, has_petsc
 from anisocontact.solver.strategies.condensed.factor import aij, singular
 from anisocontact.solver.strategies.condensed.mumps import (
     TOO_SMALL,

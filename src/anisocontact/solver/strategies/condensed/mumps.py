@@ -10,7 +10,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from anisocontact.base.fenicsx import Mat, PETSc, call_petsc, check_memory, has_petsc
+from anisocontact.base.fenicsx import Mat, PETSc
+from anisocontact.base.petsc_calls import call_petsc, check_memory, has_petsc
 from anisocontact.solver.strategies.condensed.factor import (
     Eliminated,
     aij,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from anisocontact.base.fenicsx import Mat, PETSc, Vec, check_memory
+from anisocontact.base.fenicsx import Mat, PETSc, Vec
+from anisocontact.base.petsc_calls import check_memory
 from anisocontact.solver.strategies.iterative.split import Split, sparse
 
 #: Diagonal over its largest entry below which a coarse unknown moves nothing.

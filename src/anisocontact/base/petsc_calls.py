@@ -1,0 +1,65 @@
+"""What PETSc has and petsc4py no name for, and what its factorisations say of memory."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Any
+
+from anisocontact.base.errors import MachineError
+from anisocontact.base.fenicsx import PETSc
+from anisocontact.base.machine import MEMORY
+
+__all__ = ["call_petsc", "check_memory", "has_petsc"]
+
+#: What MUMPS calls INFOG(1) where it could allocate no memory, or no more than it was allowed to.
+_NO_MEMORY = (-5, -7, -13, -19)
+#: ... and where the workspace that it had estimated was too small.
+_TOO_SMALL = (-8, -9, -11, -12, -14, -15, -17, -20)
+
+
+def check_memory(pc: Any) -> None:
+    """Say so where a factorisation has failed for memory, and not for its matrix.
+
+    Args:
+        pc: Preconditioner that has failed; the call is collective.
+
+    Raises:
+        MachineError: There was too little memory.
+    """
+    direct = pc.getType() in (PETSc.PC.Type.LU, PETSc.PC.Type.CHOLESKY)
+    mumps = direct and pc.getFactorSolverType() == PETSc.Mat.SolverType.MUMPS
+    code = pc.getFactorMatrix().getMumpsInfog(1) if mumps else 0
+    if code in _TOO_SMALL:
+        raise MachineError(
+            f"the workspace of MUMPS was too small (INFOG(1) = {code})",
+            "solver.options = { mat_mumps_icntl_14 = 200 } gives it three times as much",
+        )
+    if code in _NO_MEMORY or pc.getFailedReason() == PETSc.PC.FailedReason.FACTOR_OUTMEMORY:
+        name = f"MUMPS (INFOG(1) = {code})" if mumps else "PETSc"
+        raise MachineError(f"{name} had no memory for the factors of a matrix", MEMORY)
+
+
+def has_petsc(*functions: str) -> bool:
+    """Whether PETSc has these functions of its C interface."""
+    return all(hasattr(_petsc_library(), name) for name in functions)
+
+
+def call_petsc(function: str, *arguments: Any) -> None:
+    """Call a function of PETSc's C interface that petsc4py has no name for.
+
+    Args:
+        function: Its name.
+        arguments: PETSc objects, or what ctypes passes on.
+
+    Raises:
+        PETSc.Error: It failed.
+    """
+    passed = [ctypes.c_void_p(a.handle) if hasattr(a, "handle") else a for a in arguments]
+    code = getattr(_petsc_library(), function)(*passed)
+    if code != 0:
+        raise PETSc.Error(code)
+
+
+def _petsc_library() -> ctypes.CDLL:
+    """The library that petsc4py is linked to: a search in it goes on to what it needs."""
+    return ctypes.CDLL(PETSc.__file__)
