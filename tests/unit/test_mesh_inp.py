@@ -227,7 +227,10 @@ def test_a_file_may_include_others(tmp_path):
 MISTAKES = [
     (CUBE.replace(" 7, 2., 2., 2.\n", ""), "element 100 has node 7, which is not there"),
     (CUBE.replace("5, 6, 7, 8", "5, 6"), "line 12: *ELEMENT: elements C3D8R need 8 nodes each"),
-    (CUBE.replace("C3D8R", "S8R"), "no solid element (C3D4, C3D10, C3D8, C3D20); there are: 2 S8R"),
+    (
+        CUBE.replace("C3D8R", "S8R"),
+        "no solid element (C3D4, C3D10, C3D8, C3D20, C3D6, C3D15, C3D5, C3D13); there are: 2",
+    ),
     (CUBE.replace("2., 0., 2.", "two, 0., 2."), "line 3: *NODE: its data cannot be read"),
     (CUBE.replace("*HEADING", "*NGEN\n1, 2"), "*NGEN: is not read; write nodes and elements out"),
     (CUBE.replace("*HEADING", "1, 2, 3"), "line 1: data in front of the first keyword"),
@@ -249,14 +252,82 @@ def test_what_is_wrong_is_one_line(tmp_path, text, said):
     assert "\n" not in line
 
 
-def test_bodies_of_unlike_cells_are_refused(tmp_path):
+def test_cells_of_unlike_order_are_refused(tmp_path):
     more = CUBE.replace(
-        "*NSET, NSET=Low, G", "*ELEMENT, TYPE=C3D4\n7, 1, 2, 30, 5\n*NSET, NSET=Low, G"
+        "*NSET, NSET=Low, G",
+        "*ELEMENT, TYPE=C3D10\n7, 1, 2, 30, 5, 6, 7, 8, 4, 1, 2\n*NSET, NSET=Low, G",
     )
-    with pytest.raises(InputError, match="hexahedrons of 8 nodes and tetrahedrons of 4 nodes"):
+    with pytest.raises(InputError, match="of 8 nodes and tetrahedrons of 10 nodes: cells of one"):
         file_arrays(
             written(tmp_path, more.replace("*SOLID SECTION, ELSET=CUBE,\n MATERIAL=steel\n", ""))
         )
+
+
+def mixed(order: int) -> str:
+    """Two cubes, one a hexahedron, one two prisms, with a pyramid and tetrahedra on top.
+
+    Nodes lie where the shear x + y^2/5 has them, of order 1 the corners on straight edges.
+    """
+    corners = [(x, y, z) for z in (0, 1) for y in (0, 1) for x in (0, 1, 2)]
+    corners += [(0.5, 0.5, 2), (2, 1, 2)]
+    cells = {
+        "C3D8": [(0, 1, 4, 3, 6, 7, 10, 9)],
+        "C3D6": [(1, 2, 5, 7, 8, 11), (1, 5, 4, 7, 11, 10)],
+        "C3D5": [(6, 7, 10, 9, 12)],
+        "C3D4": [(7, 8, 11, 13), (7, 11, 10, 13)],
+    }
+    places = [tuple(float(v) for v in x) for x in corners]
+    if order == 2:
+        from anisocontact.mesh.tetrahedra import EDGES
+
+        names = {"C3D8": "hexahedron", "C3D6": "prism", "C3D5": "pyramid", "C3D4": "tetrahedron"}
+        known: dict[frozenset, int] = {}
+        more = {"C3D8": "C3D20", "C3D6": "C3D15", "C3D5": "C3D13", "C3D4": "C3D10"}
+        lifted = {}
+        for kind, rows in cells.items():
+            lifted[more[kind]] = []
+            for row in rows:
+                ends = [frozenset((row[a], row[b])) for a, b in EDGES[names[kind]]]
+                for pair in ends:
+                    if pair not in known:
+                        known[pair] = len(places)
+                        places.append(tuple(np.mean([places[k] for k in pair], axis=0)))
+                lifted[more[kind]].append((*row, *(known[pair] for pair in ends)))
+        cells = lifted
+    bend = 0.2 * (order - 1)
+    lines = ["*NODE, NSET=all"]
+    lines += [f"{k}, {x + bend * y**2}, {y}, {z}" for k, (x, y, z) in enumerate(places, 1)]
+    number = 1
+    for kind, rows in cells.items():
+        for row in rows:
+            lines += [f"*ELEMENT, TYPE={kind}, ELSET=e{number}"]
+            data = [number, *(k + 1 for k in row)]
+            lines += [", ".join(map(str, data[k : k + 16])) + "," for k in range(0, len(data), 16)]
+            number += 1
+    lines += ["*SURFACE, NAME=under", "e1, S1", "e2, S1", "e3, S1"]
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_cells_of_several_kinds_become_tetrahedra_that_fit(tmp_path, order):
+    """A hexahedron, prisms, a pyramid and tetrahedra that share faces, straight and curved.
+
+    Requirement: the volume is that of the cells; the boundary is theirs, so that no face inside is
+    left open; a surface of a hexahedron and of prisms has its area. Tolerance: rounding; the shear
+    that bends the cells of order 2 keeps the volume, and quadratic cells have it exactly.
+    """
+    model = build_mesh([GmshFile(written(tmp_path, mixed(order)))])
+    assert model.mesh.topology.cell_name() == "tetrahedron"
+    assert model.order == order
+    assert volume(model) == pytest.approx(2.0 + 1.0 / 3.0 + 1.0 / 3.0, rel=1e-12)
+    area, normal = areas(model, "body.under")
+    assert normal == pytest.approx([0, 0, -2], abs=1e-12)
+    assert area == pytest.approx(2.0, rel=1e-12)
+    if order == 1:
+        # 2 + 2 + 2 * 1 of the cubes' sides, the tent's 4 slopes, and the two tetrahedra's skin
+        slopes = 4 * 0.5 * np.hypot(1.0, 0.5)
+        roof = 0.5 + 0.5 + np.sqrt(0.5) + np.sqrt(0.5)
+        assert areas(model, "body.all")[0] == pytest.approx(8.0 + slopes + roof, rel=1e-12)
 
 
 def test_a_case_file_takes_it(tmp_path, monkeypatch):

@@ -53,6 +53,7 @@ class MeshArrays:
         linear: Bodies whose displacement is of order 1 in a mesh of order 2.
         nodes: Points and edges: "body.group" -> places of their nodes, all on every process,
             (nodes, 3), length.
+        notes: What a reader has made of the mesh of a file, a line each.
         comm: Processes that share the mesh; properties and functions of it are collective.
     """
 
@@ -65,6 +66,7 @@ class MeshArrays:
     order: int
     linear: tuple[str, ...] = ()
     nodes: dict[str, Floats] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
     comm: Any = field(default_factory=lambda: MPI.COMM_SELF)
 
     @property

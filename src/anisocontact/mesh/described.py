@@ -51,7 +51,7 @@ def described(mesh: MeshArrays) -> list[str]:
     for name, places in mesh.nodes.items():
         low, high = _place(places.min(axis=0)), _place(places.max(axis=0))
         lines.append(f"nodes     {name}: {len(places)}, box {low} to {high}")
-    return lines
+    return [*lines, *(f"cells     {note}" for note in mesh.notes)]
 
 
 def _place(x: Floats) -> str:

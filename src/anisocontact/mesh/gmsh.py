@@ -39,9 +39,21 @@ CELLS = {
     3: ("quadrilateral", 1),
     10: ("quadrilateral", 2),
 }
-#: Hexahedra of 20 nodes, and the order in which VTK has these.
-SERENDIPITY = 17
-_IN_VTK = [*range(8), *(8, 11, 13, 9), *(16, 18, 19, 17), *(10, 12, 14, 15)]
+#: gmsh element type -> cell and the order in which VTK has its nodes, of those that a mesh has only
+#: after nodes are put in, or cells cut, and of what may stand beside them. Nodes inside are left.
+_IN_VTK = {
+    4: ("tetrahedron", [0, 1, 2, 3]),
+    11: ("tetrahedron", [*range(8), 9, 8]),
+    5: ("hexahedron", [*range(8)]),
+    17: ("hexahedron", [*range(8), *(8, 11, 13, 9), *(16, 18, 19, 17), *(10, 12, 14, 15)]),
+    6: ("prism", [*range(6)]),
+    18: ("prism", [*range(6), 6, 9, 7, 12, 14, 13, 8, 10, 11]),
+    7: ("pyramid", [*range(5)]),
+    19: ("pyramid", [*range(5), 5, 8, 10, 6, 7, 9, 11, 12]),
+}
+_IN_VTK |= {full: _IN_VTK[edges] for full, edges in ((12, 17), (13, 18), (14, 19))}
+#: Those of them that are kept as they are where they are alone.
+_AS_THEY_ARE = {4, 5, 11, 12}
 
 
 def read_gmsh(
@@ -65,7 +77,7 @@ def read_gmsh(
         The model; the displacement has the order of the cells.
 
     Raises:
-        InputError: The file is missing or damaged, names no volume, holds cells of several kinds,
+        InputError: The file is missing or damaged, names no volume, holds cells of several orders,
             or a group does not lie on the boundary of its body.
 
     Example:
@@ -91,8 +103,9 @@ def gmsh_arrays(
         raise InputError(f"mesh file {str(path)!r} does not exist", field)
     try:
         msh = read_msh(path, comm)
-        if comm.allreduce(any(block.kind == SERENDIPITY for block in msh.blocks)):
-            return _with_middles(read_msh(path, MPI.COMM_SELF), bodies).shared(comm)
+        kinds = set().union(*comm.allgather({b.kind for b in msh.blocks if b.dim == 3}))
+        if kinds <= set(_IN_VTK) and (len(kinds) > 1 or not kinds <= _AS_THEY_ARE):
+            return _made_over(read_msh(path, MPI.COMM_SELF), bodies).shared(comm)
         return _arrays(msh, bodies, comm)
     except (MshError, OSError) as problem:
         raise InputError(
@@ -134,15 +147,15 @@ def _arrays(msh: MshFile, bodies: Sequence[str] | None, comm: Any) -> MeshArrays
     return replace(mesh, nodes=_points_and_edges(mesh, lower))
 
 
-def _with_middles(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:
-    """Hexahedra of 20 nodes, with a node in each face and in their middle."""
+def _made_over(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:
+    """Cells of which nodes are put in, or which are cut, so that a mesh can have them."""
     mesh = WholeMesh(msh.points)
     for name, block in _volumes(msh, 3, bodies):
-        if block.kind != SERENDIPITY:
-            raise InputError("hexahedra of 20 nodes beside other cells")
-        mesh.add_cells("hexahedron", block.nodes[:, _IN_VTK], [name] * len(block.nodes))
+        cell, order = _IN_VTK[block.kind]
+        mesh.add_cells(cell, block.nodes[:, order], [name] * len(block.nodes))
     for name, block in _named(msh, 2):
-        mesh.surfaces.setdefault(name, []).append(block.nodes[:, :4])
+        corners = 3 if CELLS.get(block.kind, ("",))[0] == "triangle" else 4
+        mesh.surfaces.setdefault(name, []).append(block.nodes[:, :corners])
     for name, block in (*_named(msh, 0), *_named(msh, 1)):
         before = mesh.node_sets.get(name, np.zeros(0, dtype=np.int64))
         mesh.node_sets[name] = np.union1d(before, block.nodes)

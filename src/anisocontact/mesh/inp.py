@@ -16,6 +16,7 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, read_cards
 from anisocontact.mesh.placement import Rotation
+from anisocontact.mesh.tetrahedra import FACES
 from anisocontact.mesh.whole import WholeMesh
 
 Nodes = npt.NDArray[np.int64]
@@ -27,18 +28,10 @@ SOLIDS = {
     "C3D10": ("tetrahedron", 10),
     "C3D8": ("hexahedron", 8),
     "C3D20": ("hexahedron", 20),
-}
-#: Corners of the faces S1, S2, ...
-FACES = {
-    "tetrahedron": ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
-    "hexahedron": (
-        (0, 1, 2, 3),
-        (4, 7, 6, 5),
-        (0, 4, 5, 1),
-        (1, 5, 6, 2),
-        (2, 6, 7, 3),
-        (3, 7, 4, 0),
-    ),
+    "C3D6": ("prism", 6),
+    "C3D15": ("prism", 15),
+    "C3D5": ("pyramid", 5),
+    "C3D13": ("pyramid", 13),
 }
 #: Keywords that make nodes or elements in a way that is not read.
 GENERATED = ("NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "NMAP")

@@ -74,6 +74,7 @@ def _joined(parts: Sequence[MeshArrays]) -> MeshArrays:
             k: v + n for p, n in zip(parts, node[:-1], strict=True) for k, v in p.facets.items()
         },
         nodes={name: places for part in parts for name, places in part.nodes.items()},
+        notes=tuple(note for part in parts for note in part.notes),
     )
 
 

@@ -31,6 +31,10 @@ SOLIDS = {
     "hexahedron": "hexahedron",
     "hexahedron20": "hexahedron",
     "hexahedron27": "hexahedron",
+    "wedge": "prism",
+    "wedge15": "prism",
+    "pyramid": "pyramid",
+    "pyramid13": "pyramid",
 }
 #: Facets of meshio -> corners.
 FACETS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}

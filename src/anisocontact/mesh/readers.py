@@ -13,6 +13,7 @@ from anisocontact.mesh.cad import CAD, cad_arrays
 from anisocontact.mesh.gmsh import gmsh_arrays
 from anisocontact.mesh.inp import read_inp
 from anisocontact.mesh.meshio_files import SUFFIXES, read_by_meshio
+from anisocontact.mesh.unv import read_unv
 from anisocontact.mesh.whole import WholeMesh
 
 #: Reads the bodies of a file: path, which bodies (all if None), where the path was written, the
@@ -108,4 +109,5 @@ def file_arrays(
 register_reader(".msh")(gmsh_arrays)
 register_reader(*CAD)(cad_arrays)
 register_reader(".inp")(whole_reader(read_inp))
+register_reader(".unv")(whole_reader(read_unv))
 register_reader(*SUFFIXES)(whole_reader(read_by_meshio))

@@ -18,6 +18,7 @@ from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.quality import check_cells
+from anisocontact.mesh.tetrahedra import COUNT, EDGES, Middles, tetrahedra, triangles
 
 Nodes = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -28,16 +29,6 @@ CORNERS = {
     "hexahedron": [0, 1, 3, 2, 4, 5, 7, 6],
     "triangle": [0, 1, 2],
     "quadrilateral": [0, 1, 3, 2],
-}
-#: Corners that the middle nodes of VTK's quadratic cells lie between, in their order.
-EDGES = {
-    "tetrahedron": [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
-    "hexahedron": [
-        *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
-        *((0, 4), (1, 5), (2, 6), (3, 7)),
-    ],
-    "triangle": [(0, 1), (1, 2), (2, 0)],
-    "quadrilateral": [(0, 1), (1, 2), (2, 3), (3, 0)],
 }
 #: Corners of the faces that have a middle node in VTK's hexahedra of 27 nodes, in their order.
 FACES = [(0, 3, 7, 4), (1, 2, 6, 5), (0, 1, 5, 4), (3, 2, 6, 7), (0, 1, 2, 3), (4, 5, 6, 7)]
@@ -54,6 +45,7 @@ class WholeMesh:
         node_sets: Name -> nodes.
         surfaces: Name -> corners of facets, an array for each number of corners.
         left_out: Elements that are no solids -> how many there are.
+        notes: What was made of the mesh, a line each.
     """
 
     points: Floats
@@ -62,6 +54,7 @@ class WholeMesh:
     node_sets: dict[str, Nodes] = field(default_factory=dict)
     surfaces: dict[str, list[Nodes]] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
 
     def add_cells(self, cell: str, nodes: Nodes, bodies: Sequence[str]) -> None:
         """Add elements of one kind with the body of each."""
@@ -75,11 +68,12 @@ class WholeMesh:
             bodies: Which; all of them if not given.
 
         Returns:
-            Cells in DOLFINx's order, quadratic ones with a node in each face and in their middle,
-            where the shape functions of fewer nodes say that these are.
+            Cells in DOLFINx's order; prisms, pyramids and cells of several kinds as tetrahedra.
+            Of quadratic hexahedra with a node in each face and in their middle, where the shape
+            functions of fewer nodes say that these are.
 
         Raises:
-            InputError: A body is unknown, cells are of several kinds, flat or inverted, or a facet
+            InputError: A body is unknown, cells are of several orders, flat or inverted, or a facet
                 of a surface belongs to no cell.
         """
         known = list(dict.fromkeys(name for labels in self.bodies for name in labels if name))
@@ -87,20 +81,56 @@ class WholeMesh:
             if name not in known:
                 raise InputError(f"no body {name!r}; {hint(name, known)}")
         wanted = known if bodies is None else bodies
+        joined = self._by_kind(wanted)
+        if not joined:
+            raise InputError("no element is in a body")
+        cells = {cell for cell, _ in joined}
+        if cells <= set(COUNT) and (len(cells) > 1 or cells & {"prism", "pyramid"}):
+            return self._cut(joined).arrays(wanted)
+        self._check_apart(joined)
+        mesh = merge([self._of_kind(cell, *part) for (cell, _), part in joined.items()])
+        return replace(mesh, notes=self.notes)
+
+    def _by_kind(self, wanted: Sequence[str]) -> dict[tuple[str, int], tuple[Nodes, list[str]]]:
+        """Nodes and bodies of the elements of some bodies, by cell and number of nodes."""
         kinds: dict[tuple[str, int], list[tuple[Nodes, list[str]]]] = {}
         for (cell, nodes), labels in zip(self.cells, self.bodies, strict=True):
             taken = np.isin(np.array(labels), list(wanted))
             if taken.any():
                 own = [label for label in labels if label in wanted]
                 kinds.setdefault((cell, nodes.shape[1]), []).append((nodes[taken], own))
-        if not kinds:
-            raise InputError("no element is in a body")
-        joined = {
+        return {
             kind: (np.concatenate([n for n, _ in parts]), [x for _, own in parts for x in own])
             for kind, parts in kinds.items()
         }
-        self._check_apart(joined)
-        return merge([self._of_kind(cell, *part) for (cell, _), part in joined.items()])
+
+    def _cut(self, kinds: Mapping[tuple[str, int], tuple[Nodes, list[str]]]) -> WholeMesh:
+        """The same bodies in tetrahedra, where not all cells are of one kind that a mesh can have.
+
+        Raises:
+            InputError: Some cells have middle nodes on their edges, others have none.
+        """
+        curved = [n > COUNT[cell] for cell, n in kinds]
+        said = " and ".join(f"{cell}s of {n} nodes" for cell, n in sorted(kinds))
+        if any(curved) and not all(curved):
+            raise InputError(f"{said}: cells of one order are needed")
+        middles = None
+        if all(curved):
+            given = [(cell, nodes) for (cell, _), (nodes, _) in kinds.items()]
+            middles = Middles(self.points, given)
+        cut = WholeMesh(self.points if middles is None else middles.points)
+        for (cell, _), (nodes, labels) in kinds.items():
+            corners, owner = tetrahedra(cell, nodes[:, : COUNT[cell]], self.points)
+            rows = corners if middles is None else np.hstack([corners, middles.of(corners)])
+            cut.add_cells("tetrahedron", rows, [labels[k] for k in owner.tolist()])
+        cut.node_sets = self.node_sets
+        cut.surfaces = {
+            name: [part for facets in parts for part in triangles(facets)]
+            for name, parts in self.surfaces.items()
+        }
+        count = sum(len(nodes) for _, nodes in cut.cells)
+        cut.notes = (*self.notes, f"{said} are cut into {count} tetrahedra")
+        return cut
 
     @staticmethod
     def _check_apart(kinds: Mapping[tuple[str, int], tuple[Nodes, list[str]]]) -> None:

@@ -13,7 +13,8 @@ from anisocontact.base.fenicsx import middle_nodes
 from anisocontact.mesh.arrays import Floats, MeshArrays, Nodes
 from anisocontact.mesh.merge import facet_rows
 from anisocontact.mesh.meshio_files import GROUP, needed
-from anisocontact.mesh.whole import CORNERS, EDGES, FACES
+from anisocontact.mesh.tetrahedra import EDGES
+from anisocontact.mesh.whole import CORNERS, FACES
 
 __all__ = ["FORMATS", "write_mesh"]
 
