@@ -56,6 +56,8 @@ class LinearBulk:
         self._force = self.stiffness.createVecLeft()
         #: Diagonal of K: the scale of forces that displacements of one unit make.
         self.diagonal = self.stiffness.getDiagonal()
+        #: The same for surfaces that give way by shear, as of `Pressures`.
+        self.yielding = self._pressures.yielding(self.diagonal)
 
     def force(self, u: Vec) -> Vec:
         """Internal force `K u`.
@@ -68,6 +70,10 @@ class LinearBulk:
         """
         self.stiffness.mult(u, self._force)
         return self._force
+
+    def follow(self, u: Vec | None) -> bool:
+        """Nothing follows: pressures are linear in the displacement."""
+        return False
 
     def energy(self, u: Vec) -> float:
         """Elastic energy `u.K u / 2`.

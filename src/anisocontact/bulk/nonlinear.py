@@ -82,6 +82,8 @@ class NonlinearBulk:
         self.rest_length = _cell_size(model)
         #: Diagonal of the tangent at rest: the scale of forces that displacements of one unit make.
         self.diagonal = self.stiffness.getDiagonal()
+        #: The same for surfaces that give way by shear, as of `Pressures`.
+        self.yielding = self._pressures.yielding(self.diagonal)
 
     def force(self, u: Vec) -> Vec:
         """Internal force.
@@ -129,8 +131,24 @@ class NonlinearBulk:
         """
         for body in self._points:
             body.write_tangent()
-        self._tangent.write(out)
+        with self._pressures.led():
+            self._tangent.write(out)
         self._pressures.add_tangent(out)
+
+    def follow(self, u: Vec | None) -> bool:
+        """Let pressures in tangents follow the corrections from a state on, where volume is kept.
+
+        Args:
+            u: Displacement of the nodes this rank owns, length; those of now count again if None.
+
+        Returns:
+            Whether they do: corrections are then to be taken in full.
+        """
+        if self._pressures.follow:
+            if u is not None:
+                self._set(u)
+            self._pressures.follow_from(u is not None)
+        return self._pressures.follow
 
     def set_time(self, dt: float) -> None:
         """Take over the time increment of the next states."""

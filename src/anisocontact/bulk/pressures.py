@@ -6,11 +6,17 @@ do not go on from cell to cell, `K/2 <Pe, Pe>` with `<q, Pe> = <q, e>` for all s
 and pressure in a mixed form, of which the pressure `p = K Pe` is eliminated in each cell [Malkus
 Hughes 1978; Simo Taylor Pister 1985]. What is constant in a cell is its own projection, whatever
 the shape of the cell, so that a patch test holds.
+
+Where K is large a Newton correction du leaves a pressure `K de(du, du)` of second order in it that
+means nothing, and a tangent with the stress of that pressure goes astray. There tangents have the
+pressure that the correction has led to, `K P(e + de/du du)`, and corrections are those of the mixed
+form in which p is an unknown of its own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from types import MappingProxyType
 from typing import Any
 
@@ -19,6 +25,7 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import (
     Mat,
+    Vec,
     assemble_into,
     basix,
     compiled,
@@ -32,6 +39,14 @@ from anisocontact.bulk.volume import volume_of
 from anisocontact.mesh import Model
 
 Floats = npt.NDArray[np.float64]
+
+
+#: What the stiffness of a node against changes of volume counts for, over that against changes of
+#: shape at most, where what is asked is how far a surface gives way: a half space of nu = 1/2 is
+#: 1.21 times as stiff as one of nu = 0.3, and nodes of it come to 1.3 times.
+MOST = 1.0
+#: From which on its pressures follow the corrections: nu = 0.496.
+FOLLOW = 50.0
 
 
 def pressure_element(space: Any) -> Any:
@@ -61,6 +76,7 @@ class Pressures:
 
     Attributes:
         of: The pressure of each of these bodies by name, a DOLFINx function.
+        follow: Whether tangents are to have the pressures that corrections lead to.
     """
 
     def __init__(
@@ -77,6 +93,8 @@ class Pressures:
         self._pressure, self._width = pressure, space.element.space_dimension
         q, p = ufl.TestFunction(space), ufl.TrialFunction(space)
         weight, self.of = model.idealisation.weight(model.mesh), {}
+        self.follow = False
+        self._from: tuple[Vec, Floats] | None = None
         mass, change, self._work = 0, 0, 0
         for i, name in enumerate(model.body_names()):
             here = dx(i, degree=2 * model.order)
@@ -113,9 +131,7 @@ class Pressures:
         if self._rises:
             _assemble_anew(self._mass, self._mass_form)
             self._invert()
-        change = self._changes()
-        self._pressure.x.array[: change.size] = (self._blocks @ change).reshape(-1)
-        self._pressure.x.scatter_forward()
+        self._take(self._changes())
 
     def energy(self) -> float:
         """`K/2 <Pe, Pe>` on the cells of this rank at the displacement of now."""
@@ -128,10 +144,49 @@ class Pressures:
         """Add what the pressures change by to a matrix: `K <P de, P de>`; collective."""
         if not self.of:
             return
-        _assemble_anew(self._slope, self._slope_form)
+        self._assemble_slope()
         self._inverse.ptap(self._slope, result=self._stiffness)
         add_matrix(out, self._stiffness)
         out.assemble()
+
+    def yielding(self, diagonal: Vec) -> Vec:
+        """How stiff bodies are that may give way by shear, where their change of volume is held.
+
+        Args:
+            diagonal: Of the tangent at rest, with the pressures, force/length.
+
+        Returns:
+            The diagonal in which the pressures count `MOST` times the rest, at most.
+        """
+        if not self.of:
+            return diagonal
+        held = self._stiffness.getDiagonal().array_r
+        found, rest = diagonal.copy(), diagonal.array_r - held
+        stiff = bool((held > FOLLOW * rest).any())
+        self.follow = any(self._pressure.function_space.mesh.comm.allgather(stiff))
+        found.array[:] -= np.maximum(held - MOST * rest, 0.0)
+        return found
+
+    def follow_from(self, begin: bool) -> None:
+        """Let tangents have pressures that corrections from here on lead to, or those of now."""
+        self._from = None
+        if begin:
+            self._from = self._here()
+            self._assemble_slope()
+
+    @contextmanager
+    def led(self) -> Iterator[None]:
+        """The pressures that the last correction has led to, if they follow; collective."""
+        if self._from is None:
+            yield
+            return
+        u, change = self._from
+        now = self._pressure.x.array.copy()
+        more = self._slope.createVecLeft()
+        self._slope.mult(self._u.x.petsc_vec - u, more)
+        self._take(change + more.array_r.reshape(change.shape))
+        yield
+        self._pressure.x.array[:] = now
 
     def _changes(self) -> Floats:
         """`<q, e>` of the cells of this rank, (cells, pressures of a cell, 1)."""
@@ -139,6 +194,21 @@ class Pressures:
         return np.asarray(fem.assemble_vector(self._change).array[:owned]).reshape(
             -1, self._width, 1
         )
+
+    def _take(self, change: Floats) -> None:
+        """Pressures of changes of volume, see `_changes`."""
+        self._pressure.x.array[: change.size] = (self._blocks @ change).reshape(-1)
+        self._pressure.x.scatter_forward()
+
+    def _here(self) -> tuple[Vec, Floats]:
+        """Displacement and changes of volume of now."""
+        return self._u.x.petsc_vec.copy(), self._changes()
+
+    def _assemble_slope(self) -> None:
+        """Derivative of the changes of volume by the displacement of now."""
+        _assemble_anew(self._slope, self._slope_form)
+        if self._from is not None:
+            self._from = self._here()
 
     def _invert(self) -> None:
         """Inverse of `<q, p> / K`, in which no two cells meet."""

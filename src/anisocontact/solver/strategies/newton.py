@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
@@ -81,6 +82,10 @@ class System(Protocol):
         Raises:
             SingularError: It has no inverse.
         """
+        ...
+
+    def corrected(self) -> AbstractContextManager[bool]:
+        """Around Newton's method: whether corrections are to be taken in full."""
         ...
 
     def improve(self, x: Vec) -> bool:
@@ -184,6 +189,11 @@ class Newton:
             What came of it.
         """
         self._damping = damping
+        with self._problem.corrected() as full:
+            return self._solve(x, full or full_steps)
+
+    def _solve(self, x: Vec, full_steps: bool) -> NewtonResult:
+        """Equilibria, with better multipliers or softer penalties, until there is the last one."""
         search = self.snes.getLineSearch()
         spent = 0
         last = x.copy()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import AbstractContextManager, nullcontext
+
 import numpy as np
 import numpy.typing as npt
 
@@ -25,6 +27,10 @@ class AssembledSystem:
     contact_term: Contacts
     balance: ForceBalance
     _aid: Stabilisation | None = None
+
+    def corrected(self) -> AbstractContextManager[bool]:
+        """Around Newton's method: whether corrections are to be taken in full."""
+        return nullcontext(False)
 
     def improve(self, x: Vec) -> bool:
         """Better multipliers of contacts, weaker springs of stabilisation; whether any changed.

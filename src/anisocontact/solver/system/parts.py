@@ -134,7 +134,7 @@ def make_parts(
 def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) -> None:
     """Tell contacts how stiff their bodies are, which are at finite strain, and what they share."""
     tell_shared(contacts)
-    diagonal = np.array(bodies.bulk.diagonal.array_r).reshape(-1, 3)
+    diagonal = np.array(bodies.bulk.yielding.array_r).reshape(-1, 3)
     for contact, is_finite in zip(contacts, finite, strict=True):
         for half in contact.passes:
             half.suit_strain(is_finite)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import AbstractContextManager
 from typing import Any, override
 
 import numpy as np
@@ -264,6 +265,10 @@ class Problem(AssembledSystem):
         """
         self.balance = self.assembly.balance(self._bodies.take(x))
         return self.balance.residual
+
+    @override
+    def corrected(self) -> AbstractContextManager[bool]:
+        return self.assembly.bodies.followed(self._bodies.nodal)
 
     def tangent(self, x: Vec, out: Mat) -> bool:
         """Write d residual / d x into a matrix of `new_tangent`; whether its pattern has grown.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import override
 
 import numpy as np
@@ -98,6 +99,14 @@ class Bodies(Term):
     @override
     def energies(self, u: Floats) -> dict[str, float]:
         return {"elastic": self.energy(u)} | self.dissipated()
+
+    @contextmanager
+    def followed(self, u: Floats) -> Iterator[bool]:
+        """Around corrections that begin at a state: whether to take them in full, see `follow`."""
+        try:
+            yield self.bulk.follow(self._owned(u))
+        finally:
+            self.bulk.follow(None)
 
     @override
     def accept(self, u: Floats) -> float:

@@ -53,13 +53,17 @@ class FormBulk:
         self._tangent = FormMatrix(compiled(tangent, space.mesh.comm))
         self.finite = u in ufl.algorithms.expand_derivatives(tangent).coefficients()
         self.stiffness = self._tangent.matrix
-        self.diagonal = self.stiffness.getDiagonal()
+        self.diagonal = self.yielding = self.stiffness.getDiagonal()
         self._force = create_force(self._residual)
 
     def force(self, u: Vec) -> Vec:
         """Internal force at the values of the function."""
         assemble_force(self._residual, self._force)
         return self._force
+
+    def follow(self, u: Vec | None) -> bool:
+        """Nothing follows: pressures are among the unknowns."""
+        return False
 
     def energy(self, u: Vec) -> float:
         """Unknown: a form has none."""
