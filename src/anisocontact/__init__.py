@@ -41,7 +41,7 @@ _PUBLIC = {
     "bulk": "Hill LinearElastic MooneyRivlin NeoHookean NeoHookeanIncompressible Ogden Orthotropic "
     "Plastic PointLaw StVenantKirchhoff TransverselyIsotropic UserEnergy UserStress Viscoelastic "
     "Yeoh cauchy_stress deformation_gradient make_material register_material small_strain",
-    "contact": "Contact facet_directions facet_size",
+    "contact": "Contact close_gaps facet_directions facet_size",
     "solver": "Accepted Amplitude ContactProblem ElasticSupport Limits Newton Path Problem Solver "
     "Spring Step Strategy Tie Turn Until make_amplitude make_path register_amplitude register_path "
     "register_strategy",

@@ -14,7 +14,7 @@ from tests.conftest import difference_errors
 
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import make_material
-from anisocontact.contact import Contact
+from anisocontact.contact import Contact, close_gaps
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import (
@@ -140,6 +140,56 @@ def test_rotation(cell: str, order: int):
     before, after = (np.linalg.norm(p[:, None] - p, axis=2) for p in (reference, x))
     assert np.abs(after - before).max() < 1e-11
     assert abs(problem.energies()["elastic"]) < 1e-11
+
+
+@pytest.mark.parametrize(
+    ("cell", "order"), [("hexahedron", 1), ("hexahedron", 2), ("tetrahedron", 2)]
+)
+def test_gaps_that_are_closed_leave_none(cell: str, order: int):
+    """The upper half stands off by a wedge of 0.005 to 0.025; its nodes are moved onto the lower.
+
+    Requirement: every gap is closed, and nothing is strained by it: the pulled cube has the uniform
+    strain of the one that was drawn without gaps. Tolerance: rounding.
+    """
+    model = halves("flat", cell, (order, order))
+    x = model.mesh.geometry.x
+    own = np.unique(model.mesh.geometry.dofmaps[0][model.cells("up")])
+    x[own, 2] += 2.0 * (1.0 - x[own, 2]) * (0.005 + 0.02 * x[own, 0])
+    count, far = close_gaps(model, "up.bottom", "lo.top", 0.1)
+    lower = on_bottom(model)
+    assert count == {1: 5 * 4, 2: 9 * 7}[order]
+    assert far == pytest.approx(0.025)
+    assert x[lower, 2] == pytest.approx(0.5, abs=1e-12)
+    assert pulled(model, ties=[UP]) < 1e-11
+    assert close_gaps(model, "up.bottom", "lo.top", 0.1)[1] < 1e-12
+
+
+def on_bottom(model: Model) -> np.ndarray:
+    """Nodes of the geometry on the lower side of the upper half."""
+    from anisocontact.base.fenicsx import dolfinx
+
+    mesh = model.mesh
+    mesh.topology.create_connectivity(2, 3)
+    nodes = dolfinx.mesh.entities_to_geometry(mesh, 2, model.facets("up.bottom"), False)
+    return np.isin(np.arange(len(mesh.geometry.x)), nodes)
+
+
+def test_gaps_beyond_the_tolerance_stay():
+    model = halves()
+    own = np.unique(model.mesh.geometry.dofmaps[0][model.cells("up")])
+    model.mesh.geometry.x[own, 2] += 0.02
+    before = model.mesh.geometry.x.copy()
+    assert close_gaps(model, "up.bottom", "lo.top", 0.01) == (0, 0.0)
+    assert model.mesh.geometry.x == pytest.approx(before, abs=0.0)
+
+
+def test_a_cell_that_would_be_flat_is_said():
+    model = halves()
+    x = model.mesh.geometry.x
+    own = np.unique(model.mesh.geometry.dofmaps[0][model.cells("up")])
+    x[own, 2] -= 0.3
+    with pytest.raises(InputError, match=r"leaves a cell .* of its volume; tolerance is too large"):
+        close_gaps(model, "up.bottom", "lo.top", 0.4)
 
 
 def test_tangent():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,7 @@ from anisocontact.case.law_file import law_of
 from anisocontact.case.material_file import material_of
 from anisocontact.case.model import Case, StepSection
 from anisocontact.case.read import CaseFile, load
+from anisocontact.case.ties import close_gaps_of
 from anisocontact.case.units import doubts
 from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays
@@ -53,12 +54,14 @@ class Built:
         problem: Bodies, contacts and loads.
         steps: Load steps.
         solver: Runs the steps.
+        adjusted: What ties have moved in the mesh, a line each.
     """
 
     file: CaseFile
     problem: Problem
     steps: list[Step]
     solver: Solver
+    adjusted: Sequence[str] = ()
 
     def doubts(self) -> list[str]:
         """What is hardly meant in the units of the case, a line each; collective."""
@@ -103,6 +106,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
         _arrays(file, MPI.COMM_WORLD), idealisation=objects.idealisation(case)
     )
     _check_bodies(case, model)
+    adjusted = close_gaps_of(case.tie, model)
     _name_nodes(case, model)
     materials = {
         name: material_of(section, file.resolve, f"material.{name}", python)
@@ -128,13 +132,13 @@ def build(file: CaseFile, python: bool = True) -> Built:
         case.symmetry,
         stabilised=case.solver.stabilisation,
         coupled=_faces(case, model, bodies),
-        ties=[Tie(**dict(section)) for section in case.tie],
+        ties=[Tie(**section.given()) for section in case.tie],
     )
     for name, section in case.output.probe.items():
         section.probe().places(model, f"output.probe.{name}")
     for name, wanted in case.output.resultant.items():
         wanted.resultant().nodes(problem, f"output.resultant.{name}")
-    return Built(file, problem, steps, _solver(case, problem, steps))
+    return Built(file, problem, steps, _solver(case, problem, steps), adjusted)
 
 
 def _solver(case: Case, problem: Problem, steps: list[Step]) -> Solver:

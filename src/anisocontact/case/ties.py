@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated, Any
 
 from pydantic import Field
 
+from anisocontact.base.errors import within
 from anisocontact.case.quantity import number
 from anisocontact.case.section import Section
 
-__all__ = ["TieSection"]
+if TYPE_CHECKING:
+    from anisocontact.mesh import Model
+
+__all__ = ["TieSection", "close_gaps_of"]
 
 
 class TieSection(Section):
@@ -27,3 +32,25 @@ class TieSection(Section):
             "non-negative",
         ),
     ] = None
+    adjust: bool = Field(
+        False,
+        description="whether slave nodes within the tolerance are moved onto the master in the "
+        "mesh, without strain, before anything else",
+    )
+
+    def given(self) -> dict[str, Any]:
+        """What makes a tie of the mesh as it is then."""
+        return {name: value for name, value in self if name != "adjust"}
+
+
+def close_gaps_of(ties: Sequence[TieSection], model: Model) -> list[str]:
+    """Close the gaps of the ties that ask for it in the mesh; a line for each. Collective."""
+    from anisocontact.contact import close_gaps
+
+    lines = []
+    for i, tie in enumerate(ties):
+        if tie.adjust:
+            with within(f"tie[{i}]"):
+                count, far = close_gaps(model, tie.slave, tie.master, tie.tolerance)
+            lines.append(f"{count} nodes of {tie.slave} moved onto {tie.master}, {far:.3g} at most")
+    return lines

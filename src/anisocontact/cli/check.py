@@ -85,6 +85,7 @@ def contents(built: Built) -> list[str]:
     for tie in case.tie:
         facets = model.count_facets(tie.slave)
         lines.append(f"tie       {tie.slave} to {tie.master}: {facets} slave facets")
+    lines += [f"tie       {line}" for line in built.adjusted]
     lines += _points(built)
     for rigid in problem.rigid.bodies:
         how = "free where a step frees it" if rigid.free else "moved as prescribed"

@@ -11,6 +11,7 @@ from anisocontact.contact.multipliers import NotHeldError
 from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.penalty import PENALTY_FACTOR, auto_penalty, facet_size
 from anisocontact.contact.quadrature import FacetQuadrature, facet_quadrature
+from anisocontact.contact.tie_gaps import close_gaps
 from anisocontact.interface import Augmentation as Augmentation
 
 __all__ = [
@@ -22,6 +23,7 @@ __all__ = [
     "Pass",
     "auto_penalty",
     "check_start",
+    "close_gaps",
     "coarse_slaves",
     "doubtful_sides",
     "facet_directions",
