@@ -51,6 +51,7 @@ WRONG = [
     ("x = 0.02", 'x = "far"', 'step[1].displacement."block.top".x', "'far' given"),
     ("x = 0.02", "u = 0.02", 'step[1].displacement."block.top".u', "allowed: x, y, z"),
     ("every = 3", "every = -3", "output.every", "> 0"),
+    ("every = 3", "every = 3\ntimes = [-1]", "output.times[0]", ">= 0"),
     # words and tables
     ('"linear-elastic"', '"linear-elastik"', "material.block.model", '"linear-elastic"?'),
     ('model = "linear-elastic"\n', "", "material.block.model", "missing"),

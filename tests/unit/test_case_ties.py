@@ -53,6 +53,12 @@ resultant = { glue = { body = "upper", point = [0, 0, 1.1], normal = [0, 0, 1] }
         ('slave = "upper', 'tolerance = -1.0\nslave = "upper', "tie[0].tolerance: -1.0 given"),
         ("[[tie]]", "[[bonded]]", 'did you mean "tie"?'),
         ("[[tie]]", "[tie]", "[[tie]]"),
+        (
+            "[[step]]",
+            '[[contact]]\nslave = "lower.top"\nmaster = "upper.bottom"\n'
+            "friction = { coefficients = 0 }\n[[step]]",
+            "tie[0]: same pair as contact[0]: what is glued cannot slide",
+        ),
         ('"lower.bottom" = { x', '"upper.bottom" = { x', "tie[0]: its slave nodes are held"),
     ],
 )

@@ -152,6 +152,17 @@ def test_a_penetration_is_held_against_the_approach(tmp_path, gap):
     assert not any("penetration" in line for line in _summary(tmp_path, text)["warnings"])
 
 
+def test_a_penetration_is_not_held_against_rounding(tmp_path):
+    """A block that its own weight presses: no group of it is led, how far it came is not known.
+
+    It sinks by 1e-5 of rho g L = 2 over 1e4, a share of some 1e12 of what rounding moves.
+    """
+    led = 'displacement = {{ "block.top" = {{ x = 0, y = 0, z = {way} }} }}'
+    text = BLOCK.replace(led, "body_force.block.z = -2").replace("= 0 }}", "= 0.3 }}")
+    text = text.format(gap=0.0, penalty=1e4)
+    assert not any("penetration" in line for line in _summary(tmp_path, text)["warnings"])
+
+
 @pytest.mark.parametrize(
     ("work", "said"), [(50.0, "12% of"), (1e-9, "more than all (6 against 1e-09) of")]
 )

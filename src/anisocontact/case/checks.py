@@ -285,6 +285,9 @@ def _tie(case: Case, tie: TieSection, place: str) -> Iterator[InputError]:
         yield InputError(f'"{tie.master}" given, the slave itself', field=f"{place}.master")
     else:
         yield from _group(case, tie.master, f"{place}.master")
+    for i, contact in enumerate(case.contact):
+        if {contact.slave, contact.master} == {tie.slave, tie.master}:
+            yield InputError(f"same pair as contact[{i}]: what is glued cannot slide", field=place)
 
 
 def _points_and_faces(case: Case) -> Iterator[InputError]:

@@ -93,7 +93,7 @@ class Output(Section):
     steps: list[str] = Field(
         default_factory=list, description="steps whose fields are written, all if left out"
     )
-    times: list[Annotated[float, number("scalar", "time", "a time")]] = Field(
+    times: list[Annotated[float, number("scalar", "time", "a time", "non-negative")]] = Field(
         default_factory=list,
         description="times from which on the next increment is written as well [time]",
     )

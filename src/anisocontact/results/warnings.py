@@ -196,8 +196,10 @@ def soft(
         if _exact(contact) and not relaxed:
             continue
         deep, come = entry["worst_penetration"], entry["worst_penetration_approach"]
-        said = not ROUNDING < deep / entry["facet_size"] <= DEEP  # nothing, or by its facets
-        if said or contact.interface.normal.named[0] != "penalty" or not deep > SOFT * come > 0.0:
+        size = entry["facet_size"]
+        said = not ROUNDING < deep / size <= DEEP  # nothing, or by its facets
+        told = SOFT * come < deep and come > ROUNDING * size  # what forces alone press moves nothing
+        if said or contact.interface.normal.named[0] != "penalty" or not told:
             continue
         found.append(
             f"{_pair(entry)}: the penetration was up to {deep / come:.0%} of the {come:.3g} that "
