@@ -198,7 +198,7 @@ def soft(
         deep, come = entry["worst_penetration"], entry["worst_penetration_approach"]
         size = entry["facet_size"]
         said = not ROUNDING < deep / size <= DEEP  # nothing, or by its facets
-        told = SOFT * come < deep and come > ROUNDING * size  # what forces alone press moves nothing
+        told = SOFT * come < deep and come > ROUNDING * size  # less is no way that a body has come
         if said or contact.interface.normal.named[0] != "penalty" or not told:
             continue
         found.append(
