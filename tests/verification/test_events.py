@@ -12,7 +12,7 @@ from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.mesh import BoxSpec, build_box, node_near
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, Problem, Solver, Step, Until
 from anisocontact.surfaces import make_surface
@@ -102,6 +102,22 @@ def test_force_is_reached(what: str, strategy: str):
     assert rest.reactions["block.top"][2] == pytest.approx(force, rel=1e-9)
     assert rest.time == pytest.approx(press.time + 1.0, rel=1e-12)
     assert lift.reactions["block.top"][2] == pytest.approx(-0.001 * stiffness(), rel=1e-9)
+
+
+@pytest.mark.parametrize("strategy", ["direct", "condensed", "iterative"])
+def test_displacement_of_a_point_is_reached(strategy: str):
+    """A block pressed by its top until a corner of its lower side has moved by a distance.
+
+    Requirement: 0.0002 to a thousandth, and the force that makes it, penalty times area times the
+    distance. Source: springs in series. Tolerance: that of the event.
+    """
+    problem = block()
+    corner = node_near(problem.model, "block", (1, 0, 0))
+    problem.model.name_nodes("block.corner", corner)
+    until = Until(displacement="block.corner", value=-2e-4, along=(0, 0, 1))
+    last = run(problem, Step("press", 2, PRESS, until=until), strategy=strategy)[-1]
+    assert last.event == until.text
+    assert last.resultants["block.bottom"][0][2] == pytest.approx(2e-4 * PENALTY, rel=1e-3)
 
 
 def test_loads_stay_where_the_event_found_them():

@@ -26,7 +26,7 @@ class Until:
     Args:
         contact: Name of a contact, or its slave if that has but one: its event, or the force on it.
         reaction: Facet group with supports: their force on the body.
-        displacement: Facet group: its mean displacement.
+        displacement: Facet group, or points and edges with a name: their mean displacement.
         event: One of "closed", "lost", "slipping", "sliding"; where that is so already it has to
             cease first.
         value: Force, or displacement, that is reached from either side.

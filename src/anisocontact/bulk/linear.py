@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cached_property
 from types import MappingProxyType
 from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from anisocontact.base.fenicsx import Mat, Vec, compiled, create_stiffness, fem, ufl
 from anisocontact.base.form_matrix import add_matrix
 from anisocontact.bulk.at_points import AtPoints
+from anisocontact.bulk.cell_energy import CellIntegrals
 from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.materials import Material, body_measure, linear_parts
 from anisocontact.bulk.pressures import Pressures
 from anisocontact.mesh import Model
+
+Floats = npt.NDArray[np.float64]
 
 
 class LinearBulk:
@@ -46,7 +53,8 @@ class LinearBulk:
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
         dx = body_measure(model)
-        form = compiled(_bilinear_form(model, materials, dx), model.mesh.comm)
+        self._model, self._bilinear = model, _bilinear_form(model, materials, dx)
+        form = compiled(self._bilinear, model.mesh.comm)
         self.stiffness = create_stiffness(form)
         self._u: Any = fem.Function(model.space)
         self._pressures = Pressures(model, materials, self._u, dx)
@@ -85,6 +93,21 @@ class LinearBulk:
             The energy over all ranks, force times length.
         """
         return 0.5 * float(u.dot(self.force(u)))
+
+    @cached_property
+    def _of_cells(self) -> CellIntegrals:
+        once = ufl.action(self._bilinear, self._u)
+        return CellIntegrals(ufl.action(0.5 * once, self._u), self._model)
+
+    def cell_energies(self, u: Any) -> Floats:
+        """Energy that each cell of this rank stores, force times length, (cells,); collective.
+
+        Args:
+            u: Displacement, a DOLFINx function.
+        """
+        self.set_pressures(u)
+        found = self._of_cells()
+        return found + self._pressures.cell_energies(len(found))
 
     def set_pressures(self, u: Any) -> None:
         """Bring `pressures` to a displacement, a DOLFINx function; collective."""

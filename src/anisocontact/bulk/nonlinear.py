@@ -3,7 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from anisocontact.base.fenicsx import (
     Mat,
@@ -16,12 +20,15 @@ from anisocontact.base.fenicsx import (
 )
 from anisocontact.base.form_matrix import FormMatrix
 from anisocontact.bulk.at_points import AtPoints
+from anisocontact.bulk.cell_energy import CellIntegrals
 from anisocontact.bulk.expansion import Expanding, Heated, bare
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure, linear_parts
 from anisocontact.bulk.point_law import BodyPoints
 from anisocontact.bulk.pressures import Pressures
 from anisocontact.mesh import Idealisation, Model
+
+Floats = npt.NDArray[np.float64]
 
 
 class NonlinearBulk:
@@ -71,6 +78,7 @@ class NonlinearBulk:
         tangent = ufl.derivative(work, self._u, du) + forms.slope
         self._tangent = FormMatrix(compiled(tangent, self._comm))
         self._pressures.add_tangent(self._tangent.matrix)
+        self._model, self._energy_form = model, forms.energy
         self._energy = None if forms.energy is None else compiled(forms.energy, self._comm)
         self._dissipated = compiled(forms.dissipated, self._comm) if forms.dissipated else None
         #: Whether `energy` is that of all bodies: every material has one.
@@ -116,6 +124,24 @@ class NonlinearBulk:
         self._set(u)
         own = fem.assemble_scalar(self._energy) + self._pressures.energy()
         return float(self._comm.allreduce(own))
+
+    @cached_property
+    def _of_cells(self) -> CellIntegrals:
+        return CellIntegrals(self._energy_form, self._model)
+
+    def cell_energies(self, u: Any) -> Floats:
+        """Energy that each cell of this rank stores, (cells,); collective.
+
+        Args:
+            u: Displacement, a DOLFINx function, of the accepted state.
+
+        Returns:
+            Force times length; NaN where a material has a stress but no energy.
+        """
+        self.set_pressures(u)
+        if self._energy_form is None:
+            return np.full(_cells(self._model), np.nan)
+        return self._of_cells() + self._pressures.cell_energies(_cells(self._model))
 
     def dissipated(self) -> float:
         """What materials have dissipated until the accepted state, over all ranks."""
@@ -174,6 +200,11 @@ class NonlinearBulk:
     def _set(self, u: Vec) -> None:
         self._u.x.array[: len(u.array_r)] = u.array_r
         self._u.x.scatter_forward()
+
+
+def _cells(model: Model) -> int:
+    topology = model.mesh.topology
+    return int(topology.index_map(topology.dim).size_local)
 
 
 def _cell_size(model: Model) -> float:

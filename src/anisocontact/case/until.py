@@ -27,7 +27,8 @@ class UntilSection(Section):
         None, description='facet group with supports, "body.group": their force that is reached'
     )
     displacement: str | None = Field(
-        None, description='facet group, "body.group": its mean displacement that is reached'
+        None,
+        description='facet group, or [nodes], "body.group": the mean displacement that is reached',
     )
     event: Annotated[
         str | None, word(f"what becomes of the contact ({_EVENTS})", *CONTACT_EVENTS)

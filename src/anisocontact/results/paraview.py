@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import compiled_expression, dolfinx, fem, scalar_element, ufl
 from anisocontact.bulk import PLASTIC_STRAIN, bare, cauchy_stress
+from anisocontact.bulk.cell_energy import volumes
 from anisocontact.contact import Contact
 from anisocontact.results.dataset import DataSet, polygons, vertices
 from anisocontact.results.quantities import (
@@ -158,6 +159,12 @@ class BodiesNow:
     def numbers(self) -> npt.NDArray[np.int32]:
         """Number of the body of each cell, (cells,)."""
         return self._bodies.numbers
+
+    @property
+    def energy_density(self) -> Floats:
+        """Elastic energy per volume of each cell, stress, (cells,); collective."""
+        problem = self.problem
+        return problem.bulk.cell_energies(problem.u) / volumes(problem.model)
 
     @property
     def plastic_strain(self) -> Floats:

@@ -52,6 +52,7 @@ class OutputQuantity:
         doc: One line.
         values: Makes it of what is there, see `register_quantity`.
         always: Whether it is written whatever `output.quantities` says: pictures are made of it.
+        asked: Whether it is written only where `output.quantities` names it: it takes time.
     """
 
     name: str
@@ -60,6 +61,7 @@ class OutputQuantity:
     doc: str
     values: Callable[[Any], Any]
     always: bool = False
+    asked: bool = False
 
 
 def register_quantity[T: Callable[[Any], Any]](
@@ -134,7 +136,7 @@ def arrays(
     return {
         q.name: np.concatenate([np.asarray(q.values(part)) for part in parts])
         for q in quantities(at)
-        if q.always or not chosen or q.name in chosen
+        if q.always or q.name in chosen or not (chosen or q.asked)
     }
 
 
@@ -204,7 +206,7 @@ type _Row = tuple[str, str, str, Callable[[Any], Any]]
 def _rows(at: str, *rows: _Row) -> list[OutputQuantity]:
     """Rows of the same sort: name, unit, meaning, and how it is made."""
     return [
-        OutputQuantity(name, at, unit, doc, values, name in _PICTURED)
+        OutputQuantity(name, at, unit, doc, values, name in _PICTURED, name in _ON_REQUEST)
         for name, unit, doc, values in rows
     ]
 
@@ -228,6 +230,8 @@ _PICTURED = {
     *("traction_principal", "direction_adhesion_1", "direction_adhesion_2"),
     *("direction_friction_1", "direction_friction_2"),
 }
+#: What takes time to make.
+_ON_REQUEST = {"energy_density"}
 #: All of the project, in the order in which files have them.
 _TABLE = {
     (q.at, q.name): q
@@ -257,6 +261,13 @@ _TABLE = {
                 "1",
                 "equivalent plastic strain, mean of the cell; 0 where the material has none",
                 lambda b: b.plastic_strain,
+            ),
+            (
+                "energy_density",
+                "stress",
+                "elastic energy per volume before deformation, mean of the cell; NaN where a "
+                "material tells no energy; only if `quantities` names it",
+                lambda b: b.energy_density,
             ),
         ),
         *_rows(

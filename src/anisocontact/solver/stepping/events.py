@@ -14,7 +14,7 @@ from anisocontact.contact import Contact
 from anisocontact.solver.stepping.acceptance import Refusal
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.system.reduction import Reduction
-from anisocontact.solver.terms.loads import mean_shares
+from anisocontact.solver.terms.loads import node_shares
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
 
@@ -206,7 +206,7 @@ def _measure(problem: Problem, until: Until, field: str) -> _Measure:
         return lambda x: of(comm.allreduce(contact.current.wrench(np.zeros(3))[:3]))
     if until.displacement is not None:
         group = until.displacement
-        weights = mean_shares(problem.model, group, f"{field}.displacement")
+        weights = node_shares(problem.model, group, f"{field}.displacement")
         return lambda x: of(_bulk(problem, x).mean(group, weights, x))
     group = str(until.reaction)
     return lambda x: of(_bulk(problem, x).reactions(x).get(group, np.zeros(3)))

@@ -99,6 +99,16 @@ def mean_shares(model: Model, group: str, field: str) -> Floats:
     return np.asarray(shares / model.mesh.comm.allreduce(shares.sum()))
 
 
+def node_shares(model: Model, name: str, field: str) -> Floats:
+    """Weights of the mean of a facet group, or of points and edges with a name, (nodes,)."""
+    if name in model.facet_names():
+        return mean_shares(model, name, field)
+    index_map = model.space.dofmap.index_map
+    shares = np.zeros(index_map.size_local + index_map.num_ghosts)
+    shares[model.nodes(name, field)] = 1.0
+    return np.asarray(shares / model.mesh.comm.allreduce(shares.sum()))
+
+
 def _volume_shares(model: Model, body: str, field: str) -> Floats:
     weight = model.idealisation.weight(model.mesh)
     return body_shares(model.space, model.cells(body, field), weight)
