@@ -17,8 +17,11 @@ from anisocontact.solver import Problem, Solver, Step
 from anisocontact.solver.strategies import costs
 from anisocontact.solver.strategies.choice import Choice
 from anisocontact.solver.strategies.condensed import strategy
+from anisocontact.solver.strategies.condensed.bordered import BorderedLU
+from anisocontact.solver.strategies.condensed.bordered import reachable as borders
 from anisocontact.solver.strategies.condensed.dense import ContactTangent
 from anisocontact.solver.strategies.condensed.eliminate import WAYS
+from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.parts import Condensation
@@ -226,6 +229,41 @@ def test_masters_are_eliminated_once() -> None:
     again.restore(kept.persistent())
     b = rng.random(210)
     np.testing.assert_array_equal(again.solve(b, 1e-9), kept.solve(b, 1e-9))
+
+
+@pytest.mark.skipif(not borders(), reason="PETSc without MUMPS")
+def test_border_without_masters() -> None:
+    """The border of a sparse LU, whose masters are eliminated, answers as a dense solution does.
+
+    Both are in single precision but the sparse part; what slave nodes follow is that of now.
+    """
+    rng = np.random.default_rng(8)
+    n, border = 300, np.arange(50, 260)
+    matrix = _matrix(n, 5)
+    slaves, shares = border[:30] - 50, scipy.sparse.lil_array((210, 210), dtype=np.float32)
+    for i in slaves:
+        shares[i, rng.choice(np.arange(60, 150), 4, replace=False)] = rng.dirichlet(np.ones(4))
+    held = scipy.sparse.lil_array((210, 210))
+    held[:30, :30] = 1e3 * np.diag(rng.random(30)) + rng.random((30, 30))  # not symmetric
+    turned = scipy.sparse.eye_array(210) - shares  # u -> v
+    contact = (turned.T @ held @ turned).tocsr()
+    sparse = aij(matrix)
+    factor = BorderedLU(sparse, border)
+    flags = np.isin(np.arange(210), slaves)
+    assert factor.renew(contact, shares.tocsr(), flags) > 0.0
+    assert factor.renew(contact, shares.tocsr(), flags) == 0.0
+    b, x = sparse.createVecs()
+    b.array[:] = rng.random(n)
+    factor.solve(b, x)
+    whole = matrix.toarray()
+    whole[np.ix_(border, border)] += contact.toarray()
+    np.testing.assert_allclose(x.array_r, np.linalg.solve(whole, b.array_r), atol=1e-5)
+    again, y = BorderedLU(sparse, border), x.duplicate()
+    again.restore(factor.persistent())
+    again.renew(contact, shares.tocsr(), flags)
+    again.solve(b, y)
+    np.testing.assert_array_equal(y.array_r, x.array_r)
+    assert len(factor.persistent()["stays"].nonzero()[0]) == 30
 
 
 def test_bodies_that_only_springs_hold_are_not_eliminated() -> None:

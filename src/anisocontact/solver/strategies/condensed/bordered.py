@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
 
@@ -14,6 +14,7 @@ import scipy
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import call_petsc, check_memory, has_petsc
 from anisocontact.solver.strategies.condensed.factor import aij, singular
+from anisocontact.solver.strategies.condensed.front import Flags, Front, Singles, Sparse
 from anisocontact.solver.strategies.condensed.mumps import (
     TOO_SMALL,
     WORKSPACE,
@@ -24,7 +25,6 @@ from anisocontact.solver.strategies.newton import Database
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
-Singles = npt.NDArray[np.float32]
 
 #: PETSc: the Schur complement has a factor of its own; the place of "solve for a dense matrix".
 _FACTORED, _MAT_SOLVE = 1, 100
@@ -33,6 +33,10 @@ _FACTORED, _MAT_SOLVE = 1, 100
 OPERATIONS_PER_ENTRY = 27.0
 #: Share of the diagonal that the largest entry of a row has to change by to count.
 _CLEARLY = 0.1
+#: Share of what is opposite to a slave node that may be another before masters are eliminated anew.
+_DRIFT = 0.3
+#: Arrays of a sparse matrix.
+PARTS = ("data", "indices", "indptr")
 #: Prefix and options of PETSc under which MUMPS works in single precision.
 _SINGLE = ("anisocontact_single_", {"pc_precision": "single"})
 
@@ -47,7 +51,7 @@ def reachable() -> bool:
         factor = BorderedLU(small, np.array([0]))
     except PETSc.Error:
         return False
-    factor.renew(scipy.sparse.csr_array([[1.0]]))
+    factor.renew(scipy.sparse.csr_array([[1.0]]), *whole(1))
     b, x = small.createVecs()
     b.array[:] = [2.0, 1.0]
     factor.solve(b, x)
@@ -55,12 +59,18 @@ def reachable() -> bool:
     return bool(np.allclose(x.array_r, 1.0))
 
 
+def whole(count: int) -> tuple[Sparse, Flags]:
+    """Shares and slave nodes of a border without any, see `Front`."""
+    none = scipy.sparse.csr_array((count, count), dtype=np.float32)
+    return none, np.zeros(count, dtype=np.bool_)
+
+
 class BorderedLU:
-    """LU of `A + change`, where the change is in the border alone.
+    """LU of `A + C`, where C, what contacts do, is in the border alone.
 
     With the unknowns cut into interior i and border c MUMPS factorises `A_ii` and makes
-    `S = A_cc - A_ci A_ii^-1 A_ic` once; `S + change` is factorised here, dense and in single
-    precision, whenever the change is another one. A solution condenses the right-hand side,
+    `S = A_cc - A_ci A_ii^-1 A_ic` once; `S + C` is factorised here, see `Front`, dense and in
+    single precision, whenever C is another one. A solution condenses the right-hand side,
     solves with the border and expands: every entry of the factor is read once.
 
     Args:
@@ -74,8 +84,6 @@ class BorderedLU:
     Attributes:
         border: As given.
         solutions_per_factor: Solutions that cost as much as the factorisation.
-        solutions_per_border: Solutions that cost as much as a factorisation of the border.
-        change: Change of the border that is factorised, None before the first.
     """
 
     def __init__(self, matrix: Mat, border: Ints, single: bool = False) -> None:
@@ -96,21 +104,27 @@ class BorderedLU:
         entries = float(self._factor.getMumpsInfog(29))
         entries = entries if entries >= 0.0 else -1e6 * entries
         operations = float(self._factor.getMumpsRinfog(3))
-        self.solutions_per_factor = operations / OPERATIONS_PER_ENTRY / entries
-        dense = len(border) ** 3 / 3.0  # single precision is twice as fast
-        self.solutions_per_border = dense / OPERATIONS_PER_ENTRY / entries
+        self._per_solution = OPERATIONS_PER_ENTRY * entries
+        self.solutions_per_factor = operations / self._per_solution
         self._diagonal = np.abs(np.diagonal(self._schur))
-        self.change: scipy.sparse.csr_array | None = None
+        self._front: Front | None = None
+        self._held: Sparse | None = None
+        self._shares: Sparse = whole(len(border))[0]
         self._solve_border: Callable[[Singles], Singles] | None = None
         self._callback = _MatSolve(self._answer)
         call_petsc("MatFactorRestoreSchurComplement", self._factor, None, _FACTORED)
         call_petsc("MatSetOperation", handle, _MAT_SOLVE, self._callback)
 
-    def renew(self, change: scipy.sparse.csr_array) -> float:
-        """Take a change of the border, (c, c).
+    def renew(self, contact: Sparse, shares: Sparse, slaves: Flags) -> float:
+        """Take what contacts do now.
 
         What a factor lacks costs a Krylov method at most an iteration for every row: where fewer
         rows differ clearly from those of the last one than the factorisation would cost, it stays.
+
+        Args:
+            contact: C, (c, c).
+            shares: How slave nodes follow what is opposite, see `Front`, (c, c).
+            slaves: Unknowns of slave nodes, (c,).
 
         Returns:
             What it has cost, in solutions.
@@ -118,23 +132,74 @@ class BorderedLU:
         Raises:
             SingularError: The border has no inverse.
         """
-        if self.change is not None:
-            rows = abs(change - self.change).max(axis=1).toarray().ravel()
-            if np.count_nonzero(rows > _CLEARLY * self._diagonal) < self.solutions_per_border:
-                return 0.0
-        matrix = np.array(self._schur, order="F")
-        entries = change.tocoo()
-        matrix[entries.row, entries.col] += entries.data.astype(np.float32)
+        cost, front = 0.0, self._front
+        if front is None or not self._near(front, shares):
+            front = self._front = self._eliminated(contact, shares, slaves)
+            self._held, cost = None, front.operations / 2.0 / self._per_solution
+        held, per_border = front.held(contact, shares), front.factor_operations / 2.0
+        per_border /= self._per_solution  # single precision is twice as fast
+        self._shares = front.shares_with(shares) if front.shares.nnz else front.shares
+        if self._held is not None and self._changed(held - self._held) < per_border:
+            return cost
+        try:
+            self._solve_border = front.factor(held)
+        except ZeroDivisionError:
+            raise singular() from None
+        self._held = held
+        return cost + per_border
 
-        lu, pivots, info = scipy.linalg.lapack.sgetrf(matrix, overwrite_a=1)
-        if info != 0:
-            raise singular()
-        self._solve_border = lambda b: np.asarray(scipy.linalg.lapack.sgetrs(lu, pivots, b)[0])
-        self.change = change
-        return self.solutions_per_border
+    def _near(self, front: Front, shares: Sparse) -> bool:
+        """Whether slave nodes are still about where they were when masters were eliminated."""
+        if not front.shares.nnz:
+            return not shares.nnz
+        drift = abs(front.shares_with(shares) - front.shares).sum(axis=1)
+        return float(drift.max()) < 2.0 * _DRIFT
+
+    def _eliminated(self, contact: Sparse, shares: Sparse, slaves: Flags) -> Front:
+        """S with all eliminated that contacts of now do not hold."""
+        moves = (scipy.sparse.eye_array(len(self.border)) + shares).tocsr()
+        stays = slaves | self._clearly(moves.T @ contact @ moves) | (self._diagonal == 0.0)
+        try:
+            if shares.nnz:
+                return Front(self._copy, shares, stays)
+        except ZeroDivisionError:
+            pass
+        none, _ = whole(len(self.border))
+        return Front(self._copy, none, np.ones(len(self.border), dtype=np.bool_))
+
+    def _copy(self) -> Singles:
+        return np.array(self._schur, order="F")
+
+    def _clearly(self, change: Sparse) -> Flags:
+        rows = abs(change).max(axis=1).toarray().ravel()
+        return np.asarray(rows > _CLEARLY * self._diagonal)
+
+    def _changed(self, change: Sparse) -> int:
+        return int(np.count_nonzero(self._clearly(change)))
+
+    def persistent(self) -> dict[str, Any]:
+        """What the factor of the border was made of."""
+        front, held = self._front, self._held
+        if front is None or held is None:
+            return {}
+        own = {"stays": front.stays}
+        for name, one in (("held", held), ("shares", front.shares)):
+            own |= {f"{name}.{part}": getattr(one, part) for part in PARTS}
+        return own
+
+    def restore(self, kept: Mapping[str, Any]) -> None:
+        """Make it again."""
+        if "stays" in kept:
+            n = len(self.border)
+            self._held, shares = (
+                scipy.sparse.csr_array(tuple(kept[f"{name}.{part}"] for part in PARTS), (n, n))
+                for name in ("held", "shares")
+            )
+            self._front = Front(self._copy, shares, kept["stays"])
+            self._solve_border = self._front.factor(self._held)
 
     def solve(self, b: Vec, x: Vec) -> None:
-        """Solve `(A + change) x = b`; `renew` comes first."""
+        """Solve `(A + C) x = b`; `renew` comes first."""
         self._factor.solve(b, x)
 
     def close(self) -> None:
@@ -149,7 +214,9 @@ class BorderedLU:
         border = np.ctypeslib.as_array(entries, (len(self.border),))
         size = float(np.abs(border).max(initial=0.0)) or 1.0  # what is small is no zero
         assert self._solve_border is not None, "`renew` comes first"
-        border[:] = size * self._solve_border((border / size).astype(np.float32))
+        given = (border / size).astype(np.float32)
+        own = self._solve_border(given + self._shares.T @ given)
+        border[:] = size * (own + self._shares @ own)
         call_petsc("MatDenseRestoreArray", handle, ctypes.byref(entries))
         return 0
 

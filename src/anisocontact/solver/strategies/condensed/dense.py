@@ -9,13 +9,14 @@ import numpy.typing as npt
 import scipy
 
 from anisocontact.contact.quadrature import Couplings
-from anisocontact.solver.strategies.condensed.front import Block, Front, Sparse
+from anisocontact.solver.strategies.condensed.front import Front, Sparse
 from anisocontact.solver.strategies.condensed.places import Opposite, Places
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 Singles = npt.NDArray[np.float32]
+Block = tuple[slice, Floats]
 
 #: Share of the diagonal of the bodies that counts as a change of a row by contacts.
 CLEARLY = 0.1
@@ -114,7 +115,14 @@ class ContactTangent:
 
     def front_of(self, shares: Sparse, stays: Flags) -> Front:
         """The same with what is known of it, see `Front`."""
-        return Front(self._blocks, self.scale, shares, stays)
+        return Front(self._bodies, shares, stays)
+
+    def _bodies(self) -> Singles:
+        """S over `scale`, (c, c)."""
+        matrix = np.zeros((self.count, self.count), dtype=np.float32, order="F")
+        for place, block in self._blocks:
+            np.divide(block, self.scale, out=matrix[place, place], casting="same_kind")
+        return matrix
 
     def clearly(self, change: Sparse, share: float = CLEARLY) -> Flags:
         """Rows in which a change, over `scale`, is more than a share of the bodies' stiffness."""

@@ -3,116 +3,112 @@
 With u_s = v_s + P u_m, P the shares of master nodes in what is opposite to slave nodes, the gap of
 a slave node is v_s: `T^T (S + C) T` with u = T v has what contacts do, and undo, in the rows of
 slave nodes alone [Wohlmuth 2011, 5]. All others are eliminated once for many tangents.
+All of it is in single precision.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 import scipy
 
-Ints = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.bool_]
 Singles = npt.NDArray[np.float32]
-Block = tuple[slice, Floats]
 type Sparse = Any  # scipy.sparse.csr_array
-
-#: Operations of a dense factorisation in the time in which a solution reads an entry of a factor:
-#: 70 Gflop/s and 4.4 G entries/s, OpenBLAS on one core in single precision, and a quarter more
-#: for GMRES.
-_OPERATIONS_PER_ENTRY = 20.0
 
 
 class Front:
-    """S where slave nodes move against what is opposite, condensed on a part of its unknowns.
+    """A dense matrix where slave nodes move against what is opposite, condensed on some unknowns.
 
     Args:
-        blocks: Blocks of S on the diagonal.
-        scale: What S is divided by.
+        summed: The matrix S, made anew by every call, (c, c).
         shares: P, in single precision, (c, c); no column of it has a row.
         stays: Unknowns that are not eliminated, (c,).
 
     Attributes:
         shares: As given.
+        stays: As given.
         unknowns: Those that are not eliminated, (f,).
-        cost: What it has cost, in solutions with the whole.
-        factor_cost: The same of a factorisation.
+        operations: Floating-point operations that it has cost.
+        factor_operations: The same of a factorisation.
 
     Raises:
         ZeroDivisionError: What is to be eliminated is singular.
     """
 
-    def __init__(self, blocks: Sequence[Block], scale: float, shares: Sparse, stays: Flags) -> None:
-        self._blocks, self._scale = blocks, scale
-        self.shares, self.stays = shares, stays
+    def __init__(self, summed: Callable[[], Singles], shares: Sparse, stays: Flags) -> None:
+        self._summed, self.shares, self.stays = summed, shares, stays
         self.unknowns, self._rest = np.flatnonzero(stays), np.flatnonzero(~stays)
-        n, f, r = (float(len(one)) for one in (stays, self.unknowns, self._rest))
-        entries = _OPERATIONS_PER_ENTRY * max(n, 1.0) ** 2
-        self.factor_cost = 2.0 / 3.0 * f**3 / entries
-        self.cost = r * (r**2 / 3.0 + 2.0 * r * f + 2.0 * f**2) / entries
+        f, r = float(len(self.unknowns)), float(len(self._rest))
+        self.factor_operations = 2.0 / 3.0 * f**3
+        self.operations = 2.0 * r * (r**2 / 3.0 + r * f + f**2)
         self._matrix: Singles | None = None
         if r:
             self._eliminate()
 
     def _eliminate(self) -> None:
         whole, rest, own = self._summed(), self._rest, self.unknowns
-        lifted = self.shares.T @ whole  # S is symmetric
-        whole += lifted
-        whole += lifted.T
-        whole += self.shares.T @ lifted.T
-        self._factor, info = scipy.linalg.lapack.spotrf(whole[np.ix_(rest, rest)], lower=1)
-        if info != 0:
-            raise ZeroDivisionError("what is to be eliminated is singular")
-        across = np.asfortranarray(whole[np.ix_(rest, own)])
-        self._follows = scipy.linalg.lapack.spotrs(self._factor, across, lower=1)[0]
+        whole += (self.shares.T @ whole.T).T
+        whole += self.shares.T @ whole
+        self._factor = _factor(np.asfortranarray(whole[np.ix_(rest, rest)]))
+        self._across = np.asfortranarray(whole[np.ix_(own, rest)])
+        self._follows = self._factor(np.asfortranarray(whole[np.ix_(rest, own)]))
         front = np.asfortranarray(whole[np.ix_(own, own)])
         self._matrix = scipy.linalg.blas.sgemm(
-            -1.0, across, self._follows, beta=1.0, c=front, trans_a=1, overwrite_c=1
+            -1.0, self._across, self._follows, beta=1.0, c=front, overwrite_c=1
         )
-
-    def _summed(self) -> Singles:
-        """S over its scale, (c, c)."""
-        n = len(self.stays)
-        matrix = np.zeros((n, n), dtype=np.float32, order="F")
-        for place, block in self._blocks:
-            np.divide(block, self._scale, out=matrix[place, place], casting="same_kind")
-        return matrix
 
     def shares_with(self, now: Sparse) -> Sparse:
         """P of now, and that of this front where nothing is opposite any more."""
         gone = scipy.sparse.diags_array((np.diff(now.indptr) == 0).astype(np.float32))
         return (now + gone @ self.shares).tocsr()
 
-    def factor(self, contact: Sparse) -> Callable[[Singles], Singles]:
-        """LU with a matrix of what contacts do, as a function that solves with it.
+    def held(self, contact: Sparse, now: Sparse) -> Sparse:
+        """What contacts do in v, in the unknowns that are not eliminated, (c, c).
 
         Args:
-            contact: Of v, over the scale, in unknowns that are not eliminated alone, (c, c).
+            contact: The same in u.
+            now: P of now.
+        """
+        if not self.shares.nnz:
+            return contact
+        stays = scipy.sparse.diags_array(self.stays.astype(np.float32))
+        moves = (self.shares_with(now) @ stays + stays).tocsr()
+        return (moves.T @ contact @ moves).tocsr()
+
+    def factor(self, held: Sparse) -> Callable[[Singles], Singles]:
+        """LU with a matrix of `held`, as a function that solves for v with it.
 
         Raises:
             ZeroDivisionError: The matrix is singular.
         """
         own = self.unknowns
+        whole = self._matrix is None
         matrix = self._summed() if self._matrix is None else self._matrix.copy(order="F")
-        entries = (contact if self._matrix is None else contact[own][:, own]).tocoo()
-        matrix[entries.row, entries.col] += entries.data
-        lu, pivots, info = scipy.linalg.lapack.sgetrf(matrix, overwrite_a=1)
-        if info != 0:
-            raise ZeroDivisionError("the tangent is singular")
-
-        def solve(b: Singles) -> Singles:
-            return np.asarray(scipy.linalg.lapack.sgetrs(lu, pivots, b)[0])
-
-        return solve if self._matrix is None else lambda b: self._expanded(solve, b)
+        entries = (held if whole else held[own][:, own]).tocoo()
+        matrix[entries.row, entries.col] += entries.data.astype(np.float32)
+        solve = _factor(matrix)
+        return solve if whole else lambda b: self._expanded(solve, b)
 
     def _expanded(self, solve: Callable[[Singles], Singles], b: Singles) -> Singles:
         own, rest, product = self.unknowns, self._rest, scipy.linalg.blas.sgemv
         x = np.empty_like(b)
-        x[own] = solve(product(-1.0, self._follows, b[rest], beta=1.0, y=b[own], trans=1))
-        x[rest] = scipy.linalg.lapack.spotrs(self._factor, b[rest], lower=1)[0]
-        x[rest] = product(-1.0, self._follows, x[own], beta=1.0, y=x[rest])
+        alone = self._factor(b[rest])
+        x[own] = solve(product(-1.0, self._across, alone, beta=1.0, y=b[own]))
+        x[rest] = product(-1.0, self._follows, x[own], beta=1.0, y=alone)
         return x
+
+
+def _factor(matrix: Singles) -> Callable[[Singles], Singles]:
+    """LU of a matrix, which is overwritten, as a function that solves with it."""
+    lu, pivots, info = scipy.linalg.lapack.sgetrf(matrix, overwrite_a=1)
+    if info != 0:
+        raise ZeroDivisionError("the matrix is singular")
+
+    def solve(b: Singles) -> Singles:
+        return np.asarray(scipy.linalg.lapack.sgetrs(lu, pivots, b)[0])
+
+    return solve

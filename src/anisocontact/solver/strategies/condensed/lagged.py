@@ -9,7 +9,7 @@ import numpy.typing as npt
 import scipy
 
 from anisocontact.base.fenicsx import Mat
-from anisocontact.solver.strategies.condensed.bordered import BorderedLU
+from anisocontact.solver.strategies.condensed.bordered import PARTS, BorderedLU
 from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.touched import Touched
@@ -19,10 +19,10 @@ from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
 
 Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
 
-#: Matrices that are kept, and the arrays of each.
-_MATRIX, _OLD, _CHANGE = "lagged.matrix", "lagged.old", "lagged.change"
-_PARTS = ("data", "indices", "indptr")
+#: What is kept of the factor, and of its border.
+_MATRIX, _BORDER = "lagged.matrix", "lagged.border."
 #: Most Krylov iterations of a correction before a new factor is made, if that costs no more.
 _PATIENCE = 20
 #: See `Wear`: the cost of a correction alone depends on how many points change.
@@ -56,8 +56,7 @@ class LaggedFactor:
         self._problem, self._note = problem, note
         self._factor: BorderedLU | None = None
         self._touched: Touched | None = None
-        self._old = scipy.sparse.csr_array((0, 0))
-        self._of_factor = self._old
+        self._of_factor = scipy.sparse.csr_array((0, 0))
         self._single, self._due = True, True
         self._wear = Wear(_LAST, _MARGIN)
         self.factors = 0
@@ -73,32 +72,25 @@ class LaggedFactor:
         factor, touched = self._factor, self._touched
         if factor is None or touched is None:
             return {}
-        change = factor.change
-        out = {
+        return {
             "lagged.unknowns": touched.unknowns,
             "lagged.spent": self._wear.persistent(),
-            "lagged.flags": np.array([self._single, self._due, change is not None]),
+            "lagged.flags": np.array([self._single, self._due]),
+            **{f"{_MATRIX}.{part}": getattr(self._of_factor, part) for part in PARTS},
+            **{f"{_BORDER}{name}": one for name, one in factor.persistent().items()},
         }
-        change = self._old if change is None else change
-        for name, one in ((_MATRIX, self._of_factor), (_OLD, self._old), (_CHANGE, change)):
-            out |= {f"{name}.{part}": getattr(one, part) for part in _PARTS}
-        return out
 
     def _restore(self, kept: Arrays) -> None:
         n, unknowns = self._problem.unknowns, kept["lagged.unknowns"]
-        matrix, old, change = (
-            scipy.sparse.csr_array(tuple(kept[f"{name}.{part}"] for part in _PARTS), (size, size))
-            for name, size in ((_MATRIX, n), (_OLD, len(unknowns)), (_CHANGE, len(unknowns)))
-        )
-        self._single, self._due, changed = map(bool, kept["lagged.flags"])
+        parts = tuple(kept[f"{_MATRIX}.{part}"] for part in PARTS)
+        self._of_factor = scipy.sparse.csr_array(parts, (n, n))
+        self._single, self._due = map(bool, kept["lagged.flags"])
         self._wear.restore(kept["lagged.spent"])
-        tangent = aij(matrix, 3)
-        self._factor = BorderedLU(tangent, unknowns, self._single)
-        tangent.destroy()
-        if changed:
-            self._factor.renew(change)
+        self._factor = self._made(unknowns)
+        begin = len(_BORDER)
+        own = {name[begin:]: one for name, one in kept.items() if name.startswith(_BORDER)}
+        self._factor.restore(own)
         self._touched = Touched(self._problem, unknowns)
-        self._old, self._of_factor = old, matrix
 
     def outgrow(self) -> None:
         """Take it that contacts couple other nodes than before."""
@@ -133,7 +125,7 @@ class LaggedFactor:
         if factor is None or touched is None:
             return b, np.inf
         try:
-            spent = factor.renew(touched.tangent() - self._old)
+            spent = factor.renew(touched.tangent(), *touched.shares())
         except SingularError:
             return b, np.inf
         given, direction, product = (tangent.createVecRight() for _ in range(3))
@@ -161,15 +153,17 @@ class LaggedFactor:
 
     def _renewed(self, tangent: Mat) -> bool:
         """Make a factor of this tangent; the old one stays where there is none."""
-        touched = Touched(self._problem)
+        touched, before = Touched(self._problem), self._of_factor
+        starts, columns, values = tangent.getValuesCSR()
+        whole = scipy.sparse.csr_array((values, columns, starts), tangent.getSize())
+        self._of_factor = touched.without(whole)
         try:
-            factor = BorderedLU(tangent, touched.unknowns, self._single)
+            factor = self._made(touched.unknowns)
         except SingularError:
+            self._of_factor = before
             return False
         self.close()
-        self._factor, self._touched, self._old = factor, touched, touched.tangent()
-        starts, columns, values = tangent.getValuesCSR()
-        self._of_factor = scipy.sparse.csr_array((values, columns, starts), tangent.getSize())
+        self._factor, self._touched = factor, touched
         self._due = False
         self.factors += 1
         self._note(
@@ -177,6 +171,18 @@ class LaggedFactor:
             f"can couple, in {'single' if self._single else 'double'} precision (MUMPS)"
         )
         return True
+
+    def _made(self, unknowns: Ints) -> BorderedLU:
+        """The factor of what has been taken of a tangent.
+
+        Raises:
+            SingularError: There is none.
+        """
+        tangent = aij(self._of_factor, 3)
+        try:
+            return BorderedLU(tangent, unknowns, self._single)
+        finally:
+            tangent.destroy()
 
     def _doubled(self, tangent: Mat) -> bool:
         """Make a factor in double precision, from now on."""

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 import scipy
 
+from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.places import Places
 from anisocontact.solver.system.problem import Problem
 
 Ints = npt.NDArray[np.int64]
+Flags = npt.NDArray[np.bool_]
 
 
 class Touched:
@@ -44,9 +48,29 @@ class Touched:
         if gathering is not None:
             total = gathering @ total
         own = total[self.unknowns][:, self.unknowns]
-        free = np.ones(n)
-        free[problem.constrained()] = 0.0
-        return (scipy.sparse.diags_array(free[self.unknowns]) @ own).tocsr()
+        return (self._free() @ own).tocsr()
+
+    def without(self, tangent: Sparse) -> Sparse:
+        """A tangent of all unknowns less `tangent`: of the bodies, and of nodes that are new."""
+        count = len(self.unknowns)
+        ones = (np.ones(count), (self.unknowns, np.arange(count)))
+        spread = scipy.sparse.csr_array(ones, shape=(self._problem.unknowns, count))
+        return (tangent - spread @ self.tangent() @ spread.T).tocsr()
+
+    def shares(self) -> tuple[Sparse, Flags]:
+        """How slave nodes follow what is opposite, see `Front`, and which unknowns are theirs."""
+        problem = self._problem
+        alone = problem.constraints.gathering() is None
+        opposite = problem.contact_term.opposite() if alone else []
+        shares, slaves = self._places.shares(opposite, problem.unknowns)
+        own = shares[self.unknowns][:, self.unknowns]
+        return (self._free(np.float32) @ own).tocsr(), slaves[self.unknowns]
+
+    def _free(self, kind: type = np.float64) -> Sparse:
+        """One for each unknown that nothing prescribes, on a diagonal."""
+        free: npt.NDArray[Any] = np.ones(self._problem.unknowns, dtype=kind)
+        free[self._problem.constrained()] = 0.0
+        return scipy.sparse.diags_array(free[self.unknowns])
 
     def _select(self) -> Ints:
         problem = self._problem
