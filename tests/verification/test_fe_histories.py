@@ -16,7 +16,7 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact.bulk import make_material
+from anisocontact.bulk import NonlinearBulk, make_material
 from anisocontact.cli import main
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.results import Results
@@ -306,3 +306,17 @@ def test_two_processes(tmp_path: Path, material: str) -> None:
         subprocess.run(command, check=True, capture_output=True)
         found.append(_forces(out))
     np.testing.assert_allclose(found[0], found[1], atol=1e-7 * np.abs(found[0]).max())
+
+
+def test_a_process_without_a_cell_of_a_body_keeps_nothing() -> None:
+    """Small bodies lie on one process alone; on the others a checkpoint was an internal error."""
+    model = build_box({"b": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    steel = make_material("plastic", E=200.0, nu=0.3, yield_stress=1.0)
+    (body,) = NonlinearBulk(model, {"b": steel}).histories.values()
+    whole = body.persistent()
+    body._owned = 0
+    none = body.persistent()
+    assert {name: (0, *values.shape[1:]) for name, values in whole.items()} == {
+        name: values.shape for name, values in none.items()
+    }
+    body.restore(none)

@@ -76,7 +76,10 @@ class AtPoints:
     def persistent(self) -> dict[str, Floats]:
         """Values at the points of cells this rank owns, (points, ...), and where these are."""
         owned = self._owned * len(self.points)
-        kept = {name: self._read(v)[:owned].reshape(owned, -1) for name, v in self._named().items()}
+        kept = {
+            name: self._read(v)[:owned].reshape(owned, v.function_space.dofmap.bs)
+            for name, v in self._named().items()
+        }
         return {"reference": self.places[:owned]} | kept
 
     def restore(self, kept: Mapping[str, Floats]) -> None:
