@@ -26,6 +26,8 @@ from anisocontact.interface import State
 from anisocontact.interface.augmentation import Augmentation
 
 Floats = npt.NDArray[np.float64]
+#: What a trial starts from, and what the next Newton step is linear about.
+type Mark = tuple[State, Linear | None, Base, Floats]
 
 #: Least share of its weight that a point counts with.
 LEAST = 1e-6
@@ -59,8 +61,9 @@ class Trials:
         self._layer: Layer | None = None
         self._immovable = self._shared = np.zeros(len(state), dtype=bool)
         self._linear: Linear | None = None
-        self._base: Base
-        self._slip: Floats
+        none = np.zeros((0, 3))
+        self._base = Base(none, none, none, none)
+        self._slip: Floats = none
         self._state: State
         self._accepted: Snapshot
         self._now: Snapshot
@@ -270,6 +273,19 @@ class Trials:
         """Whether multipliers that follow are what the trial answers to them."""
         follower = self._follower
         return follower is None or follower.held(self._step(self._now))
+
+    @property
+    def retraceable(self) -> bool:
+        """Whether `go_back` is possible: a layer keeps more."""
+        return self._layer is None
+
+    def mark(self) -> Mark:
+        """Where the multipliers are, and about which trial the next step is linear."""
+        return self.start, self._linear, self._base, self._slip
+
+    def go_back(self, mark: Mark) -> None:
+        """Take it that the trials since a mark have not been."""
+        self.start, self._linear, self._base, self._slip = mark
 
     def take_share(self, share: float) -> None:
         """Take only a share of the next step of multipliers that follow."""

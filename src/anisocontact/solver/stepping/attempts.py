@@ -224,8 +224,8 @@ class Attempts:
 def _following(first: _Way, last: _Way, cycles: bool, trusts: bool) -> list[_Way]:
     """Ways where multipliers follow every correction, each from the accepted history.
 
-    Full steps, then cycles that begin with penalties, where there are any, then shares of
-    corrections with smaller penalties.
+    Corrections as long as the balance of forces allows, see `Backtracking`, then cycles that begin
+    with penalties, where there are any, then shares of corrections with smaller penalties.
 
     Args:
         first: From the extrapolated state.

@@ -13,6 +13,7 @@ import numpy.typing as npt
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
 from anisocontact.contact import NotHeldError
+from anisocontact.solver.strategies.backtracking import Backtracking
 from anisocontact.solver.system.assembly import ForceBalance
 from anisocontact.solver.system.culprit import Culprit, LostError
 from anisocontact.solver.terms.contacts import Contacts
@@ -146,6 +147,7 @@ class Newton:
         self._on_iteration = on_iteration
         self._residuals: list[float] = []
         self._damping: Callable[[], float] | None = None
+        self._search = Backtracking(problem)
         self.snes = PETSc.SNES().create(problem.comm)
         self.snes.setOptionsPrefix(prefix)
         self.snes.setFunction(self._function, problem.new_vector())
@@ -190,6 +192,7 @@ class Newton:
         """
         self._damping = damping
         with self._problem.corrected() as full:
+            self._search.whole = full
             return self._solve(x, full or full_steps)
 
     def _solve(self, x: Vec, full_steps: bool) -> NewtonResult:
@@ -219,6 +222,7 @@ class Newton:
     def _equilibrium(self, x: Vec) -> NewtonResult:
         """Newton's method with the multipliers as they are."""
         self._residuals = []
+        self._search.begin()
         # PETSc leaves the iterate locked where a callback raises: that is not to be the caller's.
         iterate = x.copy()
         try:
@@ -243,7 +247,8 @@ class Newton:
     def _function(self, _: SNES, x: Vec, f: Vec) -> None:
         # An iterate far off overflows; it is judged by its residual, which is then no number.
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            f.array[:] = self._problem.evaluate(x)
+            known = self._search.evaluated(x)
+            f.array[:] = self._problem.evaluate(x) if known is None else known
 
     def _jacobian(self, _: SNES, x: Vec, matrix: Mat, __: Mat) -> None:
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
@@ -257,9 +262,11 @@ class Newton:
         if self._problem.comm.size > 1:
             self.snes.getKSP().reset()
 
-    def _damp(self, _: Vec, direction: Vec) -> bool:
+    def _damp(self, x: Vec, direction: Vec) -> bool:
         share = 1.0 if self._damping is None else self._damping()
-        self._problem.contact_term.take_share(share)
+        if self._problem.contact_term.follows:
+            with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+                share = self._search.share(x, direction, share)
         if share != 1.0:
             direction.scale(share)
         return share != 1.0

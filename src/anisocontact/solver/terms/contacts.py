@@ -12,11 +12,14 @@ from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact import Contact
 from anisocontact.contact.far_nodes import globally
 from anisocontact.contact.quadrature import Couplings
+from anisocontact.contact.trials import Mark
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
+#: Where the multipliers of all passes were.
+type Marks = list[Mark]
 
 
 class Contacts(Term):
@@ -136,6 +139,25 @@ class Contacts(Term):
     def held(self) -> bool:
         """Whether multipliers that follow are what the last evaluation answers to them."""
         return all([one.held() for one in self._trials])
+
+    def touch(self) -> bool:
+        """Whether a point touched in the last evaluation; collective."""
+        counts = [one.counts() for one in self._all]
+        return any(sum(each.values()) > each["open"] for each in counts)
+
+    @property
+    def retraceable(self) -> bool:
+        """Whether multipliers that follow can go back where they came from."""
+        return all(one.retraceable for one in self._trials)
+
+    def marks(self) -> Marks:
+        """What multipliers that follow have to know to go back."""
+        return [one.mark() for one in self._trials]
+
+    def go_back(self, marks: Marks) -> None:
+        """Go back with the multipliers to where they were with these marks."""
+        for one, mark in zip(self._trials, marks, strict=True):
+            one.go_back(mark)
 
     def take_share(self, share: float) -> None:
         """Let multipliers that follow take only a share of the next correction."""

@@ -1,0 +1,91 @@
+"""Corrections with multipliers that follow: whole, or shorter where they would lead astray."""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.fenicsx import Vec
+from anisocontact.solver.terms.contacts import Contacts, Marks
+
+Floats = npt.NDArray[np.float64]
+
+#: Residuals of which a correction must not exceed the largest: while points find their status it
+#: rises now and then.
+MEMORY = 3
+#: Least share of a correction that is tried.
+LEAST = 1.0 / 32.0
+
+
+class Backtracking:
+    """A line search that lets the residual rise for a while [Grippo Lampariello Lucidi 1986].
+
+    Displacements and multipliers take the same share of a correction. The first share is taken of
+    1, 1/2, 1/4 ... of it with which the forces balance no worse than in one of the last states; a
+    state without an answer never is. Where nothing touches yet any balance will do: bodies that
+    bend far come to their contact through it.
+
+    Args:
+        system: What is solved, a `newton.System`.
+
+    Attributes:
+        whole: Whether any balance will do, as where bodies want their corrections in full.
+    """
+
+    def __init__(self, system: Any) -> None:
+        self._system, self.whole = system, False
+        self._known: deque[float] = deque(maxlen=MEMORY)
+        self._tried: tuple[Marks, Floats, Floats] | None = None
+
+    @property
+    def _contacts(self) -> Contacts:
+        found: Contacts = self._system.contact_term
+        return found
+
+    def begin(self) -> None:
+        """Take it that another iteration begins."""
+        self._known.clear()
+        self._tried = None
+
+    def share(self, x: Vec, correction: Vec, largest: float) -> float:
+        """Share of a correction to take; the multipliers have taken it then.
+
+        Args:
+            x: Where the system was evaluated last.
+            correction: What is to be subtracted from it.
+            largest: Largest share that may be taken.
+        """
+        contacts, share = self._contacts, largest
+        contacts.take_share(share)
+        if not contacts.retraceable:
+            return share
+        free = self.whole or not contacts.touch()
+        self._known.append(self._system.balance.norm)
+        marks, there = contacts.marks(), x.duplicate()
+        while True:
+            part = correction.copy()
+            part.scale(share)
+            there.waxpy(-1.0, part, x)
+            residual = self._system.evaluate(there)
+            self._tried = marks, np.array(there.array_r), residual
+            bound = np.inf if free else max(self._known)
+            # a number that is none compares as false
+            if self._system.balance.norm <= bound or share <= LEAST:
+                return share
+            contacts.go_back(marks)
+            share *= 0.5
+            contacts.take_share(share)
+
+    def evaluated(self, x: Vec) -> Floats | None:
+        """The residual, if it was evaluated last here for a share; multipliers follow only once."""
+        if self._tried is None:
+            return None
+        (marks, there, residual), self._tried = self._tried, None
+        elsewhere = not np.array_equal(there, x.array_r)
+        if x.comm.tompi4py().allreduce(int(elsewhere)) == 0:
+            return residual
+        self._contacts.go_back(marks)
+        return None

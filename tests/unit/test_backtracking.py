@@ -1,0 +1,123 @@
+"""Shares of corrections of displacements and multipliers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from anisocontact.base.fenicsx import PETSc
+from anisocontact.solver.strategies.backtracking import LEAST, Backtracking
+
+COMM = PETSc.COMM_SELF
+
+
+class System:
+    """One unknown whose residual is a function, and multipliers that remember where they were."""
+
+    def __init__(self, residual: Callable[[float], float]) -> None:
+        self._residual = residual
+        self.contact_term = self
+        self.retraceable = self.touching = True
+        self.visited: list[float] = []
+        self.shares: list[float] = []
+        self.balance: Any = None
+
+    def evaluate(self, x: PETSc.Vec) -> np.ndarray:
+        """The residual; the multipliers follow."""
+        self.visited.append(float(x.array_r[0]))
+        value = self._residual(self.visited[-1])
+        self.balance = SimpleNamespace(norm=abs(value))
+        return np.array([value])
+
+    def touch(self) -> bool:
+        """As of the contacts."""
+        return self.touching
+
+    def take_share(self, share: float) -> None:
+        """As of the contacts."""
+        self.shares.append(share)
+
+    def marks(self) -> int:
+        """How far the multipliers have followed."""
+        return len(self.visited)
+
+    def go_back(self, marks: int) -> None:
+        """As of the contacts."""
+        del self.visited[marks:]
+
+
+def vector(value: float) -> PETSc.Vec:
+    """A vector of one number."""
+    return PETSc.Vec().createWithArray(np.array([value]), comm=COMM)
+
+
+def begun(residual: Callable[[float], float]) -> tuple[Backtracking, System]:
+    """A search at 0, where the system was evaluated."""
+    system = System(residual)
+    search = Backtracking(system)
+    search.begin()
+    system.evaluate(vector(0.0))
+    return search, system
+
+
+@pytest.mark.parametrize(
+    ("residual", "share"),
+    [
+        (lambda x: 1.0 - x, 1.0),
+        (lambda x: np.nan if x > 0.3 else 1.0 - x, 0.25),
+        (lambda x: 3.0 if x > 0.6 else 1.0 - x, 0.5),
+        (lambda x: 1.0 + x, LEAST),
+    ],
+    ids=["whole", "no answer", "rises", "never falls"],
+)
+def test_share(residual: Callable[[float], float], share: float) -> None:
+    """The first of 1, 1/2, 1/4 ... with which the residual does not rise, or the least.
+
+    Multipliers have followed once, with that share, and the residual there is known.
+    """
+    search, system = begun(residual)
+    assert search.share(vector(0.0), vector(-1.0), 1.0) == share
+    assert system.visited == [0.0, share]
+    assert system.shares[-1] == share
+    np.testing.assert_array_equal(search.evaluated(vector(share)), [residual(share)])
+    assert search.evaluated(vector(share)) is None
+
+
+def test_residual_may_rise_for_a_while() -> None:
+    """It may be as large as one of the last three, no larger."""
+    search, system = begun(lambda x: {0.0: 4.0, 1.0: 1.0, 2.0: 3.0, 3.0: 3.5}.get(x, 0.5))
+    shares = [search.share(vector(at), vector(-1.0), 1.0) for at in (0.0, 1.0, 2.0)]
+    assert shares == [1.0, 1.0, 1.0]
+    search, system = begun(lambda x: {0.0: 4.0, 1.0: 1.0, 2.0: 5.0}.get(x, 0.5))
+    assert search.share(vector(0.0), vector(-1.0), 1.0) == 1.0
+    assert search.share(vector(1.0), vector(-1.0), 1.0) == 0.5
+    assert system.visited == [0.0, 1.0, 1.5]
+
+
+@pytest.mark.parametrize("whole", [False, True])
+def test_any_balance_will_do(whole: bool) -> None:
+    """Where nothing touches, and where bodies want corrections in full: as far as there is one."""
+    search, system = begun(lambda x: np.nan if x > 0.6 else 1.0 + x)
+    system.touching, search.whole = whole, whole
+    assert search.share(vector(0.0), vector(-1.0), 1.0) == 0.5
+
+
+def test_goes_back_where_another_state_is_asked_for() -> None:
+    """A line search of the user may go elsewhere: multipliers start from where they were."""
+    search, system = begun(lambda x: 1.0 - x)
+    search.share(vector(0.0), vector(-1.0), 1.0)
+    assert search.evaluated(vector(0.7)) is None
+    assert system.visited == [0.0]
+
+
+def test_layers_take_whole_steps() -> None:
+    """Where multipliers cannot go back nothing is tried."""
+    search, system = begun(lambda x: np.nan if x > 0.3 else 1.0)
+    system.retraceable = False
+    assert search.share(vector(0.0), vector(-1.0), 0.5) == 0.5
+    assert system.visited == [0.0]
+    assert search.evaluated(vector(0.5)) is None
