@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from anisocontact.solver import Problem, Solver, Step, StoppedError
 from anisocontact.solver.strategies import costs, direct
 from anisocontact.solver.strategies.choice import Choice, choose
 from anisocontact.solver.strategies.costs import factor_bytes
-from anisocontact.solver.strategies.iterative import strategy
+from anisocontact.solver.strategies.iterative import strategy, twolevel
 from anisocontact.solver.strategies.iterative.newton import IterativeNewton
 from anisocontact.solver.strategies.strategy import Task
 
@@ -115,3 +116,21 @@ def test_another_preconditioner() -> None:
     newton.close()
     assert not any("two levels" in note for note in notes)
     assert max(newton.krylov) > 15
+
+
+def test_the_patch_is_on_the_coarse_level_without_zeros(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A row of the patch in P is one entry: places of zeros would fill the coarse factor."""
+    made: list[Any] = []
+    right = twolevel.interpolation
+
+    def looked(problem: Any, tangent: Any, split: Any, *more: Any) -> Any:
+        prolong = right(problem, tangent, split, *more)
+        starts, _, values = prolong.getValuesCSR()
+        made.append((np.diff(starts)[split.patch.getIndices()], values))
+        return prolong
+
+    monkeypatch.setattr(twolevel, "interpolation", looked)
+    list(Solver(_problem(), [PRESS], strategy="iterative").run())
+    ((entries, values),) = made
+    assert entries.max() == 1
+    assert values.all()

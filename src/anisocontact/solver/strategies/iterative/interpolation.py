@@ -48,7 +48,19 @@ def interpolation(problem: Problem, tangent: Mat, split: Split, interior: Mat, p
     step.diagonalScale(L=scaled)
     tentative.axpy(-size, step, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     step.destroy()
-    return tentative
+    return _without_zeros(tentative)
+
+
+def _without_zeros(matrix: Mat) -> Mat:
+    """The same with no place for zeros: those of the patch would fill the whole coarse level."""
+    starts, columns, values = matrix.getValuesCSR()
+    (rows, _), (own, _) = matrix.getSizes()
+    first, _ = matrix.getOwnershipRange()
+    row = first + np.repeat(np.arange(rows), np.diff(starts))
+    there = values != 0.0
+    out = sparse(rows, own, matrix.getComm(), (row[there], columns[there]), values[there])
+    matrix.destroy()
+    return out
 
 
 def largest_eigenvalue(matrix: Mat) -> float:
