@@ -262,6 +262,15 @@ for strategy in ("direct", "iterative"):
 """
 
 
+def on_processes(script: str, count: int) -> np.ndarray:
+    """The two rows of numbers that a script prints on some processes."""
+    command = ["mpirun", "-n", str(count), sys.executable, "-c", script]
+    root = Path(__file__).parents[2]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return np.array(done.stdout.split(), dtype=float).reshape(2, -1)
+
+
 @pytest.mark.mpi
 @pytest.mark.slow
 def test_processes_change_nothing():
@@ -272,14 +281,7 @@ def test_processes_change_nothing():
     """
     if shutil.which("mpirun") is None:
         pytest.skip("no mpirun")
-    root = Path(__file__).parents[2]
-    found = []
-    for count in (1, 3):
-        command = ["mpirun", "-n", str(count), sys.executable, "-c", SCRIPT]
-        done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stderr
-        found.append(np.array(done.stdout.split(), dtype=float).reshape(2, -1))
-    values = np.concatenate(found)
+    values = np.concatenate([on_processes(SCRIPT, count) for count in (1, 3)])
     assert np.abs(values - values[0]).max() < 1e-8 * np.abs(values).max()
 
 
@@ -328,14 +330,8 @@ def test_a_meshed_tool_that_follows_a_point_is_rigid(mortar, bound):
     assert found[0] == pytest.approx(found[1], abs=bound * abs(found[1][2]))
 
 
-@pytest.mark.parametrize("kind", ["neo-hookean", "plastic"])
-def test_what_a_rigid_tool_is_made_of_changes_nothing(kind):
-    """A plate whose skin follows a point, under a follower pressure on its top, free along z.
-
-    Requirement: all of its nodes move rigidly, whatever it is made of; the block carries the
-    pressure times the area, and a plate a million times as stiff gives the same. Tolerance:
-    Newton's, 1e-8 of the force.
-    """
+def tool_on_block(kind: str, young: float, mortar: bool):
+    """A plate whose skin follows a point, on a block; the steps press, then let it go along z."""
     from anisocontact.bulk import make_material
     from anisocontact.contact import Contact
     from anisocontact.interface import ContactLaw
@@ -355,20 +351,33 @@ def test_what_a_rigid_tool_is_made_of_changes_nothing(kind):
         Step("press", 1, {"block.bottom": NOTHING}, motion={"tool": {"z": -0.01}}),
         Step("load", 2, motion=free, pressure={"plate.top": 2.0}),
     )
+    bodies = [Body("block", block), Body("plate", plate)]
+    model = build_mesh(bodies, {"plate.skin": [make_selector("all")]})
+    tool = RigidBody("tool", (0.5, 0.5, 1.0), free=True)
+    contact = Contact(model, "block.top", "plate.bottom", law, mortar=mortar)
+    materials = {
+        "block": make_material("neo-hookean", E=100.0, nu=0.3),
+        "plate": make_material(kind, E=young, nu=0.3, **more),
+    }
+    problem = Problem(model, materials, [contact], coupled=[CoupledFace("plate.skin", tool)])
+    return tool, contact, problem, steps
+
+
+@pytest.mark.parametrize("kind", ["neo-hookean", "plastic"])
+def test_what_a_rigid_tool_is_made_of_changes_nothing(kind):
+    """A plate whose skin follows a point, under a follower pressure on its top, free along z.
+
+    Requirement: all of its nodes move rigidly, whatever it is made of; the block carries the
+    pressure times the area, and a plate a million times as stiff gives the same. Tolerance:
+    Newton's, 1e-8 of the force.
+    """
     found = []
     for young in (1.0, 1e6):
-        bodies = [Body("block", block), Body("plate", plate)]
-        model = build_mesh(bodies, {"plate.skin": [make_selector("all")]})
-        tool = RigidBody("tool", (0.5, 0.5, 1.0), free=True)
-        contact = Contact(model, "block.top", "plate.bottom", law, mortar=True)
-        materials = {
-            "block": make_material("neo-hookean", E=100.0, nu=0.3),
-            "plate": make_material(kind, E=young, nu=0.3, **more),
-        }
-        problem = Problem(model, materials, [contact], coupled=[CoupledFace("plate.skin", tool)])
+        tool, contact, problem, steps = tool_on_block(kind, young, mortar=True)
         run(problem, *steps)
-        own = np.unique(model.space.dofmap.list[model.cells("plate")])
-        arms = model.space.tabulate_dof_coordinates()[own] - tool.reference
+        space = problem.model.space
+        own = np.unique(space.dofmap.list[problem.model.cells("plate")])
+        arms = space.tabulate_dof_coordinates()[own] - tool.reference
         pose = tool.accepted
         at = pose.translation + arms @ pose.rotation.T - arms
         if kind == "plastic":  # at small strain
@@ -378,3 +387,26 @@ def test_what_a_rigid_tool_is_made_of_changes_nothing(kind):
         assert force[2] == pytest.approx(-8.0, rel=1e-8)
         found.append(np.concatenate(contact.resultant((0.5, 0.5, 1.0))))
     assert found[0] == pytest.approx(found[1], abs=1e-8 * abs(found[1][2]))
+
+
+TOOL = """
+import numpy as np
+from tests.verification.test_coupled_face import run, tool_on_block
+
+for strategy in ("direct", "iterative"):
+    tool, contact, problem, steps = tool_on_block("neo-hookean", 1.0, mortar=False)
+    run(problem, *steps, strategy=strategy)
+    found = np.concatenate([tool.accepted.values, problem.rigid.support(tool)])
+    if problem.comm.rank == 0:
+        print(*map(repr, found.tolist()))
+"""
+
+
+@pytest.mark.mpi
+@pytest.mark.slow
+def test_processes_change_nothing_of_a_rigid_tool():
+    """Requirement, source, tolerance: as of a coupled face, on one and on two processes."""
+    if shutil.which("mpirun") is None:
+        pytest.skip("no mpirun")
+    values = np.concatenate([on_processes(TOOL, count) for count in (1, 2)])
+    assert np.abs(values - values[0]).max() < 1e-8 * np.abs(values).max()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -83,13 +84,10 @@ class FaceOnBody:
         self.nodes: Ints = np.setdiff1d(owned, tied)
         self.arms: Floats = space.tabulate_dof_coordinates()[self.nodes] - spec.body.reference
         self._force = np.zeros((len(self.nodes), 3))
+        #: The same of all ranks: numbers in the whole mesh, and arms.
+        self.everywhere = _of_all_ranks(space, self.nodes, self.arms)
         #: Body that has no strain, as all of it follows; empty where one face alone does.
         self.whole = "" if self.skin is None else model.body_of(spec.group)
-        flags = fem.Function(space)
-        flags.x.array.reshape(-1, 3)[self.nodes] = 1.0
-        flags.x.scatter_forward()
-        #: Which of the local nodes are coupled, those of other ranks too.
-        self.marked = flags.x.array.reshape(-1, 3)[:, 0] > 0.5
 
     def of_its_own(self, there: npt.NDArray[np.int32]) -> list[Couplings]:
         """Places for the rows of a body that has no stiffness, and for what acts on its skin.
@@ -128,9 +126,13 @@ class FaceOnBody:
         self._force = force[self.nodes]
         return self.wrench(self._force)
 
-    def gathering(self) -> Floats:
-        """From the force on each node to force and moment, transposed, (n, 3, 6)."""
-        arms = self._turned()
+    def gathering(self, arms: Floats | None = None) -> Floats:
+        """From the force on each node to force and moment, transposed, (n, 3, 6).
+
+        Args:
+            arms: As the attribute; of other nodes if they are given.
+        """
+        arms = self._turned(arms)
         shift = np.broadcast_to(np.eye(3), (len(arms), 3, 3))
         return np.concatenate([shift, -skew(arms)], axis=2)
 
@@ -152,8 +154,17 @@ class FaceOnBody:
             out[3:, 3:] = by_spin.sum(axis=0) @ self.body.trial.spin
         return out
 
-    def _turned(self) -> Floats:
-        return self.arms if self._linear else self.arms @ self.body.trial.rotation.T
+    def _turned(self, given: Floats | None = None) -> Floats:
+        arms = self.arms if given is None else given
+        return arms if self._linear else np.asarray(arms @ self.body.trial.rotation.T)
+
+
+def _of_all_ranks(space: Any, nodes: Ints, arms: Floats) -> tuple[Ints, Floats]:
+    """Nodes that ranks own, with their arms, together; numbers in the whole mesh."""
+    numbers = space.dofmap.index_map.local_to_global(nodes.astype(np.int32))
+    parts = zip(*space.mesh.comm.allgather((numbers, arms)), strict=True)
+    every, lengths = (np.concatenate(part) for part in parts)
+    return np.asarray(every, dtype=np.int64), np.asarray(lengths)
 
 
 class CoupledFaces:
@@ -285,8 +296,7 @@ class CoupledFaces:
         beyond = self._model.space.dofmap.index_map.size_global
         for face in self.faces:
             there = first + self._places[face.body.name][0] // 3 - beyond + np.arange(2)
-            on = np.zeros(first, dtype=bool)
-            on[: len(face.marked)] = face.marked
+            on = self._known(face, first) >= 0
             reached = [cells[on[cells].any(axis=1)].ravel(), face.nodes]
             if face.skin is not None:
                 reached = [face.skin.ravel(), face.nodes]
@@ -302,21 +312,31 @@ class CoupledFaces:
         return found
 
     def handed_rows(self, first: int) -> list[HandedRows]:
-        """Rows of bodies that follow as a whole, see `HandedRows`; on one process.
+        """Rows of bodies that follow as a whole, see `HandedRows`.
 
         Args:
             first: As of `room`.
         """
-        found = []
-        for face in self.faces if self._comm.size == 1 else ():
+        found, total = [], self._model.space.dofmap.index_map.size_global
+        for face in self.faces:
             if face.skin is None:
                 continue
             at, scale = self._places[face.body.name]
-            there = first + at // 3 - self._model.space.dofmap.index_map.size_global + np.arange(2)
+            there = (first + at // 3 - total + np.arange(2)).astype(np.int32)
             place = np.full(first + 2 * len(self._places), -1, dtype=np.int64)
-            place[face.nodes] = np.arange(len(face.nodes))
-            found.append(HandedRows(place, face.gathering() / scale, there.astype(np.int32)))
+            place[:first] = self._known(face, first)
+            gathering = face.gathering(face.everywhere[1]) / scale
+            found.append(HandedRows(place, gathering, there))
         return found
+
+    def _known(self, face: FaceOnBody, first: int) -> Ints:
+        """Places in `everywhere` of all nodes that couplings can name, -1 of others, (first,)."""
+        index_map = self._model.space.dofmap.index_map
+        local = first - index_map.size_global
+        numbers = np.full(index_map.size_global, -1, dtype=np.int64)
+        numbers[face.everywhere[0]] = np.arange(len(face.everywhere[0]))
+        names = index_map.local_to_global(np.arange(local, dtype=np.int32))
+        return np.concatenate([numbers[names], numbers])
 
     def _linearised(self, like: Vec, moments: bool) -> Constraint:
         """The constraint where the bodies are.
