@@ -27,6 +27,8 @@ struct Vertex {
   Point x;
   std::size_t edge;                 ///< which leaves it
   std::array<std::size_t, 2> from;  ///< the edges; twice the same number is a corner
+
+  bool crosses() const { return from[0] != from[1]; }
 };
 
 /// Distance over the length of an edge within which a corner lies on it: where edges lie on each

@@ -60,7 +60,7 @@ bool invert(const Integrals<L>& in, std::size_t n, std::array<Lanes<L>, L>& out)
       unit.asDiagonal() * factor.solve(Eigen::MatrixXd(unit.asDiagonal()));
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
-      out[j][i] = inverse(static_cast<Index>(i), static_cast<Index>(j));
+      out[j].set(i, inverse(static_cast<Index>(i), static_cast<Index>(j)));
   return true;
 }
 
@@ -124,6 +124,7 @@ inline DualWeights dual_weights(const MortarInput& in, std::size_t f,
   std::vector<Overlap> found;
   DualWeights out;
   parts.reserve(sub.size());
+  found.reserve(count);
   for (const SubFacet& part : sub) {
     parts.emplace_back(slave, part);
     if (!parts.back().valid()) return {};

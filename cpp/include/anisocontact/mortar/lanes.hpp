@@ -10,47 +10,99 @@
 
 namespace anisocontact::mortar {
 
-/// Numbers side by side, one for each function of a slave facet, so that they share registers.
-template <std::size_t L>
-struct alignas(32) Lanes {
-  std::array<double, L> v{};
+namespace detail {
+template <std::size_t W>
+struct RegisterOf {
+#if defined(__GNUC__)
+  using type [[gnu::vector_size(W * sizeof(double))]] = double;
+#else
+  using type = double;
+#endif
+};
+}  // namespace detail
 
-  double& operator[](std::size_t l) { return v[l]; }
-  double operator[](std::size_t l) const { return v[l]; }
+/// L numbers in registers of W.
+template <std::size_t L, std::size_t W = 4>
+class alignas(W * sizeof(double)) Lanes {
+ public:
+  ANISOCONTACT_INLINE Lanes() : Lanes(0.0) {}
+  ANISOCONTACT_INLINE explicit Lanes(double x) {
+    for (auto& one : r_) one = Register{} + x;
+  }
+  ANISOCONTACT_INLINE double operator[](std::size_t l) const {
+    double x;
+    std::memcpy(&x, reinterpret_cast<const char*>(r_) + l * sizeof x, sizeof x);
+    return x;
+  }
+  ANISOCONTACT_INLINE void set(std::size_t l, double x) {
+    std::memcpy(reinterpret_cast<char*>(r_) + l * sizeof x, &x, sizeof x);
+  }
   /// this += f other
   ANISOCONTACT_INLINE void add(double f, const Lanes& other) {
-    each_register([&](std::size_t l, auto& x, auto& y) ANISOCONTACT_INLINE_LAMBDA {
-      std::memcpy(&x, other.v.data() + l, sizeof x);
-      std::memcpy(&y, v.data() + l, sizeof y);
-      y += f * x;
-      std::memcpy(v.data() + l, &y, sizeof y);
-    });
+    for (std::size_t c = 0; c < count; ++c) r_[c] += f * other.r_[c];
   }
-  ANISOCONTACT_INLINE friend Lanes operator*(double f, const Lanes& factor) {
-    Lanes out;
-    each_register([&](std::size_t l, auto& x, auto& y) ANISOCONTACT_INLINE_LAMBDA {
-      std::memcpy(&x, factor.v.data() + l, sizeof x);
-      y = f * x;
-      std::memcpy(out.v.data() + l, &y, sizeof y);
-    });
-    return out;
+  ANISOCONTACT_INLINE Lanes& operator+=(const Lanes& y) { return *this = *this + y; }
+  ANISOCONTACT_INLINE friend Lanes operator*(double f, const Lanes& x) {
+    return each(x, x, [f](auto& a, const auto& b) ANISOCONTACT_INLINE_LAMBDA { a = f * b; });
   }
   ANISOCONTACT_INLINE friend Lanes operator+(const Lanes& x, const Lanes& y) {
-    Lanes out = x;
-    out.add(1.0, y);
-    return out;
+    return each(x, y, [](auto& a, const auto& b) ANISOCONTACT_INLINE_LAMBDA { a += b; });
+  }
+  ANISOCONTACT_INLINE friend Lanes operator-(const Lanes& x, const Lanes& y) {
+    return each(x, y, [](auto& a, const auto& b) ANISOCONTACT_INLINE_LAMBDA { a -= b; });
+  }
+  ANISOCONTACT_INLINE friend Lanes operator-(const Lanes& x) { return Lanes() - x; }
+  ANISOCONTACT_INLINE friend Lanes operator*(const Lanes& x, const Lanes& y) {
+    return each(x, y, [](auto& a, const auto& b) ANISOCONTACT_INLINE_LAMBDA { a *= b; });
+  }
+  ANISOCONTACT_INLINE friend Lanes operator/(const Lanes& x, const Lanes& y) {
+    return each(x, y, [](auto& a, const auto& b) ANISOCONTACT_INLINE_LAMBDA { a /= b; });
   }
 
  private:
-#if defined(__GNUC__)
-  using Register = double __attribute__((vector_size(32)));
-#else
-  using Register = double;
-#endif
+  using Register = typename detail::RegisterOf<W>::type;
+  static constexpr std::size_t count = L * sizeof(double) / sizeof(Register);
+
   template <class F>
-  ANISOCONTACT_INLINE static void each_register(const F& f) {
-    Register x, y;
-    for (std::size_t l = 0; l < L; l += sizeof(Register) / sizeof(double)) f(l, x, y);
+  ANISOCONTACT_INLINE static Lanes each(const Lanes& x, const Lanes& y, const F& f) {
+    Lanes out = x;
+    for (std::size_t c = 0; c < count; ++c) f(out.r_[c], y.r_[c]);
+    return out;
+  }
+
+  Register r_[count];
+};
+
+/// Both components of L plane vectors: of four lanes the first components, then the second ones.
+template <std::size_t L>
+class Twins : public Lanes<2 * L, 8> {
+ public:
+  using Both = Lanes<2 * L, 8>;
+  Twins() = default;
+  ANISOCONTACT_INLINE Twins(const Both& both) : Both(both) {}
+
+  ANISOCONTACT_INLINE static std::size_t place(std::size_t d, std::size_t l) {
+    return 8 * (l / 4) + 4 * d + l % 4;
+  }
+  /// A component.
+  ANISOCONTACT_INLINE Lanes<L> part(std::size_t d) const {
+    Lanes<L> out;
+    for (std::size_t l = 0; l < L; l += 4)
+      std::memcpy(reinterpret_cast<char*>(&out) + l * size, at(d, l), 4 * size);
+    return out;
+  }
+  /// Adds to a component, in registers of half the width: a whole one waits for both halves.
+  ANISOCONTACT_INLINE void add_part(std::size_t d, const Lanes<L>& x) {
+    const Lanes<L> sum = part(d) + x;
+    for (std::size_t l = 0; l < L; l += 4)
+      std::memcpy(const_cast<char*>(at(d, l)), reinterpret_cast<const char*>(&sum) + l * size,
+                  4 * size);
+  }
+
+ private:
+  static constexpr std::size_t size = sizeof(double);
+  const char* at(std::size_t d, std::size_t l) const {
+    return reinterpret_cast<const char*>(this) + place(d, l) * size;
   }
 };
 

@@ -45,17 +45,18 @@ struct Facet {
 /// no mass: they take a share of the nodes of the edges beside them, x_edge = (1 - 2 a) x'_edge + a
 /// (x_1 + x_2) [Popp Wohlmuth Gitterle Wall 2012, sec. 3.2].
 inline constexpr double edge_share = 0.2;
-inline void transform(Topology t, surface::Shape<double>& s) {
+template <class S>
+void transform(Topology t, surface::Shape<S>& s) {
   if (t != Topology::tri6) return;
   constexpr std::array<std::array<std::size_t, 2>, 3> ends{{{1, 2}, {0, 2}, {0, 1}}};
   for (std::size_t e = 0; e < 3; ++e) {
     const std::size_t k = 3 + e;
     for (const std::size_t v : ends[e]) {
-      s.N[v] += edge_share * s.N[k];
-      for (std::size_t i = 0; i < 2; ++i) s.dN[v][i] += edge_share * s.dN[k][i];
+      s.N[v] += S(edge_share) * s.N[k];
+      for (std::size_t i = 0; i < 2; ++i) s.dN[v][i] += S(edge_share) * s.dN[k][i];
     }
-    s.N[k] *= 1.0 - 2.0 * edge_share;
-    for (std::size_t i = 0; i < 2; ++i) s.dN[k][i] *= 1.0 - 2.0 * edge_share;
+    s.N[k] = S(1.0 - 2.0 * edge_share) * s.N[k];
+    for (std::size_t i = 0; i < 2; ++i) s.dN[k][i] = S(1.0 - 2.0 * edge_share) * s.dN[k][i];
   }
 }
 
@@ -143,8 +144,8 @@ class SlavePart {
   /// Adds the overlaps with a facet of the master.
   void find(const Facet& master, std::size_t facet, std::vector<Overlap>& out) const {
     for (const SubFacet& other : sub_facets(master.topology)) {
-      Overlap o{&part_, &other, facet, {0, 1, 2, 3}, corners_, {}};
-      if (overlap(master, o)) out.push_back(o);
+      out.push_back({&part_, &other, facet, {0, 1, 2, 3}, corners_, {}});
+      if (!overlap(master, out.back())) out.pop_back();
     }
   }
 
@@ -157,20 +158,26 @@ class SlavePart {
 
   bool overlap(const Facet& master, Overlap& o) const {
     const std::size_t count = o.master->corners;
-    Polygon other;
-    other.count = o.corners.masters = count;
-    for (std::size_t a = 0; a < count; ++a)
-      other.vertex[a].x = plane_.flat(master.x[o.master->node[a]]);
-    if (other.area() < 0.0)
-      for (std::size_t a = 1; a < count; ++a) o.order[a] = count - a;
-    for (std::size_t a = 0; a < count; ++a) o.corners.x[4 + a] = other.vertex[o.order[a]].x;
-    if (apart(o.corners)) return false;
-    Polygon next;
-    o.polygon = subject_;
-    for (std::size_t a = 0; a < count && o.polygon.count > 2; ++a) {
-      clip(o.polygon, o.corners, 4 + a, next);
-      std::swap(o.polygon, next);
+    std::array<Point, 4> x;
+    double twice = 0.0;
+    for (std::size_t a = 0; a < count; ++a) x[a] = plane_.flat(master.x[o.master->node[a]]);
+    for (std::size_t a = 0; a < count; ++a) {
+      const Point &p = x[a], &q = x[a + 1 == count ? 0 : a + 1];
+      twice += p[0] * q[1] - p[1] * q[0];
     }
+    if (twice < 0.0)
+      for (std::size_t a = 1; a < count; ++a) o.order[a] = count - a;
+    o.corners.masters = count;
+    for (std::size_t a = 0; a < count; ++a) o.corners.x[4 + a] = x[o.order[a]];
+    if (apart(o.corners)) return false;
+    Polygon spare;
+    Polygon *from = &o.polygon, *to = &spare;
+    *from = subject_;
+    for (std::size_t a = 0; a < count && from->count > 2; ++a) {
+      clip(*from, o.corners, 4 + a, *to);
+      std::swap(from, to);
+    }
+    if (from != &o.polygon) o.polygon = *from;
     return o.polygon.count > 2 && o.polygon.area() > sliver * area_;
   }
 
