@@ -33,8 +33,7 @@ def results(tmp_path_factory):
 def test_action_is_reaction(results):
     """What the pair exchanges is what the supports of both bodies carry.
 
-    The force is the sum over both half passes as seen from the block, so this holds only if the
-    second pass enters with its reaction: to 1e-6, a hundred times the tolerance of Newton.
+    To 1e-6, a hundred times the tolerance of Newton.
     """
     history = results.history
     scale = 1e-6 * history["contacts.0.force.z"].max()
@@ -59,11 +58,9 @@ def test_the_resultant_stays_in_the_ellipse(results):
 
 
 def test_directions_are_those_of_the_case(results):
-    """Both half passes have the axes of the case, turned with bodies that deform a little.
+    """The axes are those of the case, turned with bodies that deform a little.
 
-    The second pass integrates over the other body, whose normal is opposite: with angles about
-    that normal its axes would be mirrored, 60 degrees off. At the edges of the block the mat is
-    sheared and turns its axes by 6.0 degrees; allowed are 10.
+    At the edges of the block the mat is sheared and turns its axes by 6.0 degrees; allowed are 10.
     """
     points = results.contact()
     touching = points.point_data["status"] > 0

@@ -36,7 +36,7 @@ normal = [0, 0, 1]
 [[contact]]
 slave = "block.bottom"
 master = "base.top"
-pass = "two-half"
+pass = "mortar"
 normal = { penalty = "auto" }
 adhesion = { stiffness = [1e3, 1e3] }
 friction = { coefficients = [0.3, 0.3] }
@@ -60,9 +60,8 @@ WRONG = [
     ('master = "base.top"', 'master = "bas.top"', "contact[0].master", 'did you mean "base"?'),
     ('master = "base.top"', 'master = "block.bottom"', "contact[0].master", "same facets"),
     ("pass =", "apart = 0.3\npass =", "contact[0].apart", "self_contact = true"),
-    ('pass = "two-half"', "self_contact = true", "contact[0].master", '"block.bottom" needed'),
-    ('"two-half"', '"two-halves"', "contact[0].pass", "two-half"),
-    ('master = "base.top"', 'master = "plate"', "contact[0].pass", '"single" needed'),
+    ('pass = "mortar"', "self_contact = true", "contact[0].master", '"block.bottom" needed'),
+    ('"mortar"', '"mortars"', "contact[0].pass", "mortar"),
     ("pass =", "degree = 31\npass =", "contact[0].degree", "31 given"),
     ("pass =", "degree = 0\npass =", "contact[0].degree", "0 given"),
     ("pass =", 'evolution = "total"\npass =', "contact[0].evolution", '"backward-euler" only'),
@@ -92,7 +91,7 @@ def test_wrong_value(tmp_path, capsys, old, new, field, says):
 def test_self_contact(tmp_path):
     """A group that is its own master is one contact of its own kind."""
     text = CASE.replace('master = "base.top"', 'master = "block.bottom"\napart = 0.2')
-    text = text.replace('pass = "two-half"', "self_contact = true")
+    text = text.replace('pass = "mortar"', "self_contact = true")
     (contact,) = _built(tmp_path, text).problem.contacts
     assert contact.groups == ("block.bottom", "block.bottom")
     assert contact.counts()["open"] == len(contact.points)
@@ -109,28 +108,26 @@ def test_same_pair_twice(tmp_path, capsys):
 
 
 def test_what_is_built(tmp_path, capsys):
-    """Single pass and two half passes, the area of now at finite strain, the softer penalty."""
+    """Points and slave nodes, the area of now at finite strain, the softer penalty."""
     contact = _built(tmp_path, CASE).problem.contacts[0]
-    assert len(contact.passes) == 2
+    assert len(contact.areas) == 9
     # 10 E / h of the base: E = 100, facets of 2/3; the block has 1000 and 1/2
     assert contact.interface.normal.named[1]["penalty"][0] == pytest.approx(1500.0)
     assert contact.name == "block.bottom on base.top"
-    finer = _built(tmp_path, CASE.replace("pass =", "degree = 6\npass =")).problem.contacts[0]
-    assert [len(half.areas) for half in finer.passes] == [4 * 16, 9 * 16]
-    single = CASE.replace('pass = "two-half"\n', "")
-    assert len(_built(tmp_path, single).problem.contacts[0].passes) == 1
+    finer = CASE.replace('pass = "mortar"', 'pass = "single"\ndegree = 6')
+    assert len(_built(tmp_path, finer).problem.contacts[0].areas) == 4 * 16
     soft = CASE.replace('model = "linear-elastic"\nE = 100\n', 'model = "neo-hookean"\nE = 100\n')
     for text, current in ((CASE, False), (soft, True)):
-        for half in _built(tmp_path, text).problem.contacts[0].passes:
-            assert half.slave_points.current_area is current
+        assert _built(tmp_path, text).problem.contacts[0].current_area is current
     assert main(["check", str(tmp_path / "case.toml")]) == 0
-    assert "two half passes" in capsys.readouterr().out
+    assert "at slave nodes (mortar)" in capsys.readouterr().out
 
 
 def test_initial_overlap_is_said(tmp_path, capsys):
     """Bodies that overlap before the first step: a warning with the size, in log and summary."""
     case, out = tmp_path / "case.toml", tmp_path / "out"
-    case.write_text(CASE.replace("origin = [0, 0, 0]", "origin = [0, 0, -0.005]"))
+    text = CASE.replace('pass = "mortar"', 'pass = "single"')
+    case.write_text(text.replace("origin = [0, 0, 0]", "origin = [0, 0, -0.005]"))
     assert main(["run", str(case), "-o", str(out)]) == 0
     said = "the bodies overlap by 0.005 at the start, 1% of the facet size"
     assert said in capsys.readouterr().err
@@ -140,14 +137,14 @@ def test_initial_overlap_is_said(tmp_path, capsys):
     # the worst is that of the only increment, not the overlap of the mesh
     contact = summary["contacts"][0]
     assert 0.0 < contact["worst_penetration"] == contact["max_penetration"] < 0.005
-    case.write_text(CASE)
+    case.write_text(text)
     assert main(["run", str(case), "-o", str(out), "--overwrite"]) == 0
     assert "overlap" not in capsys.readouterr().err
 
 
 def test_points_that_run_off_the_end_are_said(tmp_path, capsys):
     """One line of the log and of the output for each increment in which points leave the base."""
-    text = CASE.replace('pass = "two-half"', 'pass = "single"').replace(
+    text = CASE.replace('pass = "mortar"', 'pass = "single"').replace(
         '"block.top" = { x = 0, y = 0, z = -0.01 }',
         '"block.top" = { x = 0, y = 0, z = -0.01 }\n[[step]]\nname = "off"\nincrements = 3\n'
         '[step.displacement]\n"block.top" = { x = 0.9 }',

@@ -40,8 +40,8 @@ def _answer(contact: Any) -> np.ndarray:
     ("name", "before", "now"),
     [
         ("FacetContact", SIDES, {}),
-        ("FacetContact", SIDES, {"degree": 1, "overlaps": True, "name": "pair"}),
-        ("TwoHalfPass", SIDES, {"two_half": True}),
+        ("FacetContact", SIDES, {"degree": 1, "name": "pair"}),
+        ("TwoHalfPass", SIDES, {"mortar": True}),
         ("SelfContact", SIDES[:1], {"self_contact": True, "apart": 0.5, "name": "fold"}),
     ],
 )
@@ -50,11 +50,20 @@ def test_classes(name: str, before: tuple[str, ...], now: dict[str, Any]) -> Non
     model, law = _model(), ContactLaw(*LAWS)
     with pytest.warns(DeprecationWarning, match=rf"{name}: take Contact\("):
         kind = getattr(anisocontact.contact, name)
-    options = {k: v for k, v in now.items() if k not in {"two_half", "self_contact"}}
+    options = {k: v for k, v in now.items() if k not in {"mortar", "self_contact"}}
     old = kind(model, *before, law=law, **options)
     new = Contact(model, before[0], before[-1], law, **now)
     assert old.name == new.name
     assert np.array_equal(_answer(old), _answer(new))
+
+
+@pytest.mark.parametrize("name", ["two_half", "overlaps"])
+def test_passes(name: str) -> None:
+    """What was integrated over overlaps of facets is evaluated at the slave nodes."""
+    model, law, before = _model(), ContactLaw(*LAWS), {name: True}
+    with pytest.warns(DeprecationWarning, match="take mortar=True, which is taken now"):
+        old = Contact(model, *SIDES, law, **before)  # type: ignore[misc]
+    assert np.array_equal(_answer(old), _answer(Contact(model, *SIDES, law, mortar=True)))
 
 
 def test_arguments() -> None:

@@ -101,12 +101,40 @@ def test_check_says_what_was_taken(tmp_path: Path, capsys: pytest.CaptureFixture
     for more, said in {
         "": "at slave nodes (mortar), multipliers",
         'pass = "single"': "at integration points, penalties",
-        'pass = "two-half"': "at integration points, two half passes, penalties",
     }.items():
         (tmp_path / "case.toml").write_text(text(FRICTION + more))
         assert main(["check", str(tmp_path / "case.toml")]) == 0
         (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("contact "))
         assert line.endswith(f", maximum-dissipation, {said}")
+
+
+@pytest.mark.parametrize(
+    ("more", "wanted"),
+    [
+        ("", (True, True)),
+        ("normal = { penalty = 1000 }", (True, False)),
+        ("apart = 1", (True, True)),
+    ],
+)
+def test_a_fold_has_slave_nodes(tmp_path: Path, more: str, wanted: tuple[bool, bool]) -> None:
+    folded = f"{FRICTION}self_contact = true\n{more}"
+    assert taken(tmp_path, text(folded, master="block.bottom")) == wanted
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "master"),
+    [("two-half", "", "base.top"), ("single", "self_contact = true", "block.bottom")],
+)
+def test_passes_of_before_are_mortar(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, more: str, master: str
+) -> None:
+    """A line says so; the bodies are those for which "auto" takes points."""
+    given = text(f'{FRICTION}pass = "{name}"\n{more}', master=master, young=1000)
+    assert taken(tmp_path, given) == (True, True)
+    assert main(["check", str(tmp_path / "case.toml")]) == 0
+    assert (
+        f'contact[0].pass: "{name}" is "mortar" from now on; name that' in capsys.readouterr().out
+    )
 
 
 def test_slave_nodes_have_no_degree(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -41,7 +41,6 @@ def test_a_coarse_slave_is_named_with_the_ratio_and_the_cure(unit, more):
     assert "contact of base.top with pin.bottom" in line
     assert "20 times as large" in line and "swap slave and master" in line
     assert not coarse_slaves([Contact(model, "pin.bottom", "base.top", law=LAW)])
-    assert not coarse_slaves([Contact(model, "base.top", "pin.bottom", law=LAW, two_half=True)])
 
 
 def test_a_script_gets_a_warning_of_the_package():

@@ -18,8 +18,8 @@ from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver.terms.free_modes import bodies
 from anisocontact.surfaces import make_surface
 
-#: Two half passes.
-TWO_HALF = partial(Contact, two_half=True)
+#: At slave nodes.
+MORTAR = partial(Contact, mortar=True)
 
 
 SIZE = 0.5
@@ -60,7 +60,7 @@ def test_overlap_says_how_deep_where_and_how_many() -> None:
     assert found.point[2] == pytest.approx(-0.01)
 
 
-@pytest.mark.parametrize("kind", ["plane", "single", "two-half"])
+@pytest.mark.parametrize("kind", ["plane", "single", "mortar"])
 @pytest.mark.parametrize("gap", [-0.01, 0.004])
 def test_adjusted_points_just_touch(kind: str, gap: float) -> None:
     """Overlaps and gaps up to the reach are gone: no force at rest, at once one below.
@@ -76,7 +76,7 @@ def test_adjusted_points_just_touch(kind: str, gap: float) -> None:
             interface = Interface(_plane(1.0), *_laws())
             contact = Contact(model, "block.bottom", interface, adjust=adjust)
         else:
-            made = Contact if kind == "single" else TWO_HALF
+            made = Contact if kind == "single" else MORTAR
             contact = made(
                 model, "block.bottom", "base.top", law=ContactLaw(*_laws()), adjust=adjust
             )
@@ -99,7 +99,7 @@ def test_surface_that_points_the_wrong_way_is_named() -> None:
 def test_group_on_the_wrong_side_is_named() -> None:
     """The top of the block is named where its bottom meets the base."""
     model = _blocks(0.0)
-    for made in (Contact, TWO_HALF):
+    for made in (Contact, MORTAR):
         with pytest.raises(InputError, match=r"'(block|base).top' faces the same way"):
             made(model, "block.top", "base.top", law=ContactLaw(*_laws()), reach=2.0)
 

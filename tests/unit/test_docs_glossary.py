@@ -34,7 +34,6 @@ ASKED = (
     "node-to-surface",
     "surface-to-surface",
     "mortar",
-    "two half passes",
     "closest point projection",
     "signed gap",
     "Karush-Kuhn-Tucker",

@@ -20,8 +20,8 @@ from anisocontact.solver.system.coupled import MOST_LEFT
 from anisocontact.solver.system.prediction import FARTHEST, SPACING, ContactPrediction
 from anisocontact.solver.terms.turn import Turn
 
-#: Two half passes.
-TWO_HALF = partial(Contact, two_half=True)
+#: At slave nodes.
+MORTAR = partial(Contact, mortar=True)
 
 
 LAW = ContactLaw(
@@ -65,7 +65,7 @@ def run(problem, steps, ahead=True):
     return np.array(forces), count
 
 
-@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
+@pytest.mark.parametrize("kind", [Contact, MORTAR])
 def test_pressed_and_dragged_it_is_built_once(kind):
     """Requirement: sparsity built once and reused. What is grown into makes the same forces.
 

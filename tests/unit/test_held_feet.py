@@ -107,25 +107,6 @@ def test_points_held_beside_their_closest_are_let_go_once():
     assert not contact.soften()
 
 
-def test_two_half_passes_let_go_in_each():
-    """Each pass lets go what it holds, and holds it again, as above."""
-    single, moved, model = _over_a_valley()
-    law: Any = single.interface
-    contact = Contact(
-        model, "block.bottom", "base.top", law=law, degree=1, reach=1.0, two_half=True
-    )
-    contact.update(moved(-0.05, -0.02), 1.0)
-    contact.hold(np.ones(len(contact.footing()), dtype=bool))
-    contact.update(moved(0.05, -0.02), 1.0)
-    held = contact.footing()
-    assert contact.improve()
-    contact.update(moved(0.05, -0.02), 1.0)
-    assert contact.footing()[0] != held[0]
-    assert contact.soften()
-    contact.update(moved(0.05, -0.02), 1.0)
-    np.testing.assert_array_equal(contact.footing(), held)
-
-
 @pytest.mark.parametrize(("by", "refuses"), [(1e-4, False), (0.05, True)])
 def test_states_with_strayed_points_are_refused(by, refuses):
     """An error of the gap beyond a thousandth of a facet is no solution; its place is named.

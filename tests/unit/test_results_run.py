@@ -351,14 +351,6 @@ def _touching(places, normals, **data):
     return DataSet("PolyData", places, vertices(np.arange(count)), data)
 
 
-def test_maps_of_two_half_passes_show_the_points_of_the_slave():
-    places = np.random.default_rng(5).uniform(size=(10, 3))
-    up = np.tile([0.0, 0, 1], (10, 1))
-    assert len(ContactView(_touching(places, up), 0).position) == 10
-    of_passes = _touching(places, up, **{"pass": np.repeat([0, 1], [4, 6])})
-    assert np.array_equal(ContactView(of_passes, 0).position, places[:4])
-
-
 @pytest.mark.parametrize(("tilt", "name"), [(8.0, "z"), (20.0, "(0, 0.342, 0.94)")])
 def test_a_contact_that_is_nearly_level_is_seen_along_an_axis(tilt, name):
     up = np.tile([0.0, np.sin(np.radians(tilt)), np.cos(np.radians(tilt))], (10, 1))

@@ -108,15 +108,10 @@ def _second_order() -> Made:
     return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law())])
 
 
-def _two_half() -> Made:
-    model = _bodies()
-    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law(), two_half=True)])
-
-
-def _matching() -> Made:
+def _mortar_matching() -> Made:
     """All edges of the block lie on edges of the mat, until it is dragged."""
     model = _bodies(cells=((2, 4), (6, 10)))
-    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law(), two_half=True)])
+    return _dragged(model, [Contact(model, "mat.top", "block.bottom", law=_law(), mortar=True)])
 
 
 def _far(slave: str = "block.bottom", master: str = "mat.top", **options: bool) -> Made:
@@ -127,7 +122,6 @@ def _far(slave: str = "block.bottom", master: str = "mat.top", **options: bool) 
             "mat": BoxSpec((-6, -1.5, -1), (12, 3, 1), (12, 3, 1)),
         }
     )
-    options = options or {"two_half": True}
     pair = Contact(model, slave, master, law=_law(), reach=0.4, **options)
     problem, steps = _dragged(model, [pair])
     along = steps[0].displacement | {"block.top": {"x": 6.0, "y": 0.2, "z": -0.2}}
@@ -232,14 +226,16 @@ def _under_a_lid(**options: bool) -> Made:
     return problem, steps
 
 
-def _folded() -> Made:
+def _mortar_folded() -> Made:
+    """Each rank finds the same side of the fold to be the slave."""
     model = hairpin(half=False)
     law = ContactLaw(
         NormalLaw(penalty=2e4),
         Adhesion(stiffness=(1e4, 1e4)),
         Friction(coefficients=(0.2, 0.2)),
     )
-    contact = Contact(model, "pin.inner", "pin.inner", self_contact=True, law=law, apart=0.3)
+    inner = "pin.inner"
+    contact = Contact(model, inner, inner, law, self_contact=True, mortar=True, apart=0.3)
     problem = Problem(model, {"pin": make_material("neo-hookean", E=1000.0, nu=0.3)}, [contact])
     depth = 0.5 * GAP + 2e-3
     ends = {
@@ -253,17 +249,16 @@ CASES: dict[str, Callable[[], Made]] = {
     "single": _single,
     "in-python": _in_python,
     "second-order": _second_order,
-    "two-half": _two_half,
-    "matching": _matching,
     "far": _far,
     "augmented": _augmented,
     "following": _following,
     "following-plane": _following_plane,
     "under-a-lid": _under_a_lid,
-    "folded": _folded,
     "mortar": _mortar,
+    "mortar-matching": _mortar_matching,
     "mortar-second-order": _mortar_second_order,
     "mortar-far": _mortar_far,
+    "mortar-folded": _mortar_folded,
     "mortar-following": _mortar_following,
     "mortar-plane": _mortar_plane,
     "mortar-iterative": _mortar,

@@ -224,39 +224,3 @@ def test_patch() -> None:
         pass
     np.testing.assert_allclose(contact.last.pressure, 0.01 * YOUNG, rtol=1e-5)
     assert np.abs(contact.state["gap"]).max() < 1e-6 / 3.0
-
-
-def test_patch_over_overlaps() -> None:
-    """A single augmented pass over the overlaps of facets passes the patch test on other meshes.
-
-    4 x 4 on 3 x 3 facets under a uniform pressure, `overlaps=True`. Source: uniform stress; exact
-    where a uniform traction gives the nodes of both bodies what they need and the gap is zero at
-    the points. Without overlaps the pressures differ by some per cent.
-    """
-    boxes = {
-        "block": BoxSpec((0, 0, 0), (1, 1, 0.5), (4, 4, 1)),
-        "base": BoxSpec((0, 0, -0.5), (1, 1, 0.5), (3, 3, 1)),
-    }
-    model = build_box(boxes)
-    law = ContactLaw(
-        NormalLaw(penalty=1e3),
-        Adhesion(stiffness=(1e-3, 1e-3)),
-        Friction(coefficients=(1e-6, 1e-6)),
-    )
-    contact = Contact(
-        model,
-        "block.bottom",
-        "base.top",
-        law=law,
-        current_area=False,
-        augmentation=Augmentation(tangential=False),
-        overlaps=True,
-    )
-    elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
-    problem = Problem(model, dict.fromkeys(boxes, elastic), [contact])
-    held = {f"{body}.{side}": {axis: 0.0} for body in boxes for side, axis in SIDES}
-    down = {"base.bottom": {"z": 0.0}, "block.top": {"z": -0.01}}
-    for _ in Solver(problem, [Step("down", 1, held | down)]).run():
-        pass
-    np.testing.assert_allclose(contact.last.pressure, 0.01 * YOUNG, rtol=1e-7)
-    assert np.abs(contact.state["gap"]).max() < 1e-6 / 4.0

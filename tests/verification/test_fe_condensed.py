@@ -45,8 +45,8 @@ from anisocontact.solver.stepping import attempts
 from anisocontact.solver.strategies.condensed import reach
 from anisocontact.surfaces import make_surface
 
-#: Two half passes.
-TWO_HALF = partial(Contact, two_half=True)
+#: At slave nodes.
+MORTAR = partial(Contact, mortar=True)
 
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
@@ -169,7 +169,7 @@ def test_block_on_surface(surface: dict[str, Any]) -> None:
     _same(lambda: _on_surface(**surface), steps)
 
 
-@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
+@pytest.mark.parametrize("kind", [Contact, MORTAR])
 def test_block_on_block(kind: type) -> None:
     """Meshed bodies, each condensed by itself."""
     notes = _same(lambda: _pair(_model(), kind=kind), [PRESS, DRAG])

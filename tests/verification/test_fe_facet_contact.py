@@ -23,8 +23,8 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver import Problem, Solver, Step
 
-#: Two half passes.
-TWO_HALF = partial(Contact, two_half=True)
+#: At slave nodes.
+MORTAR = partial(Contact, mortar=True)
 
 
 CLAMP = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
@@ -101,7 +101,7 @@ def test_against_calculix() -> None:
     [("hexahedron", 1), ("hexahedron", 2), ("tetrahedron", 1), ("tetrahedron", 2)],
 )
 @pytest.mark.parametrize("mu", [0.3, 30.0])
-@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
+@pytest.mark.parametrize("kind", [Contact, MORTAR])
 def test_tangent_of_the_system_by_order(
     cell: str, order: int, material: str, mu: float, kind: Any
 ) -> None:

@@ -29,8 +29,8 @@ from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, Problem, Solver, Spring, Step
 from anisocontact.surfaces import make_surface
 
-#: Two half passes.
-TWO_HALF = partial(Contact, two_half=True)
+#: At slave nodes.
+MORTAR = partial(Contact, mortar=True)
 
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
@@ -121,7 +121,7 @@ def test_block_on_plane() -> None:
     _same(_on_plane, [Step("press", 2, top), DRAG])
 
 
-@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
+@pytest.mark.parametrize("kind", [Contact, MORTAR])
 def test_block_on_block(kind: type) -> None:
     """Meshed bodies that slide on each other."""
     _same(lambda: _pair(kind=kind), [PRESS, DRAG])

@@ -125,12 +125,6 @@ def test_order_2() -> None:
 
 
 @pytest.mark.slow
-def test_two_half_passes() -> None:
-    """Both bodies are slave and master."""
-    _same(lambda: _pair(lambda *a, **b: Contact(*a, two_half=True, **b)), [PRESS, DRAG])
-
-
-@pytest.mark.slow
 def test_held_by_contact_and_load_alone() -> None:
     """A block that lies on the plane, loaded, with springs of stabilisation that fade."""
     press = Step("press", 2, traction={"block.top": {"z": -20.0}})

@@ -18,11 +18,11 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver import Problem, Solver, Step
 
-#: Two half passes.
-TWO_HALF = partial(Contact, two_half=True)
+#: At slave nodes.
+MORTAR = partial(Contact, mortar=True)
 
 
-KINDS = [Contact, TWO_HALF]
+KINDS = [Contact, MORTAR]
 STILL = Rotation.identity()
 PATH = [(0.0, 0.0, -0.01), (0.015, 0.0, -0.01), (0.015, 0.01, -0.01)]
 
@@ -113,53 +113,14 @@ def test_units(kind: Any, length: float, stress: float) -> None:
     assert _far(u_s / length, u) < 1e-9
 
 
-def _twins(slave: str, master: str, kind: Any) -> np.ndarray:
-    """Forces on the upper of two equal blocks, meshes askew to each other, pressed and sheared.
-
-    The lower one has the texture, whichever part it plays.
-    """
-    model = build_box(
-        {
-            "upper": BoxSpec((0, 0, 0), (1, 1, 0.5), (3, 4, 1)),
-            "lower": BoxSpec((0, 0, -0.5), (1, 1, 0.5), (4, 3, 1)),
-        }
-    )
-    marks = make_directions("constant", vector=(2, 1, 0))
-    on = "master" if master.startswith("lower") else "slave"
-    law = ContactLaw(
-        NormalLaw(penalty=2e4),
-        Adhesion(stiffness=(1e4, 4e3), directions=marks, directions_on=on),
-        Friction(coefficients=(0.3, 0.12), directions=marks, directions_on=on),
-    )
-    contact = kind(model, slave, master, law=law)
-    rubber = make_material("neo-hookean", E=1000.0, nu=0.3)
-    problem = Problem(model, {"upper": rubber, "lower": rubber}, [contact])
-    held = {"lower.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
-    steps = [
-        Step("press", 2, {**held, "upper.top": {"x": 0.0, "y": 0.0, "z": -0.01}}),
-        Step("shear", 3, {"upper.top": {"x": 0.01, "y": 0.005}}),
-    ]
-    sign = 1.0 if slave.startswith("upper") else -1.0
-    return sign * _forces(problem, steps)
-
-
-def test_swap() -> None:
-    """Two half passes do not know which body is the slave: 1e-9; a single pass does.
-
-    Source: both passes enter alike; only the order of sums changes.
-    """
-    ends = ("upper.bottom", "lower.top")
-    assert _far(_twins(*ends, TWO_HALF), _twins(*reversed(ends), TWO_HALF)) < 1e-9
-    assert _far(_twins(*ends, Contact), _twins(*reversed(ends), Contact)) > 1e-6
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_mesh_gives_no_direction(kind: Any) -> None:
     """Isotropic friction on a base whose mesh is turned by 20 degrees: no lateral force.
 
     Source: the problem is symmetric about the direction of the drag; only the mesh of the base is
     not. The base is rigid at its top, so that what is left is contact alone. Tolerance 1e-9: the
-    traction of a point does not depend on how a plane is cut into facets.
+    traction of a point does not depend on how a plane is cut into facets. Slave nodes ahead of the
+    block that are partly covered stick at first: 0.34 % of the drag measured.
     """
     model = _turned_base()
     law = ContactLaw(
@@ -174,16 +135,11 @@ def test_mesh_gives_no_direction(kind: Any) -> None:
         Step("drag", 6, {"block.top": {"x": 0.3}}),
     ]
     force = _forces(problem, steps)[-1]
-    assert force[0] == pytest.approx(-0.3 * force[2], rel=1e-9 if kind is Contact else 0.04)
-    tolerance = 1e-9 if kind is Contact else HALF_PASS_LATERAL
-    assert abs(force[1]) < tolerance * abs(force[0])
+    assert force[0] == pytest.approx(-0.3 * force[2], rel=1e-9 if kind is Contact else 4e-3)
+    assert abs(force[1]) < 1e-9 * abs(force[0])
 
 
 PRESSED = {"x": 0.0, "y": 0.0, "z": -0.01}
-#: The half pass over the turned base sees the block's edge cut its facets, not symmetric about the
-#: drag: 4.1e-4 measured. Its points that have just come under the block do not slip yet, so that
-#: the drag is 3 % less.
-HALF_PASS_LATERAL = 1e-3
 
 
 def _turned_base() -> Model:
@@ -200,53 +156,29 @@ def _turned_base() -> Model:
 
 
 #: Largest error of the pressure and of the displacement, of the largest value, in the patch test:
-#: cell, order, kind, degree of the quadrature (0: default) -> bounds. Those of two half passes are
-#: the tolerance of Newton, 1e-12 of the forces, times the condition of the system; those of a
-#: single pass are what was measured, docs/verification/meshed-contact.md.
+#: cell, order, degree of the quadrature (0: default) -> bounds that were measured,
+#: docs/verification/meshed-contact.md.
 PATCH = {
-    ("hexahedron", 1, TWO_HALF, 0): (1e-8, 1e-8),
-    ("hexahedron", 1, TWO_HALF, 5): (1e-8, 1e-8),
-    ("hexahedron", 2, TWO_HALF, 0): (1e-8, 1e-8),
-    ("tetrahedron", 1, TWO_HALF, 0): (1e-8, 1e-8),
-    ("tetrahedron", 2, TWO_HALF, 0): (1e-8, 1e-8),
-    ("hexahedron", 1, Contact, 0): (1.3e-2, 3.0e-3),
-    ("hexahedron", 1, Contact, 20): (5.0e-4, 6.0e-5),
-    ("hexahedron", 2, Contact, 0): (8.2e-2, 1.4e-2),
-    ("tetrahedron", 1, Contact, 0): (2.1e-2, 1.6e-3),
-    ("tetrahedron", 1, Contact, 20): (1.6e-3, 1.0e-4),
-    ("tetrahedron", 2, Contact, 0): (7.8e-2, 8.6e-3),
+    ("hexahedron", 1, 0): (1.3e-2, 3.0e-3),
+    ("hexahedron", 1, 20): (5.0e-4, 6.0e-5),
+    ("hexahedron", 2, 0): (8.2e-2, 1.4e-2),
+    ("tetrahedron", 1, 0): (2.1e-2, 1.6e-3),
+    ("tetrahedron", 1, 20): (1.6e-3, 1.0e-4),
+    ("tetrahedron", 2, 0): (7.8e-2, 8.6e-3),
 }
 
 
-@pytest.mark.parametrize(("cell", "order", "kind", "degree"), PATCH)
-def test_patch(cell: str, order: int, kind: Any, degree: int) -> None:
+@pytest.mark.parametrize(("cell", "order", "degree"), PATCH)
+def test_patch(cell: str, order: int, degree: int) -> None:
     """Uniform compression across meshes that do not match (4 x 4 on 3 x 3 facets).
 
-    Requirement: pressure at every point and displacement within 0.5 % for two half passes.
     Source: uniform stress, `p = delta / (1/E + 1/penalty)` for bodies of height one together, with
-    symmetry planes at two sides. Two half passes integrate the shape functions of the other body
-    over the overlaps of the facets, which is exact here; a single pass samples them at its points,
-    and its error falls with the degree.
+    symmetry planes at two sides. A pass of points samples the shape functions of the other body,
+    and its error falls with the degree; slave nodes are exact, `test_mortar`.
     """
-    errors = _patch_errors(_patch_blocks(cell, order), kind, degree or None)
-    for error, bound in zip(errors, PATCH[cell, order, kind, degree], strict=True):
+    errors = _patch_errors(_patch_blocks(cell, order), degree or None)
+    for error, bound in zip(errors, PATCH[cell, order, degree], strict=True):
         assert error < bound
-
-
-@pytest.mark.parametrize("order", [1, 2])
-@pytest.mark.parametrize("cell", ["hexahedron", "tetrahedron"])
-def test_patch_of_distorted_facets(cell: str, order: int) -> None:
-    """The same with the nodes of both meshes moved at random where they meet, two half passes.
-
-    Tolerance 0.5 %, as demanded. On triangles the integrals stay exact; on quadrilaterals that are
-    no parallelograms shape functions are no polynomials of the position: 0.03 % (order 1) and
-    0.14 % (order 2) measured.
-    """
-    model = _patch_blocks(cell, order)
-    x = model.mesh.geometry.x
-    inner = (np.abs(x[:, 2]) < 1e-9) & np.all(np.abs(x[:, :2] - 0.5) < 0.499, axis=1)
-    x[inner, :2] += np.random.default_rng(3).uniform(-0.05, 0.05, (inner.sum(), 2))
-    assert max(_patch_errors(model, TWO_HALF, None)) < (5e-3 if cell == "hexahedron" else 1e-8)
 
 
 def _patch_blocks(cell: str, order: int) -> Model:
@@ -259,7 +191,7 @@ def _patch_blocks(cell: str, order: int) -> Model:
     )
 
 
-def _patch_errors(model: Model, kind: Any, degree: int | None) -> tuple[float, float]:
+def _patch_errors(model: Model, degree: int | None) -> tuple[float, float]:
     """Largest error of the pressure and of the displacement, of the largest value."""
     penalty, pressure = 4e4, 10.0
     law = ContactLaw(
@@ -267,7 +199,7 @@ def _patch_errors(model: Model, kind: Any, degree: int | None) -> tuple[float, f
         Adhesion(stiffness=(1e3, 1e3)),
         Friction(coefficients=(0.3, 0.3)),
     )
-    contact = kind(model, "upper.bottom", "lower.top", law=law, degree=degree, current_area=False)
+    contact = Contact(model, "upper.bottom", "lower.top", law, degree=degree, current_area=False)
     elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
     problem = Problem(model, {"upper": elastic, "lower": elastic}, [contact])
     held = {f"{body}.left": {"x": 0.0} for body in ("upper", "lower")}

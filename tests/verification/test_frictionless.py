@@ -116,10 +116,10 @@ PENALTY = 10.0 * YOUNG / 0.5
 
 BODIES = [
     pytest.param(kind, method, strategy, id=f"{kind}-{method}-{strategy}")
-    for kind in ("rigid", "tilted", "tetrahedra", "order 2", "facets", "two-half")
+    for kind in ("rigid", "tilted", "tetrahedra", "order 2", "facets", "mortar")
     for method in ("penalty", "newton", "uzawa")
     for strategy in ("direct", "condensed", "iterative")
-    if not (kind == "two-half" and method != "penalty")
+    if not (kind == "mortar" and method != "penalty")
     if strategy == "direct" or kind in ("rigid", "facets")
 ]
 
@@ -130,7 +130,7 @@ def test_a_block_on_a_frictionless_table_is_in_uniaxial_stress(kind, method, str
 
     Hooke's law with the penalty in series; with multipliers 1/eps is 0 but for the tolerance of
     1e-6 of a facet, a share SIZE 1e-6 / PRESS = 2.5e-5 of the way. Newton's method ends at 1e-10
-    of the forces. Two half passes have nu = 0: what widens comes to lie on further points.
+    of the forces. At slave nodes nu = 0: what widens comes to lie on further facets.
     """
     pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
     series = 1.0 / PENALTY if method == "penalty" else 0.0
@@ -155,11 +155,11 @@ def _pressed(
     order = 2 if kind == "order 2" else 1
     block = BoxSpec((0, 0, 0), (1, 1, SIZE), (2, 2, 2), cell=cell, order=order)
     bodies = [Body("block", block, Placement(rotate=turn))]
-    elastic = make_material("linear-elastic", E=YOUNG, nu=0.0 if kind == "two-half" else 0.3)
+    elastic = make_material("linear-elastic", E=YOUNG, nu=0.0 if kind == "mortar" else 0.3)
     step: dict[str, Any] = {"displacement": {"block.top": {"z": -PRESS}}}
     if kind == "tilted":
         step = {"traction": {"block.top": dict(zip("xyz", -pressure * normal, strict=True))}}
-    if kind in ("facets", "two-half"):
+    if kind in ("facets", "mortar"):
         # a table of facets: a base without a node that is not held
         base = BoxSpec((-0.5, -0.5, -0.5), (2, 2, 0.5), (4, 4, 1))
         bodies.append(Body("base", base))
@@ -182,11 +182,9 @@ def _contact(kind: str, method: str, model: Any, normal: np.ndarray) -> Any:
     from anisocontact.interface import Augmentation
 
     laws = NormalLaw(penalty=PENALTY), Adhesion(stiffness=PENALTY), Friction(coefficients=0)
-    if kind == "two-half":
+    if kind == "mortar":
         law = ContactLaw(*laws)
-        return Contact(
-            model, "block.bottom", "base.top", law=law, current_area=False, two_half=True
-        )
+        return Contact(model, "block.bottom", "base.top", law=law, current_area=False, mortar=True)
     augmented = None if method == "penalty" else Augmentation(multipliers=method)
     options: dict[str, Any] = {"augmentation": augmented, "current_area": False}
     if kind == "facets":

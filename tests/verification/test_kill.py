@@ -13,7 +13,7 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-#: Two soft bodies whose meshes do not match, both half passes; so few Newton iterations are not
+#: Two soft bodies whose meshes do not match, at slave nodes; so few Newton iterations are not
 #: enough for some increments, so that parts, cuts and extrapolation are at work too.
 CASE = """
 [mesh.box.block]
@@ -39,7 +39,7 @@ nu = 0.4
 [[contact]]
 slave = "block.bottom"
 master = "mat.top"
-pass = "two-half"
+pass = "mortar"
 adhesion = { stiffness = [8, 16], directions = { kind = "constant", vector = [1, 0, 0], angle_deg = 30 } }
 friction = { coefficients = [0.2, 0.4], directions = { kind = "constant", vector = [1, 0, 0], angle_deg = 30 } }
 

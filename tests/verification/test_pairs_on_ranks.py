@@ -55,11 +55,6 @@ def difference(one: Arrays, other: Arrays) -> dict[str, float]:
             if name.endswith("shares"):  # they count as much as of a node is covered
                 a, b = (v * both[prefix + "areas"][:, None] for v, both in ((a, one), (b, other)))
             _compare(out, name, a, b[rows])
-        # what the transfer works is a difference of works, so they are its measure
-        work = np.abs(one["common/external_work"]).max()
-        size = np.abs(one.get(prefix + "transferred", np.zeros(1))).max(initial=0.0)
-        if size > 0.0:
-            out[prefix + "transferred."] *= size / work
     return out
 
 
@@ -110,7 +105,7 @@ def test_two_processes(folder: Path) -> None:
     Requirement: 1e-8, also where edges lie on each other. Source: the same equations. Tolerance
     1e-10: sums in another order; 1e-13 measured.
     """
-    names = ("two-half", "matching")
+    names = ("single", "far")
     for ranks in (1, 2):
         start(ranks, folder, "whole", *names)
     for name in names:
@@ -120,7 +115,7 @@ def test_two_processes(folder: Path) -> None:
 @pytest.mark.mpi
 @pytest.mark.slow
 def test_processes_change_nothing(folder: Path) -> None:
-    """One pass and two, order 2, far, augmented, beside a free rigid body, and a body on itself.
+    """Integration points, order 2, far, augmented, and beside a free rigid body.
 
     Requirement: 1e-8, also where a rank has no slave facets. Source: the same equations. Tolerance
     1e-10: sums in another order; 4e-12 measured, in the gaps of the augmented contact.
@@ -130,7 +125,7 @@ def test_processes_change_nothing(folder: Path) -> None:
         start(ranks, folder, "whole", *names)
     for name in names:
         one = read(folder, f"{name}-1-whole")
-        assert one["points/0/state"]["slip_accumulated"].max() > 0.0 or name == "folded"
+        assert one["points/0/state"]["slip_accumulated"].max() > 0.0
         for ranks in (2, 3):
             other = read(folder, f"{name}-{ranks}-whole")
             assert len(other["facets"]) == ranks
@@ -196,7 +191,7 @@ def test_restart_on_others(folder: Path, before: int, after: int) -> None:
     Requirement: 1e-10. Source: the run that was not stopped. Tolerance 1e-11: sums in another
     order; 2e-13 measured, in the history of the slave points.
     """
-    names = ("two-half", "far", "single", "in-python", "folded", "mortar-far")
+    names = ("far", "single", "in-python", "mortar-far", "mortar-folded")
     start(before, folder, "stop", *names)
     start(after, folder, f"from:{before}", *names)
     for name in names:

@@ -67,8 +67,6 @@ def _contact(model: Model, master: str, unit: float, mu: tuple[float, float]) ->
     laws = _laws(unit, mu)
     if master == "plate":
         return Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws))
-    if master == "plate from both sides":
-        return Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws), two_half=True)
     if master == "plane":
         surface = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
         return Contact(model, "block.bottom", Interface(surface, *laws))
@@ -117,7 +115,7 @@ def _shifted(*by: float) -> Move:
     return lambda x: x + np.array(by)
 
 
-MASTERS = ("plane", "plate", "plate from both sides")
+MASTERS = ("plane", "plate")
 
 
 @pytest.mark.parametrize("master", MASTERS)

@@ -434,8 +434,6 @@ def test_mistakes_are_one_line():
     twisted = _stacked(Axisymmetric(lateral=True))
     with pytest.raises(InputError, match="facets given with twist"):
         Contact(twisted, "b.bottom", "a.top", _law())
-    with pytest.raises(InputError, match="two_half: given; a mesh of two dimensions has one pass"):
-        Contact(_stacked(PlaneStrain()), "b.bottom", "a.top", _law(), two_half=True)
     with pytest.raises(InputError, match="plane stress needs a linear material"):
         Problem(rectangle(PlaneStress()), {"b": RUBBER})
     problem = Problem(rectangle(Axisymmetric()), {"b": STEEL})

@@ -19,7 +19,7 @@ from anisocontact.case.contacts import contact
 from anisocontact.case.courses import Schedule
 from anisocontact.case.law_file import law_of
 from anisocontact.case.material_file import material_of
-from anisocontact.case.model import Case, StepSection
+from anisocontact.case.model import MORTAR, Case, StepSection
 from anisocontact.case.read import CaseFile, load
 from anisocontact.case.ties import close_gaps_of
 from anisocontact.case.units import doubts
@@ -74,7 +74,12 @@ class Built:
         low, high = x.min(axis=0, initial=np.inf), x.max(axis=0, initial=-np.inf)
         low = np.min(self.problem.comm.allgather(low), axis=0)
         high = np.max(self.problem.comm.allgather(high), axis=0)
-        return doubts(case.units, young, densities, float((high - low).max()))
+        found = doubts(case.units, young, densities, float((high - low).max()))
+        return found + [
+            f'contact[{i}].pass: "{section.pass_}" is "{MORTAR}" from now on; name that'
+            for i, section in enumerate(case.contact)
+            if section.of_before
+        ]
 
 
 def build(file: CaseFile, python: bool = True) -> Built:

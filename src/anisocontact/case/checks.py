@@ -13,15 +13,12 @@ from anisocontact.case.model import (
     AUGMENTED,
     MORTAR,
     PENALTY,
-    SINGLE,
-    TWO_HALF,
     Case,
     ContactSection,
     StepSection,
 )
 from anisocontact.case.output import check_output
 from anisocontact.case.python_section import MaterialTable
-from anisocontact.case.quantity import AUTO
 from anisocontact.case.rigid_checks import check_rigid
 from anisocontact.case.section import near
 from anisocontact.case.ties import TieSection
@@ -152,8 +149,10 @@ def _contact(
 ) -> Iterator[InputError]:
     yield from _group(case, contact.slave, f"{place}.slave")
     yield from _method(contact, place)
-    if contact.mortar and contact.degree is not None:
-        text = f'given with pass "{MORTAR}", whose slave nodes have no quadrature of a degree'
+    at_nodes = contact.mortar or contact.self_contact
+    if at_nodes and contact.degree is not None:
+        with_ = "self_contact" if contact.self_contact else f'pass "{MORTAR}"'
+        text = f"given with {with_}, whose slave nodes have no quadrature of a degree"
         yield InputError(text, field=f"{place}.degree")
     if contact.apart is not None and not contact.self_contact:
         text = "given without self_contact = true, which it belongs to"
@@ -165,9 +164,6 @@ def _contact(
         text = f'"{contact.master}" given, "{contact.slave}" needed: the slave is its own master'
         yield InputError(text, field=f"{place}.master")
         return
-    if contact.half_passes:
-        text = f'"{TWO_HALF}" given, "{SINGLE}" needed: a rigid master cannot be the slave'
-        yield InputError(text, field=f"{place}.pass")
     master = surfaces.get(contact.master)
     if contact.master not in surfaces:
         text = f'"{contact.master}" given, no such surface; {near(contact.master, list(surfaces))}'
@@ -188,14 +184,6 @@ def _method(contact: ContactSection, place: str) -> Iterator[InputError]:
         if contact.multipliers != AUTO_MULTIPLIERS:
             text = f'given with method "{PENALTY}", needs "{AUGMENTED}"'
             yield InputError(text, field=f"{place}.multipliers")
-    elif contact.method == AUTO and not contact.asks_for_multipliers:
-        return
-    elif contact.half_passes:
-        text = f'"{TWO_HALF}" given, "{SINGLE}" or "{MORTAR}" needed with method "{AUGMENTED}"'
-        yield InputError(text, field=f"{place}.pass")
-    elif contact.self_contact:
-        text = f'"{AUGMENTED}" given, "{PENALTY}" needed with self_contact = true'
-        yield InputError(text, field=f"{place}.method")
 
 
 def _meshed(case: Case, contact: ContactSection, place: str) -> Iterator[InputError]:
@@ -205,12 +193,6 @@ def _meshed(case: Case, contact: ContactSection, place: str) -> Iterator[InputEr
                 f'"{contact.master}" given, "{contact.slave}" needed: the slave is its own master'
             )
             yield InputError(text, field=f"{place}.master")
-        if contact.half_passes:
-            text = f'"{TWO_HALF}" given, "{SINGLE}" needed: self-contact has both sides in one pass'
-            yield InputError(text, field=f"{place}.pass")
-        elif contact.mortar:
-            text = f'"{MORTAR}" given, "{SINGLE}" needed: self-contact has integration points'
-            yield InputError(text, field=f"{place}.pass")
     elif contact.master == contact.slave:
         text = (
             f'"{contact.master}" given, the same facets as the slave; '

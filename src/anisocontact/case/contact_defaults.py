@@ -36,8 +36,8 @@ def chosen(
         The table, with names of a pass and of a method.
     """
     taken = section
-    if section.pass_ == AUTO:
-        points = any(_for_points(section, model, materials))
+    if section.pass_ == AUTO or section.of_before:
+        points = section.pass_ == AUTO and any(_for_points(section, model, materials))
         taken = section.model_copy(update={"pass": SINGLE if points else MORTAR})
     if taken.method == AUTO:
         taken = taken.model_copy(update={"method": _method(taken, law)})
@@ -54,7 +54,9 @@ def _for_points(
     section: ContactSection, model: Model, materials: Sequence[Material]
 ) -> Iterator[bool]:
     """What speaks for integration points, not slave nodes."""
-    yield section.self_contact or section.degree is not None
+    if section.self_contact:  # a fold has none
+        return
+    yield section.degree is not None
     yield model.mesh.comm.size > 1 and model.idealisation.dim == 2
     if section.meshed:
         slave, master = materials

@@ -85,7 +85,6 @@ def _made(
             degree=section.degree,
             augmentation=augmentation,
             adjust=section.adjust_gap if section.adjust else None,
-            two_half=section.half_passes,
             mortar=section.mortar,
             self_contact=section.self_contact,
             apart=section.apart,

@@ -45,9 +45,9 @@ from anisocontact.interface.augmentation import NEWTON, SCHEMES, UZAWA, Augmenta
 PENALTY, AUGMENTED = "penalty", "augmented"
 SINGLE, TWO_HALF, MORTAR = "single", "two-half", "mortar"
 _PASSES = (
-    "where the law is evaluated: at integration points of the slave alone, or, between bodies, "
-    "of both with half the weight; or at the slave nodes, with dual mortar weights; "
-    f'"{AUTO}" takes "{MORTAR}" where it can'
+    "where the law is evaluated: at integration points of the slave, or at its nodes, with dual "
+    f'mortar weights; "{AUTO}" takes "{MORTAR}" where it can, and "{TWO_HALF}" of before is '
+    f'"{MORTAR}"'
 )
 
 
@@ -137,8 +137,8 @@ class ContactSection(Section):
         _number(
             "scalar",
             "length",
-            "self-contact: facets nearer to each other than this in the reference configuration do "
-            "not meet, three facet sizes if left out",
+            "self-contact: facets nearer to each other than this in the reference configuration "
+            "that do not face each other do not meet, three facet sizes if left out",
             "positive",
         ),
     ] = None
@@ -202,14 +202,14 @@ class ContactSection(Section):
         return self.tolerance is not None or self.multipliers != AUTO_MULTIPLIERS
 
     @property
-    def half_passes(self) -> bool:
-        """Whether each of two bodies is slave and master for half of the work."""
-        return self.pass_ == TWO_HALF
+    def of_before(self) -> bool:
+        """Whether the pass is one that was given up for mortar: two half ones, or of a fold."""
+        return self.pass_ == TWO_HALF or (self.self_contact and self.pass_ == SINGLE)
 
     @property
     def mortar(self) -> bool:
         """Whether the law is evaluated at slave nodes with mortar weights."""
-        return self.pass_ == MORTAR
+        return self.pass_ == MORTAR or self.of_before
 
 
 class Case(Section):

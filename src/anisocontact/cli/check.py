@@ -104,8 +104,7 @@ def _pass(contact: Contact) -> str:
     """Where the law of a contact is evaluated, and how exactly it holds."""
     first = contact.passes[0]
     where = "at slave nodes (mortar)" if first.slave_points.at_nodes else "at integration points"
-    both = ", two half passes" if len(contact.passes) > 1 else ""
-    return f"{where}{both}, {'multipliers' if first.trials.augmented else 'penalties'}"
+    return f"{where}, {'multipliers' if first.trials.augmented else 'penalties'}"
 
 
 def _points(built: Built) -> Iterator[str]:

@@ -1,18 +1,17 @@
-"""Contact of a body: slave points, what they meet, and the laws there, in one pass or two."""
+"""Contact of a body: slave points, what they meet, and the laws there."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Self, Unpack
+from typing import Any, Unpack
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.contact.history import Snapshot
-from anisocontact.contact.making import Before, Options, SurfaceMaster, given_master, passes_of
+from anisocontact.contact.making import Before, Options, SurfaceMaster, before_this, pass_of
 from anisocontact.contact.master import Resting
-from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.interface import STATUS, ContactLaw, Response, State
 from anisocontact.interface.augmentation import Augmentation
@@ -33,12 +32,8 @@ class Contact:
     tangent its derivative: by projection, normal, metric, directions and, where the area is that of
     now, its change. The history advances with `commit` only.
 
-    With `two_half` both groups are slave and master for half of the work, so that neither is
-    preferred; with `self_contact` a group folds onto itself, each side of the fold with half of the
-    weight. Forces then act on the master by integrals over the overlaps of the facets. What two
-    half passes report is seen from the slave: a point of the second pass counts at its foot on the
-    slave, with the reaction that acts there. Of self-contact resultants are sums of what the points
-    get as slaves, on both sides: what is left is small.
+    With `self_contact` a group folds onto itself: it is evaluated at the slave nodes, and of facets
+    that face each other one is the slave, see `Fold`. Resultants are what the slaves get.
 
     Args:
         model: Mesh with the facet groups.
@@ -56,12 +51,10 @@ class Contact:
             `adjusted`, length; nothing if not given.
         reach: Distance within which facets are searched, length; twice the size of the slave's
             facets if not given.
-        two_half: Whether there are two half passes.
-        self_contact: Whether the slave is its own master.
-        apart: Facets nearer to each other than this in the reference configuration, and neighbours,
-            do not meet, length; in self-contact three facet sizes if not given.
-        overlaps: Whether forces on facets of a single pass are integrated over the overlaps too
-            (see `Transfer`), or act at the feet of the slave points.
+        self_contact: Whether the slave is its own master, at its nodes.
+        apart: Facets nearer to each other than this in the reference configuration that do not face
+            each other there do not meet, nor do neighbours, length; in self-contact three facet
+            sizes if not given.
         mortar: Whether the law is evaluated at the slave nodes, with dual mortar weights, see
             `MortarMaster`; against a surface at the slave nodes with the integrals of their shape
             functions.
@@ -71,7 +64,7 @@ class Contact:
         slave: As given.
         name: Name in output.
         space: Vector space of the displacement.
-        passes: The passes over slave points: one, or two.
+        passes: The pass over the slave points.
         physical_adhesion: Whether the stiffness of adhesion is physical, so that elastic slip is
             none of its faults.
         facet_of_point: Number of each point's facet in the group it lies on, (n,).
@@ -99,9 +92,9 @@ class Contact:
         >>> pair = Contact(model, "block.bottom", "base.top", law)
         >>> len(pair.areas), round(float(pair.areas.sum()), 12)
         (4, 1.0)
-        >>> both = Contact(model, "block.bottom", "base.top", law, two_half=True)
-        >>> [half.slave for half in both.passes]
-        ['block.bottom', 'base.top']
+        >>> nodes = Contact(model, "block.bottom", "base.top", law, mortar=True)
+        >>> len(nodes.areas), round(float(nodes.areas.sum()), 12)
+        (4, 1.0)
     """
 
     def __init__(
@@ -116,55 +109,38 @@ class Contact:
         augmentation: Augmentation | None = None,
         adjust: float | None = None,
         reach: float | None = None,
-        two_half: bool = False,
         self_contact: bool = False,
         apart: float | None = None,
-        overlaps: bool = False,
         mortar: bool = False,
         name: str = "",
         **before: Unpack[Before],
     ) -> None:
-        master = given_master(master, before)
+        master, before_mortar = before_this(master, before)
         options = Options(
             degree,
             current_area,
             augmentation,
             adjust,
             reach,
-            two_half,
             self_contact,
             apart,
-            overlaps,
-            mortar,
+            mortar or before_mortar or self_contact,
         )
-        self._compose(passes_of(model, slave, master, law, options), name)
-
-    @classmethod
-    def of(cls, *passes: Pass, name: str = "") -> Self:
-        """A contact of passes, of which the first says what it is of."""
-        new = cls.__new__(cls)
-        new._compose(passes, name)
-        return new
-
-    def _compose(self, passes: tuple[Pass, ...], name: str) -> None:
-        first = passes[0]
-        self.passes, self.slave, self.name = passes, first.slave, name or first.slave
-        self.space = first.space
+        self._pass = made = pass_of(model, slave, master, law, options)
+        self.passes, self.slave, self.name = (made,), slave, name or slave
+        self.space, self._comm = made.space, made.space.mesh.comm
         self.physical_adhesion = True
-        self._trial: Snapshot | None = None
-        self.facet_of_point = np.concatenate([half.slave_points.facet for half in passes])
-        self._comm = first.space.mesh.comm
-        self._accept()
+        self.facet_of_point = made.slave_points.facet
 
     @property
     def interface(self) -> Any:
         """The laws, with their surface if it has one."""
-        return self.passes[0].interface
+        return self._pass.interface
 
     @property
     def groups(self) -> tuple[str, ...]:
         """Facet group of the slave, and of the master if it is one."""
-        return self.passes[0].groups
+        return self._pass.groups
 
     @property
     def master(self) -> str:
@@ -184,62 +160,61 @@ class Contact:
     @property
     def body(self) -> RigidBody | None:
         """Rigid body that carries the master, if one does."""
-        return self.passes[0].master.body
+        return self._pass.master.body
 
     @property
     def quadrature(self) -> FacetQuadrature:
         """Quadrature of the slave, of the first pass."""
-        return self.passes[0].slave_points.quadrature
+        return self._pass.slave_points.quadrature
 
     @property
     def current_area(self) -> bool:
         """Whether tractions act on the area of now."""
-        return self.passes[0].slave_points.current_area
+        return self._pass.slave_points.current_area
 
     @property
     def facet_size(self) -> float:
         """Length of a slave facet: square root of the mean area."""
-        return self.passes[0].slave_points.size
+        return self._pass.slave_points.size
 
     @property
     def master_size(self) -> float:
         """Length of a facet of the master; 0 for a surface."""
-        return self.passes[0].master.size
+        return self._pass.master.size
 
     @property
     def body_stiffness(self) -> float:
         """As of `Pass`."""
-        return self.passes[0].body_stiffness
+        return self._pass.body_stiffness
 
     def slip_stiffness(self, dt: float) -> float:
         """As of `Trials`."""
-        return self.passes[0].trials.slip_stiffness(dt)
+        return self._pass.trials.slip_stiffness(dt)
 
     @property
     def ran_off(self) -> Floats:
         """Slave points that left the end of the master in the accepted increment, (k, 3)."""
-        # points of a second pass come from under an end of the slave whenever it moves
-        return self.passes[0].ran_off
+        return self._pass.ran_off
 
     @property
     def points(self) -> Floats:
         """Slave points where they are after the accepted increment, (n, 3), length."""
-        return self._accepted.points
+        return self._pass.points
 
     @property
     def areas(self) -> Floats:
         """Area of each slave point after the accepted increment, (n,), length^2."""
-        return self._accepted.areas
+        return self._pass.areas
 
     @property
     def last(self) -> Response:
         """Response of the accepted increment."""
-        return self._accepted.response
+        return self._pass.last
 
     @property
     def current(self) -> Snapshot:
         """The trial, or the accepted increment if there was none since."""
-        return self._trial or self._accepted
+        return self._pass.current
 
     @property
     def trial(self) -> Response:
@@ -249,14 +224,11 @@ class Contact:
     @property
     def state(self) -> State:
         """Committed history, one record for each point."""
-        if len(self.passes) == 1:
-            return self.passes[0].state
-        return np.concatenate([half.state for half in self.passes])
+        return self._pass.state
 
     def take_supports(self, fixed: Mask, resting: Sequence[Resting]) -> None:
         """As of `Pass`."""
-        for half in self.passes:
-            half.take_supports(fixed, resting)
+        self._pass.take_supports(fixed, resting)
 
     def update(self, u: Floats, dt: float) -> Response:
         """Response to nodal displacements from the committed history, kept as the trial.
@@ -266,84 +238,61 @@ class Contact:
             dt: Time increment.
 
         Returns:
-            The response of all passes as seen from the slave; the committed history is unchanged.
+            The response; the committed history is unchanged.
         """
-        for half in self.passes:
-            try:
-                half.update(u, dt)
-            except InputError as error:  # a law in Python
-                error.failed = half.unanswered(self.name)
-                raise
-        self._trial = seen_from_slave([half.current for half in self.passes])
-        return self._trial.response
+        try:
+            return self._pass.update(u, dt)
+        except InputError as error:  # a law in Python
+            error.failed = self._pass.unanswered(self.name)
+            raise
 
     def failed_point(self) -> FailedPoint | None:
         """The first point of this rank at which the laws have failed in the trial, if any has."""
-        found = (half.failed_point(self.name) for half in self.passes)
-        return next((point for point in found if point is not None), None)
+        return self._pass.failed_point(self.name)
 
     def commit(self) -> None:
         """Make the trial the history."""
-        for half in self.passes:
-            half.commit()
-        self._accept()
+        self._pass.commit()
 
     def roll_back(self) -> None:
         """Forget the trial."""
-        for half in self.passes:
-            half.roll_back()
-        self._trial = None
+        self._pass.roll_back()
 
-    def restore(self, kept: Sequence[Mapping[str, npt.NDArray[Any]]], u: Floats) -> None:
-        """Go on from what `Pass.persistent` gave.
-
-        Args:
-            kept: The state of each pass.
-            u: Displacement of the local nodes in that state, (nodes, 3), length.
-        """
-        for half, its in zip(self.passes, kept, strict=True):
-            half.restore(its, u)
-        self._accept()
-
-    def _accept(self) -> None:
-        self._trial = None
-        self._accepted = seen_from_slave([half.accepted for half in self.passes])
+    def restore(self, kept: Mapping[str, npt.NDArray[Any]], u: Floats) -> None:
+        """As of `Pass`."""
+        self._pass.restore(kept, u)
 
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial to the local nodes, (nodes, 3), force."""
-        for half in self.passes:
-            half.answer.add_force(out)
+        self._pass.answer.add_force(out)
 
     def couplable(self) -> Ints:
         """Local nodes that the contact acts on; all ranks together have all of them."""
-        return self.passes[0].master.couplable()
+        return self._pass.master.couplable()
 
     def improve(self) -> bool:
         """As of `Trials`."""
-        return any([half.trials.improve() for half in self.passes])
+        return self._pass.trials.improve()
 
     def soften(self) -> bool:
         """As of `Trials`."""
-        return any([half.trials.soften() for half in self.passes])
+        return self._pass.trials.soften()
 
     def footing(self) -> npt.NDArray[np.int64]:
         """As of `Master`."""
-        return np.concatenate([half.master.footing(len(half.state)) for half in self.passes])
+        return self._pass.master.footing(len(self.state))
 
     def hold(self, points: Mask) -> None:
         """As of `Master`."""
-        ends = np.cumsum([len(half.state) for half in self.passes])
-        for half, its in zip(self.passes, np.split(points, ends[:-1]), strict=True):
-            half.master.hold(its)
+        self._pass.master.hold(points)
 
     def strayed(self) -> Floats:
         """As of `Master`."""
-        return np.concatenate([half.master.strayed(len(half.state)) for half in self.passes])
+        return self._pass.master.strayed(len(self.state))
 
     def elastic_slip(self) -> Floats:
         """Elastic part of the displacement of the slave relative to the master, (n, 3), length."""
-        slips = [half.elastic_slip() for half in self.passes]
-        return np.concatenate([*slips[:1], *(-slip for slip in slips[1:])])
+        return self._pass.elastic_slip()
 
     def counts(self) -> dict[str, int]:
         """Number of open, sticking and slipping points of the trial, over all ranks."""
@@ -360,13 +309,12 @@ class Contact:
         Returns:
             Force (3,) and moment (3,), force and force times length.
         """
-        total = self._comm.allreduce(self._accepted.wrench(np.asarray(about)))
+        total = self._comm.allreduce(self._pass.accepted.wrench(np.asarray(about)))
         return total[:3], total[3:]
 
     def energies(self) -> dict[str, float]:
-        """As of `Pass`, the sum of all passes."""
-        found = [half.energies() for half in self.passes]
-        return {name: sum(one[name] for one in found) for name in found[0]}
+        """As of `Pass`."""
+        return self._pass.energies()
 
     def extreme(self, values: Floats) -> float:
         """Largest of some numbers at points, over all ranks; 0 without points."""
@@ -382,41 +330,12 @@ class Contact:
 
     def counted(self) -> Mask:
         """Slave points of the accepted increment that count among peaks, (n,)."""
-        return np.concatenate(
-            [half.slave_points.peaks(half.accepted.areas) for half in self.passes]
-        )
+        return self._pass.slave_points.peaks(self.areas)
 
     def touching(self) -> Floats:
         """Area of each slave point on which it touches, accepted increment, (n,), length^2."""
-        return np.concatenate([half.slave_points.touching(half.accepted) for half in self.passes])
+        return self._pass.slave_points.touching(self._pass.accepted)
 
     def covered(self) -> Floats:
         """Share of each slave point that a master was opposite to, accepted increment, (n,)."""
-        return np.concatenate(
-            [half.slave_points.covered(half.accepted.areas) for half in self.passes]
-        )
-
-
-def seen_from_slave(passes: Sequence[Snapshot]) -> Snapshot:
-    """Points of one pass, or of both as seen from the slave of the first.
-
-    A point of the second pass counts at its foot on that slave, with the reaction that acts there,
-    so that sums over all points are forces and moments of the pair.
-    """
-    a, *rest = passes
-    if not rest:
-        return a
-    (b,) = rest
-    r, s = a.response, b.response
-    feet = b.points - (s.gap + s.state["offset"])[:, None] * s.normal
-    response = Response(
-        traction=np.concatenate([r.traction, -s.traction]),
-        tangent=np.empty((0, 3, 3)),
-        state=np.concatenate([r.state, s.state]),
-        normal=np.concatenate([r.normal, -s.normal]),
-        directions_adhesion=np.concatenate([r.directions_adhesion, s.directions_adhesion]),
-        directions_friction=np.concatenate([r.directions_friction, s.directions_friction]),
-        failure=np.concatenate([r.failure, s.failure]),
-    )
-    areas = np.concatenate([a.areas, b.areas])
-    return Snapshot(np.concatenate([a.points, feet]), areas, response)
+        return self._pass.slave_points.covered(self.areas)

@@ -15,7 +15,6 @@ from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.sides import Sides, located
-from anisocontact.contact.transfer import Transfer
 from anisocontact.interface import Response, State
 from anisocontact.interface.contact_law import FacetBatch, FacetLaw
 from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
@@ -70,16 +69,12 @@ class ByPoints:
         residual: Less the force on the nodes of the rows, (n, 3 r).
         tangent: Its derivative, (n, 3 r, 3 c).
         own: Number of nodes of a slave facet, which come first.
-        transfer: Who hands forces on the master over; None if they act at the feet of the points.
-        handed: Points whose force on the master it hands over, (n,).
     """
 
     nodes: Ints
     residual: Floats
     tangent: Floats
     own: int
-    transfer: Transfer | None
-    handed: Mask
 
     @property
     def rows(self) -> Ints:
@@ -89,27 +84,16 @@ class ByPoints:
     def add_force(self, out: Floats) -> None:
         """As of `Forces`."""
         self.add_rows(-self.residual, out)
-        if self.transfer is not None:
-            self.transfer.add_force(out)
 
     def add_rows(self, forces: Floats, out: Floats) -> None:
-        """Add forces, (n, 3 r), changed here, but for those that are handed over."""
-        forces[self.handed, 3 * self.own :] = 0.0
+        """Add forces, (n, 3 r)."""
         rows = self.rows
         there = rows >= 0
         np.add.at(out, rows[there], forces.reshape(*rows.shape, 3)[there])
 
     def couplings(self, touching: Mask) -> list[Couplings]:
         """As of `Forces`."""
-        nodes, tangent, rows, own = self.nodes, self.tangent, self.rows, self.own
-        if self.transfer is None:
-            return [(rows[touching], nodes[touching], tangent[touching])]
-        handed, kept = touching & self.handed, touching & ~self.handed
-        return [
-            (rows[kept], nodes[kept], tangent[kept]),
-            (rows[handed, :own], nodes[handed], tangent[handed, : 3 * own]),
-            *self.transfer.couplings(nodes, self.by_nodes, handed),
-        ]
+        return [(self.rows[touching], self.nodes[touching], self.tangent[touching])]
 
     @cached_property
     def by_nodes(self) -> Floats:
@@ -159,18 +143,6 @@ class FacetAnswer[F: Forces]:
         forces = replace(self.forces, nodes=other.forces.nodes, tangent=other.forces.tangent)
         return replace(self, forces=forces, stiffness=stiffness)
 
-    def handed_over(self: FacetAnswer[ByPoints], now: Floats) -> Any:
-        """The same with forces on the master where the overlaps have them.
-
-        Args:
-            now: Positions of the nodes, (nodes, 3), length.
-        """
-        transfer, snapshot = self.forces.transfer, self.snapshot
-        if transfer is None:
-            return self
-        handed = transfer.update(now, snapshot.forces, snapshot.response.status != 0)
-        return replace(self, forces=replace(self.forces, handed=handed))
-
 
 @dataclass(frozen=True)
 class Evaluation:
@@ -180,14 +152,12 @@ class Evaluation:
         sides: Both sides.
         hit: Where the points are on the master.
         now: Positions of the nodes, (nodes, 3), length.
-        transfer: Who hands forces on the master over, if anybody.
         by_points: Whether every point is to have a block, or those of one pair of facets share one.
     """
 
     sides: Sides
     hit: FacetProjections
     now: Floats
-    transfer: Transfer | None
     by_points: bool
 
     def answer(self, law: FacetLaw, state: State, dt: float, tangent: bool) -> FacetAnswer[Any]:
@@ -208,9 +178,7 @@ class Evaluation:
         own, gathered = slave.quadrature.nodes.shape[1], self.sides.gathered
         forces: Forces
         if self.by_points:
-            none = np.zeros(len(state), dtype=bool)
-            arrays = found["nodes"], found["residual"], found["tangent"]
-            forces = ByPoints(*arrays, own, self.transfer, none)
+            forces = ByPoints(found["nodes"], found["residual"], found["tangent"], own)
         else:
             forces = ByFacets(found["force"], found["blocks"])
         return FacetAnswer(gathered, snapshot, found["stiffness"], forces)

@@ -16,8 +16,6 @@ from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.point_tangent import Nodes, PointTangent
 from anisocontact.contact.reachable import NodePairs, reachable, slid
 from anisocontact.contact.sides import Sides, initial_state, located
-from anisocontact.contact.transfer import Transfer
-from anisocontact.contact.transfer_work import transfer_work
 from anisocontact.interface import ContactLaw, State
 from anisocontact.interface.failed_point import OnFacets, one_point
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -36,29 +34,12 @@ class FacetMaster(MeshedMaster):
         law: Laws of the interface.
         group: Facet group of the master.
         size: Length of its facets.
-        mirrored: Whether angles of directions count about the normal of the slave, not of the
-            master: the other way round.
-        overlaps: Whether forces on the master are integrated over the overlaps of the facets (see
-            `Transfer`) or act at the feet of the slave points.
     """
 
-    def __init__(
-        self,
-        sides: Sides,
-        law: ContactLaw,
-        *,
-        group: str,
-        size: float,
-        mirrored: bool,
-        overlaps: bool,
-    ) -> None:
-        super().__init__(sides, law, group=group, size=size, mirrored=mirrored)
-        self._transfer = Transfer(sides) if overlaps else None
-        self._transferred = 0.0
+    def __init__(self, sides: Sides, law: ContactLaw, *, group: str, size: float) -> None:
+        super().__init__(sides, law, group=group, size=size)
         self._count = len(sides.points.facet)
         self.begin()
-        if self._transfer is not None:
-            self._transfer.place(sides.reference)
 
     @override
     def initial_state(self) -> State:
@@ -81,7 +62,6 @@ class FacetMaster(MeshedMaster):
             states = {id(state): state for state in histories}.values()
             hints = {id(h): h for h in (self._hint, self._accepted[1], *self._held.hints)}.values()
             named = [*(state["facet"] for state in states), *(hint.facet for hint in hints)]
-            named += [] if self._transfer is None else self._transfer.facets()
             for facets in named:
                 facets[:] = self._gathered.globally(facets)
             self._number_anew(u, named)
@@ -98,8 +78,6 @@ class FacetMaster(MeshedMaster):
         self._have(u, *named)
         for facets in named:
             facets[:] = self._gathered.renumbered(facets)
-        if self._transfer is not None:
-            self._transfer.gathered(self.sides)
 
     def _project(self, before: FacetProjections) -> FacetProjections:
         now, held = self._nodes.now, self._held.points
@@ -118,13 +96,12 @@ class FacetMaster(MeshedMaster):
         derivative: bool = False,
         separate: bool = False,
     ) -> FacetAnswer[Any]:
-        separate = separate or self._transfer is not None
-        asked = Evaluation(self.sides, self._hint, self._nodes.now, self._transfer, separate)
+        asked = Evaluation(self.sides, self._hint, self._nodes.now, separate)
         return asked.answer(self._derivative if derivative else self._law, state, dt, tangent)
 
     @override
     def failed_point(self, i: int, state: State, dt: float, **of_point: Any) -> OnFacets:
-        asked = Evaluation(self.sides, self._hint, self._nodes.now, None, True)
+        asked = Evaluation(self.sides, self._hint, self._nodes.now, True)
         batch, own = one_point(asked.batch(state), i, state)
         return OnFacets(
             **of_point,
@@ -132,13 +109,8 @@ class FacetMaster(MeshedMaster):
             dt=dt,
             state=own,
             law=self._given,
-            mirrored=self._mirrored,
             batch=batch,
         )
-
-    @override
-    def settled(self, answer: FacetAnswer[Any]) -> FacetAnswer[Any]:
-        return answer if self._transfer is None else answer.handed_over(self._nodes.now)
 
     @override
     def linear(self, answer: FacetAnswer[ByPoints]) -> PointTangent:
@@ -167,14 +139,13 @@ class FacetMaster(MeshedMaster):
     def probe(
         self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
     ) -> npt.NDArray[np.int8]:
-        asked = Evaluation(self.sides, self._hint, self._nodes.now, None, False)
-        law = ContactLaw(*laws).pairs(self._mirrored)
+        asked = Evaluation(self.sides, self._hint, self._nodes.now, False)
+        law = ContactLaw(*laws).pairs()
         return asked.answer(law, state, 1.0, False).snapshot.response.failure
 
     @override
     def reachable(self, way: Floats, margin: float, hops: int) -> list[NodePairs]:
-        alone = self._transfer is None
-        return reachable(self.sides, self._nodes.now, way, margin, hops, alone)
+        return reachable(self.sides, self._nodes.now, way, margin, hops)
 
     @override
     def slid(self, state: State) -> Floats:
@@ -224,11 +195,6 @@ class FacetMaster(MeshedMaster):
         left = np.zeros((0, 3))
         if now is not None:
             left = np.concatenate(self._comm.allgather(self.sides.lost(state, now)))
-            if self._transfer is not None:
-                step = self._nodes.now - self._gathered.everywhere(self._accepted[0])
-                work = transfer_work(self.sides, self._transfer, step, (before, now))
-                self._transferred += self._comm.allreduce(work)
-                self._transfer.place(self._nodes.now)
         self._accepted = (self._gathered.local(self._nodes.now), self._hint)
         return left
 
@@ -236,12 +202,6 @@ class FacetMaster(MeshedMaster):
     def roll_back(self, tried: bool) -> None:
         if tried:
             self._return()
-        if self._transfer is not None:
-            self._transfer.roll_back()
-
-    @override
-    def energies(self) -> dict[str, float]:
-        return {} if self._transfer is None else {"transfer": self._transferred}
 
     @override
     def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
@@ -249,10 +209,7 @@ class FacetMaster(MeshedMaster):
         kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
         for facets in (kept["state"]["facet"], kept["projection.facet"]):
             facets[:] = self._gathered.globally(facets)
-        return kept | {
-            "reference": self.sides.points.positions(self.sides.reference),
-            "transferred": np.full(self._count, self._transferred),
-        }
+        return kept | {"reference": self.sides.points.positions(self.sides.reference)}
 
     @override
     def restore(
@@ -262,13 +219,8 @@ class FacetMaster(MeshedMaster):
         named = kept["state"]["facet"], kept["projection.facet"]
         u = self._gathered.moved(u)
         self._number_anew(u, named)
-        ends = [v.max(initial=0.0) for v in (kept["transferred"], -kept["transferred"])]
-        most, least = np.max(self._comm.allgather(ends), axis=0)
-        self._transferred = float(most - least)
         names = [f.name for f in fields(FacetProjections)]
         self._hint = FacetProjections(*(np.array(kept[f"projection.{n}"]) for n in names))
         self._go_to(self.sides.reference + self._gathered.everywhere(u))
         self._accepted = (self._gathered.local(self._nodes.now), self._hint)
-        if self._transfer is not None:
-            self._transfer.place(self._nodes.now)
         return kept

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from anisocontact.base.fenicsx import basix, facet_sides, scalar_element
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sweep import Sweep
-from anisocontact.surfaces.facets import FacetSets, FacetSurface, outward_flips
+from anisocontact.surfaces.facets import outward_flips
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
@@ -75,40 +75,6 @@ def facet_mesh(space: Any, facets: Ints, sweep: Sweep | None = None) -> FacetMes
     return FacetMesh(topology, nodes, outward_flips(x, nodes, topology, middle), sweep)
 
 
-def near_facets(
-    mesh: FacetMesh, numbers: Ints, surface: FacetSurface, x: Floats, apart: float
-) -> FacetSets:
-    """Facets that a facet cannot meet: those that are near from the beginning.
-
-    Args:
-        mesh: The facets.
-        numbers: Their numbers on the surface, -1 for one that is not part of it, (m,).
-        surface: The surface they are part of, in the reference configuration.
-        x: Positions of the local nodes there, (nodes, 3), length.
-        apart: Facets nearer than this to the middle or a corner of a facet are near, and its
-            neighbours.
-
-    Returns:
-        A set for each facet, with itself.
-    """
-    corners = x[mesh.nodes[:, facet_corners(mesh.topology)]]
-    points = np.concatenate([corners, corners.mean(axis=1, keepdims=True)], axis=1)
-    count, each, _ = points.shape
-    found = surface.within(points.reshape(-1, 3), apart)
-    part = np.flatnonzero(numbers >= 0)
-    rings = surface.rings(numbers[part])
-    owner = np.concatenate(
-        [
-            np.repeat(np.arange(count * each) // each, np.diff(found.offsets)),
-            np.repeat(part, np.diff(rings.offsets)),
-        ]
-    )
-    all_facets = len(surface)
-    pairs = np.unique(owner * all_facets + np.concatenate([found.facets, rings.facets]))
-    offsets = np.searchsorted(pairs, np.arange(count + 1) * all_facets)
-    return FacetSets(offsets.astype(np.int64), (pairs % all_facets).astype(np.int32))
-
-
 def node_positions(space: Any) -> Floats:
     """Positions of the local nodes in the reference configuration, (nodes, 3), length."""
     return np.asarray(space.tabulate_dof_coordinates())
@@ -141,8 +107,6 @@ class FacetShapes:
         cell: Triangle or quadrilateral.
         order: Order of the shape functions.
         middle: Its middle, (2,).
-        overlap_degree: Degree that integrates the functions of `moments` times a position on a
-            part of the facet.
     """
 
     def __init__(self, topology: str) -> None:
@@ -150,7 +114,6 @@ class FacetShapes:
         self.cell = basix.CellType.triangle if triangle else basix.CellType.quadrilateral
         self.order = 2 if topology in {"tri6", "quad9"} else 1
         self.middle = np.full(2, 1.0 / 3.0 if triangle else 0.5)
-        self.overlap_degree = (1 if triangle else 2) * self.order + 1
         self._element = basix.create_element(
             basix.ElementFamily.P, self.cell, self.order, basix.LagrangeVariant.equispaced
         )
@@ -166,16 +129,6 @@ class FacetShapes:
         """
         table = np.asarray(self._element.tabulate(1, points))[..., 0]
         return table[0], np.stack([table[1], table[2]], axis=-1)
-
-    def moments(self, points: Floats, degree: int) -> Floats:
-        """Orthonormal polynomials up to a degree (in each coordinate of a quadrilateral), (n, k).
-
-        Args:
-            points: Coordinates on the reference facet, (n, 2).
-            degree: The degree.
-        """
-        kind = basix.PolynomialType.legendre
-        return np.asarray(basix.tabulate_polynomials(kind, self.cell, degree, points)).T
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,7 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
     """Contacts whose slave has much larger facets than the master.
 
     A single pass looks from points of the slave: what of the master lies between two of them is
-    not met. Slave nodes meet it, by its mean. Two half passes and self-contact look from both
-    sides.
+    not met. Slave nodes meet it, by its mean.
 
     Args:
         contacts: The contacts.
@@ -35,7 +34,7 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
     """
     found = []
     for contact in contacts:
-        if not contact.of_two_groups or len(contact.passes) > 1:
+        if not contact.of_two_groups:
             continue
         slave, master = contact.facet_size, contact.master_size
         if slave > ratio * master:

@@ -119,6 +119,7 @@ def check_start(contact: Beginning, size: float) -> None:
             "no direction at {count} slave points that can be in contact, the first at {point}: "
             "the field is singular there, out of its table or parallel to its normal",
             one.place,
+            contact.last.normal,
         )
 
 
@@ -130,14 +131,21 @@ def _check_distances(contact: Beginning) -> None:
 
 
 def _check_sides(contact: Beginning, size: float) -> None:
-    """The nearest points of two bodies that do not overlap have normals that face each other."""
-    located = contact.master.located(contact.state)
-    gaps = np.abs(contact.state["gap"])
+    """The nearest points of two bodies that do not overlap have normals that face each other.
+
+    Slave nodes overlap with what faces them alone, so that the master is looked at; a group that
+    is its own master has itself beside each point.
+    """
+    if contact.slave in contact.master.groups:
+        return
+    seen = contact.master.look(contact.points)
+    gaps = np.abs(seen.gap)
+    located = seen.on & (gaps <= contact.master.reach)
     comm = contact.space.mesh.comm
     least = min(comm.allgather(float(gaps[located].min(initial=np.inf))))
     nearest = located & (gaps <= least + OVERLAP * size)
     outward = contact.slave_points.outward
-    cosine = np.einsum("nd,nd->n", outward, contact.last.normal)
+    cosine = np.einsum("nd,nd->n", outward, seen.normal)
     wrong = nearest & (cosine > SAME_WAY)
     if 2 * comm.allreduce(int(wrong.sum())) <= comm.allreduce(int(nearest.sum())):
         return
@@ -148,6 +156,7 @@ def _check_sides(contact: Beginning, size: float) -> None:
         f"and master are {{outward}} and {{normal}}; turn the surface over, or name the facets on "
         "the other side",
         "master",
+        seen.normal,
     )
 
 
@@ -170,7 +179,9 @@ def _singular(contact: Beginning, one: Carried, size: float) -> npt.NDArray[np.b
 _DIRECTION = next(code for code, text in enumerate(FAILURE) if "direction field" in text)
 
 
-def _refuse(contact: Beginning, bad: npt.NDArray[np.bool_], text: str, field: str) -> None:
+def _refuse(
+    contact: Beginning, bad: npt.NDArray[np.bool_], text: str, field: str, normal: Floats
+) -> None:
     found = np.flatnonzero(bad)
     local: Any = None
     if found.size:
@@ -178,15 +189,15 @@ def _refuse(contact: Beginning, bad: npt.NDArray[np.bool_], text: str, field: st
         vectors = (
             contact.points[first],
             contact.slave_points.outward[first],
-            contact.last.normal[first],
+            normal[first],
         )
         local = [_shown(vector) for vector in vectors]
     comm = contact.space.mesh.comm
     everywhere = [one for one in comm.allgather(local) if one is not None]
     count = comm.allreduce(int(found.size))
     if everywhere:
-        point, outward, normal = everywhere[0]
-        message = text.format(count=count, point=point, outward=outward, normal=normal)
+        point, outward, met = everywhere[0]
+        message = text.format(count=count, point=point, outward=outward, normal=met)
         raise InputError(message, field)
 
 

@@ -18,8 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.facet_mesh import FacetShapes
-from anisocontact.contact.overlap import Facing, facing
+from anisocontact.contact.facing import Facing, Pairs
 from anisocontact.contact.slave_edges import SlaveEdges, line_rule, line_shapes
 from anisocontact.contact.slave_nodes import Patches
 
@@ -342,7 +341,7 @@ class LineNodes:
 
 
 def line_weights(
-    sides: Facing, around: Patches, now: Floats, more: Ints, *, current_area: bool
+    sides: Facing, around: Patches, now: Floats, more: Ints, pairs: Pairs, *, current_area: bool
 ) -> LineNodes:
     """As of `mortar_weights`."""
     slave, master, sweep = sides.slave, sides.master, sides.slave.sweep
@@ -352,12 +351,7 @@ def line_weights(
     own = SlaveEdges(slave, sides.reference)
     below = sweep.edges(master.nodes)
     edges = _Edges(own.nodes, below, now[:, :2], reference, across, own.transform)
-    x = now[edges.slave]
-    radius = np.linalg.norm(x - x.mean(axis=1, keepdims=True), axis=2).max(initial=0.0)
-    shapes, swept = FacetShapes(slave.topology), now[slave.nodes]
-    far = sides.reach + float(radius)
-    pairs = facing(slave, shapes, swept, sides.surface, master, now, far, sides.near)
-    found = edge_weights(edges, *pairs)
+    found = edge_weights(edges, pairs.slave, pairs.master)
     n, patch = around.nodes.shape
     owner = np.repeat(np.arange(n), np.diff(around.offsets))
     f, i = around.facets, around.local

@@ -54,10 +54,8 @@ class Options:
     augmentation: Augmentation | None = None
     adjust: float | None = None
     reach: float | None = None
-    two_half: bool = False
     self_contact: bool = False
     apart: float | None = None
-    overlaps: bool = False
     mortar: bool = False
 
     def chosen_degree(self, model: Model) -> int:
@@ -79,57 +77,55 @@ class Before(TypedDict, total=False):
 
     interface: Interface
     body: RigidBody | None
+    two_half: bool
+    overlaps: bool
 
 
-def given_master(master: str | SurfaceMaster | None, before: Before) -> str | SurfaceMaster | None:
-    """The master, also from arguments of before.
+def before_this(
+    master: str | SurfaceMaster | None, before: Before
+) -> tuple[str | SurfaceMaster | None, bool]:
+    """The master, also from arguments of before, and whether these ask for slave nodes.
 
     Raises:
         TypeError: There are other arguments.
     """
     if unknown := sorted(set(before) - set(Before.__annotations__)):
         raise TypeError(f"Contact() got an unexpected keyword argument {unknown[0]!r}")
+    mortar = before.pop("two_half", False) or before.pop("overlaps", False)
+    if mortar:
+        text = "two_half, overlaps: take mortar=True, which is taken now"
+        warnings.warn(text, DeprecationWarning, stacklevel=3)
     if not before:
-        return master
+        return master, mortar
     text = "interface, body: take master=interface or master=MovingSurface(interface, body)"
     warnings.warn(text, DeprecationWarning, stacklevel=3)
     surface: Any = before.get("interface", master)
-    return MovingSurface(surface, before.get("body"))
+    return MovingSurface(surface, before.get("body")), mortar
 
 
-def passes_of(
+def pass_of(
     model: Model,
     slave: str,
     master: str | SurfaceMaster | None,
     law: ContactLaw | None,
     options: Options,
-) -> tuple[Pass, ...]:
-    """The passes of a contact, see `Contact`."""
+) -> Pass:
+    """The pass of a contact, see `Contact`."""
     if options.mortar and options.degree is not None:
         raise InputError("given, but slave nodes have no quadrature of a degree", "degree")
     if not isinstance(master, str):
-        return (_on_surface(model, slave, master, law, options),)
+        return _on_surface(model, slave, master, law, options)
     laws = _laws(law)
-    if options.mortar and (options.two_half or options.self_contact):
-        raise InputError("given, but two sides that are slaves have integration points", "mortar")
-    both_sides = options.two_half or options.self_contact
-    if both_sides and options.augmentation is not None:
-        raise InputError("given, but both sides are slaves: they need penalties", "augmentation")
     if options.self_contact:
-        return (_folded(model, slave, master, laws, options),)
-    if not options.two_half:
-        return (facet_pass(model, slave, master, laws, options),)
-    return tuple(
-        facet_pass(model, *sides, laws, options, weight=0.5, mirrored=mirrored, overlaps=True)
-        for sides, mirrored in (((slave, master), False), ((master, slave), True))
-    )
+        options = _folded(model, slave, master, options)
+    return facet_pass(model, slave, master, laws, options)
 
 
 def _on_surface(
     model: Model, slave: str, master: Any, law: ContactLaw | None, options: Options
 ) -> Pass:
     facets = model.boundary(slave, "slave")
-    for name in ("reach", "two_half", "self_contact", "apart", "overlaps"):
+    for name in ("reach", "self_contact", "apart"):
         if getattr(options, name):
             raise InputError("given, but the master is a surface", name)
     moving = isinstance(master, MovingSurface)
@@ -173,14 +169,11 @@ def _slave_nodes(
     return SlaveNodes(found, whole, x, current_area=current_area, comm=comm)
 
 
-def _check_pair(model: Model, options: Options) -> None:
+def _check_pair(model: Model) -> None:
     """Refuse what pairs of bodies of two dimensions do not have."""
     ideal, comm = model.idealisation, model.mesh.comm
     if ideal.dim == 3:
         return
-    for name in ("two_half", "self_contact", "overlaps"):
-        if getattr(options, name):
-            raise InputError("given; a mesh of two dimensions has one pass", name)
     if ideal.lateral and ideal.turn.any():
         text = "facets given with twist; a surface is needed, or lateral = false"
         raise InputError(text, "master")
@@ -209,11 +202,11 @@ def _with_laws(surface: Any, law: ContactLaw | None) -> Interface:
     return surface
 
 
-def _folded(model: Model, slave: str, master: str, law: ContactLaw, options: Options) -> Pass:
-    """Self-contact, a group against itself: every facet is slave and master.
+def _folded(model: Model, slave: str, master: str, options: Options) -> Options:
+    """Options of self-contact, a group against itself.
 
-    What is near in the reference configuration does not count: neighbours, and the other side of a
-    thin wall.
+    What is near in the reference configuration and does not face each other does not count:
+    neighbours, and the other side of a thin wall.
     """
     if master != slave:
         text = f"{master!r} given, {slave!r} needed: the slave is its own master"
@@ -222,8 +215,7 @@ def _folded(model: Model, slave: str, master: str, law: ContactLaw, options: Opt
     size = facet_size(model, slave) if model.count_facets(slave) else 0.0
     apart = APART * size if options.apart is None else options.apart
     reach = min(2.0 * size, apart) if options.reach is None else options.reach
-    options = replace(options, apart=apart, reach=reach)
-    return facet_pass(model, slave, slave, law, options, weight=0.5, overlaps=True)
+    return replace(options, apart=apart, reach=reach)
 
 
 def facet_pass(
@@ -232,10 +224,6 @@ def facet_pass(
     master: str,
     law: ContactLaw,
     options: Options,
-    *,
-    weight: float = 1.0,
-    mirrored: bool = False,
-    overlaps: bool = False,
 ) -> Pass:
     """A pass against facets.
 
@@ -245,12 +233,8 @@ def facet_pass(
         master: Facet group of the master.
         law: Laws.
         options: As of `Contact`.
-        weight: Share of the work of this pass: 0.5 for each of two half passes.
-        mirrored: Whether angles of directions count about the normal of the slave, not of the
-            master: the other way round.
-        overlaps: Whether forces on the master are integrated over overlaps whatever was asked for.
     """
-    _check_pair(model, options)
+    _check_pair(model)
     check_sides(model, slave, master, options.apart)
     current, nodes = options.current_area is not False, None
     if options.mortar:
@@ -262,18 +246,11 @@ def facet_pass(
         options.reach,
         options.apart,
         current,
-        weight,
         nodes,
     )
     if nodes is not None:
-        met = MortarMaster(sides, law, group=master, size=facet_size(model, master))
+        size = facet_size(model, master)
+        met = MortarMaster(sides, law, group=master, size=size, folded=options.self_contact)
         return Pass(model.space, slave, nodes, met, law, **options.of_pass)
-    found = FacetMaster(
-        sides,
-        law,
-        group=master,
-        size=facet_size(model, master),
-        mirrored=mirrored,
-        overlaps=overlaps or options.overlaps,
-    )
+    found = FacetMaster(sides, law, group=master, size=facet_size(model, master))
     return Pass(model.space, slave, sides.points, found, law, **options.of_pass)

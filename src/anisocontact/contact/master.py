@@ -129,10 +129,6 @@ class Master(Protocol):
             **of_point: What else is said of it.
         """
 
-    def settled(self, answer: Any) -> Any:
-        """An answer that is the trial, with forces on the master where they act."""
-        return answer
-
     def linear(self, answer: Any) -> Linear:
         """Linear change about an answer."""
 
@@ -286,10 +282,6 @@ class Master(Protocol):
     def roll_back(self, tried: bool) -> None:
         """Forget the trial, if there was one."""
         return
-
-    def energies(self) -> dict[str, float]:
-        """Energies beside those of the points, by name."""
-        return {}
 
     def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
         """What the next increments depend on, an entry for each point.

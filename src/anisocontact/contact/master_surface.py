@@ -114,7 +114,11 @@ class MasterSurface:
         Args:
             facets: Facets of `facet_keys`, (n,).
         """
-        return self.renumbered(self._ranks.find(facets))
+        return self.renumbered(self.in_group(facets))
+
+    def in_group(self, facets: Keys) -> Keys:
+        """Numbers in the whole group of facets of `facet_keys`, -1 for others; collective."""
+        return self._ranks.find(facets)
 
     def owned(self, nodes: Ints) -> Ints:
         """Nodes of the mesh that this process owns, among those any process names; collective.

@@ -28,8 +28,6 @@ class MeshedMaster(Master):
         law: Laws of the interface.
         group: Facet group of the master.
         size: Length of its facets.
-        mirrored: Whether angles of directions count about the normal of the slave, not of the
-            master: the other way round.
 
     Attributes:
         sides: As given, with the facets that this rank has now.
@@ -38,11 +36,9 @@ class MeshedMaster(Master):
     # projections start from the last ones, and could come back to another facet
     retraceable = False
 
-    def __init__(
-        self, sides: Sides, law: ContactLaw, *, group: str, size: float, mirrored: bool
-    ) -> None:
+    def __init__(self, sides: Sides, law: ContactLaw, *, group: str, size: float) -> None:
         self.groups, self.size, self.reach = (group,), size, sides.reach
-        self.sides, self._mirrored, self._dtype = sides, mirrored, law.dtype
+        self.sides, self._dtype = sides, law.dtype
         self._gathered, self._comm = sides.gathered, sides.comm
         self._nodes = Nodes(sides.reference, np.zeros_like(sides.reference))
         self._hint: FacetProjections = sides.project(sides.reference)
@@ -65,8 +61,8 @@ class MeshedMaster(Master):
 
     @override
     def take(self, laws: ContactLaw, derivative: ContactLaw) -> None:
-        self._given, self._law = laws, laws.pairs(self._mirrored)
-        self._derivative = self._law if derivative is laws else derivative.pairs(self._mirrored)
+        self._given, self._law = laws, laws.pairs()
+        self._derivative = self._law if derivative is laws else derivative.pairs()
 
     @override
     def located(self, state: State) -> Mask:

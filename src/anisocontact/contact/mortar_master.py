@@ -19,13 +19,14 @@ from anisocontact.contact.contact_planes import (
     held_directions,
 )
 from anisocontact.contact.facet_answer import OFF, found_on_all, response_of
+from anisocontact.contact.facing import facing, largest_radius
+from anisocontact.contact.fold import Fold
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Resting
 from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
 from anisocontact.contact.mortar_reach import mortar_reachable
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
-from anisocontact.contact.overlap import largest_radius
 from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import Sides
@@ -63,16 +64,20 @@ class MortarMaster(MeshedMaster):
         law: Laws of the interface.
         group: Facet group of the master.
         size: Length of its facets.
+        folded: Whether the master is the slave.
     """
 
-    def __init__(self, sides: Sides, law: ContactLaw, *, group: str, size: float) -> None:
+    def __init__(
+        self, sides: Sides, law: ContactLaw, *, group: str, size: float, folded: bool = False
+    ) -> None:
         assert isinstance(sides.points, SlaveNodes)
         self._points: SlaveNodes = sides.points
         self._resting: Sequence[Resting] = ()
         self._flags: Sequence[Resting] = ()
+        self._fold = Fold(sides.points, sides.gathered) if folded else None
         width = sides.master.nodes.shape[1]
         self._then = Opposite.none(len(sides.points.facet), width)
-        super().__init__(sides, law, group=group, size=size, mirrored=False)
+        super().__init__(sides, law, group=group, size=size)
         self._at = self._placed()
 
     def _placed(self, weights: MortarWeights | None = None) -> MortarState:
@@ -87,10 +92,11 @@ class MortarMaster(MeshedMaster):
             more = np.concatenate([opposite.named(), self._then.named()], axis=1)
             # the same on all processes, so that a facet counts on any number of them
             radius = max(self._comm.allgather(largest_radius(sides.slave, now)))
+            pairs = facing(sides, sides.searched, now, radius)
+            if self._fold is not None:
+                pairs = self._fold.oriented(pairs, self.numbers)
             area = points.current_area
-            weights = mortar_weights(
-                sides, points.around, now, more, radius=radius, current_area=area
-            )
+            weights = mortar_weights(sides, points.around, now, more, pairs, current_area=area)
         opposite = replace(opposite, masters=weights.masters, shares=weights.shares)
         tangents = points.at(now).tangents[:, 0]
         normal = averaged_normal(tangents)
@@ -158,6 +164,8 @@ class MortarMaster(MeshedMaster):
         state["origin"] = state["xi"]
         state["gap"][located] = self._at.planes.gap[located]
         self._then = self._at.opposite[0].in_order()
+        if self._fold is not None:
+            self._fold.commit()
         self._count_as_then(state)
         self._at = self._placed(self._at.weights)
         return state
@@ -305,7 +313,6 @@ class MortarMaster(MeshedMaster):
             dt=dt,
             state=own,
             law=self._given,
-            mirrored=False,
             batch=batch,
         )
 
@@ -349,7 +356,7 @@ class MortarMaster(MeshedMaster):
     def probe(
         self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
     ) -> npt.NDArray[np.int8]:
-        law = ContactLaw(*laws).pairs(False)
+        law = ContactLaw(*laws).pairs()
         failure = self._answer(law, state, 1.0, False).snapshot.response.failure
         return np.asarray(failure, dtype=np.int8)
 
@@ -370,6 +377,8 @@ class MortarMaster(MeshedMaster):
         if now is None:
             return np.zeros((0, 3))
         self._then = self._at.opposite[0].in_order()
+        if self._fold is not None:
+            self._fold.commit()
         self._count_as_then(now.response.state)
         self._accepted = (self._gathered.local(self._nodes.now), self._hint)
         self._at = self._placed(self._at.weights)
@@ -381,6 +390,8 @@ class MortarMaster(MeshedMaster):
     def roll_back(self, tried: bool) -> None:
         if tried:
             self._return()
+            if self._fold is not None:
+                self._fold.roll_back()
             self._at = self._placed()
 
     @override
@@ -398,6 +409,8 @@ class MortarMaster(MeshedMaster):
             shares=np.pad(then.shares, more),
         )
         kept |= {f"opposite.{name}": getattr(then, name).copy() for name in OPPOSITE}
+        if self._fold is not None:
+            kept["sides"] = self._fold.persistent()
         return kept | {"reference": self._points.quadrature.reference.copy()}
 
     @override
@@ -408,6 +421,8 @@ class MortarMaster(MeshedMaster):
         self._hint = FacetProjections(*(kept[f"projection.{f.name}"] for f in fields(self._hint)))
         then = replace(self._then, **{name: kept[f"opposite.{name}"] for name in OPPOSITE})
         self._number_anew(u, then, [self._hint.facet])
+        if self._fold is not None:
+            self._fold.restore(kept["sides"])
         self._count_as_then(kept["state"])
         moved = np.array(self._gathered.everywhere(self._gathered.moved(u)))
         self._go_to(self.sides.reference + moved)

@@ -12,9 +12,9 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.base.fenicsx import basix
-from anisocontact.contact.facet_mesh import FacetMesh, FacetShapes
+from anisocontact.contact.facet_mesh import FacetMesh
+from anisocontact.contact.facing import Facing, Pairs
 from anisocontact.contact.line_weights import line_weights
-from anisocontact.contact.overlap import Facing, facing
 from anisocontact.contact.slave_nodes import Patches
 
 Ints = npt.NDArray[np.int32]
@@ -81,27 +81,25 @@ def mortar_weights(
     around: Patches,
     now: Floats,
     more: Ints,
+    pairs: Pairs,
     *,
-    radius: float,
     current_area: bool,
 ) -> MortarWeights:
-    """Weights where the nodes are; the surface of the master has to be there already.
+    """Weights where the nodes are.
 
     Args:
         sides: Slave and master.
         around: The facets around each slave node.
         now: Positions of the nodes, (nodes, 3), length.
         more: Nodes of the master to have as well, (n, j), -1 for none.
-        radius: Largest distance of a slave node from the middle of its facet, length.
+        pairs: Facets around the slave nodes and those that they may overlap.
         current_area: Whether areas are those of now or of the reference configuration.
     """
     if sides.slave.sweep is not None:
-        found = line_weights(sides, around, now, more, current_area=current_area)
+        found = line_weights(sides, around, now, more, pairs, current_area=current_area)
         return MortarWeights(found.masters, found.area, found.weight, found)
     slave, master = around.mesh, sides.master
-    shapes = FacetShapes(slave.topology)
-    far = sides.reach + radius
-    f, g = facing(slave, shapes, now[slave.nodes], sides.surface, master, now, far, sides.near)
+    f, g = pairs.slave, pairs.master
     order = np.lexsort((g, f))
     offsets = np.searchsorted(f[order], np.arange(len(slave.nodes) + 1)).astype(np.int64)
     there = more >= 0

@@ -279,14 +279,12 @@ class Pass:
 
         Returns:
             "adhesion" (elastic, tangential), "normal" (of the normal law), "friction" and
-            "viscous" (dissipated since the start), with overlaps "transfer" (see `Transfer`), force
-            times length.
+            "viscous" (dissipated since the start), force times length.
         """
         stored = [self.areas @ self.state[name] for name in _STORED.values()]
         local = np.array([*stored, *self._dissipated.sum(axis=0)])
         values = self._comm.allreduce(local).tolist()
-        own = dict(zip((*_STORED, *_DISSIPATED), values, strict=True))
-        return own | self.master.energies()
+        return dict(zip((*_STORED, *_DISSIPATED), values, strict=True))
 
     def whereabouts(self, u: Floats) -> Whereabouts:
         """Where the points of the trial are beside the master, in its frame; collective.

@@ -68,9 +68,6 @@ class PointTangent:
         forces, gathered = self._answer.forces, self._answer.gathered
         total = gathered.zeros(out)
         forces.add_rows(-self._with_slave(forces.tangent, slip), total)
-        if forces.transfer is not None:
-            areas = self._answer.snapshot.areas[:, None]
-            forces.transfer.add_force(total, areas * self.slipped(slip))
         gathered.hand_back(total, out)
 
     def _with_slave(self, blocks: Floats, slip: Floats) -> Floats:

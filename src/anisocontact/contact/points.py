@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -27,10 +26,9 @@ class SlavePoints:
         flip: Whether the normal of the tangents points into the body, of each facet, (m,).
         current_area: Whether the area of a point is that of now or of the reference.
         comm: Communicator of the mesh.
-        share: Share of the area that counts.
 
     Attributes:
-        quadrature: The points, with the share of their area that counts.
+        quadrature: As given.
         facet: Number of the facet of each point, (n,).
         current_area: As given, until `take_area`.
         size: Length of a facet over all ranks, see `mean_size`.
@@ -52,10 +50,9 @@ class SlavePoints:
         *,
         current_area: bool,
         comm: Any,
-        share: float = 1.0,
     ) -> None:
         count, each = quadrature.weights.shape
-        self.quadrature = replace(quadrature, weights=share * quadrature.weights)
+        self.quadrature = quadrature
         self.facet = np.repeat(np.arange(count), each)
         self.current_area = current_area
         self._sign = np.where(np.repeat(flip, each), -1.0, 1.0)

@@ -18,9 +18,7 @@ Floats = npt.NDArray[np.float64]
 type NodePairs = tuple[Ints, Ints]
 
 
-def reachable(
-    sides: Sides, now: Floats, way: Floats, margin: float, hops: int, by_point: bool
-) -> list[NodePairs]:
+def reachable(sides: Sides, now: Floats, way: Floats, margin: float, hops: int) -> list[NodePairs]:
     """Nodes that a tangent can couple where the slave points go along a way.
 
     A point couples the nodes of its facet with those of the facet of the master below it, and these
@@ -33,8 +31,6 @@ def reachable(
             for all, (w, n or 1, 3), length.
         margin: How far beside the way a point can be, length.
         hops: Places along the way that an increment goes.
-        by_point: Whether facets of the master are coupled by each point alone, or by all points of
-            a facet of the slave.
 
     Returns:
         Rows and columns: facets of the slave, pairs of slave and master, of master and slave and
@@ -55,8 +51,7 @@ def reachable(
     place, point = np.divmod(which, len(x))
     slave = sides.points.facet[point]
     own, other = _different(slave.astype(np.int64), near.facets, len(sides.master.nodes))
-    owner = point if by_point else slave
-    to, back = _met(owner * (len(way) + hops) + place, near.facets, len(sides.master.nodes), hops)
+    to, back = _met(point * (len(way) + hops) + place, near.facets, len(sides.master.nodes), hops)
     second = sides.gathered.coupled(sides.master.nodes)
     return [
         (first, first),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -19,12 +19,11 @@ from anisocontact.contact.facet_mesh import (
     facet_rule,
     group_area,
     isoparametric,
-    near_facets,
 )
+from anisocontact.contact.facing import Near, largest_radius, near_facets
 from anisocontact.contact.far_nodes import NONE
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
-from anisocontact.contact.overlap import largest_radius
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.slave_nodes import SlaveNodes
 from anisocontact.contact.sweep import Sweep
@@ -55,8 +54,8 @@ class Sides:
         gathered: The master as this rank has it.
         surface: The same where it is now.
         reach: Distance within which the master is searched, length.
-        apart: Numbers in the whole group of facets that each facet of the slave cannot meet; None
-            where it can meet all.
+        apart: Numbers in the whole group of facets near to each facet of the slave, of which it
+            cannot meet some; None where it can meet all.
         near: Those of them that this rank has; of all facets around slave nodes.
         kinds: Code of the topology of each facet of the master, (m,).
         at: Where the local nodes were when facets were gathered, (nodes, 3), length.
@@ -70,19 +69,27 @@ class Sides:
     gathered: MasterSurface
     surface: FacetSurface
     reach: float
-    apart: FacetSets | None
-    near: FacetSets | None
+    apart: Near | None
+    near: Near | None
     kinds: npt.NDArray[np.int8]
     at: Floats
     threads: int
     comm: Any
 
+    @property
+    def searched(self) -> FacetMesh:
+        """Facets of the slave from which the master is searched, with those around slave nodes."""
+        return _searched(self.slave, self.points)
+
     @cached_property
     def excluded(self) -> FacetSets | None:
-        """`near` of the facet of each point; None for slave nodes, which are on several."""
-        if self.near is None or self.points.at_nodes:
+        """Facets that each point does not look at; None where it looks at all."""
+        if self.near is None:
             return None
-        return self.near.take(self.points.facet)
+        if isinstance(self.points, SlaveNodes):
+            around = self.points.around
+            return self.near.unseen.joined(around.offsets, around.facets)
+        return self.near.unseen.take(self.points.facet)
 
     @property
     def reference(self) -> Floats:
@@ -186,7 +193,7 @@ class Sides:
             more: Facets to have as well, numbers in the whole group.
         """
         _collect(self.gathered, self.slave, self.points, now, 2.0 * self.reach, more)
-        near = None if self.apart is None else _there(self.apart, self.gathered)
+        near = None if self.apart is None else self.apart.by(partial(_there, self.gathered))
         return replace(
             self,
             surface=_surface(self.gathered, now),
@@ -214,6 +221,12 @@ def _collect(
     gathered.gather(np.union1d(gathered.within(low, high, now), more))
 
 
+def _searched(slave: FacetMesh, points: SlavePoints) -> FacetMesh:
+    if isinstance(points, SlaveNodes) and slave.sweep is None:
+        return points.around.mesh
+    return slave
+
+
 def _surface(gathered: MasterSurface, now: Floats) -> FacetSurface:
     """Facets that a rank has, at positions of the local nodes, (nodes, 3), length."""
     facets = gathered.facets
@@ -225,7 +238,7 @@ def _kinds(facets: FacetMesh) -> npt.NDArray[np.int8]:
     return np.full(len(facets.nodes), list(TOPOLOGIES).index(facets.topology), dtype=np.int8)
 
 
-def _there(sets: FacetSets, gathered: MasterSurface) -> FacetSets:
+def _there(gathered: MasterSurface, sets: FacetSets) -> FacetSets:
     """Sets of facets of the whole group as sets of those that a rank has."""
     facets = gathered.renumbered(sets.facets)
     there = facets >= 0
@@ -240,7 +253,6 @@ def make_sides(
     reach: float | None,
     apart: float | None,
     current_area: bool,
-    weight: float,
     nodes: SlaveNodes | None = None,
 ) -> Sides:
     """Both sides in the reference configuration.
@@ -252,7 +264,6 @@ def make_sides(
         reach: See `Contact`.
         apart: See `Contact`.
         current_area: See `Contact`.
-        weight: See `Contact`.
         nodes: Slave nodes, where the law is not evaluated at points of the facets.
     """
     slave, master = (model.facets(group) for group in groups)
@@ -269,7 +280,6 @@ def make_sides(
         own.flip,
         current_area=current_area,
         comm=comm,
-        share=weight,
     )
     reach = reach if reach is not None else 2.0 * points.size
     _collect(gathered, own, points, reference, max(reach, apart or 0.0) + reach, NONE)
@@ -278,9 +288,9 @@ def make_sides(
     if apart is not None:
         keys = facet_keys(model.mesh, np.sort(slave)) if nodes is None else nodes.keys
         numbers = gathered.number(keys)
-        met = own if nodes is None else nodes.around.mesh
-        near = near_facets(met, numbers, surface, gathered.reference, apart)
-        named = FacetSets(near.offsets, gathered.globally(near.facets))
+        met = _searched(own, points)
+        near = near_facets(met, numbers, surface, gathered.facets, gathered.reference, apart)
+        named = near.by(lambda sets: FacetSets(sets.offsets, gathered.globally(sets.facets)))
     return Sides(
         slave=own,
         rule=rule,

@@ -319,7 +319,6 @@ class SlaveNodes(SlavePoints):
         whole: Facets of the slave.
         reference: Positions of the nodes in the reference configuration, (nodes, 3), length.
         current_area: Whether the area of a node is that of now or of the reference.
-        share: Share of the area that counts.
 
     Attributes:
         around: The facets around each node.
@@ -337,12 +336,11 @@ class SlaveNodes(SlavePoints):
         *,
         current_area: bool,
         comm: Any,
-        share: float = 1.0,
     ) -> None:
         self.around, quadrature, size = nodes
         self.far, self.keys, self._others = whole.far, whole.keys, whole.others
         flip = np.zeros(len(quadrature.nodes), dtype=bool)
-        super().__init__(quadrature, flip, current_area=current_area, comm=comm, share=share)
+        super().__init__(quadrature, flip, current_area=current_area, comm=comm)
         self.facet = self.around.facets[self.around.offsets[:-1]].astype(np.int64)
         self.size = size
         # images of nodes have the numbers after them, see `Sweep`

@@ -20,12 +20,12 @@ import scipy
 
 from anisocontact.base.errors import InputError
 from anisocontact.contact.facet_mesh import FacetMesh
+from anisocontact.contact.facing import Near, facing, largest_radius
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
-from anisocontact.contact.overlap import largest_radius
 from anisocontact.contact.slave_nodes import Patches, nodal_quadrature, patches
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.surfaces import default_threads
-from anisocontact.surfaces.facets import FacetSets, FacetSurface
+from anisocontact.surfaces.facets import FacetSurface
 
 Ints = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
@@ -70,7 +70,7 @@ class _Sides:
     surface: FacetSurface
     reach: float
     reference: Floats
-    near: FacetSets | None = None
+    near: Near | None = None
     threads: int = 1
 
 
@@ -111,7 +111,8 @@ def _conditions(groups: WholeGroups, sides: _Sides, cells: Ints, closed: float) 
     around = patches(sides.slave)
     none = np.zeros((len(around.nodes), 0), dtype=np.int32)
     radius = largest_radius(sides.slave, sides.reference)
-    weights = mortar_weights(sides, around, sides.reference, none, radius=radius, current_area=True)
+    pairs = facing(sides, sides.slave, sides.reference, radius)
+    weights = mortar_weights(sides, around, sides.reference, none, pairs, current_area=True)
     count = len(groups.x)
     nodes, row = np.unique(around.nodes[:, 0].astype(np.int64) % count, return_inverse=True)
     shape = (len(nodes), count)

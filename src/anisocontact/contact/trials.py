@@ -149,7 +149,7 @@ class Trials:
         if follower is not None:
             answer = self._linearised(follower, dt)
         else:
-            answer = self.master.settled(self.master.answer(self.start, dt))
+            answer = self.master.answer(self.start, dt)
         self._now = answer.snapshot
         return answer
 
@@ -199,7 +199,7 @@ class Trials:
         if not follower.tangential:
             physical = self._laws.slip_stiffness(dt) * trial.snapshot.areas
             stiffness += physical * (trial.snapshot.response.status == STICK)
-        answer: Answer = master.settled(trial.by_derivative(stiff, stiffness))
+        answer: Answer = trial.by_derivative(stiff, stiffness)
         self._linear = master.linear(answer)
         traction = master.into_frame(trial.snapshot.response.traction)
         slipped = self._linear.slipped(self._slip)

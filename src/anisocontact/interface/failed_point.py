@@ -140,17 +140,15 @@ class OnFacets(FailedPoint):
     """A point that meets facets: those of its last and of its present place, with their nodes.
 
     Attributes:
-        mirrored: Whether slave and master have swapped their parts.
         batch: Point and facets as the core takes them.
     """
 
-    mirrored: bool
     batch: FacetBatch
 
     @override
     def evaluate(self, shift: Floats | None = None) -> Evaluated:
         batch = self.batch if shift is None else self._moved(shift)
-        law = self.law.pairs(self.mirrored)
+        law = self.law.pairs()
         found = law.evaluate(self.state, True, self.dt, batch)
         own = self.batch["slave_nodes"].shape[1]
         block = found["tangent"][0, : 3 * own, : 3 * own].reshape(own, 3, own, 3)

@@ -175,12 +175,6 @@ class SlavePoints:
         """Number of the contact for each point, (n,)."""
         return np.full(len(self.contact.areas), self.number, dtype=np.int32)
 
-    @property
-    def passes(self) -> npt.NDArray[np.int32]:
-        """Number of the pass that each point belongs to, (n,)."""
-        counts = [len(part.areas) for part in self.contact.passes]
-        return np.repeat(np.arange(len(counts), dtype=np.int32), counts)
-
 
 def von_mises(stress: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     """Equivalent stress of (n, 6) components XX YY ZZ XY YZ XZ, (n,)."""
@@ -225,7 +219,7 @@ def _axis(law: str, number: int) -> _Row:
 _TENSOR = [[0, 3, 5], [3, 1, 4], [5, 4, 2]]
 #: What the report is made of.
 _PICTURED = {
-    *("displacement", "body", "contact", "pass", "area", "covered", "pressure", "status"),
+    *("displacement", "body", "contact", "area", "covered", "pressure", "status"),
     "normal",
     *("traction_principal", "direction_adhesion_1", "direction_adhesion_2"),
     *("direction_friction_1", "direction_friction_2"),
@@ -273,13 +267,6 @@ _TABLE = {
         *_rows(
             POINT,
             ("contact", "1", "number of the contact", lambda p: p.numbers),
-            (
-                "pass",
-                "1",
-                "1 for points on the master of two half passes, which have the same quantities as "
-                "seen from the slave; 0 for all others",
-                lambda p: p.passes,
-            ),
             ("area", "length^2", "slave area", lambda p: p.contact.areas),
             (
                 "covered",

@@ -165,8 +165,7 @@ class _ContactNow(SlavePoints):
             return np.full(3, np.nan)
         # of those alike the first by its place at rest, on any number of processes
         best = np.flatnonzero(pressure >= (1.0 - ALIKE) * most)
-        rest = np.concatenate([p.slave_points.quadrature.reference for p in contact.passes])[best]
-        rest = np.round(rest / contact.facet_size, 6) + 0.0
+        rest = np.round(contact.quadrature.reference[best] / contact.facet_size, 6) + 0.0
         own = [(place.tolist(), contact.points[i]) for place, i in zip(rest, best, strict=True)]
         found = [one for each in comm.allgather(own) for one in each]
         return np.asarray(min(found, key=lambda one: one[0])[1])
@@ -177,10 +176,9 @@ class _ContactNow(SlavePoints):
 
     def least_gap(self) -> float:
         """Smallest gap, negative where points overlap; 0 where no point has a surface below it."""
-        parts = self.contact.passes
-        gaps = [part.state["gap"][part.master.located(part.state)] for part in parts]
-        comm = self.contact.space.mesh.comm
-        least = min(comm.allgather(float(np.concatenate(gaps).min(initial=np.inf))))
+        (made,), state = self.contact.passes, self.contact.state
+        gaps = state["gap"][made.master.located(state)]
+        least = min(self.contact.space.mesh.comm.allgather(float(gaps.min(initial=np.inf))))
         return float(least) if np.isfinite(least) else 0.0
 
     def approach(self) -> float:

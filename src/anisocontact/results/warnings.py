@@ -213,10 +213,7 @@ def _cure(contact: Contact, stiffer: str) -> str:
     """What helps against a penetration, or elastic slip, of penalties."""
     if _exact(contact):  # penalties held where no multipliers were found
         return "smaller increments, in which multipliers are found, take it away"
-    if contact.slave == contact.master:
-        return f"{stiffer} makes it smaller"
-    taken = 'pass = "mortar" with ' if len(contact.passes) > 1 else ""
-    return f'{stiffer} makes it smaller, {taken}method = "augmented" takes it away'
+    return f'{stiffer} makes it smaller, method = "augmented" takes it away'
 
 
 #: Energies that are no part of what was to be computed, and what is said of them.

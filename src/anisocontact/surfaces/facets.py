@@ -109,6 +109,33 @@ class FacetSets:
         within = np.arange(offsets[-1]) - np.repeat(offsets[:-1], counts)
         return FacetSets(offsets, self.facets[np.repeat(self.offsets[which], counts) + within])
 
+    @classmethod
+    def of_pairs(cls, points: npt.NDArray[np.int64], facets: Integers, count: int) -> FacetSets:
+        """Sets from pairs, in any order and as often as they come.
+
+        Args:
+            points: A point of each pair, (p,).
+            facets: Its facet, (p,).
+            count: Number of points.
+        """
+        width = int(facets.max(initial=0)) + 1
+        pairs = np.unique(points * width + facets)
+        offsets = np.searchsorted(pairs, np.arange(count + 1) * width)
+        return cls(offsets.astype(np.int64), (pairs % width).astype(np.int32))
+
+    def joined(self, offsets: npt.NDArray[np.int64], which: Integers) -> FacetSets:
+        """Sets of what has several points each: all that one of its points has.
+
+        Args:
+            offsets: Where the points of each begin, (m + 1,).
+            which: The points, one list after the other.
+        """
+        taken = self.take(which.astype(np.int64))
+        owner = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+        return self.of_pairs(
+            np.repeat(owner, np.diff(taken.offsets)), taken.facets, len(offsets) - 1
+        )
+
 
 class FacetSurface:
     """A surface of facets of any of the `TOPOLOGIES`, mixed if need be.

@@ -33,8 +33,8 @@ from anisocontact.mesh.merge import merge
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.surfaces import make_surface
 
-#: Two half passes.
-TWO_HALF = partial(Contact, two_half=True)
+#: At slave nodes.
+MORTAR = partial(Contact, mortar=True)
 
 
 RADIUS, E, NU = 40.0, 1000.0, 0.3
@@ -98,7 +98,7 @@ def test_elastic_sphere_on_a_rigid_plane(half_spaces: Any, n: int, tolerance: fl
     assert np.abs(errors).max() < tolerance
 
 
-@pytest.mark.parametrize("kind", [Contact, TWO_HALF])
+@pytest.mark.parametrize("kind", [Contact, MORTAR])
 @pytest.mark.parametrize(
     ("n", "below", "tolerance"), [(6, 5, 0.02), pytest.param(12, 9, 0.01, marks=pytest.mark.slow)]
 )

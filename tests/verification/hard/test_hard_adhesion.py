@@ -130,9 +130,9 @@ def test_stiff_adhesion_with_a_time(to_the_end, adhesion):
     assert np.linalg.norm(run.force("drag") - wanted) < 2e-3 * np.linalg.norm(wanted)
 
 
-@pytest.mark.parametrize("more", ['method = "augmented"', 'pass = "two-half"'])
-def test_stiff_adhesion_with_multipliers_and_two_passes(to_the_end, more):
-    """The layer goes with multipliers of the pressure, and behind both half passes."""
+@pytest.mark.parametrize("more", ['method = "augmented"', 'pass = "mortar"'])
+def test_stiff_adhesion_with_multipliers_and_slave_nodes(to_the_end, more):
+    """The layer goes with multipliers of the pressure, and behind slave nodes."""
     run = to_the_end(case(PAIR, "stiffness = 1e7", more))
     soft = to_the_end(case(PAIR, "stiffness = 3e4", more))
     wanted = soft.force("drag")

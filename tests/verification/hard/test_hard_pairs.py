@@ -75,10 +75,10 @@ def test_stiffness_ratio_of_a_million(to_the_end):
 
 
 def test_mesh_ten_times_finer_on_one_side(to_the_end):
-    """Facets of 0.1 against facets of 1, both half passes."""
+    """Facets of 0.1 against facets of 1, at slave nodes."""
     run = to_the_end(
         pair(
-            contact("block.bottom", "plate.top", "coefficients = 0.4", 'pass = "two-half"'),
+            contact("block.bottom", "plate.top", "coefficients = 0.4", 'pass = "mortar"'),
             step("press", 2, x=0, z=-0.05) + step("drag", 4, x=0.2),
             cells=[10, 10, 1],
             plate_cells=[4, 2, 1],
@@ -211,7 +211,7 @@ def test_release_and_contact_again(to_the_end):
     """Pressed, lifted until nothing touches, moved aside and pressed again."""
     run = to_the_end(
         pair(
-            contact("block.bottom", "plate.top", "coefficients = 0.3", 'pass = "two-half"'),
+            contact("block.bottom", "plate.top", "coefficients = 0.3", 'pass = "mortar"'),
             step("press", 2, x=0, z=-0.1)
             + step("lift", 2, z=0.2)
             + step("aside", 1, x=0.7)
@@ -249,7 +249,7 @@ def test_units_do_not_matter(to_the_end):
     for length, force in UNITS.values():
         stress = 10 * force / length**2
         text = pair(
-            contact("block.bottom", "plate.top", "coefficients = 0.4", 'pass = "two-half"'),
+            contact("block.bottom", "plate.top", "coefficients = 0.4", 'pass = "mortar"'),
             step("press", 2, x=0, z=-0.05 * length) + step("drag", 3, x=0.2 * length),
             origin=[-0.5 * length, -0.5 * length, 0.0],
             size=[length, length, 0.5 * length],

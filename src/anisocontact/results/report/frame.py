@@ -78,8 +78,7 @@ class Frame:
 class ContactView:
     """The slave points of one contact, seen against the normal of the master.
 
-    Of two half passes they are those on the slave; those of the other body lie between them. Where
-    they go all around the master only those that face the viewer are kept.
+    Where they go all around the master only those that face the viewer are kept.
 
     Args:
         points: All slave points of a run.
@@ -93,8 +92,6 @@ class ContactView:
 
     def __init__(self, points: DataSet, number: int) -> None:
         chosen = np.asarray(points.point_data["contact"]) == number
-        if "pass" in points.point_data:
-            chosen &= np.asarray(points.point_data["pass"]) == 0
         self.data: dict[str, npt.NDArray[Any]] = {
             name: np.asarray(points.point_data[name])[chosen] for name in points.point_data
         }

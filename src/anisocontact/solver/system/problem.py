@@ -436,9 +436,9 @@ class Problem(AssembledSystem):
             "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
             "friction" and "viscous" laws, energy of "stabilisation", what jumps have set free and
             the "flow" to the next equilibrium has dissipated and, where there are any, energy of
-            "springs" and elastic supports, of the "transfer" of two half passes and what materials
-            have dissipated, "inelastic", and "residual",
-            what is left of "external" less all others: first order in the size of the increments.
+            "springs" and elastic supports, what materials have dissipated, "inelastic", and
+            "residual", what is left of "external" less all others: first order in the size of the
+            increments.
         """
         stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": self.reduction.elastic()}
         stored |= self.assembly.bodies.dissipated()

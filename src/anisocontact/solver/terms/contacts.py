@@ -92,7 +92,7 @@ class Contacts(Term):
         found = dict.fromkeys(("adhesion", "normal", "friction", "viscous"), 0.0)
         for contact in self._all:
             for name, value in contact.energies().items():
-                found[name] = found.get(name, 0.0) + value
+                found[name] += value
         return found
 
     @override
@@ -102,7 +102,7 @@ class Contacts(Term):
     @override
     def take_histories(self, kept: Iterator[Arrays], u: Floats) -> None:
         for contact in self._all:
-            contact.restore([next(kept) for _ in contact.passes], u)
+            contact.restore(next(kept), u)
 
     def pass_through(self) -> None:
         """Remember a state that the bodies flow through, for the work of friction."""

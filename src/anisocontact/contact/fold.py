@@ -1,0 +1,134 @@
+"""Self-contact: which facets of a surface that meets itself are slaves.
+
+Of two facets that face each other one is the slave, so that every gap is held once, by multipliers
+that the displacements can hold: the sides of a surface that folds onto itself are told apart where
+it does. The graph of the pairs is coloured with two colours along its minimum spanning tree, the
+closest pairs first. A facet keeps its colour, and with it the nodes their history, while anything
+faces it. Where the tree leaves a pair of one colour, as where three walls meet, the facet with the
+lower number is the slave of that pair.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from anisocontact.contact.facing import Pairs
+from anisocontact.contact.master_surface import MasterSurface
+from anisocontact.contact.slave_nodes import SlaveNodes
+
+Mask = npt.NDArray[np.bool_]
+Numbers = npt.NDArray[np.int64]
+Sides = npt.NDArray[np.int8]
+
+#: Colours of a facet that faces another one.
+SLAVE, MASTER = 1, -1
+
+
+class Fold:
+    """Sides of the facets of a group that meets itself, the same on all processes.
+
+    Args:
+        points: Nodes of the group.
+        surface: Its facets.
+    """
+
+    def __init__(self, points: SlaveNodes, surface: MasterSurface) -> None:
+        self._around, self._comm = points.around, surface.comm
+        self._numbers = surface.in_group(points.keys)
+        count = self._comm.allreduce(len(surface.own.nodes))
+        self._side: Sides = np.zeros(count, dtype=np.int8)
+        self._accepted = self._side
+        self._faced: Numbers = np.zeros(0, dtype=np.int64)
+
+    def oriented(self, pairs: Pairs, masters: Numbers) -> Pairs:
+        """Those pairs of which the first facet is the slave; collective.
+
+        Facets that face others for the first time take sides until `commit` or `roll_back`.
+
+        Args:
+            pairs: Pairs that face each other.
+            masters: Numbers in the whole group of the facets of the master here.
+        """
+        first, second = self._numbers[pairs.slave], masters[pairs.master]
+        self._faced = np.union1d(first, second)
+        if any(self._comm.allgather(bool((self._side[self._faced] == 0).any()))):
+            found = self._comm.allgather((first, second, pairs.apart))
+            self._side = _with_sides(self._side, *map(np.concatenate, zip(*found, strict=True)))
+        one, other = self._side[first], self._side[second]
+        return pairs.take(np.where(one != other, one > other, first < second))
+
+    def commit(self) -> None:
+        """Keep the sides of facets that face another one; collective."""
+        faced = np.concatenate(self._comm.allgather(self._faced))
+        self._accepted = np.zeros_like(self._side)
+        self._accepted[faced] = self._side[faced]
+        self._side = self._accepted
+
+    def roll_back(self) -> None:
+        """Return to the sides of the accepted increment."""
+        self._side = self._accepted
+
+    def persistent(self) -> Numbers:
+        """Accepted sides of the facets around each node, (n, k): number and one, times side."""
+        offsets, facets = self._around.offsets, self._numbers[self._around.facets]
+        counts = np.diff(offsets)
+        width = max(self._comm.allgather(int(counts.max(initial=0))))
+        kept = np.zeros((len(counts), width), dtype=np.int64)
+        kept[np.arange(width) < counts[:, None]] = (facets + 1) * self._accepted[facets]
+        return kept
+
+    def restore(self, kept: Numbers) -> None:
+        """Go on from what `persistent` gave; collective."""
+        known = np.concatenate(self._comm.allgather(np.unique(kept[kept != 0])))
+        self._accepted = np.zeros_like(self._side)
+        self._accepted[np.abs(known) - 1] = np.sign(known)
+        self._side = self._accepted
+
+
+def _with_sides(side: Sides, first: Numbers, second: Numbers, apart: Any) -> Sides:
+    """Sides of facets that have some, and of others that face each other.
+
+    Two more nodes of the graph face the slaves and the masters that are known, and each other. In
+    parts where none is known the side of more facets, the finer one, is the slave; of as many that
+    of the lowest number.
+
+    Args:
+        side: Sides of all facets, 0 for none, (n,).
+        first: One facet of each pair, (p,).
+        second: The other one.
+        apart: Distance of the pairs, (p,).
+    """
+    n = len(side)
+    known = np.flatnonzero(side)
+    rank = np.empty(len(apart))
+    rank[np.argsort(apart, kind="stable")] = np.arange(len(apart)) + 2.0
+    rows = np.concatenate([known, [n], np.minimum(first, second)])
+    columns = np.concatenate([n + (side[known] == MASTER), [n + 1], np.maximum(first, second)])
+    length = np.concatenate([np.ones(len(known) + 1), rank])
+    order = np.lexsort((length, columns, rows))
+    new = np.ones(len(order), dtype=bool)
+    new[1:] = np.any(np.diff(np.stack([rows, columns])[:, order], axis=1) != 0, axis=0)
+    kept = order[new]
+    graph = scipy.sparse.csr_array((length[kept], (rows[kept], columns[kept])), (n + 2, n + 2))
+    tree = scipy.sparse.csgraph.minimum_spanning_tree(graph)
+    # a facet and its image are in one part with those at an odd and at an even distance
+    twofold = scipy.sparse.block_array([[None, tree], [tree.T, None]])
+    parts, part = scipy.sparse.csgraph.connected_components(twofold, directed=False)
+    own, opposite = part[: n + 2], part[n + 2 :]
+    size = np.bincount(own, np.repeat([1.0, 0.0, n + 1.0], [n, 1, 1]), minlength=parts)
+    lowest = np.full(parts, n)
+    np.minimum.at(lowest, own, np.arange(n + 2))
+    slave = np.where(
+        size[own] != size[opposite],
+        size[own] > size[opposite],
+        lowest[own] < lowest[opposite],
+    )
+    out = side.copy()
+    faced = np.union1d(first, second)
+    taken = faced[side[faced] == 0]
+    out[taken] = np.where(slave[taken], SLAVE, MASTER)
+    return out
