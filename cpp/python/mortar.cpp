@@ -48,6 +48,7 @@ struct Given {
   Scalars straight_weights;
   Coordinates skew_points;
   Scalars skew_weights;
+  Scalars whole;
   bool current_area;
   std::shared_ptr<Pool> pool;
 };
@@ -110,6 +111,7 @@ class MortarWeights {
       {{given_.straight_points.data(), given_.straight_weights.data(),
         given_.straight_weights.shape(0)},
        {given_.skew_points.data(), given_.skew_weights.data(), given_.skew_weights.shape(0)}},
+      {given_.whole.data(), given_.whole.shape(0)},
       false};
   mortar::ListView pairs_{given_.pair_offsets.data(), given_.pair_facets.data()};
   mortar::Patches patches_{{given_.around_offsets.data(), given_.around_facets.data()},
@@ -201,14 +203,29 @@ void bind_mortar(nb::module_& m) {
              const Indices& around_local, const Rows& support, const Offsets& more_offsets,
              const Indices& more_nodes, const Coordinates& straight_points,
              const Scalars& straight_weights, const Coordinates& skew_points,
-             const Scalars& skew_weights, bool current_area, const MortarMemory& memory,
-             std::size_t threads) {
-            new (self) MortarWeights(
-                {named(slave_topology), named(master_topology), slave, master, now, reference,
-                 pair_offsets, pair_facets, patch, around_offsets, around_facets, around_local,
-                 support, straight_points, straight_weights, skew_points, skew_weights,
-                 current_area, memory.pool},
-                more_offsets, more_nodes, threads);
+             const Scalars& skew_weights, const Scalars& whole, bool current_area,
+             const MortarMemory& memory, std::size_t threads) {
+            new (self) MortarWeights({named(slave_topology),
+                                      named(master_topology),
+                                      slave,
+                                      master,
+                                      now,
+                                      reference,
+                                      pair_offsets,
+                                      pair_facets,
+                                      patch,
+                                      around_offsets,
+                                      around_facets,
+                                      around_local,
+                                      support,
+                                      straight_points,
+                                      straight_weights,
+                                      skew_points,
+                                      skew_weights,
+                                      whole,
+                                      current_area,
+                                      memory.pool},
+                                     more_offsets, more_nodes, threads);
           },
           nb::arg("slave_topology"), nb::arg("slave"), nb::arg("master_topology"),
           nb::arg("master"), nb::arg("now"), nb::arg("reference"), nb::arg("pair_offsets"),
@@ -216,7 +233,7 @@ void bind_mortar(nb::module_& m) {
           nb::arg("around_facets"), nb::arg("around_local"), nb::arg("support"),
           nb::arg("more_offsets"), nb::arg("more_nodes"), nb::arg("straight_points"),
           nb::arg("straight_weights"), nb::arg("skew_points"), nb::arg("skew_weights"),
-          nb::arg("current_area"), nb::arg("memory"), nb::arg("threads"))
+          nb::arg("whole"), nb::arg("current_area"), nb::arg("memory"), nb::arg("threads"))
       .def_prop_ro("masters", &MortarWeights::masters, nb::rv_policy::reference)
       .def_prop_ro("area", &MortarWeights::area, nb::rv_policy::reference)
       .def_prop_ro("weight", &MortarWeights::weight, nb::rv_policy::reference)

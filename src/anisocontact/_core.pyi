@@ -308,6 +308,7 @@ class MortarWeights:
         straight_weights: NDArray[numpy.float64],
         skew_points: NDArray[numpy.float64],
         skew_weights: NDArray[numpy.float64],
+        whole: NDArray[numpy.float64],
         current_area: bool,
         memory: MortarMemory,
         threads: int,

@@ -28,9 +28,12 @@ Floats = npt.NDArray[np.float64]
 
 #: Ends of the parts of an edge by the number of its nodes, and their coordinates.
 _PARTS = {2: ([[0, 1]], [[0.0, 1.0]]), 3: ([[0, 2], [2, 1]], [[0.0, 0.5], [0.5, 1.0]])}
-#: Share of a part below which an overlap is rounding, and least pivot of scaled dual functions; as
-#: in cpp/include/anisocontact/mortar.
-SLIVER, LEAST = 1e-13, 1e-13
+#: Share of a part below which an overlap is rounding, least pivot of scaled dual functions, and
+#: least share of its weight that is covered for a node, over the largest; as in
+#: cpp/include/anisocontact/mortar.
+SLIVER, LEAST, EXTRAPOLATED = 1e-13, 1e-13, 0.2
+#: Share of a whole edge that each function makes up, by their number.
+_WHOLE = {2: [1 / 2, 1 / 2], 3: [1 / 6, 1 / 6, 2 / 3]}
 
 
 @dataclass(frozen=True)
@@ -229,6 +232,19 @@ class LineWeights:
     d_area: Floats
     d_weight: Floats
 
+    def handed_over(self, whole: Floats) -> LineWeights:
+        """Without nodes that would be extrapolated to; `whole`, (k,), are those all of which is."""
+        share = self.area / whole
+        kept = share > EXTRAPOLATED * share.max(axis=1, keepdims=True)
+        # row i has what node i gets of the others, its own included
+        gets = kept[:, :, None] / np.maximum(kept.sum(axis=1), 1)[:, None, None] * ~kept[:, None]
+        gets = gets + kept[:, :, None] * np.eye(kept.shape[1])
+        given = (
+            np.einsum("fij,fj...->fi...", gets, one)
+            for one in (self.area, self.weight, self.d_area, self.d_weight)
+        )
+        return LineWeights(self.masters, *given)
+
 
 def listed(owner: Numbers, nodes: Ints, count: int) -> Ints:
     """Nodes of each owner once, (count, c), ascending, -1 behind the last."""
@@ -341,7 +357,14 @@ class LineNodes:
 
 
 def line_weights(
-    sides: Facing, around: Patches, now: Floats, more: Ints, pairs: Pairs, *, current_area: bool
+    sides: Facing,
+    around: Patches,
+    now: Floats,
+    more: Ints,
+    pairs: Pairs,
+    *,
+    current_area: bool,
+    hand_over: bool,
 ) -> LineNodes:
     """As of `mortar_weights`."""
     slave, master, sweep = sides.slave, sides.master, sides.slave.sweep
@@ -352,6 +375,8 @@ def line_weights(
     below = sweep.edges(master.nodes)
     edges = _Edges(own.nodes, below, now[:, :2], reference, across, own.transform)
     found = edge_weights(edges, pairs.slave, pairs.master)
+    if hand_over:
+        found = found.handed_over(_WHOLE[edges.slave.shape[1]] @ own.transform)
     n, patch = around.nodes.shape
     owner = np.repeat(np.arange(n), np.diff(around.offsets))
     f, i = around.facets, around.local

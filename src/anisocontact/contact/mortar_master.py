@@ -96,7 +96,9 @@ class MortarMaster(MeshedMaster):
             if self._fold is not None:
                 pairs = self._fold.oriented(pairs, self.numbers)
             area = points.current_area
-            weights = mortar_weights(sides, points.around, now, more, pairs, current_area=area)
+            weights = mortar_weights(
+                sides, points.around, now, more, pairs, current_area=area, hand_over=True
+            )
         opposite = replace(opposite, masters=weights.masters, shares=weights.shares)
         tangents = points.at(now).tangents[:, 0]
         normal = averaged_normal(tangents)

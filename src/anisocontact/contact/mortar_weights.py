@@ -23,6 +23,13 @@ Floats = npt.NDArray[np.float64]
 #: Degree of the product of two shape functions of the position, by topology, on triangles and
 #: parallelograms, and of the rule on other quadrilaterals, where they are no polynomials.
 DEGREES = {"tri3": (2, 2), "quad4": (4, 6), "tri6": (4, 4), "quad9": (8, 8)}
+#: Share of a whole facet that the weight of each of its nodes is, by topology.
+WHOLE = {
+    "tri3": [1 / 3] * 3,
+    "quad4": [1 / 4] * 4,
+    "tri6": [2 / 15] * 3 + [1 / 5] * 3,
+    "quad9": [1 / 36] * 4 + [1 / 9] * 4 + [4 / 9],
+}
 
 
 class Differentiated(Protocol):
@@ -84,6 +91,7 @@ def mortar_weights(
     pairs: Pairs,
     *,
     current_area: bool,
+    hand_over: bool,
 ) -> MortarWeights:
     """Weights where the nodes are.
 
@@ -94,9 +102,13 @@ def mortar_weights(
         more: Nodes of the master to have as well, (n, j), -1 for none.
         pairs: Facets around the slave nodes and those that they may overlap.
         current_area: Whether areas are those of now or of the reference configuration.
+        hand_over: Whether nodes of which hardly anything of a facet is covered give their weights
+            on it to the others, as contact needs: dual functions extrapolate there from a strip.
     """
     if sides.slave.sweep is not None:
-        found = line_weights(sides, around, now, more, pairs, current_area=current_area)
+        found = line_weights(
+            sides, around, now, more, pairs, current_area=current_area, hand_over=hand_over
+        )
         return MortarWeights(found.masters, found.area, found.weight, found)
     slave, master = around.mesh, sides.master
     f, g = pairs.slave, pairs.master
@@ -125,6 +137,7 @@ def mortar_weights(
         straight_weights=straight[1],
         skew_points=skew[0],
         skew_weights=skew[1],
+        whole=np.array(WHOLE[slave.topology] if hand_over else []),
         current_area=current_area,
         memory=around.memory,
         threads=sides.threads,

@@ -112,7 +112,9 @@ def _conditions(groups: WholeGroups, sides: _Sides, cells: Ints, closed: float) 
     none = np.zeros((len(around.nodes), 0), dtype=np.int32)
     radius = largest_radius(sides.slave, sides.reference)
     pairs = facing(sides, sides.slave, sides.reference, radius)
-    weights = mortar_weights(sides, around, sides.reference, none, pairs, current_area=True)
+    weights = mortar_weights(
+        sides, around, sides.reference, none, pairs, current_area=True, hand_over=False
+    )
     count = len(groups.x)
     nodes, row = np.unique(around.nodes[:, 0].astype(np.int64) % count, return_inverse=True)
     shape = (len(nodes), count)

@@ -59,8 +59,9 @@ def step(name: str, increments: int, z: float | None = None, x: float | None = N
 def test_stiffness_ratio_of_a_million(to_the_end):
     """A block a million times stiffer than the plate, pressed in by a quarter in one increment.
 
-    In steady slip |T| = mu N; the plate bulges in front of the block and its rim digs in, so that
-    the resultant agrees to a fifth only.
+    The plate bulges in front of the block and its rim digs in. Source: facets a third as large,
+    integration points and a penalty of 300 times the modulus of the plate, 2.17 along and 7.42 up;
+    with two facets of the plate below the block the force agrees to a quarter.
     """
     run = to_the_end(
         pair(
@@ -70,8 +71,7 @@ def test_stiffness_ratio_of_a_million(to_the_end):
         )
     )
     force = run.force("drag")
-    assert force[2] < 0.0
-    assert np.hypot(*force[:2]) == pytest.approx(0.3 * abs(force[2]), rel=0.2)
+    np.testing.assert_allclose(force, [2.17, 0.0, -7.42], rtol=0.25, atol=1e-6)
 
 
 def test_mesh_ten_times_finer_on_one_side(to_the_end):

@@ -3,8 +3,10 @@
 //   integral of psi_i N_j = delta_ij integral of N_j   [Wohlmuth 2000],
 // biorthogonal on what the master covers [Cichosz Bischoff 2011], and with them
 //   D_i = integral of N_i,   W_ik = integral of psi_i M_k = D_i (m^-1 c)_ik .
+// Where hardly anything of a node is covered, psi_i is added to those of the others.
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "anisocontact/mortar/integrator.hpp"
@@ -104,6 +106,34 @@ ANISOCONTACT_INLINE bool put_weights(const Integrals<L>& in, std::size_t n, Dual
   return true;
 }
 
+/// Least share of its weight that has to be covered for a node, over that of the node of the facet of
+/// which most is: dual functions of less extrapolate from a strip to where nothing is covered.
+inline constexpr double extrapolated = 0.2;
+
+/// Gives the weights of nodes that would be extrapolated to the other nodes of the facet, so that a
+/// uniform traction is still handed over exactly; `whole` are the weights where all is covered.
+inline void hand_over(std::span<const double> whole, DualWeights& out) {
+  const auto n = static_cast<Index>(whole.size()), masters = out.weight.cols();
+  const Eigen::VectorXd share =
+      out.area.array() / Eigen::Map<const Eigen::ArrayXd>(whole.data(), n);
+  const auto kept = share.array() > extrapolated * share.maxCoeff();
+  const double part = 1.0 / static_cast<double>(kept.count());
+  const auto move = [&](auto& rows, Index width) {
+    for (Index from = 0; from < n; ++from) {
+      if (kept[from]) continue;
+      auto little = rows.middleRows(from * width, width);
+      for (Index to = 0; to < n; ++to)
+        if (kept[to]) rows.middleRows(to * width, width) += part * little;
+      little.setZero();
+    }
+  };
+  move(out.area, 1);
+  move(out.weight, 1);
+  if (out.d_area.size() == 0) return;
+  move(out.d_area, 1);
+  move(out.d_weight, masters);
+}
+
 }  // namespace detail
 
 /// What the weights of facets are found from.
@@ -112,6 +142,8 @@ struct MortarInput {
   const double *now,
       *reference;  ///< positions of the nodes; no reference where areas are those of now
   Rules rules;
+  std::span<const double>
+      whole;  ///< weights of a facet all of which is covered; none: see `hand_over`
   bool slopes;
 };
 
@@ -160,6 +192,7 @@ inline DualWeights dual_weights(const MortarInput& in, std::size_t f,
     });
     return good;
   });
+  if (any && !in.whole.empty()) detail::hand_over(in.whole, out);
   return any ? out : DualWeights{};
 }
 
