@@ -70,12 +70,13 @@ def begun(residual: Callable[[float], float]) -> tuple[Backtracking, System]:
         (lambda x: 1.0 - x, 1.0),
         (lambda x: np.nan if x > 0.3 else 1.0 - x, 0.25),
         (lambda x: 3.0 if x > 0.6 else 1.0 - x, 0.5),
-        (lambda x: 1.0 + x, LEAST),
+        (lambda x: 1.0 + x, 1.0),
+        (lambda x: np.nan if x > 0.6 else 1.0 + x, LEAST / 2.0),
     ],
-    ids=["whole", "no answer", "rises", "never falls"],
+    ids=["whole", "no answer", "rises", "never falls", "neither"],
 )
 def test_share(residual: Callable[[float], float], share: float) -> None:
-    """The first of 1, 1/2, 1/4 ... with which the residual does not rise, or the least.
+    """The first of 1, 1/2, 1/4 ... with which the residual does not rise, or the whole.
 
     Multipliers have followed once, with that share, and the residual there is known.
     """

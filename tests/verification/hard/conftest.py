@@ -45,12 +45,12 @@ def to_the_end(tmp_path) -> Callable[..., Run]:
     from anisocontact.case import load
     from anisocontact.case.build import build
 
-    def run(text: str, solver: str = "") -> Run:
+    def run(text: str, solver: str = "", most: int = 2500) -> Run:
         assert "[solver]" not in text
         path = tmp_path / "case.toml"
         path.write_text(f"{text}\n[solver]\n{solver}\n" if solver else text)
         built = build(load(path))
-        assert built.problem.unknowns < 2500
+        assert built.problem.unknowns < most
         cuts: list[Any] = []
         accepted = list(built.solver.run(on_cut=cuts.append))
         met = [(a.step, a.increment) for a in accepted if a.done == 1.0]

@@ -26,7 +26,8 @@ class Backtracking:
     Displacements and multipliers take the same share of a correction. The first share is taken of
     1, 1/2, 1/4 ... of it with which the forces balance no worse than in one of the last states; a
     state without an answer never is. Where nothing touches yet any balance will do: bodies that
-    bend far come to their contact through it.
+    bend far come to their contact through it. Where no share will do it is taken whole, if there is
+    an answer: the active set may have to change at once.
 
     Args:
         system: What is solved, a `newton.System`.
@@ -64,20 +65,28 @@ class Backtracking:
             return share
         free = self.whole or not contacts.touch()
         self._known.append(self._system.balance.norm)
-        marks, there = contacts.marks(), x.duplicate()
-        while True:
-            part = correction.copy()
-            part.scale(share)
-            there.waxpy(-1.0, part, x)
-            residual = self._system.evaluate(there)
-            self._tried = marks, np.array(there.array_r), residual
-            bound = np.inf if free else max(self._known)
+        bound = np.inf if free else max(self._known)
+        marks, answers = contacts.marks(), True
+        while share >= LEAST * largest:
             # a number that is none compares as false
-            if self._system.balance.norm <= bound or share <= LEAST:
+            if self._norm_at(share, x, correction) <= bound:
                 return share
+            answers &= share < largest or bool(np.isfinite(self._system.balance.norm))
             contacts.go_back(marks)
             share *= 0.5
-            contacts.take_share(share)
+        share = largest if answers else share
+        self._norm_at(share, x, correction)
+        return share
+
+    def _norm_at(self, share: float, x: Vec, correction: Vec) -> float:
+        """Size of the residual where a share is taken, which the multipliers take as well."""
+        contacts, there = self._contacts, x.duplicate()
+        marks, part = contacts.marks(), correction.copy()
+        contacts.take_share(share)
+        part.scale(share)
+        there.waxpy(-1.0, part, x)
+        self._tried = marks, np.array(there.array_r), self._system.evaluate(there)
+        return float(self._system.balance.norm)
 
     def evaluated(self, x: Vec) -> Floats | None:
         """The residual, if it was evaluated last here for a share; multipliers follow only once."""
