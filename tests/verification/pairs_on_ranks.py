@@ -232,14 +232,14 @@ def _mortar_folded() -> Made:
     law = ContactLaw(
         NormalLaw(penalty=2e4),
         Adhesion(stiffness=(1e4, 1e4)),
-        Friction(coefficients=(0.2, 0.2)),
+        Friction(coefficients=(0.02, 0.02)),
     )
     inner = "pin.inner"
     contact = Contact(model, inner, inner, law, self_contact=True, mortar=True, apart=0.3)
     problem = Problem(model, {"pin": make_material("neo-hookean", E=1000.0, nu=0.3)}, [contact])
     depth = 0.5 * GAP + 2e-3
     ends = {
-        "pin.upper": {"x": 0.02, "y": 0.0, "z": -depth},
+        "pin.upper": {"x": 0.1, "y": 0.0, "z": -depth},
         "pin.lower": {"x": 0.0, "y": 0.0, "z": depth},
     }
     return problem, [Step("close", 4, ends)]
