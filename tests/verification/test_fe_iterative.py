@@ -12,7 +12,6 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Callable, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -28,9 +27,6 @@ from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, Problem, Solver, Spring, Step
 from anisocontact.surfaces import make_surface
-
-#: At slave nodes.
-MORTAR = partial(Contact, mortar=True)
 
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
@@ -59,7 +55,6 @@ def _on_plane(
 
 def _pair(
     n: int = 4,
-    kind: type = Contact,
     shape: dict[str, Any] | None = None,
     material: dict[str, Any] | None = None,
     penalty: float = 1e5,
@@ -71,7 +66,7 @@ def _pair(
     base = BoxSpec((-0.5, -0.5, -0.5), (2, 2, 0.5), (m, m, max(1, m // 4)), **shape)
     model = build_box({"block": upper, "base": base})
     extra = {"augmentation": augmentation} if augmentation else {}
-    contact = kind(
+    contact = Contact(
         model,
         "block.bottom",
         "base.top",
@@ -121,10 +116,9 @@ def test_block_on_plane() -> None:
     _same(_on_plane, [Step("press", 2, top), DRAG])
 
 
-@pytest.mark.parametrize("kind", [Contact, MORTAR])
-def test_block_on_block(kind: type) -> None:
+def test_block_on_block() -> None:
     """Meshed bodies that slide on each other."""
-    _same(lambda: _pair(kind=kind), [PRESS, DRAG])
+    _same(_pair, [PRESS, DRAG])
 
 
 def test_quadratic_tetrahedra() -> None:
