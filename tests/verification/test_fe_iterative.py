@@ -28,7 +28,6 @@ from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, Problem, Solver, Spring, Step
 from anisocontact.surfaces import make_surface
 
-
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
 CLAMP = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
 PRESS = Step("press", 2, {**CLAMP, "block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
