@@ -107,7 +107,8 @@ def test_tangent_of_the_system_by_order(
 ) -> None:
     """Halving the step quarters the error of central differences (asserted 3.5 to 4.5), with the
     points of the block sliding (mu = 0.3) or sticking (mu = 30), from a random state in contact."""
-    problem = _problem(_blocks(2, cell, order), _law(mu, ratio=0.5), material, kind)
+    n = 4 if kind is MORTAR and order == 1 else 2  # two facets have nine slave nodes
+    problem = _problem(_blocks(n, cell, order), _law(mu, ratio=0.5), material, kind)
     step = Step(
         name="press",
         increments=2,
@@ -121,7 +122,7 @@ def test_tangent_of_the_system_by_order(
     problem.set_load_factor(1.0, 1.0)
     problem.evaluate(x)
     counts = problem.contacts[0].counts()
-    assert counts["slip" if mu < 1.0 else "stick"] > (10 if kind is Contact else 5)  # of nine nodes
+    assert counts["slip" if mu < 1.0 else "stick"] > 10
     direction = x.duplicate()
     direction.array[:] = rng.normal(size=x.getLocalSize())
     errors = difference_errors(problem, x, direction, (2e-7, 1e-7))

@@ -67,6 +67,8 @@ def _contact(model: Model, master: str, unit: float, mu: tuple[float, float]) ->
     laws = _laws(unit, mu)
     if master == "plate":
         return Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws))
+    if master == "plate at slave nodes":
+        return Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws), mortar=True)
     if master == "plane":
         surface = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
         return Contact(model, "block.bottom", Interface(surface, *laws))
@@ -115,7 +117,7 @@ def _shifted(*by: float) -> Move:
     return lambda x: x + np.array(by)
 
 
-MASTERS = ("plane", "plate")
+MASTERS = ("plane", "plate", "plate at slave nodes")
 
 
 @pytest.mark.parametrize("master", MASTERS)

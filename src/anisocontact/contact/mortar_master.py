@@ -31,6 +31,7 @@ from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.slave_nodes import SlaveNodes
+from anisocontact.contact.whereabouts import Whereabouts
 from anisocontact.interface import ContactLaw, State
 from anisocontact.interface.contact_law import FacetBatch, FacetLaw
 from anisocontact.interface.failed_point import OnFacets, one_point
@@ -348,6 +349,15 @@ class MortarMaster(MeshedMaster):
     def opposite(self) -> tuple[Ints, Ints, Floats]:
         named, weights = self._gathered.local_names, self._at.weights
         return named(self._at.quadrature.nodes[:, 0]), named(weights.masters), weights.shares
+
+    @override
+    def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:
+        found, hit = super().whereabouts(u, before, state, now), self._hint
+        if self._fold is not None:
+            return found
+        # facets that face the same way do not overlap: a body that has turned over is not touched
+        there = (hit.status == FACET_STATUS.index("on")) & (hit.gap <= 0.0) & ~found.located
+        return found.with_behind(there, hit.normal, self._points.quadrature.areas)
 
     @override
     def below(self, state: State) -> Ints:

@@ -8,7 +8,7 @@ near, or the other side. Both are in balance, and neither can be.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -83,6 +83,22 @@ class Whereabouts:
         shares = np.array([self.areas[wrong].sum(), self.areas[self.closed].sum()])
         pressed, closed = self.comm.allreduce(shares)
         return wrong if pressed > CRUSHED * closed else np.zeros_like(wrong)
+
+    def with_behind(self, there: Mask, normal: Floats, areas: Floats) -> Whereabouts:
+        """With points as if pressed that lie behind the master and face the same way.
+
+        Args:
+            there: Points that lie behind it, (n,).
+            normal: Normal of the master at the closest points, (n, 3); NaN where there are none.
+            areas: Area that each has where it is in contact, (n,), length^2.
+        """
+        behind = there & (_cosine(self.outward, np.nan_to_num(normal)) > SAME_WAY)
+        return replace(
+            self,
+            closed=self.closed | behind,
+            normal=np.where(behind[:, None], normal, self.normal),
+            areas=np.where(behind, areas, self.areas),
+        )
 
     def through(self) -> tuple[Ints, Floats]:
         """Points that have gone through the master since the accepted state, and how far.
