@@ -50,12 +50,12 @@ PLANES = (("left", "x"), ("front", "y"))
 type Made = tuple[Problem, list[Step]]
 
 
-def _law(angle: float = 0.5) -> ContactLaw:
+def _law(angle: float = 0.5, mu: tuple[float, float] = (0.2, 0.4)) -> ContactLaw:
     along = make_directions("constant", vector=(1, 0, 0), angle=angle)
     return ContactLaw(
         NormalLaw(penalty=20.0),
         Adhesion(stiffness=(8.0, 16.0), directions=along),
-        Friction(coefficients=(0.2, 0.4), directions=along),
+        Friction(coefficients=mu, directions=along),
     )
 
 
@@ -144,14 +144,15 @@ def _mortar_far() -> Made:
 
 
 def _mortar_symmetric() -> Made:
-    """A quarter of two bodies: slave nodes and masters rest across the planes of symmetry."""
+    """A quarter of two bodies that slip: nodes of both rest across the planes of symmetry."""
     model = build_box(
         {
             "block": BoxSpec((0, 0, 0), (2, 2, 1), (3, 3, 1), order=2),
             "mat": BoxSpec((0, 0, -1), (3, 3, 1), (4, 4, 1), order=2),
         }
     )
-    pair = Contact(model, "mat.top", "block.bottom", law=_law(), mortar=True)
+    law = _law(mu=(0.02, 0.04))
+    pair = Contact(model, "mat.top", "block.bottom", law=law, mortar=True)
     problem, _ = _dragged(model, [pair], "linear-elastic")
     planes = {f"{body}.{side}": {axis: 0.0} for body in ("block", "mat") for side, axis in PLANES}
     held = planes | {"mat.bottom": {"z": 0.0}}
