@@ -80,7 +80,7 @@ class Sheets:
         self.surface = FacetSurface(self.reference, lower, self.topology)
         kind = list(TOPOLOGIES).index(self.topology)
         self.master = (lower, np.full(len(lower), kind, dtype=np.int8), flip)
-        self.core = self.law.pairs().core
+        self.core = self.law.on_facets().core
         self.hint: FacetProjections | None = None
         self.state = np.zeros(len(self.points.nodes), dtype=STATE)
         self.state["facet"] = -1

@@ -82,7 +82,7 @@ struct Batch {
   Mesh mesh;
   Slave slave;
   Hits hits;
-  bool mirrored, on_master, on_slave;  ///< on whose reference there are directions
+  bool on_master, on_slave;  ///< on whose reference there are directions
 
   void see_slave(std::size_t p, Seen& s) const {
     auto& own = s.point.own;
@@ -127,7 +127,6 @@ struct Batch {
     s.shapes.area.weight = slave.weight[p];
     s.shapes.area.current = slave.current_area;
     see_slave(p, s);
-    s.point.mirrored = mirrored;
     s.point.feature = static_cast<kernel::Feature>(hits.feature[p]);
     s.shapes.master.count = s.shapes.before.count = 0;
     if (s.point.feature == kernel::Feature::off) return;

@@ -21,17 +21,7 @@ using Flags = nb::ndarray<const bool, nb::shape<-1>, nb::c_contig, nb::device::c
 /// The laws of slave points that meet facets.
 struct FacetInterface {
   kernel::InterfaceLaw law;
-  bool mirrored;  ///< whether slave and master have swapped their parts
   std::shared_ptr<Pool> pool = std::make_shared<Pool>();  ///< for blocks
-
-  /// Fields of a mirrored interface are on the other body of the core.
-  FacetInterface(const kernel::InterfaceLaw& l, bool swapped) : law(l), mirrored(swapped) {
-    if (!mirrored) return;
-    for (auto* d :
-         {&law.adhesion_directions, &law.friction_directions, &law.friction_directions_second})
-      if (d->field)
-        d->side = d->side == kernel::Side::slave ? kernel::Side::master : kernel::Side::slave;
-  }
 
   bool on(kernel::Side side) const {
     const auto is = [&](const kernel::Directions& d) { return d.field && d.side == side; };
@@ -78,7 +68,6 @@ void def_batch(nb::class_<FacetInterface>& c, const char* name, const Run& run) 
             {slave_nodes.data(), slave_shape.data(), slave_gradient.data(), weight.data(), ks,
              current_area},
             {facet.data(), xi.data(), edge.data(), feature.data()},
-            h.mirrored,
             h.on(kernel::Side::master),
             h.on(kernel::Side::slave)};
         const Input q{b,
@@ -88,7 +77,7 @@ void def_batch(nb::class_<FacetInterface>& c, const char* name, const Run& run) 
                       n,
                       now.shape(0),
                       threads,
-                      BatchLaw(h.law, outputs, n, h.mirrored)};
+                      BatchLaw(h.law, outputs, n)};
         return with_tangent ? run.template operator()<true>(h, q)
                             : run.template operator()<false>(h, q);
       },
@@ -109,8 +98,7 @@ nb::dict law_input(const FacetInterface& h, const Input& q) {
       Seen s;
       q.batch.see(old, i, s);
       kernel::LawInput input;
-      const auto r = kernel::update_pair<false>(h.law, kernel::Recorder(input, h.mirrored), old,
-                                                s.point, q.dt);
+      const auto r = kernel::update_pair<false>(h.law, kernel::Recorder(input), old, s.point, q.dt);
       inputs.put(i, input, r.state);
     });
   }
@@ -209,10 +197,8 @@ void bind_facet_interface(nb::module_& m) {
   nb::class_<FacetInterface> c(m, "FacetInterface");
   c.def(
       "__init__",
-      [](FacetInterface* self, const LawHandle& law, bool mirrored) {
-        new (self) FacetInterface(law.law, mirrored);
-      },
-      nb::arg("law"), nb::arg("mirrored"));
+      [](FacetInterface* self, const LawHandle& law) { new (self) FacetInterface{law.law}; },
+      nb::arg("law"));
   def_batch(c, "law_input",
             []<bool>(const FacetInterface& h, const Input& q) { return law_input(h, q); });
   def_batch(c, "update", []<bool tangent>(const FacetInterface& h, const Input& q) {

@@ -18,9 +18,8 @@ using Table = nb::ndarray<const double, nb::shape<-1, -1>, nb::c_contig, nb::dev
 /// Adhesion and friction of the core, or the law whose output has a row for each point.
 class BatchLaw {
  public:
-  BatchLaw(const kernel::InterfaceLaw& law, const std::optional<Table>& outputs, std::size_t n,
-           bool mirrored)
-      : core_(law), outputs_(outputs ? outputs->data() : nullptr), mirrored_(mirrored) {
+  BatchLaw(const kernel::InterfaceLaw& law, const std::optional<Table>& outputs, std::size_t n)
+      : core_(law), outputs_(outputs ? outputs->data() : nullptr) {
     if (outputs && (outputs->shape(0) != n || outputs->shape(1) != columns))
       throw std::invalid_argument("outputs of a law do not belong to these points");
   }
@@ -31,10 +30,9 @@ class BatchLaw {
     if (outputs_ == nullptr) return update(core_);
     kernel::LawOutput output;
     std::memcpy(&output, outputs_ + i * columns, sizeof(output));
-    auto r = update(kernel::GivenLaw(output, mirrored_));
+    auto r = update(kernel::GivenLaw(output));
     if (r.state.status == 0 || r.failure != kernel::Failure::none) return r;
-    const double side = mirrored_ ? -1.0 : 1.0;
-    r.friction_axes[1] = side * r.normal.cross(r.friction_axes[0]);
+    r.friction_axes[1] = r.normal.cross(r.friction_axes[0]);
     r.adhesion_axes = r.friction_axes;
     return r;
   }
@@ -44,7 +42,6 @@ class BatchLaw {
 
   kernel::CoreLaw core_;
   const double* outputs_;
-  bool mirrored_;
 };
 
 /// The law inputs of a batch.

@@ -65,7 +65,7 @@ nb::dict law_input(const InterfaceHandle& h, const Bytes& state, const Points& x
     kernel::parallel_for(n, threads, [&](std::size_t i) {
       const kernel::Carrier carrier = own.at(i);
       kernel::LawInput input;
-      const auto r = kernel::update<false>(h.itf, kernel::Recorder(input, false), states[i],
+      const auto r = kernel::update<false>(h.itf, kernel::Recorder(input), states[i],
                                            row3(x.data(), i), own.given() ? &carrier : nullptr, dt);
       inputs.put(i, input, r.state);
     });
@@ -79,7 +79,7 @@ nb::dict update(const InterfaceHandle& h, const Bytes& state, const Points& x, d
                 const std::optional<Table>& outputs) {
   const std::size_t n = x.shape(0);
   const States states(state, n);
-  const BatchLaw law(h.itf.law, outputs, n, false);
+  const BatchLaw law(h.itf.law, outputs, n);
   const OwnInput own{own_reference, own_reference_tangents, own_tangents};
   const std::size_t m = with_tangent ? n : 0, own_rows = own.given() ? m : 0;
   Array<std::uint8_t> next({n, sizeof(PointState)});

@@ -143,13 +143,12 @@ inline Seen see(const PointState& state, const PairPoint& p, double dt) {
 inline anisotropy::Axes<S> axes_at(const Directions& d, const PairPoint& p, const Seen& s) {
   const auto& g = s.k.now;
   if (!d.field) return anisotropy::axes_from(g, g.jet.d1[0], anisotropy::Turn{});
-  const double turns = p.mirrored ? -1.0 : 1.0;
   if (d.side == Side::master)
     return carried(*d.field, surface::tangent_plane(at_rest(p.master.reference, s.dxi)), s.k.xi,
-                   turns, s.master, g);
+                   1.0, s.master, g);
   const auto n = value(s.own.d1[0]).cross(value(s.own.d1[1]));
   return carried(*d.field, surface::tangent_plane(at_rest(p.own.reference, {})), {},
-                 n.dot(value(g.normal)) < 0.0 ? -turns : turns, s.own, g);
+                 n.dot(value(g.normal)) < 0.0 ? -1.0 : 1.0, s.own, g);
 }
 
 /// m_j = c (T . rho^j) n_f - c^j T with x - rho = c^j rho_j + c n_f; c^j = 0 inside a facet.

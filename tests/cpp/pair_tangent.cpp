@@ -115,7 +115,6 @@ kernel::PairPoint point(Random& r, Feature feature) {
   p.master.xi = {r(0.2, 0.8), r(0.2, 0.8)};
   p.facet = 3;
   p.feature = feature;
-  p.mirrored = r.coin();
   const auto n = surface::tangent_plane(p.master.now).normal;
   Vec3<double> away = n;
   if (feature == Feature::edge) {

@@ -168,7 +168,7 @@ def make(
         **_required(rule),
     )
     adhesion = Adhesion(stiffness=(60.0, 25.0), directions=marks, directions_on=on[0])
-    core = ContactLaw(NormalLaw(penalty=100.0), adhesion, friction).pairs().core
+    core = ContactLaw(NormalLaw(penalty=100.0), adhesion, friction).on_facets().core
     state = np.zeros(1, dtype=STATE)
     state["facet"], state["status"], state["xi"] = 1, 1, (0.31, 0.27)
     state["stored"] = state["traction"] = rng.normal(0, 0.3, 2)

@@ -140,7 +140,7 @@ class FacetMaster(MeshedMaster):
         self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
     ) -> npt.NDArray[np.int8]:
         asked = Evaluation(self.sides, self._hint, self._nodes.now, False)
-        law = ContactLaw(*laws).pairs()
+        law = ContactLaw(*laws).on_facets()
         return asked.answer(law, state, 1.0, False).snapshot.response.failure
 
     @override

@@ -61,8 +61,8 @@ class MeshedMaster(Master):
 
     @override
     def take(self, laws: ContactLaw, derivative: ContactLaw) -> None:
-        self._given, self._law = laws, laws.pairs()
-        self._derivative = self._law if derivative is laws else derivative.pairs()
+        self._given, self._law = laws, laws.on_facets()
+        self._derivative = self._law if derivative is laws else derivative.on_facets()
 
     @override
     def located(self, state: State) -> Mask:

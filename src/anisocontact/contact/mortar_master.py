@@ -368,7 +368,7 @@ class MortarMaster(MeshedMaster):
     def probe(
         self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
     ) -> npt.NDArray[np.int8]:
-        law = ContactLaw(*laws).pairs()
+        law = ContactLaw(*laws).on_facets()
         failure = self._answer(law, state, 1.0, False).snapshot.response.failure
         return np.asarray(failure, dtype=np.int8)
 

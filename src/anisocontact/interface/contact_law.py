@@ -149,12 +149,8 @@ class ContactLaw:
         self.dtype, self.carried = self.tangential.dtype, self.tangential.carried
         self.core = self.tangential.core(normal, evolution)
 
-    def pairs(self, mirrored: bool = False) -> FacetLaw:
+    def on_facets(self) -> FacetLaw:
         """The law for slave points and facets.
-
-        Args:
-            mirrored: Whether slave and master have swapped their parts: the master of the core
-                carries what is the slave's, and angles count about the normal of the core's slave.
 
         Returns:
             What is evaluated for them.
@@ -163,7 +159,7 @@ class ContactLaw:
             InputError: As of `check_meshed`.
         """
         self.check_meshed()
-        return FacetLaw(self, mirrored)
+        return FacetLaw(self)
 
     def check_meshed(self) -> None:
         """Check that facets of a mesh can be the master.
@@ -242,15 +238,14 @@ class FacetLaw:
 
     Args:
         law: The law.
-        mirrored: Whether slave and master have swapped their parts.
 
     Attributes:
         in_python: Whether its tangential part is written in Python.
     """
 
-    def __init__(self, law: ContactLaw, mirrored: bool) -> None:
+    def __init__(self, law: ContactLaw) -> None:
         self._tangential, self.in_python = law.tangential, law.tangential.in_python
-        self.core = _core.FacetInterface(law.core, mirrored)
+        self.core = _core.FacetInterface(law.core)
 
     def evaluate(
         self, state: State, by_points: bool, dt: float, batch: FacetBatch

@@ -148,7 +148,7 @@ class OnFacets(FailedPoint):
     @override
     def evaluate(self, shift: Floats | None = None) -> Evaluated:
         batch = self.batch if shift is None else self._moved(shift)
-        law = self.law.pairs()
+        law = self.law.on_facets()
         found = law.evaluate(self.state, True, self.dt, batch)
         own = self.batch["slave_nodes"].shape[1]
         block = found["tangent"][0, : 3 * own, : 3 * own].reshape(own, 3, own, 3)

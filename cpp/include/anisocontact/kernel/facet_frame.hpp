@@ -18,7 +18,6 @@ struct PairPoint {
   std::int64_t facet{-1};
   Feature feature{Feature::off};
   std::array<double, 2> edge{};  ///< direction of the edge in coordinates
-  bool mirrored{false};          ///< whether directions turn about the inward normal
 };
 
 /// The facet under a point: contact plane, and how the coordinates of the projection and the normal

@@ -29,7 +29,7 @@ template <bool tangent>
 class PairAxes {
  public:
   PairAxes(const PairPoint& p, const Vec3<double>& n, const PlaneAxis& start) noexcept
-      : point_(p), n_(n), start_(start), turns_(p.mirrored ? -1.0 : 1.0) {}
+      : point_(p), n_(n), start_(start) {}
 
   /// Without a field, along the first direction.
   PlaneAxes operator()(const Directions& d) noexcept {
@@ -42,17 +42,16 @@ class PairAxes {
  private:
   PlaneAxes of_field(const Directions& d) noexcept {
     if (d.side == Side::master) {
-      if (!master_) master_.emplace(point_.master, turns_);
+      if (!master_) master_.emplace(point_.master, 1.0);
       return carried(*d.field, *master_, n_, d.side);
     }
-    if (!own_) own_.emplace(point_.own, turns_ * orientation(point_.own, n_));
+    if (!own_) own_.emplace(point_.own, orientation(point_.own, n_));
     return carried(*d.field, *own_, n_, d.side);
   }
 
   const PairPoint& point_;
   const Vec3<double>& n_;
   const PlaneAxis& start_;
-  double turns_;
   std::optional<ReferencePlane<std::conditional_t<tangent, Dual<2>, double>>> master_;
   std::optional<ReferencePlane<double>> own_;
 };

@@ -32,20 +32,16 @@ inline Flat scaled(double k, const Flat& v) { return {k * v[0], k * v[1]}; }
 /// A quarter of a turn about n.
 inline Flat quarter(const Flat& v) { return {-v[1], v[0]}; }
 
-/// The axes of a law in the contact plane: the first one of the friction axes, and n x e_1; -n x e_1
-/// where slave and master have swapped their parts, so that a law sees both sides the same way.
+/// The axes of a law in the contact plane: the first one of the friction axes, and n x e_1.
 struct OwnAxes {
   Flat e;
-  double side;
 
-  OwnAxes(const ContactFrame& in, bool mirrored)
-      : e(in.friction_axes[0]), side(mirrored ? -1.0 : 1.0) {}
+  explicit OwnAxes(const ContactFrame& in) : e(in.friction_axes[0]) {}
   Flat in_axes(const Flat& v) const {
-    return {e[0] * v[0] + e[1] * v[1], side * (e[0] * v[1] - e[1] * v[0])};
+    return {e[0] * v[0] + e[1] * v[1], e[0] * v[1] - e[1] * v[0]};
   }
   Flat in_plane(const Flat& v) const {
-    const double second = side * v[1];
-    return {e[0] * v[0] - e[1] * second, e[1] * v[0] + e[0] * second};
+    return {e[0] * v[0] - e[1] * v[1], e[1] * v[0] + e[0] * v[1]};
   }
 };
 
@@ -76,7 +72,7 @@ inline void put_slopes_of(const LawOutput& a, const PointState& state, const Con
       times(a.by_increment, quarter(seen.increment)),
       plus(times(a.by_stored, quarter(seen.stored)), times(a.by_elastic, quarter(seen.elastic))));
   r.slope(Slope::friction, 0) =
-      plus(quarter(axes.in_plane(a.traction)), axes.in_plane(scaled(-axes.side, turned)));
+      plus(quarter(axes.in_plane(a.traction)), axes.in_plane(scaled(-1.0, turned)));
   const Dual<1> part = part_in_contact(state, in.gap);
   Flat& by_gap = r.slope(Slope::gap, 0);
   by_gap = scaled(in.d_pressure, axes.in_plane(a.by_pressure));
@@ -92,27 +88,25 @@ inline void put_slopes_of(const LawOutput& a, const PointState& state, const Con
 /// Records what a law sees, and answers nothing.
 class Recorder final : public Law {
  public:
-  Recorder(LawInput& to, bool mirrored) noexcept : to_(to), mirrored_(mirrored) {}
+  explicit Recorder(LawInput& to) noexcept : to_(to) {}
 
   Reaction evaluate(const PointState& state, const ContactFrame& in, bool) const noexcept override {
-    to_ = detail::law_input(state, in, detail::OwnAxes(in, mirrored_));
+    to_ = detail::law_input(state, in, detail::OwnAxes(in));
     return {};
   }
 
  private:
   LawInput& to_;
-  bool mirrored_;
 };
 
 /// Stands for a law whose output is known.
 class GivenLaw final : public Law {
  public:
-  GivenLaw(const LawOutput& output, bool mirrored) noexcept
-      : output_(output), mirrored_(mirrored) {}
+  explicit GivenLaw(const LawOutput& output) noexcept : output_(output) {}
 
   Reaction evaluate(const PointState& state, const ContactFrame& in,
                     bool tangent) const noexcept override {
-    const detail::OwnAxes axes(in, mirrored_);
+    const detail::OwnAxes axes(in);
     const LawInput seen = detail::law_input(state, in, axes);
     const Flat elastic = detail::plus(detail::plus(seen.elastic, seen.increment),
                                       detail::scaled(-1.0, output_.slip));
@@ -131,7 +125,6 @@ class GivenLaw final : public Law {
 
  private:
   const LawOutput& output_;
-  bool mirrored_;
 };
 
 }  // namespace anisocontact::kernel
