@@ -52,8 +52,7 @@ def evaluate(made: Contact, u: np.ndarray, tangent: bool) -> None:
     made.update(u, 1.0)
     made.add_force(np.zeros_like(u))
     if tangent:
-        for half in made.passes:
-            half.answer.couplings()
+        made.answer.couplings()
 
 
 def best(made: Contact, u: np.ndarray, tangent: bool) -> float:

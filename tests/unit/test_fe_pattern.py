@@ -109,7 +109,7 @@ def test_where_no_way_is_prescribed_points_are_taken_to_slide_on():
 
 def test_the_way_is_that_of_the_slave_against_the_master():
     """Supports of both bodies count, from where the steps have come to, as far as the window."""
-    (contact,) = Contact(pair().model, "block.bottom", "mat.top", law=LAW).passes
+    contact = Contact(pair().model, "block.bottom", "mat.top", law=LAW)
     steps = pressed(0.3, 4)
     moving = {"mat.bottom": {"x": -0.1}}
     steps[1] = dataclasses.replace(steps[1], displacement=steps[1].displacement | moving)

@@ -40,12 +40,12 @@ def _over_a_valley() -> tuple[Contact, Any, Any]:
         model, "block.bottom", "base.top", law=law, degree=1, reach=1.0, current_area=False
     )
     x = model.space.tabulate_dof_coordinates()
-    base = np.unique(contact.passes[0].master.facets)
+    base = np.unique(contact.master.facets)
 
     def moved(by: float, up: float) -> np.ndarray:
         u = np.zeros_like(x)
         u[base, 2] = SLOPE * np.abs(x[base, 0] - 1.0)
-        u[np.unique(contact.passes[0].slave_points.nodes)] = [by, 0.0, up]
+        u[np.unique(contact.slave_points.nodes)] = [by, 0.0, up]
         return u
 
     return contact, moved, model
@@ -91,20 +91,20 @@ def test_points_held_beside_their_closest_are_let_go_once():
     contact, moved, _ = _over_a_valley()
     contact.update(moved(-0.05, -0.02), 1.0)
     contact.hold(np.ones(len(contact.footing()), dtype=bool))
-    assert not contact.improve()
+    assert not contact.trials.improve()
     contact.update(moved(0.05, -0.02), 1.0)
     held, gap = contact.footing(), contact.trial.gap.copy()
-    assert contact.improve()
+    assert contact.trials.improve()
     contact.update(moved(0.05, -0.02), 1.0)
     assert np.all(contact.footing() != held)
     np.testing.assert_array_equal(contact.strayed(), 0.0)
-    assert not contact.improve()
-    assert contact.soften()
+    assert not contact.trials.improve()
+    assert contact.trials.soften()
     contact.update(moved(0.05, -0.02), 1.0)
     np.testing.assert_array_equal(contact.footing(), held)
     np.testing.assert_array_equal(contact.trial.gap, gap)
-    assert not contact.improve()
-    assert not contact.soften()
+    assert not contact.trials.improve()
+    assert not contact.trials.soften()
 
 
 @pytest.mark.parametrize(("by", "refuses"), [(1e-4, False), (0.05, True)])

@@ -280,9 +280,8 @@ def _facets(problem: Problem) -> np.ndarray:
 
 
 def _had(problem: Problem) -> np.ndarray:
-    """Facets of the master that every rank has, of every pass, (ranks, passes)."""
-    passes = [half for pair in problem.contacts if pair.meshed for half in pair.passes]
-    own = [len(half.master.numbers) for half in passes]
+    """Facets of the master that every rank has, of every contact, (ranks, contacts)."""
+    own = [len(pair.master.numbers) for pair in problem.contacts if pair.meshed]
     return np.array(problem.comm.allgather(own))
 
 

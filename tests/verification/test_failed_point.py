@@ -77,17 +77,16 @@ def test_a_point_alone_answers_as_in_the_run(make: Any, law: str, tmp_path: Any)
     whole = contact.update(u, 0.25)
     touching = np.flatnonzero(whole.status)
     assert touching.size
-    half = contact.passes[0]
     point = int(touching[0])
     said = {"contact": contact.name, "point": point, "failure": "none"}
-    half.master.failed_point(point, half.state, 0.25, **said).write(tmp_path / "point.json")
+    contact.master.failed_point(point, contact.state, 0.25, **said).write(tmp_path / "point.json")
     read = read_failed_point(tmp_path / "point.json")
     alone = read.evaluate()
     assert alone.failure == ""
     for name in alone.state.dtype.names or ():
         if name != "facet":  # numbered among those of the file
             assert np.array_equal(alone.state[name][0], whole.state[name][point]), name
-    traction = contact.passes[0].master.into_frame(whole.traction[point])
+    traction = contact.master.into_frame(whole.traction[point])
     assert alone.traction == pytest.approx(traction, rel=1e-14)
     assert min(read.tangent_errors().values()) < 1e-6
 

@@ -302,7 +302,7 @@ def _force(contact: Contact, u: Floats) -> Floats:
 def _linear(contact: Contact, way: Floats) -> Floats:
     """What the tangent makes of a displacement, (nodes, 3)."""
     out = np.zeros_like(way)
-    for rows, columns, blocks in contact.passes[0].answer.couplings():
+    for rows, columns, blocks in contact.answer.couplings():
         square = blocks.reshape(len(rows), rows.shape[1], 3, columns.shape[1], 3)
         there = np.where(columns[..., None] >= 0, way[columns], 0.0)
         found = -np.einsum("pricj,pcj->pri", square, there)
@@ -364,7 +364,7 @@ def test_goes_on_from_what_it_kept() -> None:
     model, shift = _star()
     first, second = (_lips(model, _turning()) for _ in range(2))
     kept, u = _moved(first, model, shift)
-    second.restore(first.passes[0].persistent(), kept)
+    second.restore(first.persistent(), kept)
     assert np.array_equal(_force(first, u), _force(second, u))
 
 

@@ -154,7 +154,7 @@ def _force(contact: Contact, u: Floats) -> Floats:
 def _linear_force(contact: Contact, way: Floats) -> Floats:
     """What the tangent makes of a displacement, (nodes, 3)."""
     out = np.zeros_like(way)
-    for rows, columns, blocks in contact.passes[0].answer.couplings():
+    for rows, columns, blocks in contact.answer.couplings():
         square = blocks.reshape(len(rows), rows.shape[1], 3, columns.shape[1], 3)
         there = np.where(columns[..., None] >= 0, way[columns], 0.0)
         found = -np.einsum("pricj,pcj->pri", square, there)

@@ -102,9 +102,8 @@ def contents(built: Built) -> list[str]:
 
 def _pass(contact: Contact) -> str:
     """Where the law of a contact is evaluated, and how exactly it holds."""
-    first = contact.passes[0]
-    where = "at slave nodes (mortar)" if first.slave_points.at_nodes else "at integration points"
-    return f"{where}, {'multipliers' if first.trials.augmented else 'penalties'}"
+    where = "at slave nodes (mortar)" if contact.slave_points.at_nodes else "at integration points"
+    return f"{where}, {'multipliers' if contact.trials.augmented else 'penalties'}"
 
 
 def _points(built: Built) -> Iterator[str]:

@@ -8,7 +8,6 @@ from anisocontact.contact.directions import facet_directions
 from anisocontact.contact.hints import coarse_slaves, doubtful_sides, warn_of
 from anisocontact.contact.initial import Overlap, check_start, initial_overlap
 from anisocontact.contact.multipliers import NotHeldError
-from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.penalty import PENALTY_FACTOR, auto_penalty, facet_size
 from anisocontact.contact.quadrature import FacetQuadrature, facet_quadrature
 from anisocontact.contact.tie_gaps import close_gaps
@@ -20,7 +19,6 @@ __all__ = [
     "FacetQuadrature",
     "NotHeldError",
     "Overlap",
-    "Pass",
     "auto_penalty",
     "check_start",
     "close_gaps",

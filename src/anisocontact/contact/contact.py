@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any, Unpack
+from typing import Unpack
 
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.errors import InputError
-from anisocontact.contact.history import Snapshot
-from anisocontact.contact.making import Before, Options, SurfaceMaster, before_this, pass_of
-from anisocontact.contact.master import Resting
+from anisocontact.contact.making import Before, Options, SurfaceMaster, before_this, parts_of
+from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.quadrature import FacetQuadrature
-from anisocontact.interface import STATUS, ContactLaw, Response, State
+from anisocontact.interface import STATUS, ContactLaw, Response
 from anisocontact.interface.augmentation import Augmentation
-from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.mesh import Model
 from anisocontact.rigid import RigidBody
 
@@ -24,7 +20,7 @@ Ints = npt.NDArray[np.int32]
 Mask = npt.NDArray[np.bool_]
 
 
-class Contact:
+class Contact(Pass):
     """Contact of a facet group with an analytic surface, one on a rigid body, or other facets.
 
     At every integration point of the slave `t = N n + T`, from the closest point of the master. The
@@ -64,7 +60,8 @@ class Contact:
         slave: As given.
         name: Name in output.
         space: Vector space of the displacement.
-        passes: The pass over the slave points.
+        master: What the slave points meet.
+        slave_points: Where the laws are evaluated.
         physical_adhesion: Whether the stiffness of adhesion is physical, so that elastic slip is
             none of its faults.
         facet_of_point: Number of each point's facet in the group it lies on, (n,).
@@ -126,26 +123,10 @@ class Contact:
             apart,
             mortar or before_mortar or self_contact,
         )
-        self._pass = made = pass_of(model, slave, master, law, options)
-        self.passes, self.slave, self.name = (made,), slave, name or slave
-        self.space, self._comm = made.space, made.space.mesh.comm
+        parts = parts_of(model, slave, master, law, options)
+        super().__init__(model.space, slave, name or slave, *parts, **options.of_pass)
         self.physical_adhesion = True
-        self.facet_of_point = made.slave_points.facet
-
-    @property
-    def interface(self) -> Any:
-        """The laws, with their surface if it has one."""
-        return self._pass.interface
-
-    @property
-    def groups(self) -> tuple[str, ...]:
-        """Facet group of the slave, and of the master if it is one."""
-        return self._pass.groups
-
-    @property
-    def master(self) -> str:
-        """Facet group of the master, "" for a surface."""
-        return "".join(self.groups[1:])
+        self.facet_of_point = self.slave_points.facet
 
     @property
     def meshed(self) -> bool:
@@ -160,139 +141,56 @@ class Contact:
     @property
     def body(self) -> RigidBody | None:
         """Rigid body that carries the master, if one does."""
-        return self._pass.master.body
+        return self.master.body
 
     @property
     def quadrature(self) -> FacetQuadrature:
-        """Quadrature of the slave, of the first pass."""
-        return self._pass.slave_points.quadrature
+        """Quadrature of the slave."""
+        return self.slave_points.quadrature
 
     @property
     def current_area(self) -> bool:
         """Whether tractions act on the area of now."""
-        return self._pass.slave_points.current_area
+        return self.slave_points.current_area
 
     @property
     def facet_size(self) -> float:
         """Length of a slave facet: square root of the mean area."""
-        return self._pass.slave_points.size
+        return self.slave_points.size
 
     @property
     def master_size(self) -> float:
         """Length of a facet of the master; 0 for a surface."""
-        return self._pass.master.size
-
-    @property
-    def body_stiffness(self) -> float:
-        """As of `Pass`."""
-        return self._pass.body_stiffness
+        return self.master.size
 
     def slip_stiffness(self, dt: float) -> float:
         """As of `Trials`."""
-        return self._pass.trials.slip_stiffness(dt)
-
-    @property
-    def ran_off(self) -> Floats:
-        """Slave points that left the end of the master in the accepted increment, (k, 3)."""
-        return self._pass.ran_off
-
-    @property
-    def points(self) -> Floats:
-        """Slave points where they are after the accepted increment, (n, 3), length."""
-        return self._pass.points
-
-    @property
-    def areas(self) -> Floats:
-        """Area of each slave point after the accepted increment, (n,), length^2."""
-        return self._pass.areas
-
-    @property
-    def last(self) -> Response:
-        """Response of the accepted increment."""
-        return self._pass.last
-
-    @property
-    def current(self) -> Snapshot:
-        """The trial, or the accepted increment if there was none since."""
-        return self._pass.current
+        return self.trials.slip_stiffness(dt)
 
     @property
     def trial(self) -> Response:
         """Response of the last `update`, or of the accepted increment if there was none since."""
         return self.current.response
 
-    @property
-    def state(self) -> State:
-        """Committed history, one record for each point."""
-        return self._pass.state
-
-    def take_supports(self, fixed: Mask, resting: Sequence[Resting]) -> None:
-        """As of `Pass`."""
-        self._pass.take_supports(fixed, resting)
-
-    def update(self, u: Floats, dt: float) -> Response:
-        """Response to nodal displacements from the committed history, kept as the trial.
-
-        Args:
-            u: Displacement of the local nodes, (nodes, 3), length.
-            dt: Time increment.
-
-        Returns:
-            The response; the committed history is unchanged.
-        """
-        try:
-            return self._pass.update(u, dt)
-        except InputError as error:  # a law in Python
-            error.failed = self._pass.unanswered(self.name)
-            raise
-
-    def failed_point(self) -> FailedPoint | None:
-        """The first point of this rank at which the laws have failed in the trial, if any has."""
-        return self._pass.failed_point(self.name)
-
-    def commit(self) -> None:
-        """Make the trial the history."""
-        self._pass.commit()
-
-    def roll_back(self) -> None:
-        """Forget the trial."""
-        self._pass.roll_back()
-
-    def restore(self, kept: Mapping[str, npt.NDArray[Any]], u: Floats) -> None:
-        """As of `Pass`."""
-        self._pass.restore(kept, u)
-
     def add_force(self, out: Floats) -> None:
         """Add the forces of the trial to the local nodes, (nodes, 3), force."""
-        self._pass.answer.add_force(out)
+        self.answer.add_force(out)
 
     def couplable(self) -> Ints:
         """Local nodes that the contact acts on; all ranks together have all of them."""
-        return self._pass.master.couplable()
-
-    def improve(self) -> bool:
-        """As of `Trials`."""
-        return self._pass.trials.improve()
-
-    def soften(self) -> bool:
-        """As of `Trials`."""
-        return self._pass.trials.soften()
+        return self.master.couplable()
 
     def footing(self) -> npt.NDArray[np.int64]:
         """As of `Master`."""
-        return self._pass.master.footing(len(self.state))
+        return self.master.footing(len(self.state))
 
     def hold(self, points: Mask) -> None:
         """As of `Master`."""
-        self._pass.master.hold(points)
+        self.master.hold(points)
 
     def strayed(self) -> Floats:
         """As of `Master`."""
-        return self._pass.master.strayed(len(self.state))
-
-    def elastic_slip(self) -> Floats:
-        """Elastic part of the displacement of the slave relative to the master, (n, 3), length."""
-        return self._pass.elastic_slip()
+        return self.master.strayed(len(self.state))
 
     def counts(self) -> dict[str, int]:
         """Number of open, sticking and slipping points of the trial, over all ranks."""
@@ -309,12 +207,8 @@ class Contact:
         Returns:
             Force (3,) and moment (3,), force and force times length.
         """
-        total = self._comm.allreduce(self._pass.accepted.wrench(np.asarray(about)))
+        total = self._comm.allreduce(self.accepted.wrench(np.asarray(about)))
         return total[:3], total[3:]
-
-    def energies(self) -> dict[str, float]:
-        """As of `Pass`."""
-        return self._pass.energies()
 
     def extreme(self, values: Floats) -> float:
         """Largest of some numbers at points, over all ranks; 0 without points."""
@@ -330,12 +224,12 @@ class Contact:
 
     def counted(self) -> Mask:
         """Slave points of the accepted increment that count among peaks, (n,)."""
-        return self._pass.slave_points.peaks(self.areas)
+        return self.slave_points.peaks(self.areas)
 
     def touching(self) -> Floats:
         """Area of each slave point on which it touches, accepted increment, (n,), length^2."""
-        return self._pass.slave_points.touching(self._pass.accepted)
+        return self.slave_points.touching(self.accepted)
 
     def covered(self) -> Floats:
         """Share of each slave point that a master was opposite to, accepted increment, (n,)."""
-        return self._pass.slave_points.covered(self.areas)
+        return self.slave_points.covered(self.areas)

@@ -38,9 +38,9 @@ def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[st
             continue
         slave, master = contact.facet_size, contact.master_size
         if slave > ratio * master:
-            at_nodes = contact.passes[0].slave_points.at_nodes
+            at_nodes = contact.slave_points.at_nodes
             found.append(
-                f"contact of {contact.slave} with {contact.master}: the facets of the slave are "
+                f"contact of {' with '.join(contact.groups)}: the facets of the slave are "
                 f"{slave / master:.2g} times as large as those of the master ({slave:.3g} and "
                 f"{master:.3g}), {_AT_NODES if at_nodes else _AT_POINTS}"
             )
@@ -68,13 +68,12 @@ def stiff_slaves(contacts: Sequence[Contact]) -> list[str]:
         A line for each of them.
     """
     return [
-        f"contact of {one.slave} with {one.master}: the slave is {half.master_yields:.2g} times as "
+        f"contact of {' with '.join(one.groups)}: the slave is {one.master_yields:.2g} times as "
         f"stiff as the master and its facets are smaller ({one.facet_size:.3g} and "
         f"{one.master_size:.3g}): pressures at its nodes alternate; swap slave and master"
         for one in contacts
-        for half in one.passes
-        if half.slave_points.at_nodes
-        and half.master_yields > STIFF
+        if one.slave_points.at_nodes
+        and one.master_yields > STIFF
         and one.facet_size < FINER * one.master_size
     ]
 

@@ -1,4 +1,4 @@
-"""Passes over slave points from what a contact is given."""
+"""The parts of a contact from what it is given."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from anisocontact.base.fenicsx import facet_keys
 from anisocontact.contact.analytic import AnalyticMaster
 from anisocontact.contact.facet_master import FacetMaster
 from anisocontact.contact.facet_mesh import facet_mesh, node_positions
+from anisocontact.contact.master import Master
 from anisocontact.contact.mortar_master import MortarMaster
-from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.poles import without_poles
@@ -43,6 +43,8 @@ APART = 3.0
 
 #: A surface, or one that has its laws, which may move.
 type SurfaceMaster = Surface | Interface | MovingSurface
+#: Slave points, what they meet, and the laws as the user gave them.
+type Parts = tuple[SlavePoints, Master, ContactLaw | Interface]
 
 
 @dataclass(frozen=True)
@@ -64,7 +66,7 @@ class Options:
 
     @property
     def of_pass(self) -> dict[str, Any]:
-        """What a pass takes."""
+        """What a contact takes besides its parts."""
         return {
             "augmentation": self.augmentation,
             "adjust": self.adjust,
@@ -103,14 +105,14 @@ def before_this(
     return MovingSurface(surface, before.get("body")), mortar
 
 
-def pass_of(
+def parts_of(
     model: Model,
     slave: str,
     master: str | SurfaceMaster | None,
     law: ContactLaw | None,
     options: Options,
-) -> Pass:
-    """The pass of a contact, see `Contact`."""
+) -> Parts:
+    """The parts of a contact, see `Contact`."""
     if options.mortar and options.degree is not None:
         raise InputError("given, but slave nodes have no quadrature of a degree", "degree")
     if not isinstance(master, str):
@@ -118,12 +120,12 @@ def pass_of(
     laws = _laws(law)
     if options.self_contact:
         options = _folded(model, slave, master, options)
-    return facet_pass(model, slave, master, laws, options)
+    return _on_facets(model, slave, master, laws, options)
 
 
 def _on_surface(
     model: Model, slave: str, master: Any, law: ContactLaw | None, options: Options
-) -> Pass:
+) -> Parts:
     facets = model.boundary(slave, "slave")
     for name in ("reach", "self_contact", "apart"):
         if getattr(options, name):
@@ -144,7 +146,7 @@ def _on_surface(
         points = SlavePoints(quadrature, flip, current_area=current, comm=comm)
     check_symmetry(model.idealisation, interface, points, comm)
     found = AnalyticMaster(interface, body, points, comm)
-    return Pass(model.space, slave, points, found, interface, **options.of_pass)
+    return points, found, interface
 
 
 def _slave_nodes(
@@ -218,14 +220,14 @@ def _folded(model: Model, slave: str, master: str, options: Options) -> Options:
     return replace(options, apart=apart, reach=reach)
 
 
-def facet_pass(
+def _on_facets(
     model: Model,
     slave: str,
     master: str,
     law: ContactLaw,
     options: Options,
-) -> Pass:
-    """A pass against facets.
+) -> Parts:
+    """Points and what they meet, which is facets.
 
     Args:
         model: Mesh with both groups.
@@ -251,6 +253,6 @@ def facet_pass(
     if nodes is not None:
         size = facet_size(model, master)
         met = MortarMaster(sides, law, group=master, size=size, folded=options.self_contact)
-        return Pass(model.space, slave, nodes, met, law, **options.of_pass)
+        return nodes, met, law
     found = FacetMaster(sides, law, group=master, size=facet_size(model, master))
-    return Pass(model.space, slave, sides.points, found, law, **options.of_pass)
+    return sides.points, found, law

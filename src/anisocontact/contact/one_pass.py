@@ -1,4 +1,4 @@
-"""One pass over slave points: points, a master and its laws composed, with their history."""
+"""What a contact does: slave points, a master and its laws composed, with their history."""
 
 from __future__ import annotations
 
@@ -38,9 +38,12 @@ _KEPT = ("traction", "normal", "directions_adhesion", "directions_friction", "fa
 class Pass:
     """Slave points against a master: forces, tangent and history, which `commit` alone advances.
 
+    A `Contact` is one, made from the names of groups.
+
     Args:
         space: Vector space of the displacement.
         slave: Facet group "body.group".
+        name: Name in output.
         points: Where the laws are evaluated.
         master: What the points meet.
         law: Laws, as the user gave them.
@@ -50,6 +53,7 @@ class Pass:
 
     Attributes:
         slave: As given.
+        name: As given.
         space: As given.
         slave_points: Where the laws are evaluated.
         master: What the points meet.
@@ -70,6 +74,7 @@ class Pass:
         self,
         space: Any,
         slave: str,
+        name: str,
         points: SlavePoints,
         master: Master,
         law: Any,
@@ -78,7 +83,8 @@ class Pass:
         adjust: float | None = None,
         area_told: bool = False,
     ) -> None:
-        self.space, self.slave, self.slave_points, self.master = space, slave, points, master
+        self.space, self.slave, self.name = space, slave, name
+        self.slave_points, self.master = points, master
         self._comm, self._area_told = space.mesh.comm, area_told
         self._dt = 1.0
         self.body_stiffness = self.master_yields = 0.0
@@ -167,37 +173,38 @@ class Pass:
 
         Returns:
             The response; the committed history is unchanged.
+
+        Raises:
+            InputError: A law in Python failed.
         """
         if self.master.place(u, self.state, self.trials.start, self.last.state):
             self.trials.forget()
         self._dt = dt
-        self.answer = self.trials.answer(dt)
+        try:
+            self.answer = self.trials.answer(dt)
+        except InputError as error:
+            error.failed = self._unanswered()
+            raise
         self._trial = self.answer.snapshot
         return self._trial.response
 
-    def failed_point(self, contact: str) -> FailedPoint | None:
-        """The first point of this rank at which the laws have failed in the trial, if any has.
-
-        Args:
-            contact: Name of the contact.
-        """
+    def failed_point(self) -> FailedPoint | None:
+        """The first point of this rank at which the laws have failed in the trial, if any has."""
         failure = self.current.response.failure
         if not failure.any():
             return None
         point = int(np.flatnonzero(failure)[0])
-        said = {"contact": contact, "point": point, "failure": FAILURE[failure[point]]}
+        return self._at_point(point, FAILURE[failure[point]])
+
+    def _at_point(self, point: int, failure: str) -> FailedPoint:
+        said = {"contact": self.name, "point": point, "failure": failure}
         found: FailedPoint = self.master.failed_point(point, self.trials.start, self._dt, **said)
         return found
 
-    def unanswered(self, contact: str) -> FailedPoint | None:
-        """The first point of this rank at which a law in Python fails when it is asked alone.
-
-        Args:
-            contact: Name of the contact.
-        """
+    def _unanswered(self) -> FailedPoint | None:
+        """The first point of this rank at which a law in Python fails when it is asked alone."""
         for i in range(len(self.trials.start)):
-            said = {"contact": contact, "point": i, "failure": ""}
-            point: FailedPoint = self.master.failed_point(i, self.trials.start, self._dt, **said)
+            point = self._at_point(i, "")
             try:
                 point.evaluate()
             except InputError as error:

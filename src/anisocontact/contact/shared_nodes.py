@@ -17,11 +17,10 @@ def tell_shared(contacts: Sequence[Contact]) -> None:
     Args:
         contacts: The contacts.
     """
-    passes = [half for one in contacts for half in one.passes]
-    halves = [half for half in passes if half.trials.augmented and half.slave_points.at_nodes]
-    if len(halves) < 2:
+    shared = [one for one in contacts if one.trials.augmented and one.slave_points.at_nodes]
+    if len(shared) < 2:
         return
-    own = [half.slave_points.nodes[:, 0] for half in halves]
+    own = [one.slave_points.nodes[:, 0] for one in shared]
     times = np.bincount(np.concatenate(own))
-    for half, nodes in zip(halves, own, strict=True):
-        half.trials.take_shared(times[nodes] > 1)
+    for one, nodes in zip(shared, own, strict=True):
+        one.trials.take_shared(times[nodes] > 1)

@@ -191,10 +191,10 @@ def slave_points(contacts: Iterable[Contact], chosen: Collection[str] = ()) -> D
     if not parts:
         return None
     points = np.concatenate([part.contact.points for part in parts])
-    passes = [half.slave_points for part in parts for half in part.contact.passes]
-    starts = np.cumsum([0, *(len(one.facet) for one in passes)])
-    loose = np.repeat([not one.at_nodes for one in passes], np.diff(starts))
-    pieces = (one.polygons + start for one, start in zip(passes, starts, strict=False))
+    slaves = [part.contact.slave_points for part in parts]
+    starts = np.cumsum([0, *(len(one.facet) for one in slaves)])
+    loose = np.repeat([not one.at_nodes for one in slaves], np.diff(starts))
+    pieces = (one.polygons + start for one, start in zip(slaves, starts, strict=False))
     cells = vertices(np.flatnonzero(loose)) | polygons(*pieces)
     return DataSet("PolyData", points, cells, arrays(POINT, parts, chosen))
 

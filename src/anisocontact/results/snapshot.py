@@ -176,8 +176,8 @@ class _ContactNow(SlavePoints):
 
     def least_gap(self) -> float:
         """Smallest gap, negative where points overlap; 0 where no point has a surface below it."""
-        (made,), state = self.contact.passes, self.contact.state
-        gaps = state["gap"][made.master.located(state)]
+        state = self.contact.state
+        gaps = state["gap"][self.contact.master.located(state)]
         least = min(self.contact.space.mesh.comm.allgather(float(gaps.min(initial=np.inf))))
         return float(least) if np.isfinite(least) else 0.0
 

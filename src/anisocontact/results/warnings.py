@@ -39,8 +39,7 @@ def at_start(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> li
     found = doubtful_sides(contacts)
     for contact, entry in zip(contacts, shown, strict=True):
         overlap = initial_overlap(contact, entry["facet_size"])
-        beside = max(half.slave_points.beside for half in contact.passes)
-        if overlap is not None and overlap.depth > beside:
+        if overlap is not None and overlap.depth > contact.slave_points.beside:
             place = ", ".join(f"{v:.4g}" for v in overlap.point)
             found.append(
                 f"{_pair(entry)}: the bodies overlap by {overlap.depth:.3g} at the start, "
@@ -178,7 +177,7 @@ def at_end(
 
 def _exact(contact: Contact) -> bool:
     """Whether multipliers hold a contact: only how it was at the start is left to penetrate."""
-    return all(half.trials.augmented for half in contact.passes)
+    return contact.trials.augmented
 
 
 def soft(

@@ -70,7 +70,7 @@ class Pressure:
         radius = (0.75 * force * RADIUS / reduced) ** (1.0 / 3.0)
         peak = 1.5 * force / (np.pi * radius**2)
         # a node that hardly anything of the other body covers says little
-        carried = contact.areas > 0.05 * contact.passes[0].slave_points.quadrature.areas
+        carried = contact.areas > 0.05 * contact.slave_points.quadrature.areas
         self.place = contact.points[carried, :2] / radius
         self.radius = np.linalg.norm(self.place, axis=1)
         self.found = contact.last.pressure[carried] / peak

@@ -115,8 +115,8 @@ def member(
 def _asked(run, mu: float) -> None:
     """What every member has to have: multipliers that hold, and friction within its cone."""
     contact = run.problem.contacts[0]
-    last, size = contact.last, contact.passes[0].slave_points.size
-    covered = contact.passes[0].slave_points.covered(contact.areas)
+    last, size = contact.last, contact.slave_points.size
+    covered = contact.slave_points.covered(contact.areas)
     touches = last.status != 0
     assert touches.any()
     assert np.abs(covered * contact.state["gap"])[touches].max() < 1e-6 * size

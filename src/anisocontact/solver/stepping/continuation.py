@@ -82,8 +82,7 @@ class Continuation:
     def end(self) -> None:
         """Take all layers away."""
         for contact in self._problem.contacts:
-            for half in contact.passes:
-                half.trials.take_away()
+            contact.trials.take_away()
 
     def _with_layers(
         self, x: Vec, stiffness: float, damping: Callable[[], float] | None
@@ -93,9 +92,8 @@ class Continuation:
         most = max(self.ratio(contact) for contact in stiff)
         while True:
             for contact in stiff:
-                for half in contact.passes:
-                    softer = 1.0 / (stiffness * contact.body_stiffness)
-                    half.trials.lay(softer, self._problem.dt)
+                softer = 1.0 / (stiffness * contact.body_stiffness)
+                contact.trials.lay(softer, self._problem.dt)
             for _ in range(ROUNDS):
                 result = self._newton.solve(x, full_steps=True, damping=damping)
                 spent += result.iterations

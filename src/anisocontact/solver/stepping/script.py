@@ -309,12 +309,11 @@ class ContactProblem(AssembledSystem):
     def _untouched(self) -> list[MeshPart]:
         """Parts of the mesh that no contact which touches somewhere acts on, now."""
         nodes = [np.zeros(0, dtype=np.int32)]
-        passes: list[Any] = [one for contact in self.contacts for one in contact.passes]
-        for one in passes:
-            now = one.current.response
-            near = one.master.located(now.state) & (now.gap <= NEAR * one.slave_points.size)
+        for contact in self.contacts:
+            now = contact.current.response
+            near = contact.master.located(now.state) & (now.gap <= NEAR * contact.facet_size)
             if self._any(near):
-                nodes.append(one.master.couplable())
+                nodes.append(contact.couplable())
         touched = np.concatenate(nodes)
         return [part for part in self._parts if not self._any(np.isin(part.nodes, touched))]
 

@@ -107,7 +107,7 @@ class ContactWork:
         """Whether supports and prescribed motions alone drive the bodies, and contact can tell."""
         parts = self._parts
         held = not (parts.stabilisation.watches or parts.rigid.free or parts.attached)
-        held = held and all(half.retraceable for c in self._contacts for half in c.passes)
+        held = held and all(contact.retraceable for contact in self._contacts)
         loaded = held and bool(parts.loads.force(nodal).any())
         return held and not self._comm.allreduce(loaded, MPI.LOR)
 
@@ -156,8 +156,8 @@ class ContactWork:
     def _kinks(self) -> bool:
         """Whether enough points begin or end contact or slip, or bodies flow."""
         changed = touching = 0
-        for part in (part for contact in self._contacts for part in contact.passes):
-            before, now = part.state["status"], part.current.response.state["status"]
+        for contact in self._contacts:
+            before, now = contact.state["status"], contact.trial.state["status"]
             changed += int(np.count_nonzero(before != now))
             touching += int(np.count_nonzero(now != STATUS.index("open")))
         changed, touching = self._comm.allreduce(np.array([changed, touching]))

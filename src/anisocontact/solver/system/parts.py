@@ -136,9 +136,8 @@ def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) ->
     tell_shared(contacts)
     diagonal = np.array(bodies.bulk.yielding.array_r).reshape(-1, 3)
     for contact, is_finite in zip(contacts, finite, strict=True):
-        for half in contact.passes:
-            half.suit_strain(is_finite)
-            half.suit(diagonal)
+        contact.suit_strain(is_finite)
+        contact.suit(diagonal)
 
 
 def _finite(model: Model, materials: Mapping[str, Material], contact: Contact) -> bool:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.course import Course
-from anisocontact.contact import Pass
+from anisocontact.contact import Contact
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.terms.step import AXES, Step
 
@@ -31,14 +31,14 @@ class ContactPrediction:
     """Predicts contact along the prescribed motions of all steps.
 
     Args:
-        passes: Passes over slave points.
+        contacts: Those against facets.
         steps: What will be done.
     """
 
-    def __init__(self, passes: Sequence[Pass], steps: Sequence[Step]) -> None:
-        self._passes, self._steps = list(passes), list(steps)
+    def __init__(self, contacts: Sequence[Contact], steps: Sequence[Step]) -> None:
+        self._contacts, self._steps = list(contacts), list(steps)
         self._increments = np.array([step.increments for step in steps], dtype=np.float64)
-        names = {name for one in passes for name in one.groups}
+        names = {name for one in contacts for name in one.groups}
         bodies = {name.partition(".")[0] for name in names}
         self._paths = {body: _path(steps, body) for body in bodies}
 
@@ -53,7 +53,7 @@ class ContactPrediction:
             load_factor: Fraction of it.
         """
         found = []
-        for one in self._passes:
+        for one in self._contacts:
             way, hops = self.way(one, step, load_factor)
             way = way[:, None]
             if len(way) == 1:
@@ -61,7 +61,7 @@ class ContactPrediction:
             found += one.master.reachable(way, MARGIN * one.slave_points.size, hops)
         return found
 
-    def way(self, one: Pass, step: Step | None, load_factor: float) -> tuple[Floats, int]:
+    def way(self, one: Contact, step: Step | None, load_factor: float) -> tuple[Floats, int]:
         """Displacement of the slave against the master at places along the way, (w, 3), length.
 
         Args:
@@ -89,7 +89,7 @@ class ContactPrediction:
         return way, int(hops)
 
 
-def going_on(one: Pass) -> tuple[Floats, int]:
+def going_on(one: Contact) -> tuple[Floats, int]:
     """Where slave points get to that slide on as in this increment, (w, n or 1, 3), length.
 
     Also how many of these places an increment goes.

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact import Contact, Pass
+from anisocontact.contact import Contact
 from anisocontact.contact.whereabouts import CRUSHED
 from anisocontact.mesh import Model
 from anisocontact.solver.system.culprit import Culprit
@@ -38,15 +38,13 @@ class _Watched:
     """Nodes of a slave's body that were in front of the master at first.
 
     Attributes:
-        one: The pass.
-        name: Name of its contact.
+        one: The contact.
         body: The body; None where slave and master are one.
         nodes: Nodes of this rank.
         places: Where they were, (n, 3), length.
     """
 
-    one: Pass
-    name: str
+    one: Contact
     body: ConnectedBody | None
     nodes: Ints
     places: Floats
@@ -63,11 +61,8 @@ class SidesKept:
     def __init__(self, contacts: Sequence[Contact], model: Model | None = None) -> None:
         groups = [] if model is None else bodies(model)
         self._watched = [
-            _alone(one, contact.name)
-            if model is None
-            else _watched(model, one, contact.name, groups)
+            _alone(contact) if model is None else _watched(model, contact, groups)
             for contact in contacts
-            for one in contact.passes
         ]
 
     def objection(self, u: Floats, whole: bool = True) -> Culprit | None:
@@ -105,7 +100,7 @@ class SidesKept:
         # out of contact a body may be anywhere that it has not come to through the master
         if comm.allreduce(int(np.count_nonzero(where.closed))) and behind > MOST_BEHIND:
             text = f"body {name!r} is behind its master with {behind:.0%} of it"
-            yield Culprit("behind", place, text + far, watched.name)
+            yield Culprit("behind", place, text + far, watched.one.name)
 
     def _behind(self, watched: _Watched, u: Floats | None) -> tuple[float, float, Point]:
         """Share of a body behind the master that was in front of it, how far at most, and where."""
@@ -133,20 +128,20 @@ class SidesKept:
             local = ((x, y, z), first, int(one.slave_points.facet[first]))
         known = [place for place in one.space.mesh.comm.allgather(local) if place is not None]
         position, point, facet = known[0]
-        return Culprit("behind", position, why, watched.name, point, facet)
+        return Culprit("behind", position, why, watched.one.name, point, facet)
 
 
-def _alone(one: Pass, name: str) -> _Watched:
-    return _Watched(one, name, None, np.zeros(0, dtype=np.int64), np.zeros((0, 3)))
+def _alone(one: Contact) -> _Watched:
+    return _Watched(one, None, np.zeros(0, dtype=np.int64), np.zeros((0, 3)))
 
 
-def _watched(model: Model, one: Pass, name: str, groups: list[ConnectedBody]) -> _Watched:
+def _watched(model: Model, one: Contact, groups: list[ConnectedBody]) -> _Watched:
     places = np.asarray(model.space.tabulate_dof_coordinates())
     slave = model.body_of(one.slave)
     body = next(group for group in groups if slave in group.parts)
     if any(model.body_of(group) in body.parts for group in one.groups[1:]):
-        return _alone(one, name)
+        return _alone(one)
     nodes = body.nodes[:: max(1, len(body.nodes) // MOST_NODES)]
     seen = one.master.look(places[nodes])
     nodes = nodes[seen.on & (seen.gap > -DEEP * body.size)]
-    return _Watched(one, name, body, nodes, places[nodes])
+    return _Watched(one, body, nodes, places[nodes])

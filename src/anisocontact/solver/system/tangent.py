@@ -34,11 +34,11 @@ class Tangent:
         self._assembly = assembly
         self._comm = space.mesh.comm
         self._stiffness = assembly.bodies.bulk.stiffness
-        self._passes = assembly.contacts.passes
+        self._meshed = assembly.contacts.meshed
         extra = assembly.rigid.size // 3
         self.coupled = (
             CoupledTangent(self._stiffness, space, extra)
-            if self._passes or extra or coupling
+            if self._meshed or extra or coupling
             else None
         )
         self._prediction: ContactPrediction | None = None
@@ -48,8 +48,8 @@ class Tangent:
 
     def predict_contact(self, steps: Sequence[Step]) -> None:
         """Have places in the pattern for what contact will need in these steps."""
-        if self._passes:
-            self._prediction = ContactPrediction(self._passes, steps)
+        if self._meshed:
+            self._prediction = ContactPrediction(self._meshed, steps)
 
     def begin(self, step: Step) -> None:
         """Take it that a step begins."""

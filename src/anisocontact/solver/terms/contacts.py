@@ -18,7 +18,7 @@ from anisocontact.solver.terms.term import Term
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
-#: Where the multipliers of all passes were.
+#: Where the multipliers of all contacts were.
 type Marks = list[Mark]
 
 
@@ -29,15 +29,14 @@ class Contacts(Term):
         contacts: The contacts.
 
     Attributes:
-        passes: Passes over slave points against facets.
+        meshed: Those against facets.
     """
 
     def __init__(self, contacts: Sequence[Contact]) -> None:
         self._all = list(contacts)
-        self._halves = [p for c in self._all for p in c.passes]
-        self._trials = [p.trials for p in self._halves]
-        self.passes = [p for c in self._all if c.meshed for p in c.passes]
-        self._smooth = [p for c in self._all if not c.meshed for p in c.passes]
+        self._trials = [contact.trials for contact in self._all]
+        self.meshed = [contact for contact in self._all if contact.meshed]
+        self._smooth = [contact for contact in self._all if not contact.meshed]
         self._dt = 1.0
         self._failed = False
 
@@ -59,7 +58,7 @@ class Contacts(Term):
 
     @override
     def lever(self) -> float:
-        return float(np.linalg.norm([half.lever() for half in self._halves]))
+        return float(np.linalg.norm([contact.lever() for contact in self._all]))
 
     @override
     def blocks(self) -> list[Couplings]:
@@ -67,13 +66,13 @@ class Contacts(Term):
 
     @override
     def couplings(self) -> list[Couplings]:
-        return [found for one in self.passes for found in one.answer.couplings()]
+        return [found for one in self.meshed for found in one.answer.couplings()]
 
     @override
     def add_tangent(self, matrix: Mat) -> None:
-        for half in self._smooth:
-            for *names, values in half.answer.couplings():
-                sides = (globally(one, half.space).astype(PETSc.IntType) for one in names)
+        for contact in self._smooth:
+            for *names, values in contact.answer.couplings():
+                sides = (globally(one, contact.space).astype(PETSc.IntType) for one in names)
                 matrix.setValuesBlockedRCV(*sides, values, PETSc.InsertMode.ADD_VALUES)
 
     @override
@@ -97,7 +96,7 @@ class Contacts(Term):
 
     @override
     def histories(self) -> list[Arrays]:
-        return [half.persistent() for half in self._halves]
+        return [contact.persistent() for contact in self._all]
 
     @override
     def take_histories(self, kept: Iterator[Arrays], u: Floats) -> None:
@@ -106,17 +105,17 @@ class Contacts(Term):
 
     def pass_through(self) -> None:
         """Remember a state that the bodies flow through, for the work of friction."""
-        for half in self._halves:
-            half.pass_through()
+        for contact in self._all:
+            contact.pass_through()
 
     def feet(self) -> npt.NDArray[np.int64]:
         """Local nodes of the master facets that are below slave points in the trial."""
-        found = [half.master.feet() for half in self.passes]
+        found = [contact.master.feet() for contact in self.meshed]
         return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
     def opposite(self) -> list[tuple[Ints, Ints, Floats]]:
         """Slave nodes and what they are held against in the trial, see `Master.opposite`."""
-        found = [half.master.opposite() for half in self.passes]
+        found = [contact.master.opposite() for contact in self.meshed]
         return [one for one in found if one is not None]
 
     def improve(self) -> bool:
@@ -191,5 +190,5 @@ class Contacts(Term):
             ratio: Part of the load over the last one where displacements are extrapolated, 0 where
                 they start from the accepted state.
         """
-        for half in self._halves:
-            half.predict(ratio)
+        for contact in self._all:
+            contact.predict(ratio)

@@ -100,9 +100,8 @@ class FreeBody:
         if not self.sprung:
             return self.size
         near = [
-            np.abs(p.current.response.gap[p.master.located(p.state)]).min(initial=np.inf)
+            np.abs(c.trial.gap[c.master.located(c.state)]).min(initial=np.inf)
             for c in self.contacts
-            for p in c.passes
         ]
         least = min(self.contacts[0].space.mesh.comm.allgather(float(min(near))))
         return float(min(max(2.0 * least, TOUCHING * self.size), self.size))
@@ -126,9 +125,8 @@ class FreeBody:
             return self.may_hold()
         projected = self.springs.copy()
         for contact in self.contacts:
-            for half in contact.passes:
-                for blocks in half.answer.couplings():
-                    projected += self.motions @ self._projected(blocks) @ self.motions.T
+            for blocks in contact.answer.couplings():
+                projected += self.motions @ self._projected(blocks) @ self.motions.T
         sizes = np.linalg.svd(projected, compute_uv=False)
         return bool(sizes.min(initial=np.inf) > self.least)
 

@@ -57,13 +57,13 @@ class RigidBodies(Term):
     def __init__(
         self, contacts: Sequence[Contact], comm: Any, faces: CoupledFaces | None = None
     ) -> None:
-        on_bodies = [p for c in contacts if c.body is not None for p in c.passes]
+        on_bodies = [contact for contact in contacts if contact.body is not None]
         self.faces = faces
         led = [] if faces is None else faces.faces
         self.bodies: list[RigidBody] = list(
             dict.fromkeys(
                 [
-                    *(p.master.body for p in on_bodies if p.master.body is not None),
+                    *(contact.body for contact in on_bodies if contact.body is not None),
                     *(face.body for face in led),
                 ]
             )
@@ -73,7 +73,7 @@ class RigidBodies(Term):
             if names.count(name) > 1:
                 raise InputError(f"two rigid bodies have the name {name!r}", "body")
         self.free = [body for body in self.bodies if body.free]
-        self.contacts = {b: [p for p in on_bodies if p.master.body is b] for b in self.bodies}
+        self.contacts = {b: [one for one in on_bodies if one.body is b] for b in self.bodies}
         self.led = {b: [face for face in led if face.body is b] for b in self.bodies}
         self._comm = comm
         self._drives = {body: Drive(body) for body in self.bodies}

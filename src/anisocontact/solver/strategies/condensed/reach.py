@@ -55,11 +55,10 @@ class Reach:
         self.nodes = np.zeros(len(u), dtype=np.bool_)
         self.nodes[self._others] = True
         for contact in self._contacts:
-            for half in contact.passes:
-                if contact.of_two_groups:
-                    self._select_pass(half, self._reference + u)
-                else:
-                    self.nodes[half.master.couplable()] = True
+            if contact.of_two_groups:
+                self._select_contact(contact, self._reference + u)
+            else:
+                self.nodes[contact.couplable()] = True
 
     def persistent(self) -> Arrays:
         """Where the last selection was made, and what came of it."""
@@ -86,12 +85,12 @@ class Reach:
     def valid(self, u: Floats) -> bool:
         """Whether no body has moved by more than what was allowed for."""
         for contact in self._contacts:
-            searched: tuple[Any, ...] = contact.passes if contact.of_two_groups else ()
-            for half in searched:
-                slave = half.master.local_names(half.slave_points.nodes)
-                sides = (slave, half.master.facets)
-                if sum(self._moved(side, u) for side in sides) > self._motion(half):
-                    return False
+            if not contact.of_two_groups:
+                continue
+            master: Any = contact.master
+            sides = (master.local_names(contact.slave_points.nodes), master.facets)
+            if sum(self._moved(side, u) for side in sides) > self._motion(contact):
+                return False
         return True
 
     def _moved(self, facets: npt.NDArray[np.int32], u: Floats) -> float:
@@ -100,27 +99,28 @@ class Reach:
         step = np.linalg.norm(u[nodes] - self._start[nodes], axis=1)
         return float(step.max(initial=0.0))
 
-    def _motion(self, half: Any) -> float:
+    def _motion(self, contact: Contact) -> float:
         """Motion of slave and master that is allowed for, length."""
-        bodies = [self._ranges[name.partition(".")[0]] for name in half.groups]
+        bodies = [self._ranges[name.partition(".")[0]] for name in contact.groups]
         planned = sum(float(np.linalg.norm(extent)) for extent in bodies)
-        return float(self._factor * (planned + _SLACK * half.slave_points.size))
+        return float(self._factor * (planned + _SLACK * contact.slave_points.size))
 
-    def _select_pass(self, half: Any, x: Floats) -> None:
+    def _select_contact(self, contact: Contact, x: Floats) -> None:
         from scipy.spatial import cKDTree  # slow to import, and not needed for analytic masters
 
-        motion = self._motion(half)
-        facets, points = half.master.facets, half.points
+        motion = self._motion(contact)
+        master: Any = contact.master
+        facets, points = master.facets, contact.points
         corners = x[facets]
         low, high = corners.min(axis=1), corners.max(axis=1)
         tree = cKDTree(0.5 * (low + high))
         radius = 0.5 * float(np.linalg.norm(high - low, axis=1).max())
         nearest, _ = tree.query(points)
-        near = half.master.located(half.state)
-        nearest = np.where(near, np.minimum(nearest, np.abs(half.state["gap"])), nearest)
-        able = np.flatnonzero(nearest <= half.master.reach + motion + radius)
-        self.nodes[half.master.local_names(half.slave_points.nodes[able])] = True
-        limit = nearest[able] + 2.0 * motion + half.slave_points.spread
+        near = master.located(contact.state)
+        nearest = np.where(near, np.minimum(nearest, np.abs(contact.state["gap"])), nearest)
+        able = np.flatnonzero(nearest <= master.reach + motion + radius)
+        self.nodes[master.local_names(contact.slave_points.nodes[able])] = True
+        limit = nearest[able] + 2.0 * motion + contact.slave_points.spread
         lists = tree.query_ball_point(points[able], limit + radius)
         facet = np.concatenate([np.zeros(0, dtype=np.int64), *map(np.asarray, lists)]).astype(int)
         point = np.repeat(np.arange(len(able)), [len(found) for found in lists])
@@ -128,7 +128,7 @@ class Reach:
         away = np.maximum(0.0, np.maximum(low[facet] - at, at - high[facet]))
         kept = facet[np.linalg.norm(away, axis=1) <= limit[point]]
         self.nodes[facets[kept]] = True
-        self.nodes[half.master.below(half.state)] = True
+        self.nodes[master.below(contact.state)] = True
 
 
 def contact_unknowns(problem: Problem, steps: Sequence[Step]) -> int:

@@ -41,7 +41,7 @@ class Patch:
         self._reach.select(problem.u.x.array.reshape(-1, 3))
         found: list[npt.NDArray[Any]] = [np.flatnonzero(self._reach.nodes)]
         for contact in self._whole:
-            found += [half.master.couplable() for half in contact.passes]
+            found.append(contact.couplable())
         for rows, columns, _ in problem.attached.couplings():
             found += [rows.ravel(), columns.ravel()]
         named = np.unique(np.concatenate(found))
@@ -57,7 +57,7 @@ class Patch:
 
         The next selection then allows for more motion.
         """
-        feet = [half.master.feet() for c in self._searched for half in c.passes]
+        feet = [contact.master.feet() for contact in self._searched]
         outside = any(not self._reach.nodes[below].all() for below in feet)
         if outside:
             self._reach.widen()
