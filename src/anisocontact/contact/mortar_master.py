@@ -10,7 +10,6 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact.contact_planes import (
-    NODES,
     ContactPlanes,
     Opposite,
     Turned,
@@ -18,7 +17,7 @@ from anisocontact.contact.contact_planes import (
     averaged_normal,
     held_directions,
 )
-from anisocontact.contact.facet_answer import OFF, found_on_all, response_of
+from anisocontact.contact.facet_answer import found_on_all, response_of
 from anisocontact.contact.facing import facing, largest_radius
 from anisocontact.contact.fold import Fold
 from anisocontact.contact.history import Snapshot
@@ -27,16 +26,18 @@ from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
 from anisocontact.contact.mortar_reach import mortar_reachable
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
+from anisocontact.contact.plane_batch import plane_batch
 from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.slave_nodes import SlaveNodes
+from anisocontact.contact.tangent_places import tangent_places
 from anisocontact.contact.whereabouts import Whereabouts
 from anisocontact.interface import ContactLaw, State
 from anisocontact.interface.contact_law import FacetBatch, FacetLaw
 from anisocontact.interface.failed_point import OnFacets, one_point
 from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, TOPOLOGIES, FacetProjections
+from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
 
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]
@@ -88,7 +89,7 @@ class MortarMaster(MeshedMaster):
             weights: As they are there, if that is known.
         """
         sides, points, now = self.sides, self._points, self._nodes.now
-        opposite = self._tangent_places()
+        opposite = tangent_places(self.sides, self._hint)
         if weights is None:
             more = np.concatenate([opposite.named(), self._then.named()], axis=1)
             # the same on all processes, so that a facet counts on any number of them
@@ -124,30 +125,6 @@ class MortarMaster(MeshedMaster):
         both = opposite, self._then
         return MortarState(
             self._gathered, points.quadrature, weights, planes, both, now, sides.reference
-        )
-
-    def _tangent_places(self) -> Opposite:
-        """Places on the master that are closest to the slave nodes."""
-        hit, nodes = self._hint, self.sides.master.nodes
-        if not len(nodes):
-            return Opposite.none(len(hit.facet), nodes.shape[1])
-        there = hit.status <= FACET_STATUS.index("off")
-        facet = np.where(there, hit.facet, -1).astype(np.int32)
-        which = np.maximum(facet, 0)
-        found = self.sides.surface.shapes(which, np.nan_to_num(hit.xi))
-        shape, gradient, second = (one[:, : nodes.shape[1]] for one in found)
-        second = np.moveaxis(second[:, :, [[0, 1], [1, 2]]], 1, 3)
-        inside = hit.feature == FEATURES.index("interior")
-        none = np.zeros((len(facet), 0))
-        return Opposite(
-            none.astype(np.int32),
-            none,
-            facet,
-            nodes[which],
-            np.ascontiguousarray(shape),
-            np.ascontiguousarray(gradient.swapaxes(1, 2)),
-            np.ascontiguousarray(second),
-            np.where(inside[:, None], np.nan, hit.edge),
         )
 
     @property
@@ -254,45 +231,10 @@ class MortarMaster(MeshedMaster):
 
     def _batch(self, state: State, tangent: bool = True) -> FacetBatch:
         """Slave nodes and planes as the core takes them."""
-        at, n = self._at, len(state)
         located = self._located
-        first = NODES * np.arange(n, dtype=np.int32)[:, None]
-        three = np.arange(3, dtype=np.int32)
-        touches = at.planes.gap - state["offset"] <= NEAR * self._points.size
-        unit = np.tile([1.0, 0.0, 0.0], (n, 1))
-        edges = np.tile([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]], (n, 1, 1))
-        kinds = np.full(2 * n, list(TOPOLOGIES).index("tri3"), dtype=np.int8)
-        return {
-            "slave_nodes": first + three,
-            "slave_shape": unit,
-            "slave_gradient": edges,
-            "weight": np.ones(n),
-            "current_area": False,
-            "now": at.planes.nodes(),
-            "reference": self._reference_nodes(),
-            "connectivity": np.concatenate([first + 3 + three, first + 6 + three]),
-            "topology": kinds,
-            "flip": np.zeros(2 * n, dtype=bool),
-            "facet": np.arange(n, dtype=np.int32),
-            "xi": np.where(located[:, None], at.planes.xi, 0.0),
-            "feature": np.where(located, np.int8(0), np.int8(OFF)),
-            "edge": np.zeros((n, 2)),
-            "near": located & (touches | (state["multiplier"] > 0.0)),
-            "tangent": tangent,
-            "threads": self.sides.threads,
-        }
-
-    def _reference_nodes(self) -> Floats:
-        """The nodes of slave and planes in the reference configuration, where directions are."""
-        x, quadrature = self.sides.reference, self._points.quadrature
-        opposite = self._at.opposite[0]
-        parts = (
-            (quadrature.reference, quadrature.tangents[:, 0]),
-            (opposite.mean(x), opposite.tangents(x)),
-        )
-        found = [np.concatenate([p[:, None], p[:, None] + t], axis=1) for p, t in parts]
-        found.append(np.zeros_like(found[0]))
-        return np.ascontiguousarray(np.concatenate(found, axis=1).reshape(-1, 3))
+        touches = self._at.planes.gap - state["offset"] <= NEAR * self._points.size
+        near = located & (touches | (state["multiplier"] > 0.0))
+        return plane_batch(self._at, located, near, tangent, self.sides.threads)
 
     @override
     def take_resting(self, resting: Sequence[Resting], state: State) -> None:

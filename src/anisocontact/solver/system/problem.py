@@ -15,7 +15,6 @@ from anisocontact.bulk import LinearBulk, Material
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 from anisocontact.solver.system.accepted import AcceptedState
-from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import ForceBalance
 from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.contact_work import ContactWork
@@ -25,6 +24,7 @@ from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.memory import BEGUN, Memory
 from anisocontact.solver.system.parts import make_parts
 from anisocontact.solver.system.reduction import Reduction
+from anisocontact.solver.system.reported import ReportedSystem
 from anisocontact.solver.system.rotations import Rotations, Turned
 from anisocontact.solver.system.step_begin import begin_step, check_steps, contact_must_hold
 from anisocontact.solver.system.tangent import Tangent
@@ -37,11 +37,8 @@ from anisocontact.solver.terms.tied_faces import Tie
 
 Floats = npt.NDArray[np.float64]
 
-#: Energies that every run reports, in this order.
-ENERGIES = ("elastic", "adhesion", "normal", "friction", "viscous", "stabilisation", "flow")
 
-
-class Problem(AssembledSystem):
+class Problem(ReportedSystem):
     """Equilibrium `K u - contact - loads = 0` with prescribed displacements.
 
     A prescribed unknown has the row `s (u - g) = 0`, `s` the mean diagonal of K, and its column
@@ -123,11 +120,6 @@ class Problem(AssembledSystem):
         """Displacement, a DOLFINx function; holds the accepted state between increments."""
         self.reduction.recover()
         return self._bodies.u
-
-    @property
-    def outside(self) -> Floats:
-        """All forces but those of contact on the unknowns this rank owns, accepted state."""
-        return self._accepted.outside
 
     @property
     def unknowns(self) -> int:
@@ -385,63 +377,6 @@ class Problem(AssembledSystem):
         self.assembly.terms.take_histories(iter(kept.points), self._bodies.nodal)
         self.whole.take_pending(under(PENDING, kept.nodal))
 
-    def inverted_cells(self) -> Floats:
-        """Middles of the cells of this rank that the last evaluation turned inside out, (n, 3)."""
-        return self._bodies.inverted()
-
     def accepted(self) -> Vec:
         """Copy of the accepted displacements."""
         return self._accepted.x.copy()
-
-    def reactions(self) -> dict[str, Floats]:
-        """Force of the supports of each facet group on the bodies, and of springs, (3,), force.
-
-        Unknowns on an edge that several groups prescribe count for the first of them.
-        """
-        source = self.reduction
-        if self.planes:
-            source.recover()  # forces of the planes need all displacements on them
-            source = self.whole
-        sums = source.reactions()
-        for name, force in self.attached.reactions(self._bodies.nodal).items():
-            sums[name] = sums.get(name, 0.0) + force
-        return sums
-
-    def inner_forces(self) -> Floats:
-        """Forces that the cells put on the nodes this rank owns, accepted, (nodes, 3), force."""
-        self.reduction.recover()
-        owned = self.layout.owned
-        inner = self.assembly.bodies.force(self._bodies.nodal).reshape(-1)[:owned]
-        return np.asarray(inner.reshape(-1, 3))
-
-    def support_forces(self) -> Floats:
-        """Forces of the supports on the nodes this rank owns, accepted, (nodes, 3), force."""
-        self.reduction.recover()
-        return self._accepted.reaction.reshape(-1, 3)
-
-    def mean_displacement(self, group: str, weights: Floats) -> Floats:
-        """Mean displacement of a facet group in the accepted state, (3,), length.
-
-        Args:
-            group: Its name.
-            weights: Share of each local node in the mean, (nodes,).
-        """
-        return self.reduction.mean(group, weights)
-
-    def energies(self) -> dict[str, float]:
-        """Energies of the accepted state, force times length.
-
-        Returns:
-            "external" work of supports and loads since the start (trapezoidal rule), stored
-            "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
-            "friction" and "viscous" laws, energy of "stabilisation", what jumps have set free and
-            the "flow" to the next equilibrium has dissipated and, where there are any, energy of
-            "springs" and elastic supports, what materials have dissipated, "inelastic", and
-            "residual", what is left of "external" less all others: first order in the size of the
-            increments.
-        """
-        stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": self.reduction.elastic()}
-        stored |= self.assembly.bodies.dissipated()
-        stored |= self.assembly.acting.energies(self._bodies.nodal)
-        work = self._accepted.work
-        return {"external": work} | stored | {"residual": work - sum(stored.values())}

@@ -1,0 +1,67 @@
+"""Slave nodes and their contact planes as points and facets, which the core takes."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.contact_planes import NODES
+from anisocontact.contact.facet_answer import OFF
+from anisocontact.contact.mortar_answer import MortarState
+from anisocontact.interface.contact_law import FacetBatch
+from anisocontact.surfaces.facets import TOPOLOGIES
+
+Mask = npt.NDArray[np.bool_]
+Floats = npt.NDArray[np.float64]
+
+
+def plane_batch(
+    at: MortarState, located: Mask, near: Mask, tangent: bool, threads: int
+) -> FacetBatch:
+    """Each slave node as a point of a triangle, and its planes of now and then as two others.
+
+    Args:
+        at: Slave nodes and planes.
+        located: Nodes that have a master opposite, (n,).
+        near: Nodes whose tangent is wanted, (n,).
+        tangent: Whether any is.
+        threads: Threads that evaluate them.
+
+    Returns:
+        The batch; facets of now come before those of the accepted increment.
+    """
+    n = len(located)
+    first = NODES * np.arange(n, dtype=np.int32)[:, None]
+    three = np.arange(3, dtype=np.int32)
+    kinds = np.full(2 * n, list(TOPOLOGIES).index("tri3"), dtype=np.int8)
+    return {
+        "slave_nodes": first + three,
+        "slave_shape": np.tile([1.0, 0.0, 0.0], (n, 1)),
+        "slave_gradient": np.tile([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]], (n, 1, 1)),
+        "weight": np.ones(n),
+        "current_area": False,
+        "now": at.planes.nodes(),
+        "reference": _reference_nodes(at),
+        "connectivity": np.concatenate([first + 3 + three, first + 6 + three]),
+        "topology": kinds,
+        "flip": np.zeros(2 * n, dtype=bool),
+        "facet": np.arange(n, dtype=np.int32),
+        "xi": np.where(located[:, None], at.planes.xi, 0.0),
+        "feature": np.where(located, np.int8(0), np.int8(OFF)),
+        "edge": np.zeros((n, 2)),
+        "near": near,
+        "tangent": tangent,
+        "threads": threads,
+    }
+
+
+def _reference_nodes(at: MortarState) -> Floats:
+    """The nodes of slave and planes in the reference configuration, where directions are."""
+    opposite = at.opposite[0]
+    parts = (
+        (at.quadrature.reference, at.quadrature.tangents[:, 0]),
+        (opposite.mean(at.reference), opposite.tangents(at.reference)),
+    )
+    found = [np.concatenate([p[:, None], p[:, None] + t], axis=1) for p, t in parts]
+    found.append(np.zeros_like(found[0]))
+    return np.ascontiguousarray(np.concatenate(found, axis=1).reshape(-1, 3))

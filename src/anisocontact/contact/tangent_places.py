@@ -1,0 +1,42 @@
+"""Places on the master that are closest to the slave nodes, where contact planes touch it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from anisocontact.contact.contact_planes import Opposite
+from anisocontact.contact.sides import Sides
+from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, FacetProjections
+
+
+def tangent_places(sides: Sides, hit: FacetProjections) -> Opposite:
+    """Where the tangents of the master are taken, opposite to no nodes yet.
+
+    Args:
+        sides: Slave nodes and facets.
+        hit: Projections of the slave nodes.
+
+    Returns:
+        Facets, nodes and the shape functions there; no facet where there is no projection.
+    """
+    nodes = sides.master.nodes
+    if not len(nodes):
+        return Opposite.none(len(hit.facet), nodes.shape[1])
+    there = hit.status <= FACET_STATUS.index("off")
+    facet = np.where(there, hit.facet, -1).astype(np.int32)
+    which = np.maximum(facet, 0)
+    found = sides.surface.shapes(which, np.nan_to_num(hit.xi))
+    shape, gradient, second = (one[:, : nodes.shape[1]] for one in found)
+    second = np.moveaxis(second[:, :, [[0, 1], [1, 2]]], 1, 3)
+    inside = hit.feature == FEATURES.index("interior")
+    none = np.zeros((len(facet), 0))
+    return Opposite(
+        none.astype(np.int32),
+        none,
+        facet,
+        nodes[which],
+        np.ascontiguousarray(shape),
+        np.ascontiguousarray(gradient.swapaxes(1, 2)),
+        np.ascontiguousarray(second),
+        np.where(inside[:, None], np.nan, hit.edge),
+    )

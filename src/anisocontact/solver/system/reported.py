@@ -1,0 +1,105 @@
+"""What the accepted state of a problem is asked for: forces, displacements, energies."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.solver.system.accepted import AcceptedState
+from anisocontact.solver.system.assembled import AssembledSystem
+from anisocontact.solver.system.assembly import Assembly
+from anisocontact.solver.system.configuration import Configuration
+from anisocontact.solver.system.layout import Layout
+from anisocontact.solver.system.reduction import Reduction
+from anisocontact.solver.system.whole import Whole
+from anisocontact.solver.terms.attachments import Attachments
+from anisocontact.solver.terms.symmetry import SymmetryPlanes
+
+Floats = npt.NDArray[np.float64]
+
+#: Energies that every run reports, in this order.
+ENERGIES = ("elastic", "adhesion", "normal", "friction", "viscous", "stabilisation", "flow")
+
+
+class ReportedSystem(AssembledSystem):
+    """A system whose accepted state is known, of which only some unknowns may be up to date.
+
+    Attributes:
+        assembly: Its terms.
+        layout: Where the unknowns are.
+        attached: Springs and elastic supports.
+        planes: Planes of symmetry.
+        whole: Who answers for the bulk where every state is one of all unknowns.
+        reduction: Who answers for it now.
+    """
+
+    assembly: Assembly
+    layout: Layout
+    attached: Attachments
+    planes: SymmetryPlanes
+    whole: Whole
+    reduction: Reduction
+    _bodies: Configuration
+    _accepted: AcceptedState
+
+    @property
+    def outside(self) -> Floats:
+        """All forces but those of contact on the unknowns this rank owns, accepted state."""
+        return self._accepted.outside
+
+    def inverted_cells(self) -> Floats:
+        """Middles of the cells of this rank that the last evaluation turned inside out, (n, 3)."""
+        return self._bodies.inverted()
+
+    def reactions(self) -> dict[str, Floats]:
+        """Force of the supports of each facet group on the bodies, and of springs, (3,), force.
+
+        Unknowns on an edge that several groups prescribe count for the first of them.
+        """
+        source = self.reduction
+        if self.planes:
+            source.recover()  # forces of the planes need all displacements on them
+            source = self.whole
+        sums = source.reactions()
+        for name, force in self.attached.reactions(self._bodies.nodal).items():
+            sums[name] = sums.get(name, 0.0) + force
+        return sums
+
+    def inner_forces(self) -> Floats:
+        """Forces that the cells put on the nodes this rank owns, accepted, (nodes, 3), force."""
+        self.reduction.recover()
+        owned = self.layout.owned
+        inner = self.assembly.bodies.force(self._bodies.nodal).reshape(-1)[:owned]
+        return np.asarray(inner.reshape(-1, 3))
+
+    def support_forces(self) -> Floats:
+        """Forces of the supports on the nodes this rank owns, accepted, (nodes, 3), force."""
+        self.reduction.recover()
+        return self._accepted.reaction.reshape(-1, 3)
+
+    def mean_displacement(self, group: str, weights: Floats) -> Floats:
+        """Mean displacement of a facet group in the accepted state, (3,), length.
+
+        Args:
+            group: Its name.
+            weights: Share of each local node in the mean, (nodes,).
+        """
+        return self.reduction.mean(group, weights)
+
+    def energies(self) -> dict[str, float]:
+        """Energies of the accepted state, force times length.
+
+        Returns:
+            "external" work of supports and loads since the start (trapezoidal rule), stored
+            "elastic" (bodies), "adhesion" and "normal" (penalty) energy, energy dissipated by
+            "friction" and "viscous" laws, energy of "stabilisation", what jumps have set free and
+            the "flow" to the next equilibrium has dissipated and, where there are any, energy of
+            "springs" and elastic supports, what materials have dissipated, "inelastic", and
+            "residual", what is left of "external" less all others: first order in the size of the
+            increments.
+        """
+        stored = dict.fromkeys(ENERGIES, 0.0) | {"elastic": self.reduction.elastic()}
+        stored |= self.assembly.bodies.dissipated()
+        stored |= self.assembly.acting.energies(self._bodies.nodal)
+        work = self._accepted.work
+        return {"external": work} | stored | {"residual": work - sum(stored.values())}
