@@ -48,6 +48,9 @@ _SAME = {
     "adjust": "initial_clearance interference_fit shrink",
     "sliding_rule": "slip_rule flow_rule",
     "tie": "ties tied bonded bond bonded_contact glue glued mesh_tying mpc",
+    "cyclic": "cyclic_symmetry cyclic_symmetry_model cyclsym cyclic_region rotational_symmetry "
+    "rotational_periodicity",
+    "sectors": "n number_of_sectors repetitions",
     "symmetry": "xsymm ysymm zsymm symmetry_planes symmetric",
     "elastic_support": "foundation elastic_foundation bedding",
     "until": "event stop_when terminate termination end_on stop_criterion stopping_criterion",

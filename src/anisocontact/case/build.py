@@ -17,6 +17,7 @@ from anisocontact.case import objects
 from anisocontact.case.amplitudes import times
 from anisocontact.case.contacts import contact
 from anisocontact.case.courses import Schedule
+from anisocontact.case.cyclic import CyclicSection
 from anisocontact.case.law_file import law_of
 from anisocontact.case.material_file import material_of
 from anisocontact.case.model import MORTAR, Case, StepSection
@@ -32,6 +33,7 @@ from anisocontact.mesh.selectors import with_groups
 from anisocontact.rigid import RigidBody
 from anisocontact.solver import (
     CoupledFace,
+    CyclicSymmetry,
     ElasticSupport,
     Problem,
     Solver,
@@ -138,6 +140,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
         stabilised=case.solver.stabilisation,
         coupled=_faces(case, model, bodies),
         ties=[Tie(**section.given()) for section in case.tie],
+        cyclic=[_sector(section, f"cyclic[{i}]") for i, section in enumerate(case.cyclic)],
     )
     for name, section in case.output.probe.items():
         section.probe().places(model, f"output.probe.{name}")
@@ -283,6 +286,12 @@ def _rigid_bodies(case: Case) -> dict[str, RigidBody]:
             springs = section.springs.given()
             bodies[name] = RigidBody(name, section.reference, free=free, springs=springs)
     return bodies
+
+
+def _sector(section: CyclicSection, place: str) -> CyclicSymmetry:
+    """Cut faces of a sector."""
+    with objects.within(place):
+        return CyclicSymmetry(**dict(section))
 
 
 def _faces(case: Case, model: Model, bodies: Mapping[str, RigidBody]) -> list[CoupledFace]:

@@ -50,6 +50,7 @@ def check(case: Case) -> Iterator[InputError]:
         if (first := pairs.index(pairs[i])) != i:
             yield InputError(f"same pair as contact[{first}]", field=f"contact[{i}]")
     yield from check_rigid(case)
+    yield from _tied(case)
     yield from _held(case)
     yield from _points_and_faces(case)
     yield from _steps(case)
@@ -119,6 +120,8 @@ def _named_groups(case: Case) -> Iterator[str]:
     yield from (group for body in case.rigid.values() for group in body.faces)
     for tie in case.tie:
         yield from (tie.slave, tie.master)
+    for cut in case.cyclic:
+        yield from (cut.slave, cut.master)
     for spring in case.spring.values():
         yield from (group for group in (spring.group, spring.to) if group is not None)
 
@@ -232,9 +235,7 @@ def _group(case: Case, name: str, field: str) -> Iterator[InputError]:
 
 
 def _held(case: Case) -> Iterator[InputError]:
-    """Ties, symmetry planes, elastic supports and springs."""
-    for i, tie in enumerate(case.tie):
-        yield from _tie(case, tie, f"tie[{i}]")
+    """Symmetry planes, elastic supports and springs."""
     for i, group in enumerate(case.symmetry):
         yield from _group(case, group, f"symmetry[{i}]")
         if group in case.symmetry[:i]:
@@ -253,6 +254,17 @@ def _held(case: Case) -> Iterator[InputError]:
             yield InputError(f'"{spring.to}" given, the group itself', field=f"{place}.to")
         if not any(spring.stiffness):
             yield InputError("all components are 0", field=f"{place}.stiffness")
+
+
+def _tied(case: Case) -> Iterator[InputError]:
+    """Ties and cut faces of sectors."""
+    for i, tie in enumerate(case.tie):
+        yield from _tie(case, tie, f"tie[{i}]")
+    for i, cut in enumerate(case.cyclic):
+        for key, group in (("slave", cut.slave), ("master", cut.master)):
+            yield from _group(case, group, f"cyclic[{i}].{key}")
+        if cut.slave == cut.master:
+            yield InputError(f'"{cut.master}" given, the slave itself', f"cyclic[{i}].master")
 
 
 def _tie(case: Case, tie: TieSection, place: str) -> Iterator[InputError]:

@@ -26,6 +26,7 @@ from anisocontact.base.strategies import AUTO
 from anisocontact.case.amplitudes import amplitude_table, path_table
 from anisocontact.case.bodies import Mesh, NodeGroup, mesh_type
 from anisocontact.case.contact_laws import laws_or_python
+from anisocontact.case.cyclic import CyclicSection
 from anisocontact.case.loads import ElasticBed, GroupSpring, Loading
 from anisocontact.case.output import Output
 from anisocontact.case.python_section import MATERIAL, MaterialSection, MaterialTable
@@ -228,6 +229,9 @@ class Case(Section):
     contact: list[Any] = Field(default_factory=list)
     tie: list[TieSection] = Field(
         default_factory=list, description="pairs of facet groups that are glued together"
+    )
+    cyclic: list[CyclicSection] = Field(
+        default_factory=list, description="cut faces of sectors that stand for a whole"
     )
     symmetry: list[str] = Field(
         default_factory=list, description='flat facet groups that stay in their plane, "body.group"'

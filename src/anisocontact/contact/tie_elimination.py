@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -22,53 +23,79 @@ NO_SHARE = 1e-13
 _COLUMNS = 512
 
 
-def eliminated(
-    ties: Sequence[TieConditions], held: Flags, of_corners: Sparse
-) -> tuple[Sparse, Sparse, Sparse]:
-    """What each node follows, for the three components.
+def eliminated(ties: Mapping[str, TieConditions], held: Flags, of_corners: Sparse) -> Sparse:
+    """What each unknown follows.
 
     A component that is held besides does not follow, nor does that of a node which an earlier tie
     has. Their dual functions go to the slave nodes beside them: the functions that are left sum to
     one, so that constant tractions are handed over [Puso Laursen 2003].
 
     Args:
-        ties: Conditions of the ties.
+        ties: Conditions of the ties, by their names in messages.
         held: Components that cannot follow, (n, 3).
         of_corners: The displacement of each node by those that do not follow corners, (n, n).
 
     Returns:
-        `u = F u`, with empty rows where a node does not follow, (n, n) each.
+        `u = F u` of the displacements along x, then y, then z of all nodes, with empty rows where
+        one does not follow, (3 n, 3 n).
 
     Raises:
         InputError: All slave nodes at a place are held, or a node would follow itself.
     """
-    known: dict[bytes, Sparse] = {}
-    found = []
-    for component in range(3):
-        key = held[:, component].tobytes()
-        if key not in known:
-            known[key] = _one(ties, held[:, component], of_corners)
-        found.append(known[key])
-    return found[0], found[1], found[2]
+    none = scipy.sparse.csr_array(of_corners.shape)
+    blocks = [[none] * 3 for _ in range(3)]
+    taken = held.copy()
+    for name, tie in ties.items():
+        known: dict[bytes, tuple[Sparse, Sparse]] = {}
+        turn = np.eye(3) if tie.turning is None else tie.turning.matrix
+        for c in range(3):
+            free = tie.covered & ~taken[tie.nodes, c]
+            key = free.tobytes() + held[:, c].tobytes()
+            if key not in known:
+                known[key] = _one(tie, free, held[:, c], of_corners, name)
+            own, other = known[key]
+            blocks[c][c] = blocks[c][c] + own
+            for k in np.flatnonzero(turn[c]):
+                blocks[c][k] = blocks[c][k] + turn[c, k] * other
+            taken[tie.nodes[free], c] = True
+    return _chained(scipy.sparse.csr_array(scipy.sparse.block_array(blocks)), len(ties))
 
 
-def _one(ties: Sequence[TieConditions], held: Flags, of_corners: Sparse) -> Sparse:
-    """That of one component, (n, n)."""
-    taken, total = held.copy(), scipy.sparse.csr_array(of_corners.shape)
-    for i, tie in enumerate(ties):
-        free = tie.covered & ~taken[tie.nodes]
-        rows = _rows(tie, free, held, f"tie[{i}]") @ of_corners
-        nodes = tie.nodes[free]
-        taken[nodes] = True
-        total = total + _solved(rows, nodes)
-    return _chained(total, len(ties))
+def _one(
+    tie: TieConditions, free: Flags, held: Flags, of_corners: Sparse, field: str
+) -> tuple[Sparse, Sparse]:
+    """What the nodes that are free follow, without a turn and with it, (n, n) each."""
+    own, other = tie.own, tie.other
+    if tie.turning is None:  # a node may be one of the master as well
+        own, other = (own - other).tocsr(), scipy.sparse.csr_array(other.shape)
+        _check_left(tie, own, free, held, field)
+    handed = _handed(tie, free)
+    return _solved(
+        (handed @ own @ of_corners).tocsr(), handed @ other @ of_corners, tie.nodes[free]
+    )
 
 
-def _rows(tie: TieConditions, free: Flags, held: Flags, field: str) -> Sparse:
-    """Conditions of the nodes that are free, with their shares of those that are not."""
-    conditions = (tie.own - tie.other).tocsr()
+def _handed(tie: TieConditions, free: Flags) -> Sparse:
+    """Conditions of the nodes that are free, with shares of those that are not, (f, s)."""
+    given, beside = _beside(tie, free)
+    sums = np.asarray(beside.sum(axis=0)).ravel()
+    shares = beside @ scipy.sparse.diags_array(1.0 / np.where(sums > 0.0, sums, 1.0))
+    all_ = scipy.sparse.eye_array(len(free), format="csr")
+    return (all_[np.flatnonzero(free)] + shares @ all_[given]).tocsr()
+
+
+def _beside(tie: TieConditions, free: Flags) -> tuple[Ints, Sparse]:
+    """Nodes that are not free, and what those beside them that are take of them, (f, given)."""
     given = np.flatnonzero(~free & (tie.weight > 0.0))
-    beside = (tie.beside[np.flatnonzero(free)][:, given] > 0.0).multiply(tie.weight[free][:, None])
+    there = tie.beside[np.flatnonzero(free)][:, given] > 0.0
+    return given, there.multiply(tie.weight[free][:, None])
+
+
+def _check_left(
+    tie: TieConditions, conditions: Sparse, free: Flags, held: Flags, field: str
+) -> None:
+    """Refuse nodes that are held where none beside them could take over."""
+    given, beside = _beside(tie, free)
     sums = np.asarray(beside.sum(axis=0)).ravel()
     left = conditions[given[(sums == 0.0) & tie.covered[given]]].tocoo()
     scale = tie.weight.max(initial=0.0)
@@ -78,20 +105,29 @@ def _rows(tie: TieConditions, free: Flags, held: Flags, field: str) -> Sparse:
             "tie, so that nothing can follow the master: swap slave and master, or release them"
         )
         raise InputError(text, field)
-    shares = beside @ scipy.sparse.diags_array(1.0 / np.where(sums > 0.0, sums, 1.0))
-    return (conditions[np.flatnonzero(free)] + shares @ conditions[given]).tocsr()
 
 
-def _solved(rows: Sparse, nodes: Ints) -> Sparse:
-    """Conditions solved for the displacements of as many nodes, (n, n)."""
-    n = rows.shape[1]
+def _solved(own: Sparse, other: Sparse, nodes: Ints) -> tuple[Sparse, Sparse]:
+    """Conditions `own u - other v = 0` solved for as many nodes: u by the others, and by v."""
+    n = own.shape[1]
     if not len(nodes):
+        return scipy.sparse.csr_array((n, n)), scipy.sparse.csr_array((n, n))
+    rest = np.setdiff1d(np.unique(own.indices), nodes)
+    factor = scipy.sparse.linalg.splu(own[:, nodes].tocsc())
+    by = np.unique(scipy.sparse.csr_array(other).indices)
+    return (
+        _right(factor, -own[:, rest], nodes, rest, n),
+        _right(factor, other[:, by], nodes, by, n),
+    )
+
+
+def _right(factor: Any, sides: Sparse, nodes: Ints, columns: Ints, n: int) -> Sparse:
+    """Right-hand sides solved for, as rows of these nodes, (n, n)."""
+    if not len(columns):
         return scipy.sparse.csr_array((n, n))
-    columns = np.setdiff1d(np.unique(rows.indices), nodes)
-    factor = scipy.sparse.linalg.splu(rows[:, nodes].tocsc())
     parts = []
     for first in range(0, len(columns), _COLUMNS):
-        part = -factor.solve(rows[:, columns[first : first + _COLUMNS]].toarray())
+        part = factor.solve(sides[:, first : first + _COLUMNS].toarray())
         part[np.abs(part) < NO_SHARE] = 0.0
         parts.append(scipy.sparse.csr_array(part))
     found = scipy.sparse.hstack(parts, format="coo")

@@ -8,11 +8,15 @@ the mean of its masters, `g_i = X_i - sum of W_ik X_k / D_i`, goes with the mate
 
 grad u that of the cell of the master below. So linear displacements, and with them all rigid
 motions, are kept exactly whatever the gaps are.
+
+Between the cut faces of a sector the master is met turned about the axis, by Q. All of the above is
+then said of what it is turned to, with `Q u_k` in the place of `u_k`.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -24,6 +28,7 @@ from anisocontact.contact.facing import Near, facing, largest_radius
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
 from anisocontact.contact.slave_nodes import Patches, nodal_quadrature, patches
 from anisocontact.contact.tied_surfaces import WholeGroups
+from anisocontact.contact.turning import Turning
 from anisocontact.surfaces import default_threads
 from anisocontact.surfaces.facets import FacetSurface
 
@@ -50,6 +55,7 @@ class TieConditions:
         beside: Whether two slave nodes have a facet in common, (s, s).
         covered: Whether each can be tied, (s,).
         gap: Distance of each from the master, (s,), length; NaN of those not tied.
+        turning: How the master is turned to the slave; None where it stays.
     """
 
     nodes: Ints
@@ -59,6 +65,7 @@ class TieConditions:
     beside: Sparse
     covered: npt.NDArray[np.bool_]
     gap: Floats
+    turning: Turning | None = None
 
 
 @dataclass(frozen=True)
@@ -75,7 +82,12 @@ class _Sides:
 
 
 def tie_conditions(
-    groups: WholeGroups, slave: str, master: str, tolerance: float, size: float
+    groups: WholeGroups,
+    slave: str,
+    master: str,
+    tolerance: float,
+    size: float,
+    turning: Turning | None = None,
 ) -> TieConditions:
     """Conditions of a tie.
 
@@ -85,29 +97,40 @@ def tie_conditions(
         master: Facet group of the master.
         tolerance: Facets with nodes farther off than this are not tied, length.
         size: Length of the facets of the master.
+        turning: How the master is turned to the slave, if it is.
 
     Raises:
         InputError: No facet is as near as that.
     """
-    x = groups.x if groups.sweep is None else groups.sweep.positions(groups.x)
+    x, there = groups.x, groups.x if turning is None else turning.of(groups.x)
+    if groups.sweep is not None:
+        x, there = groups.sweep.positions(x), groups.sweep.positions(there)
     own, other = groups.groups[slave].facets, groups.groups[master]
-    surface = FacetSurface(x, other.facets.nodes, other.facets.topology, other.facets.flip)
+    met = other.facets
+    if turning is not None:  # nodes of the master once more, where they are turned to
+        met = replace(met, nodes=met.nodes + np.int32(len(x)))
+        x = np.concatenate([x, there])
+    surface = FacetSurface(x, met.nodes, met.topology, met.flip)
     threads = default_threads()
-    sides = _Sides(own, other.facets, surface, max(tolerance, size), x, threads=threads)
-    found = _conditions(groups, sides, other.cells, CLOSED * size)
+    sides = _Sides(own, met, surface, max(tolerance, size), x, threads=threads)
+    find = partial(_conditions, groups, cells=other.cells, closed=CLOSED * size, turning=turning)
+    found = find(sides)
     far = found.nodes[found.covered & ~(found.gap <= tolerance)]
     kept = ~np.isin(own.nodes % len(groups.x), far).any(axis=1)
     if not (kept.any() and found.covered.any()):
         least = "" if not len(far) else f", the nearest gap is {np.nanmin(found.gap):.4g}"
-        text = f"no facet of {slave!r} lies within {tolerance:.4g} of {master!r}{least}"
+        turned = "" if turning is None else f" {turning.text}"
+        text = f"no facet of {slave!r} lies within {tolerance:.4g} of {master!r}{turned}{least}"
         raise InputError(text, "tolerance")
     if len(far):
         near = replace(own, nodes=own.nodes[kept], flip=own.flip[kept])
-        found = _conditions(groups, replace(sides, slave=near), other.cells, CLOSED * size)
+        found = find(replace(sides, slave=near))
     return found
 
 
-def _conditions(groups: WholeGroups, sides: _Sides, cells: Ints, closed: float) -> TieConditions:
+def _conditions(
+    groups: WholeGroups, sides: _Sides, cells: Ints, closed: float, turning: Turning | None
+) -> TieConditions:
     around = patches(sides.slave)
     none = np.zeros((len(around.nodes), 0), dtype=np.int32)
     radius = largest_radius(sides.slave, sides.reference)
@@ -122,11 +145,13 @@ def _conditions(groups: WholeGroups, sides: _Sides, cells: Ints, closed: float) 
     whole = nodal_quadrature(around, sides.reference).weights[:, 0]
     covered = weight > COVERED * np.bincount(row, whole, minlength=len(nodes))
     own, other = _shares(around, weights, row, shape)
+    there = groups.x if turning is None else turning.of(groups.x)
     apart = np.zeros((len(nodes), 3))
-    apart[covered] = ((own - other) @ groups.x)[covered] / weight[covered, None]
+    apart[covered] = (own @ groups.x - other @ there)[covered] / weight[covered, None]
     gap = np.linalg.norm(apart, axis=1)
     open_ = np.flatnonzero(gap > closed)
-    carried = _carried(groups, sides.surface, cells, nodes[open_], apart[open_])
+    behind = cells[sides.surface.project(groups.x[nodes[open_]]).facet]
+    carried = _carried(groups, there, behind, apart[open_])
     scaled = scipy.sparse.csr_array(
         (weight[open_], (open_, np.arange(len(open_)))), (len(nodes), len(open_))
     )
@@ -141,6 +166,7 @@ def _conditions(groups: WholeGroups, sides: _Sides, cells: Ints, closed: float) 
         touching @ touching.T,
         covered,
         np.where(covered, gap, np.nan),
+        turning,
     )
 
 
@@ -159,16 +185,13 @@ def _shares(
     )
 
 
-def _carried(
-    groups: WholeGroups, surface: FacetSurface, cells: Ints, nodes: Ints, apart: Floats
-) -> Sparse:
-    """What the material of the master moves vectors that begin at it, `grad u . g`, (p, n)."""
-    shape = (len(nodes), len(groups.x))
-    if not len(nodes):
+def _carried(groups: WholeGroups, x: Floats, behind: Ints, apart: Floats) -> Sparse:
+    """What the cells behind move vectors that begin at them, `grad u . g`, (p, n)."""
+    shape = (len(behind), len(x))
+    if not len(behind):
         return scipy.sparse.csr_array(shape)
-    behind = cells[surface.project(groups.x[nodes]).facet]
-    tangents = groups.x[behind].swapaxes(1, 2) @ groups.gradient  # (p, 3, dimension)
+    tangents = x[behind].swapaxes(1, 2) @ groups.gradient  # (p, 3, dimension)
     slopes = groups.gradient @ np.linalg.pinv(tangents)
     values = np.einsum("pki,pi->pk", slopes, apart)
-    rows = np.repeat(np.arange(len(nodes)), behind.shape[1])
+    rows = np.repeat(np.arange(len(behind)), behind.shape[1])
     return scipy.sparse.csr_array((values.ravel(), (rows, behind.ravel())), shape=shape)

@@ -19,6 +19,7 @@ from anisocontact.solver.strategies.strategy import Strategy, Task
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
+from anisocontact.solver.terms.cyclic import CyclicSymmetry
 from anisocontact.solver.terms.faces import CoupledFace
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.tied_faces import Tie
@@ -32,6 +33,7 @@ __all__ = [
     "Course",
     "Culprit",
     "Cut",
+    "CyclicSymmetry",
     "ElasticSupport",
     "Limits",
     "Newton",

@@ -20,6 +20,7 @@ from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.bodies import Bodies
 from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
+from anisocontact.solver.terms.cyclic import CyclicSymmetry
 from anisocontact.solver.terms.faces import CoupledFace, CoupledFaces
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.middles import follow_corners, middle_nodes
@@ -74,6 +75,7 @@ def make_parts(
     stabilised: bool,
     coupled: Sequence[CoupledFace] = (),
     ties: Sequence[Tie] = (),
+    sectors: Sequence[CyclicSymmetry] = (),
 ) -> Parts:
     """Parts of a problem, from the arguments of `Problem`.
 
@@ -97,7 +99,7 @@ def make_parts(
     faces.check_planes(
         np.unique(np.concatenate([np.zeros(0, int), *(n for n, _ in planes.held())]))
     )
-    tied = TiedFaces(ties, model, like) if ties else None
+    tied = TiedFaces(ties, model, like, sectors) if ties or sectors else None
     constraints = Constraints(like, follow_corners(model, like), tied, planes, faces)
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
     holders = {model.body_of(group) for one in specs for group in one.groups}

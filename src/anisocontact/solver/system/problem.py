@@ -30,6 +30,7 @@ from anisocontact.solver.system.step_begin import begin_step, check_steps, conta
 from anisocontact.solver.system.tangent import Tangent
 from anisocontact.solver.system.whole import Whole
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
+from anisocontact.solver.terms.cyclic import CyclicSymmetry
 from anisocontact.solver.terms.faces import CoupledFace
 from anisocontact.solver.terms.persistent import Persistent, under
 from anisocontact.solver.terms.step import Step, check_courses
@@ -55,6 +56,7 @@ class Problem(ReportedSystem):
             `Stabilisation`.
         coupled: Facet groups that follow rigid bodies.
         ties: Facet groups that are glued together.
+        cyclic: Cut faces of sectors that stand for a whole.
 
     Attributes:
         rigid: Rigid bodies of the contacts. The unknowns of free ones follow those of the mesh, on
@@ -91,9 +93,10 @@ class Problem(ReportedSystem):
         stabilised: bool = True,
         coupled: Sequence[CoupledFace] = (),
         ties: Sequence[Tie] = (),
+        cyclic: Sequence[CyclicSymmetry] = (),
     ) -> None:
         self._parts = parts = make_parts(
-            model, materials, contacts, attached, symmetry, stabilised, coupled, ties
+            model, materials, contacts, attached, symmetry, stabilised, coupled, ties, cyclic
         )
         self.model, self.materials = model, dict(materials)
         self.contacts, self.bulk, self.rigid = parts.contacts, parts.bulk, parts.rigid
@@ -104,7 +107,8 @@ class Problem(ReportedSystem):
         self.assembly = assembly = parts.assembly
         self.constraints, self.contact_term = assembly.constraints, assembly.contacts
         self.together = Together(self.comm)
-        self._tangent = Tangent(assembly, model.space, parts.attached.coupling or bool(ties))
+        coupling = parts.attached.coupling or assembly.constraints.ties is not None
+        self._tangent = Tangent(assembly, model.space, coupling)
         self._bodies = Configuration(parts)
         self.rotations = Rotations(model, materials)
         self.balance = ForceBalance.none(self.layout.owned)

@@ -12,6 +12,7 @@ from anisocontact.contact.far_nodes import with_ghosts
 from anisocontact.mesh.idealisation import Idealisation
 from anisocontact.solver.system.parts import Parts
 from anisocontact.solver.system.swallowed import check_swallowed
+from anisocontact.solver.terms.free_modes import HeldFrame
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.step import AXES, Step
 from anisocontact.solver.terms.supports import Supports
@@ -46,7 +47,7 @@ def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again:
         parts.assembly.constraints.ties.begin(held, _on_bodies(parts))
     _tell_contacts(parts, len(start))
     load = parts.loads.at_end(start.reshape(-1, 3)) if parts.attached else None
-    frames = parts.rigid.held_frames()
+    frames = parts.rigid.held_frames() + _cut_faces(parts)
     parts.stabilisation.find_free(held, step.name, load, not again, frames)
 
 
@@ -94,9 +95,17 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
         if parts.rigid.faces:
             parts.rigid.faces.check(supports.unknowns, step.name)
         held = [*supports.held(), *planes.held()]
-        if parts.assembly.constraints.ties is not None:
-            parts.assembly.constraints.ties.check(held, _on_bodies(parts))
+        if (ties := parts.assembly.constraints.ties) is not None:
+            ties.check(held, _on_bodies(parts))
+            led = supports.unknowns, supports.end
+            ties.check_led(*led, planes.held(), step.name)
         check_swallowed(parts.layout, step, loads.given(step), held)
+
+
+def _cut_faces(parts: Parts) -> list[HeldFrame]:
+    """Cut faces of sectors."""
+    ties = parts.assembly.constraints.ties
+    return [] if ties is None else ties.frames()
 
 
 def _on_bodies(parts: Parts) -> npt.NDArray[np.int64]:
@@ -136,7 +145,8 @@ def contact_must_hold(parts: Parts, steps: Sequence[Step]) -> bool:
         held = [*supports.held(), *parts.planes.held()]
         rest = np.zeros_like(parts.model.space.tabulate_dof_coordinates())
         load = loads.at_end(rest) if parts.attached else None
-        parts.stabilisation.find_free(held, step.name, load, False, frames)
+        all_held = [*frames, *_cut_faces(parts)]
+        parts.stabilisation.find_free(held, step.name, load, False, all_held)
         found = found or parts.stabilisation.contact_alone
     parts.stabilisation.clear()
     return found

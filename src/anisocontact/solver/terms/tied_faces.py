@@ -1,4 +1,4 @@
-"""Facets that are tied to others on a mesh that does not match: bonded contact."""
+"""Facets that are tied to others on meshes that need not match: bonded contact, cut faces."""
 
 from __future__ import annotations
 
@@ -19,6 +19,8 @@ from anisocontact.contact.tie_weights import TieConditions, tie_conditions
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
+from anisocontact.solver.terms.cyclic import CutFaces, CyclicSymmetry
+from anisocontact.solver.terms.free_modes import HeldFrame
 from anisocontact.solver.terms.middles import shares_of_corners
 
 Flags = npt.NDArray[np.bool_]
@@ -63,9 +65,10 @@ class TiedFaces:
     """All ties of a problem as a constraint of its unknowns.
 
     Args:
-        ties: The ties; there is at least one.
+        ties: The ties.
         model: Mesh with the groups.
         like: A vector of the unknowns.
+        sectors: Cut faces of sectors; ties and these are one at least.
 
     Attributes:
         constraint: The constraint of the step that has begun; None before the first.
@@ -74,13 +77,25 @@ class TiedFaces:
         InputError: An unknown facet group, one within a body, or none of its facets near the other.
     """
 
-    def __init__(self, ties: Sequence[Tie], model: Model, like: Vec) -> None:
+    def __init__(
+        self,
+        ties: Sequence[Tie],
+        model: Model,
+        like: Vec,
+        sectors: Sequence[CyclicSymmetry] = (),
+    ) -> None:
         self._ties, self._model, self._like = list(ties), model, like
-        for i, tie in enumerate(ties):
-            with within(f"tie[{i}]"):
-                check_sides(model, tie.slave, tie.master, None)
-        self._groups = WholeGroups(model, {g for tie in ties for g in (tie.slave, tie.master)})
-        self._conditions = [self._found(i, tie) for i, tie in enumerate(ties)]
+        cyclic = {f"cyclic[{i}]": one for i, one in enumerate(sectors)}
+        # of two pairs with the same slave node the first has it
+        pairs = cyclic | {f"tie[{i}]": one for i, one in enumerate(ties)}
+        self._pairs: dict[str, Tie | CyclicSymmetry] = pairs
+        for name, pair in pairs.items():
+            with within(name):
+                check_sides(model, pair.slave, pair.master, None)
+        both = {group for pair in pairs.values() for group in (pair.slave, pair.master)}
+        self._groups = groups = WholeGroups(model, both)
+        self._cuts = {name: CutFaces.of(name, groups, one) for name, one in cyclic.items()}
+        self._conditions = {name: self._found(name, pair) for name, pair in pairs.items()}
         self._middle, self._of_corners = self._corners()
         self._held: Flags | None = None
         self._pattern = scipy.sparse.csr_array(self._of_corners.shape)
@@ -90,7 +105,40 @@ class TiedFaces:
     def links(self) -> list[tuple[str, str]]:
         """Pairs of bodies that are tied."""
         of = self._model.body_of
-        return [(of(tie.slave), of(tie.master)) for tie in self._ties]
+        return [(of(pair.slave), of(pair.master)) for pair in self._pairs.values()]
+
+    def frames(self) -> list[HeldFrame]:
+        """Cut faces as nodes that move along and about the axis alone where nothing is strained."""
+        found = []
+        for cut in self._cuts.values():
+            held = np.ones(6, dtype=bool)
+            held[[cut.turning.axis, 3 + cut.turning.axis]] = False
+            faces = np.union1d(*cut.sides)
+            own = faces[self._groups.owned()[faces]]
+            nodes = self._groups.nodes[own] - self._model.space.dofmap.index_map.local_range[0]
+            found.append(HeldFrame(nodes, np.array(cut.turning.point), held))
+        return found
+
+    def check_led(
+        self, unknowns: Ints, values: Floats, planes: Sequence[tuple[Ints, Floats]], step: str
+    ) -> None:
+        """Refuse supports at cut faces that are not the same in every sector; collective.
+
+        Args:
+            unknowns: Prescribed unknowns that this rank owns, local numbers.
+            values: Their values, length.
+            planes: Nodes this rank owns on symmetry planes, and the normals.
+            step: Name of the step, for messages.
+        """
+        if not self._cuts:
+            return
+        own = np.full((self._model.space.dofmap.index_map.size_local, 3), np.nan)
+        for nodes, normal in planes:
+            own[nodes] = np.where(np.abs(normal) > 1.0 - ALONG, 0.0, own[nodes])
+        own.reshape(-1)[unknowns] = values
+        led = self._everywhere(own, np.nan)
+        for cut in self._cuts.values():
+            cut.check_led(led, step)
 
     def begin(self, held: Sequence[tuple[Ints, Floats]], followers: Ints) -> None:
         """Take over what else holds the nodes in a step.
@@ -113,13 +161,21 @@ class TiedFaces:
         self._pattern = _closed(found)
 
     def check(self, held: Sequence[tuple[Ints, Floats]], followers: Ints) -> None:
-        """The check of `begin` alone."""
+        """The check of `begin` alone, and that no cut face follows a rigid body; collective."""
+        first = self._model.space.dofmap.index_map.local_range[0]
+        for name, cut in self._cuts.items():
+            nodes = self._groups.nodes[np.union1d(*cut.sides)] - first
+            shared = len(np.intersect1d(nodes, followers // 3))
+            if self._model.mesh.comm.allreduce(shared):
+                text = "faces of a rigid body share nodes with the cut faces: lead them in steps"
+                raise InputError(text, name)
         eliminated(self._conditions, self._flags(held, followers), self._of_corners)
 
     def left_out(self) -> list[str]:
         """A line for each tie with nodes that are not tied."""
         lines, groups = [], self._groups
-        for i, (tie, one) in enumerate(zip(self._ties, self._conditions, strict=True)):
+        for i, tie in enumerate(self._ties):
+            one = self._conditions[f"tie[{i}]"]
             nodes = np.unique(groups.groups[tie.slave].facets.nodes % len(groups.x))
             off = np.setdiff1d(nodes, one.nodes[one.covered])
             if len(off):
@@ -167,17 +223,21 @@ class TiedFaces:
     def connected(self) -> Ints:
         """Slave nodes and what they can follow, numbers in the whole mesh, (k, 2)."""
         found = []
-        for one in self._conditions:
+        for one in self._conditions.values():
             row, column = (one.own + one.other).tocoo().coords
             found.append(self._groups.nodes[np.column_stack([one.nodes[row], column])])
         return np.concatenate(found)
 
-    def _found(self, i: int, tie: Tie) -> TieConditions:
-        """Conditions of a tie in the first configuration."""
-        size = facet_size(self._model, tie.master)
+    def _found(self, name: str, tie: Tie | CyclicSymmetry) -> TieConditions:
+        """Conditions of a pair in the first configuration."""
+        size, cut = facet_size(self._model, tie.master), self._cuts.get(name)
         tolerance = TOLERANCE * size if tie.tolerance is None else tie.tolerance
-        with within(f"tie[{i}]"):
-            return tie_conditions(self._groups, tie.slave, tie.master, tolerance, size)
+        turning = None if cut is None else cut.turning
+        with within(name):
+            found = tie_conditions(self._groups, tie.slave, tie.master, tolerance, size, turning)
+        if cut is not None:
+            cut.check_whole(found)
+        return found
 
     def _corners(self) -> tuple[Flags, Sparse]:
         """Nodes that follow from corners; displacements of all by those that do not, (n, n)."""
@@ -200,39 +260,61 @@ class TiedFaces:
 
         A plane that is not along the axes takes all three: its own constraint has them.
         """
-        groups = self._groups
         index_map = self._model.space.dofmap.index_map
         own = np.zeros((index_map.size_local, 3), dtype=bool)
         for nodes, direction in held:
             axis = np.abs(direction) > ALONG
             own[nodes] |= axis if axis.any() else True
         own.reshape(-1)[followers] = True
-        flags = np.zeros((len(groups.nodes), 3), dtype=bool)
-        here = groups.owned()
-        flags[here] = own[groups.nodes[here] - index_map.local_range[0]]
-        flags = np.any(self._model.mesh.comm.allgather(flags), axis=0)
+        flags = self._everywhere(own, False)
+        for cut in self._cuts.values():
+            flags[cut.on_axis] = True
         return np.asarray(flags | self._middle[:, None])
 
-    def _constraint(self, found: Sequence[Sparse]) -> Constraint:
-        """The constraint of what each node follows, for the components."""
-        nodes, owned = self._groups.nodes, self._groups.owned()
-        slaves, masters, factors = [], [], []
-        for component, one in enumerate(found):
-            entries = one.tocoo()
-            row, column = entries.coords
-            kept = owned[row]
-            slaves.append(3 * nodes[row[kept]] + component)
-            masters.append(3 * nodes[column[kept]] + component)
-            factors.append(entries.data[kept])
-        return Constraint(self._like, *map(np.concatenate, (slaves, masters, factors)))
+    def _everywhere[T: np.generic](self, own: npt.NDArray[T], nothing: float) -> npt.NDArray[T]:
+        """Values of all nodes of the groups from those of the nodes of each rank; collective."""
+        groups, first = self._groups, self._model.space.dofmap.index_map.local_range[0]
+        here = groups.owned()
+        values = np.full((len(groups.nodes), 3), nothing, dtype=own.dtype)
+        values[here] = own[groups.nodes[here] - first]
+        owner = np.asarray(self._model.mesh.comm.allgather(here)).argmax(axis=0)
+        every = np.asarray(self._model.mesh.comm.allgather(values))
+        return np.asarray(every[owner, np.arange(len(owner))])
+
+    def _constraint(self, found: Sparse) -> Constraint:
+        """The constraint of what each unknown follows; what is on an axis stays on it."""
+        nodes, owned, count = self._groups.nodes, self._groups.owned(), len(self._groups.nodes)
+        entries = found.tocoo()
+        row, column = entries.coords
+        kept = owned[row % count]
+        to, of = (3 * nodes[at[kept] % count] + at[kept] // count for at in (row, column))
+        alone = [np.zeros(0, dtype=np.int64)]
+        for cut in self._cuts.values():
+            on = nodes[cut.on_axis[owned[cut.on_axis]]]
+            alone += [3 * on + component for component in cut.turning.across]
+        still = np.unique(np.concatenate(alone))
+        return Constraint(
+            self._like,
+            np.concatenate([to, still]),
+            np.concatenate([of, still]),
+            np.concatenate([entries.data[kept], np.zeros(len(still))]),
+        )
 
 
-def _closed(found: Sequence[Sparse]) -> Sparse:
+def _by_nodes(found: Sparse) -> Sparse:
+    """Which nodes follow which in any component, from the unknowns, (n, n)."""
+    entries, count = abs(found).tocoo(), found.shape[0] // 3
+    row, column = entries.coords
+    shape = (count, count)
+    return scipy.sparse.csr_array((entries.data, (row % count, column % count)), shape=shape)
+
+
+def _closed(found: Sparse) -> Sparse:
     """Which nodes hand forces on to which, themselves among them, over any number of others.
 
     A node that is held in one direction is followed there by those beside it, and follows others.
     """
-    pattern = sum((abs(one) for one in found[1:]), abs(found[0]))
+    pattern = _by_nodes(found)
     closed = (pattern + scipy.sparse.diags_array(1.0 * (np.diff(pattern.indptr) > 0))).tocsr()
     while True:
         more = (closed @ closed).tocsr()

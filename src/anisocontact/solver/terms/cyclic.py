@@ -1,0 +1,174 @@
+"""Cyclic symmetry: a sector whose cut faces move alike, turned about the axis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.errors import InputError
+from anisocontact.contact.tie_weights import TieConditions
+from anisocontact.contact.tied_surfaces import WholeGroups
+from anisocontact.contact.turning import Turning
+
+Flags = npt.NDArray[np.bool_]
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+#: Distance over the size of the cut face below which a node is on the axis, or on another node.
+SAME_PLACE = 1e-6
+#: Difference of prescribed displacements that counts as none, over the largest.
+SAME = 1e-6
+
+
+@dataclass(frozen=True)
+class CyclicSymmetry:
+    """Two cut faces of a sector that stands for a whole: `u_slave = Q u_master`, Q a turn.
+
+    The meshes of the faces need not match.
+
+    Args:
+        slave: Facet group "body.group" whose nodes follow.
+        master: Facet group "body.group" that they follow; turned about the axis by 360 degrees over
+            `sectors`, to either side, it lies on the slave.
+        sectors: Number of sectors of the whole, >= 2.
+        axis: Direction of the axis, along x, y or z.
+        point: A point of the axis, length.
+        tolerance: Largest gap between the faces once turned, length; a tenth of the size of the
+            facets of the master if not given.
+
+    Raises:
+        InputError: Fewer than two sectors, an axis that is not along x, y or z, or a negative
+            tolerance.
+
+    Example:
+        >>> CyclicSymmetry("disc.start", "disc.end", sectors=12).sectors
+        12
+    """
+
+    slave: str
+    master: str
+    sectors: int
+    axis: Sequence[float] = (0.0, 0.0, 1.0)
+    point: Sequence[float] = (0.0, 0.0, 0.0)
+    tolerance: float | None = None
+
+    def __post_init__(self) -> None:
+        if not (self.sectors == int(self.sectors) and self.sectors >= 2):
+            raise InputError(f"{self.sectors!r} given, a whole number >= 2 needed", "sectors")
+        if len(self.axis) != 3 or np.count_nonzero(self.axis) != 1:
+            text = f"{tuple(self.axis)!r} given, must be along x, y or z: rotate the mesh"
+            raise InputError(text, "axis")
+        if len(self.point) != 3:
+            raise InputError(f"{tuple(self.point)!r} given, three numbers needed", "point")
+        if self.tolerance is not None and not self.tolerance >= 0.0:
+            raise InputError(f"{self.tolerance!r} given, must be >= 0", "tolerance")
+
+    def turning(self, groups: WholeGroups) -> Turning:
+        """The turn that brings the master to the slave: to which side, the meshes say."""
+        axis, angle = int(np.flatnonzero(self.axis)[0]), 2.0 * math.pi / self.sectors
+        x, y, z = map(float, self.point)
+        count = len(groups.x)
+        slave, master = (
+            groups.x[np.unique(groups.groups[name].facets.nodes % count)].mean(axis=0)
+            for name in (self.slave, self.master)
+        )
+        both = [Turning(axis, (x, y, z), sign * angle) for sign in (1.0, -1.0)]
+        return min(both, key=lambda one: float(np.linalg.norm(one.of(master[None])[0] - slave)))
+
+
+@dataclass(frozen=True)
+class CutFaces:
+    """Nodes of both cut faces of a sector.
+
+    Attributes:
+        name: What messages call the sector.
+        turning: How the master is turned to the slave.
+        slave: Nodes of the slave, numbers of the groups.
+        master: Node of the master that is turned to each of these, -1 where there is none.
+        sides: All nodes of the slave, and of the master.
+        on_axis: Nodes on the axis.
+    """
+
+    name: str
+    turning: Turning
+    slave: Ints
+    master: Ints
+    sides: tuple[Ints, Ints]
+    on_axis: Ints
+
+    @classmethod
+    def of(cls, name: str, groups: WholeGroups, sector: CyclicSymmetry) -> CutFaces:
+        """Those of a sector."""
+        turning, count = sector.turning(groups), len(groups.x)
+        slave, master = (
+            np.unique(groups.groups[face].facets.nodes % count).astype(np.int64)
+            for face in (sector.slave, sector.master)
+        )
+        size = float(np.ptp(groups.x[master], axis=0).max())
+        both = np.union1d(slave, master)
+        on = both[turning.distance(groups.x[both]) <= SAME_PLACE * size]
+        there = turning.of(groups.x[master])
+        apart = np.linalg.norm(groups.x[slave][:, None] - there[None], axis=2)
+        near = apart.argmin(axis=1)
+        met = np.where(apart.min(axis=1) <= SAME_PLACE * size, master[near], -1)
+        return cls(name, turning, slave, met, (slave, master), on)
+
+    def check_whole(self, found: TieConditions) -> None:
+        """Refuse a face of which some of the other has no place: not the sector that was said."""
+        left = np.setdiff1d(np.setdiff1d(self.slave, self.on_axis), found.nodes[found.covered])
+        if len(left):
+            text = (
+                f"{len(left)} of {len(self.slave)} nodes of the slave are off the master "
+                f"{self.turning.text}: both faces have to cover each other"
+            )
+            raise InputError(text, self.name)
+
+    def check_led(self, values: Floats, step: str) -> None:
+        """Refuse supports that are not the same in every sector.
+
+        Args:
+            values: Prescribed displacements of all nodes, NaN where there is none, (n, 3), length.
+            step: Name of the step, for messages.
+        """
+        a, b = self.turning.across
+        field = f"step {step!r}.displacement"
+        both = np.setdiff1d(np.union1d(*self.sides), self.on_axis)
+        partly = np.isnan(values[both, a]) != np.isnan(values[both, b])
+        if partly.any():
+            text = (
+                f"of {int(partly.sum())} nodes on the cut faces of {self.name} only one component "
+                f"across the axis {'xyz'[self.turning.axis]} is held: the same in every sector are "
+                "both, none, or the one along the axis"
+            )
+            raise InputError(text, field)
+        here = values[self.slave[self.master >= 0]]
+        there = values[self.master[self.master >= 0]]
+        turned = np.stack([self._turned(there, i) for i in range(3)], axis=1)
+        on = np.isin(self.slave[self.master >= 0], self.on_axis)
+        here[on], turned[on] = _on_axis(here[on], self.turning.axis)
+        scale = np.nanmax(np.abs(values), initial=0.0)
+        off = np.isnan(here) != np.isnan(turned)
+        off |= np.abs(np.nan_to_num(here - turned)) > SAME * scale
+        if off.any():
+            text = (
+                f"{int(off.any(axis=1).sum())} nodes on the cut faces of {self.name} are led "
+                "otherwise on one than on the other: give the same motion in every sector"
+            )
+            raise InputError(text, field)
+
+    def _turned(self, values: Floats, component: int) -> Floats:
+        """A component of prescribed vectors after the turn, NaN where it is not all known."""
+        row = self.turning.matrix[component]
+        used = np.flatnonzero(row)
+        return np.asarray(values[:, used] @ row[used])
+
+
+def _on_axis(values: Floats, axis: int) -> tuple[Floats, Floats]:
+    """Prescribed displacements of nodes on the axis, and what they may be: along it anything."""
+    allowed = np.where(np.isnan(values), np.nan, 0.0)
+    allowed[:, axis] = values[:, axis]
+    return values, allowed
