@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 import itertools
-import resource
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import scipy.sparse
 
-from anisocontact.base.errors import InputError
-from anisocontact.solver import Problem, Solver, Step
-from anisocontact.solver.strategies import costs
-from anisocontact.solver.strategies.choice import Choice
-from anisocontact.solver.strategies.condensed import strategy
+from anisocontact.solver import Solver, Step
 from anisocontact.solver.strategies.condensed.bordered import BorderedLU
 from anisocontact.solver.strategies.condensed.bordered import reachable as borders
 from anisocontact.solver.strategies.condensed.dense import ContactTangent
@@ -286,76 +279,6 @@ def test_gmres() -> None:
     assert left < 1e-10
     assert used <= 20
     np.testing.assert_allclose(a @ x, b, atol=1e-8)
-
-
-def _choice(problem: Problem, how: str = "auto", **options: Any) -> Choice:
-    return Solver(problem, [PRESS], options=options, strategy=how).choice
-
-
-def test_auto_takes_condensed_for_linear_bodies(fe: Any) -> None:
-    choice = _choice(fe.block(fe.interface()).problem)
-    assert choice.name == "condensed"
-    assert "linear" in choice.reason
-
-
-@pytest.mark.parametrize(
-    ("change", "reason"),
-    [
-        (lambda m: m.setattr(strategy, "MOST_CONTACT", 10), "48 contact unknowns, more than 10"),
-        (lambda m: m.setattr(costs, "free_memory", lambda: 1e4), "GB are free"),
-    ],
-)
-def test_auto_says_why_it_takes_direct(
-    fe: Any,
-    monkeypatch: pytest.MonkeyPatch,
-    change: Callable[[pytest.MonkeyPatch], None],
-    reason: str,
-) -> None:
-    change(monkeypatch)
-    choice = _choice(fe.block(fe.interface()).problem)
-    assert choice.name == "direct"
-    assert reason in choice.reason
-
-
-def test_memory_limits_are_seen(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A limit of the address space that leaves 5 kB: `auto` says so and takes `direct`."""
-    pages = int(Path("/proc/self/statm").read_text().split()[0])
-    used = pages * resource.getpagesize()
-    monkeypatch.setattr(costs.resource, "getrlimit", lambda _: (used + 5000, -1))
-    assert costs.free_memory() <= 5000
-    choice = _choice(fe.block(fe.interface()).problem)
-    assert choice.name == "direct"
-    assert "needs 0.0 GB, 0.0 GB are free" in choice.reason
-
-
-def _no_contact(fe: Any) -> Problem:
-    block = fe.block(fe.interface())
-    return Problem(block.model, {"block": block.material}, [])
-
-
-@pytest.mark.parametrize(
-    ("make", "options", "message"),
-    [
-        (_no_contact, {}, r"strategy: 'condensed' given, but there is no contact"),
-        (
-            lambda fe: fe.block(fe.interface()).problem,
-            {"ksp_type": "gmres"},
-            r"but the option ksp_type asks for a solver of the whole system",
-        ),
-    ],
-)
-def test_condensed_refuses(
-    fe: Any, make: Callable[[Any], Problem], options: dict[str, str], message: str
-) -> None:
-    problem = make(fe)
-    with pytest.raises(InputError, match=message):
-        _choice(problem, "condensed", **options)
-    assert _choice(problem, "auto", **options).name == "direct"
-
-
-def test_unknown_strategy(fe: Any) -> None:
-    with pytest.raises(InputError, match="auto, direct, condensed, iterative"):
-        _choice(fe.block(fe.interface()).problem, "fast")
 
 
 def test_bulk_is_recovered_only_when_asked_for(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:

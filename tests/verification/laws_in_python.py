@@ -95,3 +95,29 @@ class Spoiled:
         """What the law says, with the array spoiled."""
         found = self.law.update(state, kinematics)
         return replace(found, **{self.name: self.wrong(getattr(found, self.name))})
+
+
+class Creeping:
+    """Force that is proportional to the slip velocity and no more than a share of the pressure."""
+
+    internal = 0
+
+    def update(self, state: LawState, kinematics: LawKinematics) -> LawResult:
+        n, dt = len(kinematics.pressure), kinematics.dt
+        velocity = kinematics.increment / dt
+        limit = 0.3 * kinematics.pressure
+        size = np.sqrt((velocity**2).sum(axis=1) + 1e-6)
+        unit = velocity / size[:, None]
+        d_unit = (np.eye(2) - unit[:, :, None] * unit[:, None, :]) / size[:, None, None]
+        traction = -limit[:, None] * unit
+        return LawResult(
+            traction=traction,
+            slip=kinematics.increment,
+            d_increment=-limit[:, None, None] * d_unit / dt,
+            d_pressure=-0.3 * unit,
+            d_traction=np.zeros((n, 2, 2)),
+            d_elastic=np.zeros((n, 2, 2)),
+            internal=np.zeros((n, 0)),
+            dissipation=-np.einsum("ni,ni->n", traction, kinematics.increment),
+            energy=np.zeros(n),
+        )

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.verification.laws_in_python import Creeping
 from tests.verification.test_fe_self_contact import hairpin
 
 from anisocontact.anisotropy import make_directions
@@ -22,9 +23,6 @@ from anisocontact.contact import Contact
 from anisocontact.interface import (
     ContactLaw,
     Interface,
-    LawKinematics,
-    LawResult,
-    LawState,
     PythonLaw,
 )
 from anisocontact.laws import Adhesion, Friction, NormalLaw
@@ -59,32 +57,6 @@ LAWS: Laws = (
 CLAMP = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
 PRESS = Step("press", 2, {**CLAMP, "block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
 DRAG = Step("drag", 3, {"block.top": {"x": 0.02}})
-
-
-class Creeping:
-    """Force that is proportional to the slip velocity and no more than a share of the pressure."""
-
-    internal = 0
-
-    def update(self, state: LawState, kinematics: LawKinematics) -> LawResult:
-        n, dt = len(kinematics.pressure), kinematics.dt
-        velocity = kinematics.increment / dt
-        limit = 0.3 * kinematics.pressure
-        size = np.sqrt((velocity**2).sum(axis=1) + 1e-6)
-        unit = velocity / size[:, None]
-        d_unit = (np.eye(2) - unit[:, :, None] * unit[:, None, :]) / size[:, None, None]
-        traction = -limit[:, None] * unit
-        return LawResult(
-            traction=traction,
-            slip=kinematics.increment,
-            d_increment=-limit[:, None, None] * d_unit / dt,
-            d_pressure=-0.3 * unit,
-            d_traction=np.zeros((n, 2, 2)),
-            d_elastic=np.zeros((n, 2, 2)),
-            internal=np.zeros((n, 0)),
-            dissipation=-np.einsum("ni,ni->n", traction, kinematics.increment),
-            energy=np.zeros(n),
-        )
 
 
 def _model(cell: str = "hexahedron", order: int = 1, n: int = 4, length: float = 2.0) -> Model:

@@ -248,74 +248,6 @@ def test_rotation() -> None:
     assert np.abs(forces[0] - forces[1]).max() < 1e-9 * np.abs(forces[0]).max()
 
 
-def _on_rigid(master: Any, augmented: bool, top: dict[str, float], **held: Any) -> Contact:
-    """A block on a surface, its top led."""
-    model = build_box({"block": BoxSpec((-0.5, -0.5, 0), (1, 1, 0.5), (4, 4, 2))})
-    augmentation = Augmentation() if augmented else None
-    contact = Contact(model, "block.bottom", master, _law(), mortar=True, augmentation=augmentation)
-    problem = Problem(model, {"block": make_material("linear-elastic", E=YOUNG, nu=0.3)}, [contact])
-    for _ in Solver(problem, [Step("press", 2, {"block.top": top, **held})]).run():
-        pass
-    return contact
-
-
-@pytest.mark.parametrize("order", [1, 2])
-@pytest.mark.parametrize("cell", CELLS)
-def test_on_a_plane(cell: str, order: int) -> None:
-    """Every kind of facet pressed on a rigid plane and left to spread: p = E strain, 1e-5.
-
-    Source: a bar under uniform compression but for a friction of 1e-6; the tangent has a place for
-    every block.
-    """
-    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 1), cell=cell, order=order)})
-    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    law = ContactLaw(
-        NormalLaw(penalty=PENALTY), Adhesion(stiffness=(1e-3, 1e-3)), Friction(coefficients=1e-6)
-    )
-    augmentation = Augmentation(tangential=False)
-    contact = Contact(
-        model,
-        "block.bottom",
-        plane,
-        law,
-        mortar=True,
-        current_area=False,
-        augmentation=augmentation,
-    )
-    problem = Problem(model, {"block": make_material("linear-elastic", E=YOUNG, nu=0.3)}, [contact])
-    held = {"block.left": {"x": 0.0}, "block.front": {"y": 0.0}, "block.top": {"z": -0.01}}
-    for _ in Solver(problem, [Step("press", 1, held)], options={"snes_rtol": 1e-10}).run():
-        pass
-    np.testing.assert_allclose(contact.last.pressure, 0.01 * YOUNG, rtol=1e-5)
-
-
-def test_a_node_below_a_pole() -> None:
-    """A sphere whose pole is on a node presses like one with its pole elsewhere, 1e-9.
-
-    Source: coordinates of the sphere do not matter; at a pole there are none.
-    """
-    down = {"x": 0.0, "y": 0.0, "z": -0.01}
-    forces = []
-    for axis in ((0, 0, 1), (1, 0, 0)):
-        ball = make_surface("sphere", centre=(0, 0, -2.0), radius=2.0, axis=axis, start=(0, 1, 0))
-        forces.append(_on_rigid(ball, False, down).resultant()[0])
-    assert forces[0][2] > 1.0
-    np.testing.assert_allclose(forces[0], forces[1], atol=1e-9 * forces[0][2])
-
-
-def test_a_support_that_overlaps() -> None:
-    """Nodes that a support holds below the surface keep their penalty; the others come to no gap.
-
-    Source: no multiplier can move them; with one the increment would have no solution.
-    """
-    plane = make_surface("plane", point=(0, 0, 0.001), normal=(0, 0, 1))
-    still = {"x": 0.0, "y": 0.0, "z": 0.0}
-    contact = _on_rigid(plane, True, {"z": 0.0}, **{"block.left": still})
-    held = contact.points[:, 0] < -0.5 + 1e-9
-    np.testing.assert_allclose(contact.state["gap"][held], -0.001, rtol=1e-6)
-    assert np.abs(contact.state["gap"][~held]).max() < 1e-6 / 4.0
-
-
 def test_stick_on_a_plane_of_symmetry() -> None:
     """Nodes on a plane of symmetry that stick carry no traction across it, matching or not.
 
@@ -370,7 +302,12 @@ def _dragged() -> tuple[Problem, list[Step]]:
     lower = BoxSpec((-0.4, 0, -0.5), (2, 2, 0.5), (5, 5, 1))
     model = build_box({"upper": upper, "lower": lower})
     contact = Contact(
-        model, "upper.bottom", "lower.top", _law(), mortar=True, augmentation=Augmentation()
+        model,
+        "upper.bottom",
+        "lower.top",
+        _law(),
+        mortar=True,
+        augmentation=Augmentation(),
     )
     steel = make_material("linear-elastic", E=YOUNG, nu=0.3)
     problem = Problem(model, {"upper": steel, "lower": steel}, [contact])

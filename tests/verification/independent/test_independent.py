@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from tests.verification.independent import elements
 from tests.verification.independent import law as numpy_law
 from tests.verification.independent.patch import Patch, Place, skew_sheet, skew_tube
 
@@ -32,48 +33,48 @@ R = np.array([[90.0, 40.0], [-25.0, 60.0]])
 REST, RELAXING = np.array([[80.0, 30.0], [30.0, 60.0]]), np.array([[150.0, -40.0], [-40.0, 90.0]])
 
 
-def full(a, s, r, springs=None) -> tuple[str, dict[str, object], numpy_law.Elements]:
+def full(a, s, r, springs=None) -> tuple[str, dict[str, object], elements.Elements]:
     values = {"relaxation": a, "stiffness_instant": s, "stiffness_rate": r}
     given: dict[str, object] = {name: m.ravel().tolist() for name, m in values.items()}
     given["energy"] = "none" if springs is None else "stored"
-    return "general-linear", given, numpy_law.Elements(1.0, a, s, r, springs)
+    return "general-linear", given, elements.Elements(1.0, a, s, r, springs)
 
 
 STRIP = np.array([0.0, 200.0])
 ADHESION = {
-    "elastic": ("elastic", {"stiffness": K}, numpy_law.elastic(K)),
-    "strip": ("elastic", {"stiffness": STRIP}, numpy_law.elastic(STRIP)),
-    "maxwell": ("maxwell", {"stiffness": K, "relaxation_time": TAU}, numpy_law.maxwell(K, TAU)),
+    "elastic": ("elastic", {"stiffness": K}, elements.elastic(K)),
+    "strip": ("elastic", {"stiffness": STRIP}, elements.elastic(STRIP)),
+    "maxwell": ("maxwell", {"stiffness": K, "relaxation_time": TAU}, elements.maxwell(K, TAU)),
     "kelvin-voigt": (
         "kelvin-voigt",
         {"stiffness": K, "viscosity": ETA},
-        numpy_law.kelvin_voigt(K, ETA),
+        elements.kelvin_voigt(K, ETA),
     ),
     "standard-linear-solid": (
         "standard-linear-solid",
         {"stiffness": K, "stiffness_maxwell": K1, "relaxation_time": TAU},
-        numpy_law.solid(K, K1, TAU),
+        elements.solid(K, K1, TAU),
     ),
     "full": full(A, S, R),
     "passive": full(A, REST + RELAXING, A @ REST, (REST, RELAXING)),
 }
 NORMAL = {
-    "penalty": ({"penalty": 900.0}, numpy_law.Pressure(0.0, 1.0, 0.0, 900.0)),
+    "penalty": ({"penalty": 900.0}, elements.Pressure(0.0, 1.0, 0.0, 900.0)),
     "kelvin-voigt": (
         {"stiffness": 900.0, "viscosity": 40.0},
-        numpy_law.Pressure(0.0, 1.0, 40.0, 900.0),
+        elements.Pressure(0.0, 1.0, 40.0, 900.0),
     ),
     "maxwell": (
         {"stiffness": 900.0, "relaxation_time": 3.0},
-        numpy_law.Pressure(1.0, 1.0 / 3.0, 900.0, 0.0),
+        elements.Pressure(1.0, 1.0 / 3.0, 900.0, 0.0),
     ),
     "standard-linear-solid": (
         {"stiffness": 700.0, "stiffness_maxwell": 400.0, "relaxation_time": 0.7},
-        numpy_law.Pressure(1.0, 1.0 / 0.7, 1100.0, 1000.0),
+        elements.Pressure(1.0, 1.0 / 0.7, 1100.0, 1000.0),
     ),
     "general-linear": (
         {"a": 0.8, "b": 900.0, "c": 500.0},
-        numpy_law.Pressure(1.0, 0.8, 900.0, 500.0),
+        elements.Pressure(1.0, 0.8, 900.0, 500.0),
     ),
 }
 MU, ALPHA = np.array([0.35, 0.2]), np.array([0.15, 0.12, 0.08])

@@ -1,0 +1,85 @@
+"""Pictures of the report: where they look from, what they cut open and what they show."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.base.figure_style import new_figure
+from anisocontact.results.dataset import DataSet, polygons, vertices
+from anisocontact.results.deformed import SHOWN, surfaces
+from anisocontact.results.report.frame import ContactView
+
+
+def test_stress_is_shown_where_it_is_largest():
+    """A bar whose middle is at the stress 8 inside: it is cut open there, on the far side in y."""
+    pyvista = pytest.importorskip("pyvista")
+    grid = pyvista.ImageData(dimensions=(5, 5, 5)).cast_to_unstructured_grid()
+    inside = np.all(grid.points == 2.0, axis=1)
+    grid.point_data["displacement"] = np.zeros((125, 3))
+    grid.point_data["von_mises"] = np.where(inside, 8.0, 1.0)
+    grid.point_data["principal_stress"] = np.where(inside[:, None], [1.0, 0.0, -8.0], [3.0, 2, 1])
+    for name, most in (("von_mises", 8.0), ("principal_stress", -8.0)):
+        skin, before = surfaces(grid, 1.0, SHOWN[name])
+        value = skin.point_data["value"]
+        assert value[np.argmax(abs(value))] == most
+        assert skin.bounds[2] == 2.0
+        assert before.bounds[2] == 0.0
+    assert SHOWN["von_mises"].limits(np.array([1.0, 8.0])) == (0.0, 8.0)
+    assert SHOWN["principal_stress"].limits(np.array([-8.0, 3.0])) == (-8.0, 8.0)
+
+
+def test_a_view_of_a_closed_master():
+    """All around a bar along z: seen from the front, without the points behind."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 40, endpoint=False) + 0.01
+    normal = np.column_stack([np.cos(angle), np.sin(angle), 0.0 * angle])
+    view = ContactView(_touching(3.0 * normal, normal), 0)
+    assert view.closed
+    assert view.frame.names() == ("x", "z")
+    assert len(view.position) == 20
+    assert np.all(view.position[:, 1] < 0.0)
+    # Half of the way around there is a mean normal to look along.
+    half = normal[normal[:, 0] > 0.0]
+    assert not ContactView(_touching(3.0 * half, half), 0).closed
+
+
+def _touching(places, normals, **data):
+    """Slave points that touch."""
+    count = len(places)
+    data |= {"normal": normals, "contact": np.zeros(count, dtype=int), "area": np.ones(count)}
+    data["status"] = np.ones(count, dtype=int)
+    return DataSet("PolyData", places, vertices(np.arange(count)), data)
+
+
+@pytest.mark.parametrize(("tilt", "name"), [(8.0, "z"), (20.0, "(0, 0.342, 0.94)")])
+def test_a_contact_that_is_nearly_level_is_seen_along_an_axis(tilt, name):
+    up = np.tile([0.0, np.sin(np.radians(tilt)), np.cos(np.radians(tilt))], (10, 1))
+    view = ContactView(_touching(np.random.default_rng(5).uniform(size=(10, 3)), up), 0)
+    assert view.frame.normal_name == name
+
+
+def test_values_at_nodes_are_drawn_between_them():
+    """A square of which three nodes touch, beside a triangle that is open, and two loose points."""
+    places = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [5, 5, 0], [6, 5, 0]])
+    points = _touching(places.astype(float), np.tile([0.0, 0, 1], (7, 1)), covered=np.ones(7))
+    points.point_data["status"][[2, 4]] = 0
+    points.point_data["contact"][5:] = 1
+    cells = polygons(np.array([[0, 1, 2, 3]]), np.array([[1, 4, 2]]))
+    view = ContactView(replace(points, cells=cells), 0)
+    axes = new_figure(3.0, 3.0).subplots()
+    image = view.draw_touching(axes, np.arange(5.0))
+    # four triangles around the middle of the square, and that of which one node touches
+    assert len(image.get_paths()) == 5
+    assert axes.get_xlim()[1] < 4.0
+    assert ContactView(replace(points, cells=cells), 1).position.tolist() == places[5:].tolist()
+
+
+def test_points_that_have_never_seen_their_master_are_seen_across_their_plane():
+    place = np.random.default_rng(4).uniform(size=(20, 3)) * [1.0, 0.0, 2.0]
+    view = ContactView(_touching(place, np.zeros((20, 3))), 0)
+    assert not view.closed
+    assert view.frame.names() == ("x", "z")
