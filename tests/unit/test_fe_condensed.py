@@ -281,6 +281,29 @@ def test_gmres() -> None:
     np.testing.assert_allclose(a @ x, b, atol=1e-8)
 
 
+@pytest.mark.parametrize("good", [0, 3])
+def test_gmres_ends_where_a_product_overflows(good: int) -> None:
+    """Tangents far from equilibrium overflow in single precision, which ended runs as internal.
+
+    Requirement: what was found before, as if no more were allowed; without any, zero.
+    """
+    a = _matrix(20).toarray()
+    b = np.arange(20.0)
+    calls: list[int] = []
+
+    def step(v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        calls.append(1)
+        return v / 8.0, a @ v / 8.0 if len(calls) <= good else np.full(20, np.nan)
+
+    x, left, used = gmres(step, b, 1e-10, 20)
+    assert used == good
+    wanted = (np.zeros(20), 1.0)
+    if good:
+        wanted = gmres(lambda v: (v / 8.0, a @ v / 8.0), b, 1e-10, good)[:2]
+    np.testing.assert_array_equal(x, wanted[0])
+    assert left == wanted[1]
+
+
 def test_bulk_is_recovered_only_when_asked_for(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Reactions, energies and means need no solution with the interior; the displacement does."""
     from anisocontact.solver.strategies.condensed.parts import Condensation as Bulk

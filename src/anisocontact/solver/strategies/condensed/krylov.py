@@ -20,6 +20,8 @@ def gmres[T: (np.float32, np.float64)](
 ) -> tuple[npt.NDArray[T], float, int]:
     """Generalised minimal residuals, preconditioned from the right, without restart.
 
+    A product that overflows, or is not a number, ends it with what was found before.
+
     Args:
         step: Approximate solution with the matrix, and the product of the matrix with it.
         b: Right-hand side, (n,); its precision is that of the vectors.
@@ -45,6 +47,8 @@ def gmres[T: (np.float32, np.float64)](
     left, used = 1.0, 0
     while used < most:
         directions[:, used], w = step(basis[:, used])
+        if not np.isfinite(w).all():
+            break
         used += 1
         column = np.zeros(used + 1)
         for _ in range(2):  # twice is enough for orthogonality to rounding
@@ -54,9 +58,11 @@ def gmres[T: (np.float32, np.float64)](
         length = float(np.linalg.norm(w))
         column[used] = length
         left = reduced.add(column) / norm
-        if left <= rtol or length == 0.0 or not np.isfinite(left):
+        if left <= rtol or length == 0.0:
             break
         basis[:, used] = w / length
+    if not used:
+        return np.zeros_like(b), 1.0, 0
     y = reduced.solution().astype(b.dtype)
     return product(1.0, directions[:, :used], y), left, used
 
