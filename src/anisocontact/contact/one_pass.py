@@ -275,6 +275,21 @@ class Pass:
         """Remember the trial as a state that bodies which flow have gone through."""
         self._way.append(Slid.of(self.current.response.state))
 
+    def taken_up(self) -> float:
+        """What the laws store and dissipate from the accepted state to the trial, of this rank.
+
+        Returns:
+            Energy; what friction dissipates is along the way that bodies which flow have gone.
+        """
+        now, before = self.current, self.accepted
+        state, areas = now.response.state, now.areas
+        friction = dissipated(self.state, self._way, state) if self._way else state["dissipation"]
+        gained = friction - self.state["dissipation"]
+        gained += state["dissipation_viscous"] - self.state["dissipation_viscous"]
+        stored = [name for name in _STORED if self.trials.does_work or name != "adhesion"]
+        held = [areas @ state[_STORED[n]] - before.areas @ self.state[_STORED[n]] for n in stored]
+        return float(areas @ gained + sum(held))
+
     def elastic_slip(self) -> Floats:
         """Elastic part of the relative displacement `e^i rho_i`, (n, 3), length."""
         tangents = self.master.at(self.state)[1]

@@ -22,6 +22,7 @@ class AcceptedState:
         x: The unknowns, length.
         outside: All forces but those of contact on the unknowns this rank owns, force.
         reaction: Of these, what the supports carry, force.
+        contact: Forces of contact, force.
         work: Work of all that acts from outside since the start, force times length.
     """
 
@@ -30,6 +31,7 @@ class AcceptedState:
         self.x: Vec = layout.new_vector()
         self.outside: Floats = np.zeros(layout.owned)
         self.reaction: Floats = np.zeros(layout.owned)
+        self.contact: Floats = np.zeros(layout.owned)
         self.work = 0.0
         self.begin_way()
 
@@ -68,6 +70,7 @@ class AcceptedState:
             "displacement": displacement,
             "outside": self.outside.reshape(-1, 3).copy(),
             "reaction": self.reaction.reshape(-1, 3).copy(),
+            "contact": self.contact.reshape(-1, 3).copy(),
         }
         return nodal, {"external_work": np.array([self.work]), "rigid": rigid}
 
@@ -76,5 +79,6 @@ class AcceptedState:
         self.x = self._layout.joined(nodal["displacement"], common["rigid"])
         self.outside = nodal["outside"].reshape(-1).copy()
         self.reaction = nodal["reaction"].reshape(-1).copy()
+        self.contact = nodal["contact"].reshape(-1).copy()
         self.work = float(common["external_work"][0])
         self.begin_way()

@@ -9,6 +9,9 @@ Where supports and prescribed motions alone drive the bodies the difference is w
 Loads and springs work what they work, whatever contact does on the way. Where bodies flow the
 supports have come to rest after the first step of the flow: from there on the difference is what
 viscous forces have had to take up.
+
+Multipliers and meshed masters do not answer on the way as if nothing had been after it. Where
+bodies flow there, work goes into contact that its laws take up: they store it, or dissipate it.
 """
 
 from __future__ import annotations
@@ -52,6 +55,26 @@ class _WayPoint:
         )
 
 
+@dataclass(frozen=True)
+class _Passed:
+    """What contact was where bodies that flow have come through.
+
+    Attributes:
+        place: Displacement of the local nodes, (nodes, 3), length.
+        force: Of the contacts on the unknowns this rank owns, force.
+        taken_up: What the laws have stored and dissipated since the accepted state, energy.
+    """
+
+    place: Floats
+    force: Floats
+    taken_up: float
+
+    def mean_work(self, after: _Passed) -> float:
+        """Work from outside against contact on the way to the next one, by the mean of both."""
+        way = (after.place - self.place).reshape(-1)[: len(self.force)]
+        return float(-0.5 * (self.force + after.force) @ way)
+
+
 class ContactWork:
     """What contact works along the way from the accepted state to the next.
 
@@ -63,15 +86,35 @@ class ContactWork:
         self._parts, self._contacts, self._rigid = parts, parts.contacts, parts.rigid
         self._comm: Any = parts.layout.comm
         self._places: list[_WayPoint] = []
+        self._passed: list[_Passed] = []
 
-    def begin(self, nodal: Floats) -> None:
-        """Start from the accepted state, displacement of the local nodes (nodes, 3), length."""
+    def begin(self, nodal: Floats, force: Floats) -> None:
+        """Start from the accepted state.
+
+        Args:
+            nodal: Displacement of the local nodes there, (nodes, 3), length.
+            force: What `forces` were there.
+        """
+        self._passed = [_Passed(nodal.copy(), force, 0.0)]
         accepted = [body.accepted.values for body in self._rigid.bodies]
         self._places = [_WayPoint(nodal.copy(), np.reshape(accepted, (-1, 6)))]
 
     def pass_through(self, nodal: Floats) -> None:
         """Go on to a state that bodies which flow have come to."""
         self._places.append(self._here(nodal))
+        if self._parts.stabilisation.flow.flows:
+            self._passed.append(self._passing(nodal))
+
+    def forces(self, nodal: Floats) -> Floats:
+        """Forces of the contacts in the trial on the unknowns this rank owns; collective.
+
+        Args:
+            nodal: Displacement of the local nodes there, (nodes, 3), length.
+        """
+        local = np.zeros_like(nodal)
+        for contact in self._contacts:
+            contact.add_force(local)
+        return self._parts.layout.assembled(local.reshape(-1))
 
     def beyond_the_means(self, nodal: Floats, dt: float, work: float) -> float:
         """Work that the means of the ends have missed on the way to a state in equilibrium.
@@ -86,7 +129,11 @@ class ContactWork:
         Returns:
             The part of supports and prescribed motions, force times length.
         """
-        if not self._led_alone(nodal) or not self._kinks():
+        led = self._led_alone(nodal)
+        answers = all(contact.retraceable for contact in self._contacts)
+        if len(self._passed) > 1 and not (led and answers):
+            return self._taken_up(nodal, led)
+        if not (led and answers and self._kinks()):
             return 0.0
         places = [*self._places, self._here(nodal)]
         pieces = np.array([self._piece(a, b, dt, work) for a, b in pairwise(places)])
@@ -104,12 +151,40 @@ class ContactWork:
         return first
 
     def _led_alone(self, nodal: Floats) -> bool:
-        """Whether supports and prescribed motions alone drive the bodies, and contact can tell."""
+        """Whether supports and prescribed motions alone drive the bodies."""
         parts = self._parts
         held = not (parts.stabilisation.watches or parts.rigid.free or parts.attached)
-        held = held and all(contact.retraceable for contact in self._contacts)
         loaded = held and bool(parts.loads.force(nodal).any())
         return held and not self._comm.allreduce(loaded, MPI.LOR)
+
+    def _taken_up(self, nodal: Floats, led: bool) -> float:
+        """As `beyond_the_means`, by what the laws store and dissipate along a flow."""
+        if self._rigid.free:
+            return 0.0
+        passed = [*self._passed, self._passing(nodal)]
+        means = [a.mean_work(b) for a, b in pairwise(passed)]
+        first, end = passed[1].taken_up, passed[-1].taken_up
+        local = [first - means[0] - self._mean_of_rigid(), end - first - sum(means[1:])]
+        begun, rest = self._comm.allreduce(np.array(local)).tolist()
+        if not np.isfinite(begun + rest):
+            return 0.0
+        self._parts.stabilisation.released -= rest if led else begun + rest
+        return begun if led else 0.0
+
+    def _passing(self, nodal: Floats) -> _Passed:
+        taken_up = sum(contact.taken_up() for contact in self._contacts)
+        return _Passed(nodal.copy(), self.forces(nodal), taken_up)
+
+    def _mean_of_rigid(self) -> float:
+        """Work on rigid bodies by the mean of both ends of the whole way, of this rank."""
+        work = 0.0
+        for body in self._rigid.bodies:
+            way = body.trial.values - body.accepted.values
+            before = body.reference + body.accepted.translation
+            for one in self._rigid.contacts[body]:
+                ends = one.accepted.wrench(before) + one.current.wrench(body.position)
+                work += 0.5 * float(ends @ way)
+        return work
 
     def _piece(
         self, start: _WayPoint, end: _WayPoint, dt: float, work: float

@@ -320,7 +320,7 @@ class Problem(ReportedSystem):
         nodal = self._bodies.nodal
         if not self.reduction.whole:
             nodal = self.reduction.nodal(self._accepted.x)
-        self._contact_work.begin(nodal)
+        self._contact_work.begin(nodal, self._accepted.contact)
         if self.stabilisation.watches:
             load = self.loads.force(nodal)
             self.attached.add_force(nodal, load)
@@ -334,6 +334,7 @@ class Problem(ReportedSystem):
         """
         work, nodal = self.reduction.commit(x), self.reduction.nodal(x)
         work += self._contact_work.beyond_the_means(nodal, self.dt, self._accepted.work + work)
+        self._accepted.contact = self._contact_work.forces(nodal)
         self._accepted.work += work + self.assembly.terms.accept(nodal)
         x.copy(self._accepted.x)
         self.rotations.commit()
