@@ -15,4 +15,5 @@ NB_MODULE(_core, m) {
   anisocontact::bindings::bind_search(m);
   anisocontact::bindings::bind_facet_interface(m);
   anisocontact::bindings::bind_mortar(m);
+  anisocontact::bindings::bind_contact_planes(m);
 }

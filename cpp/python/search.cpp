@@ -1,6 +1,6 @@
 // Surfaces of facets: closest points, neighbours, geometry.
 
-#include "anisocontact/search/facet_surface.hpp"
+#include "anisocontact/search/facing.hpp"
 
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
@@ -24,6 +24,7 @@ using surface::FacetKind;
 using Indices = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Offsets = nb::ndarray<const std::int64_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 using Flags = nb::ndarray<const bool, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+using Table = nb::ndarray<const std::int32_t, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
 using Lists = std::vector<std::vector<std::int32_t>>;
 
 std::vector<Vec3<double>> rows(const Points& x) {
@@ -154,6 +155,79 @@ nb::tuple within(const FacetSurface& s, const Points& x, double distance, std::s
   return flat(lists);
 }
 
+/// Middles of facets and the distance of the farthest node.
+nb::tuple balls(const Table& nodes, const Points& x) {
+  const std::size_t n = nodes.shape(0), width = nodes.shape(1);
+  Array<double> middle({n, 3}, unset), radius({n});
+  for (std::size_t f = 0; f < n; ++f) {
+    const auto at = [&](std::size_t a) {
+      return row3(x.data(), static_cast<std::size_t>(nodes.data()[f * width + a]));
+    };
+    Vec3<double> sum = Vec3<double>::Zero();
+    for (std::size_t a = 0; a < width; ++a) sum += at(a);
+    sum /= static_cast<double>(width);
+    put3(middle.data, f, sum);
+    for (std::size_t a = 0; a < width; ++a)
+      radius.data[f] = std::max(radius.data[f], (at(a) - sum).norm());
+  }
+  return nb::make_tuple(middle.array, radius.array);
+}
+
+/// Outward unit normals where shape functions have a gradient, (nodes, 2).
+nb::ndarray<nb::numpy, double> normals(const Table& nodes, const Flags& flip,
+                                       const Coordinates& gradient, const Points& x) {
+  const std::size_t n = nodes.shape(0), width = nodes.shape(1);
+  Array<double> out({n, 3}, unset);
+  for (std::size_t f = 0; f < n; ++f) {
+    Vec3<double> first = Vec3<double>::Zero(), second = first;
+    for (std::size_t a = 0; a < width; ++a) {
+      const auto at = row3(x.data(), static_cast<std::size_t>(nodes.data()[f * width + a]));
+      first += gradient.data()[2 * a] * at;
+      second += gradient.data()[2 * a + 1] * at;
+    }
+    const Vec3<double> cross = first.cross(second);
+    put3(out.data, f, (flip.data()[f] ? -1.0 : 1.0) / cross.norm() * cross);
+  }
+  return out.array;
+}
+
+/// Pairs of facets that face each other, in ascending order, and the distances of their middles.
+nb::tuple facing(const FacetSurface& s, const Points& middle, const Scalars& radius,
+                 const Points& normal, const Points& centre, const Scalars& size,
+                 const Points& other, double distance, const Offsets& offsets, const Indices& unmet,
+                 std::size_t threads) {
+  const std::size_t n = middle.shape(0);
+  const search::FacetBalls own{middle.data(), radius.data(), normal.data()},
+      theirs{centre.data(), size.data(), other.data()};
+  Lists lists(n);
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_pieces(n, threads, [&](std::size_t first, std::size_t last) {
+      std::vector<std::int32_t> found;
+      for (std::size_t f = first; f < last; ++f) {
+        std::span<const std::int32_t> left_out;
+        if (offsets.shape(0) > 0)
+          left_out = {unmet.data() + offsets.data()[f], unmet.data() + offsets.data()[f + 1]};
+        search::faced(s, own, f, theirs, distance, left_out, found);
+        lists[f] = found;
+      }
+    });
+  }
+  std::size_t count = 0;
+  for (const auto& one : lists) count += one.size();
+  Array<std::int64_t> slave({count}, unset), master({count}, unset);
+  Array<double> apart({count}, unset);
+  std::size_t k = 0;
+  for (std::size_t f = 0; f < n; ++f)
+    for (const std::int32_t g : lists[f]) {
+      slave.data[k] = static_cast<std::int64_t>(f);
+      master.data[k] = g;
+      apart.data[k++] =
+          (row3(centre.data(), static_cast<std::size_t>(g)) - row3(middle.data(), f)).norm();
+    }
+  return nb::make_tuple(slave.array, master.array, apart.array);
+}
+
 nb::tuple rings(const FacetSurface& s, const Indices& facet, std::size_t count) {
   check_facets(s, facet);
   Lists lists(facet.shape(0));
@@ -237,8 +311,14 @@ void bind_search(nb::module_& m) {
           },
           nb::arg("facet"), nb::arg("xi"))
       .def("within", &within, nb::arg("x"), nb::arg("distance"), nb::arg("threads"))
+      .def("facing", &facing, nb::arg("middle"), nb::arg("radius"), nb::arg("normal"),
+           nb::arg("centre"), nb::arg("size"), nb::arg("other"), nb::arg("distance"),
+           nb::arg("offsets"), nb::arg("unmet"), nb::arg("threads"))
       .def("rings", &rings, nb::arg("facet"), nb::arg("count"))
       .def("sides", &sides);
+  m.def("facet_balls", &balls, nb::arg("nodes"), nb::arg("x"));
+  m.def("facet_normals", &normals, nb::arg("nodes"), nb::arg("flip"), nb::arg("gradient"),
+        nb::arg("x"));
   nb::class_<search::Smoothing>(m, "Smoothing")
       .def(
           "__init__",

@@ -118,7 +118,7 @@ class SlidingRule:
 
 def state_layout() -> list[Any]: ...
 
-state_size: int = 264
+state_size: int = 280
 
 class Law:
     def __init__(
@@ -194,8 +194,29 @@ class FacetSurface:
         self, facet: NDArray[numpy.int32], xi: NDArray[numpy.float64]
     ) -> dict[str, NDArray[Any]]: ...
     def within(self, x: NDArray[numpy.float64], distance: float, threads: int) -> Any: ...
+    def facing(
+        self,
+        middle: NDArray[numpy.float64],
+        radius: NDArray[numpy.float64],
+        normal: NDArray[numpy.float64],
+        centre: NDArray[numpy.float64],
+        size: NDArray[numpy.float64],
+        other: NDArray[numpy.float64],
+        distance: float,
+        offsets: NDArray[numpy.int64],
+        unmet: NDArray[numpy.int32],
+        threads: int,
+    ) -> Any: ...
     def rings(self, facet: NDArray[numpy.int32], count: int) -> Any: ...
     def sides(self) -> NDArray[numpy.int32]: ...
+
+def facet_balls(nodes: NDArray[numpy.int32], x: NDArray[numpy.float64]) -> Any: ...
+def facet_normals(
+    nodes: NDArray[numpy.int32],
+    flip: NDArray[numpy.bool_],
+    gradient: NDArray[numpy.float64],
+    x: NDArray[numpy.float64],
+) -> NDArray[numpy.float64]: ...
 
 class Smoothing:
     def __init__(
@@ -328,3 +349,27 @@ class MortarWeights:
         moving: Sequence[tuple[int, NDArray[numpy.int32] | None, NDArray[numpy.float64]]],
         threads: int,
     ) -> Any: ...
+
+def node_sums(
+    nodes: NDArray[numpy.int32], values: NDArray[numpy.float64], x: NDArray[numpy.float64]
+) -> NDArray[numpy.float64]: ...
+def plane_slopes(
+    slave: NDArray[numpy.float64],
+    tangents: NDArray[numpy.float64],
+    normal: NDArray[numpy.float64],
+    held: NDArray[numpy.float64],
+    now: NDArray[numpy.float64],
+    reference: NDArray[numpy.float64],
+    area: NDArray[numpy.float64],
+    masters: NDArray[numpy.int32],
+    shares: NDArray[numpy.float64],
+    facet: NDArray[numpy.int32],
+    nodes: NDArray[numpy.int32],
+    shape: NDArray[numpy.float64],
+    gradient: NDArray[numpy.float64],
+    second: NDArray[numpy.float64],
+    edge: NDArray[numpy.float64],
+    which: NDArray[numpy.int32],
+    by_nodes: NDArray[numpy.float64],
+    threads: int,
+) -> Any: ...

@@ -21,6 +21,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact import _core
+
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
@@ -86,42 +88,13 @@ class Opposite:
 
     def mean(self, x: Floats) -> Floats:
         """Mean position, (n, 3), length, of nodes at x, (nodes, 3)."""
-        return np.asarray(np.einsum("nk,nki->ni", self.shares, x[np.maximum(self.masters, 0)]))
+        return _core.node_sums(self.masters, self.shares[:, None], x)[:, 0]
 
     def tangents(self, x: Floats) -> Floats:
         """Tangents, (n, 2, 3), length, of nodes at x, (nodes, 3)."""
-        found = np.einsum("nak,nki->nai", self.gradient, x[self.nodes])
+        found = _core.node_sums(self.nodes, self.gradient, x)
         found[self.facet < 0] = np.eye(3)[:2]
-        return np.asarray(found)
-
-    def place(self, x: Floats) -> Floats:
-        """Place of the tangents, (n, 3), length, of nodes at x, (nodes, 3)."""
-        return np.asarray(np.einsum("nk,nki->ni", self.shape, x[self.nodes]))
-
-    def bend(self, x: Floats) -> Floats:
-        """Derivatives of the tangents there, (n, 2, 2, 3), length, of nodes at x, (nodes, 3)."""
-        return np.asarray(np.einsum("nabk,nki->nabi", self.second, x[self.nodes]))
-
-    def moves(self, x: Floats, apart: Floats) -> Floats:
-        """How the coordinates of the place follow a point that it is closest to, (n, 2, 2).
-
-        w in d xi^a = w^ab [(dx - dy) . d_b + (x - y) . d d_b], `apart` x - y, (n, 3), length:
-        (d_a . d_b - (x - y) . d_ab)^-1, or along an edge e e / of this matrix by e.
-        """
-        tangents = self.tangents(x)
-        metric = tangents @ tangents.swapaxes(1, 2) - np.einsum("nabi,ni->nab", self.bend(x), apart)
-        out = np.linalg.inv(metric)
-        on = ~np.isnan(self.edge[:, 0])
-        e = self.edge[on]
-        slope = np.einsum("na,nab,nb->n", e, metric[on], e)
-        slope[slope == 0.0] = 1.0
-        out[on] = e[:, :, None] * e[:, None] / slope[:, None, None]
-        return np.asarray(out)
-
-    def dual_tangents(self, x: Floats) -> Floats:
-        """Dual tangents, (n, 2, 3), 1/length, of nodes at x, (nodes, 3)."""
-        tangents = self.tangents(x)
-        return np.asarray(np.linalg.solve(tangents @ tangents.swapaxes(1, 2), tangents))
+        return found
 
     def named(self) -> Ints:
         """All nodes of these, (n, k + j), -1 for none."""
@@ -170,38 +143,6 @@ class Turned:
         """1 / (1 + m . n), (n,); zero where both are opposite, which no node in contact has."""
         both = 1.0 + self.cosine
         return np.divide(1.0, both, out=np.zeros_like(both), where=both > 0.0)
-
-    def take(self, which: Ints) -> Turned:
-        """Those of some nodes, (p,)."""
-        return Turned(self.tangents[which], self.normal[which])
-
-    def pulled_back(self, by_axes: Floats) -> tuple[Floats, Floats]:
-        """Derivatives by d and by n from those by e.
-
-        Args:
-            by_axes: Rows of some numbers, by e_1 and e_2, (n, r, 2, 3).
-
-        Returns:
-            By d, (n, r, 2, 3), and by n, (n, r, 3).
-        """
-        m, n, share = self.own_normal, self.normal, self._share
-        both = m + n
-        along = np.einsum("nrai,ni->nra", by_axes, both)  # of each fall
-        # dfall = (dd . n + d . dn) share - fall share (dm . n + m . dn)
-        by_share = -np.einsum("nra,na,n->nr", along, self._fall, -share)
-        by_d = by_axes - (along * share[:, None, None])[..., None] * n[:, None, None]
-        by_n = -np.einsum("nra,nai->nri", along * share[:, None, None], self.tangents)
-        by_n += by_share[..., None] * m[:, None]
-        by_m = by_share[..., None] * n[:, None]
-        fallen = np.einsum("nrai,na->nri", by_axes, self._fall)
-        by_n -= fallen
-        by_m -= fallen
-        # dm = - sum_a d^a (m . dd_a), d^a the dual tangents
-        metric = np.linalg.inv(self.tangents @ self.tangents.swapaxes(1, 2))
-        dual = metric @ self.tangents
-        stretch = np.einsum("nri,nai->nra", by_m, dual)
-        by_d -= stretch[..., None] * m[:, None, None]
-        return by_d, by_n
 
 
 @dataclass(frozen=True)
@@ -300,31 +241,3 @@ def across(held: Floats, normal: Floats) -> Floats:
     """Normals without what is along held directions, (n, 3): by symmetry nothing is there."""
     rest = normal - (held @ normal[..., None])[..., 0]
     return np.asarray(rest / np.linalg.norm(rest, axis=1)[:, None])
-
-
-def by_slave_tangents(tangents: Floats, held: Floats, by_normal: Floats) -> Floats:
-    """Derivatives by the tangents of the slave from those by the normal of the contact plane.
-
-    Args:
-        tangents: Of the slave, (n, 2, 3), length.
-        held: As of `ContactPlanes`.
-        by_normal: Rows of some numbers, (n, r, 3).
-
-    Returns:
-        By both tangents, (n, r, 2, 3).
-    """
-    cross = np.cross(tangents[:, 0], tangents[:, 1])
-    size = np.linalg.norm(cross, axis=1)
-    unit = cross / size[:, None]
-    rest = unit - (held @ unit[..., None])[..., 0]
-    length = np.linalg.norm(rest, axis=1)
-    rest /= length[:, None]
-    along = np.einsum("nri,ni->nr", by_normal, rest)
-    by_normal = (by_normal - along[..., None] * rest[:, None]) / length[:, None, None]
-    by_normal = by_normal - by_normal @ held
-    # n = - unit; d unit = (1 - u u) (dt_1 x t_2 + t_1 x dt_2) / size
-    k = -(by_normal - np.einsum("nri,ni->nr", by_normal, unit)[..., None] * unit[:, None])
-    k = k / size[:, None, None]
-    first = np.cross(tangents[:, None, 1], k)
-    second = np.cross(k, tangents[:, None, 0])
-    return np.stack([first, second], axis=2)

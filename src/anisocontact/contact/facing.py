@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact import _core
 from anisocontact.contact.facet_mesh import FacetMesh, FacetShapes, facet_corners
 from anisocontact.surfaces.facets import FacetSets, FacetSurface
 
@@ -97,7 +99,7 @@ class Pairs:
 def largest_radius(slave: FacetMesh, now: Floats) -> float:
     """Largest distance of a node from the middle of its facet, length; 0 without facets."""
     nodes = slave.nodes if slave.sweep is None else slave.sweep.edges(slave.nodes)
-    return float(_ball(now[nodes])[1].max(initial=0.0))
+    return float(_ball(nodes, now)[1].max(initial=0.0))
 
 
 def facing(sides: Facing, slave: FacetMesh, now: Floats, radius: float) -> Pairs:
@@ -109,23 +111,24 @@ def facing(sides: Facing, slave: FacetMesh, now: Floats, radius: float) -> Pairs
         now: Positions of the nodes, (nodes, 3), length.
         radius: As of `largest_radius`, over all processes.
     """
-    master, x = sides.master, now[slave.nodes]
-    middle, radii = _ball(x)
-    sets = sides.surface.within(middle, sides.reach + radius)
-    f = np.repeat(np.arange(len(x)), np.diff(sets.offsets))
-    g = sets.facets.astype(np.int64)
-    normal, other = _outward(slave, now), _outward(master, now)
-    centre, size = _ball(now[master.nodes])
-    apart, normals = centre[g] - middle[f], normal[f]
-    along = np.einsum("pi,pi->p", apart, normals)
-    beside = np.einsum("pi,pi->p", apart, apart) - along**2
-    kept = beside <= (radii[f] + size[g]) ** 2
-    kept &= np.einsum("pi,pi->p", normals, other[g]) < 0.0
-    if sides.near is not None:
-        n, unmet = len(master.nodes), sides.near.unmet
-        who = np.repeat(np.arange(len(x)), np.diff(unmet.offsets))
-        kept &= ~np.isin(f * n + g, who * n + unmet.facets)
-    return Pairs(f[kept], g[kept], np.linalg.norm(apart[kept], axis=1))
+    master, near = sides.master, sides.near
+    middle, radii = _ball(slave.nodes, now)
+    centre, size = _ball(master.nodes, now)
+    none = FacetSets(np.zeros(0, np.int64), np.zeros(0, np.int32))
+    unmet = none if near is None else near.unmet
+    found = sides.surface.core.facing(
+        middle,
+        radii,
+        _outward(slave, now),
+        centre,
+        size,
+        _outward(master, now),
+        sides.reach + radius,
+        unmet.offsets,
+        unmet.facets,
+        sides.threads,
+    )
+    return Pairs(*found)
 
 
 def near_facets(
@@ -172,23 +175,24 @@ def _looks(
 ) -> tuple[Floats, Floats]:
     """How far facets look at each other, behind by `BEHIND`, and how much their normals oppose."""
     normal, other = _outward(mesh, x), _outward(master, x)
-    (middle, radius), (centre, _) = _ball(x[mesh.nodes]), _ball(x[master.nodes])
+    (middle, radius), (centre, _) = _ball(mesh.nodes, x), _ball(master.nodes, x)
     ahead = 0.5 * np.einsum("pi,pi->p", centre[g] - middle[f], normal[f] - other[g])
     return ahead + BEHIND * radius[f], -np.einsum("pi,pi->p", normal[f], other[g])
 
 
-def _ball(x: Floats) -> tuple[Floats, Floats]:
+def _ball(nodes: Ints32, x: Floats) -> tuple[Floats, Floats]:
     """Middles of facets and the distance of the farthest node, (facets, 3) and (facets,)."""
-    middle = x.mean(axis=1)
-    return middle, np.linalg.norm(x - middle[:, None], axis=2).max(axis=1)
+    found: tuple[Floats, Floats] = _core.facet_balls(nodes, x)
+    return found
 
 
 def _outward(mesh: FacetMesh, now: Floats) -> Floats:
     """Outward unit normals at the middles of facets, (facets, 3)."""
-    shapes = FacetShapes(mesh.topology)
-    gradient = shapes.at(shapes.middle[None])[1][0]
-    t = np.einsum("kd,mki->mdi", gradient, now[mesh.nodes])
-    normal = np.cross(t[:, 0], t[:, 1])
-    return np.asarray(
-        np.where(mesh.flip, -1.0, 1.0)[:, None] * normal / np.linalg.norm(normal, axis=1)[:, None]
-    )
+    return _core.facet_normals(mesh.nodes, mesh.flip, _middle_gradient(mesh.topology), now)
+
+
+@cache
+def _middle_gradient(topology: str) -> Floats:
+    """Derivatives of the shape functions at the middle of a facet, (k, 2)."""
+    shapes = FacetShapes(topology)
+    return np.ascontiguousarray(shapes.at(shapes.middle[None])[1][0])

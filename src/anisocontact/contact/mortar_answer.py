@@ -9,7 +9,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.contact_planes import ContactPlanes, Opposite, by_slave_tangents
+from anisocontact import _core
+from anisocontact.contact.contact_planes import ContactPlanes, Opposite
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.mortar_weights import MortarWeights
@@ -76,41 +77,6 @@ class MortarState:
             parts += [(first + 1, one.nodes, one.gradient)]
         return [*parts, (9, now.nodes, now.shape[:, None])]
 
-    @cached_property
-    def _place_slopes(self) -> tuple[Floats, Floats, Floats]:
-        """How the tangents follow the place where they are taken, and it the slave point.
-
-            d d_a = (d_ab - d_c (D^c . D_ab)) d xi^b ,
-
-        less what the reference turns, in which directions are taken; d xi as of `Opposite.moves`.
-
-        Returns:
-            The bracket of the first line, (n, 2, 2, 3), w times the tangents, (n, 2, 3), and w
-            times x - y, (n, 2, 2, 3).
-        """
-        one, now = self.opposite[0], self.planes.now.tangents
-        bend = one.bend(self.now)
-        turn = one.bend(self.reference) @ one.dual_tangents(self.reference).swapaxes(1, 2)[:, None]
-        apart = self.planes.slave - one.place(self.now)
-        w = one.moves(self.now, apart)
-        return bend - turn @ now[:, None], w @ now, w[..., None] * apart[:, None, None]
-
-    @cached_property
-    def _ways(self) -> Floats:
-        """How the mean of the master follows the weights, over their sum, (n, k, 3), 1/length.
-
-        What it moves along the plane is less what the point of the reference moves there, at which
-        directions are taken: on a master that keeps its shape both are the same.
-        """
-        planes, opposite, masters = self.planes, self.opposite[0], self.weights.masters
-        named = np.maximum(masters, 0)
-        way = self.now[named] - opposite.mean(self.now)[:, None]
-        material = self.reference[named] - opposite.mean(self.reference)[:, None]
-        dual, area = opposite.dual_tangents(self.reference), self.weights.area
-        way -= material @ (dual.swapaxes(1, 2) @ planes.now.axes)
-        share = np.divide(1.0, area, out=np.zeros_like(area), where=area > 0.0)
-        return way * ((masters >= 0) * share[:, None])[..., None]
-
     def tangent(
         self, by_nodes: Floats, which: Ints, traction: Floats
     ) -> tuple[Floats, Ints, Ints, Floats]:
@@ -124,28 +90,29 @@ class MortarState:
         Returns:
             That of the tractions by the nodes of the columns, (p, c, 3, 3), and couplings.
         """
-        planes = self.planes
-        by = by_nodes.reshape(-1, 3, 3, 3, 3).copy()  # (p, i, part, node of it, j)
-        by[:, :, :, 0] = by.sum(axis=3)
-        by_now, by_normal = planes.now.take(which).pulled_back(by[:, :, 1, 1:])
-        by[:, :, 1, 1:] = by_now
-        by[:, :, 0, 1:] += by_slave_tangents(planes.tangents[which], planes.held[which], by_normal)
-        for part in (1, 2):  # both means follow the slave point along what is held
-            held = by[:, :, part, 0] @ planes.held[which]
-            by[:, :, part, 0] -= held
-            by[:, :, 0, 0] += held
-        p = len(which)
-        turn, along, lean = (one[which] for one in self._place_slopes)
-        by_tangents = by[:, :, 1, 1:].reshape(p, 3, 6)
-        by_place = by_tangents @ turn.swapaxes(2, 3).reshape(p, 6, 2)
-        by[:, :, 1, 1:] += (by_place @ lean.reshape(p, 2, 6)).reshape(p, 3, 2, 3)
-        by_foot = by_place @ along
-        by[:, :, 0, 0] += by_foot
-        flat = np.concatenate([by.reshape(p, 3, 9, 3), -by_foot[:, :, None]], axis=2)
-        flat = np.ascontiguousarray(np.moveaxis(flat, 2, 1).reshape(p, 10, 9))
-        lift = self._ways[which] @ by[:, :, 1, 0].swapaxes(1, 2)
+        planes, now = self.planes, self.opposite[0]
+        by, lift = _core.plane_slopes(
+            slave=planes.slave,
+            tangents=planes.tangents,
+            normal=planes.normal,
+            held=planes.held,
+            now=self.now,
+            reference=self.reference,
+            area=self.weights.area,
+            masters=now.masters,
+            shares=now.shares,
+            facet=now.facet,
+            nodes=now.nodes,
+            shape=now.shape,
+            gradient=now.gradient,
+            second=now.second,
+            edge=now.edge,
+            which=which,
+            by_nodes=by_nodes,
+            threads=default_threads(),
+        )
         found: tuple[Floats, Ints, Ints, Floats] = self.weights.core.tangent(
-            which, flat, lift, traction, self._moving, default_threads()
+            which, by, lift, traction, self._moving, default_threads()
         )
         return found
 

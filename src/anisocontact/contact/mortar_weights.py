@@ -112,7 +112,7 @@ def mortar_weights(
         return MortarWeights(found.masters, found.area, found.weight, found)
     slave, master = around.mesh, sides.master
     f, g = pairs.slave, pairs.master
-    order = np.lexsort((g, f))
+    order = np.argsort(f * len(master.nodes) + g, kind="stable")
     offsets = np.searchsorted(f[order], np.arange(len(slave.nodes) + 1)).astype(np.int64)
     there = more >= 0
     starts = np.append(0, np.cumsum(there.sum(axis=1))).astype(np.int64)

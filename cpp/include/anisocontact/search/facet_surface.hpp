@@ -114,13 +114,20 @@ class FacetSurface {
   /// Facets within a distance of x, in ascending order.
   std::vector<std::int32_t> within(const Vec3<double>& x, double distance) const {
     std::vector<std::int32_t> found;
+    within(x, distance, [](std::int32_t) { return true; }, found);
+    return found;
+  }
+
+  /// The same of those that are wanted, which is asked before the distance; `found` is written anew.
+  template <class Wanted>
+  void within(const Vec3<double>& x, double distance, const Wanted& wanted,
+              std::vector<std::int32_t>& found) const {
+    found.clear();
     const double bound2 = std::nextafter(distance * distance, 2.0 * distance * distance);
     tree_.descend(x, bound2, [&](std::int32_t f, double) {
-      const auto p = projection::closest_point(kind(f), nodes(f), x, bound2);
-      if (p.search == projection::Search::found) found.push_back(f);
+      if (wanted(f) && is_within(f, x, bound2)) found.push_back(f);
     });
     std::sort(found.begin(), found.end());
-    return found;
   }
 
  private:
@@ -128,6 +135,14 @@ class FacetSurface {
     std::int32_t facet{-1};
     projection::FacetPoint point{};
   };
+
+  /// Whether a facet is nearer than a bound, the square of a distance; a node of it may be as well.
+  bool is_within(std::int32_t f, const Vec3<double>& x, double bound2) const {
+    const FacetNodes p = nodes(f);
+    for (std::size_t a = 0; a < surface::node_count(kind(f).topology); ++a)
+      if ((p[a] - x).squaredNorm() < bound2) return true;
+    return projection::closest_point(kind(f), p, x, bound2).search == projection::Search::found;
+  }
 
   std::vector<Box> bounds() {
     finite_ = true;
