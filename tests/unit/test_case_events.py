@@ -53,7 +53,9 @@ until = { contact = "block.bottom", event = "lost" }
 
 [output]
 pictures = false
+probe = { middle = { point = [0.5, 0.5, 0.25] } }
 """
+REACTION = 'reaction = "block.top"'
 
 
 @pytest.mark.parametrize(
@@ -62,6 +64,11 @@ pictures = false
         ('event = "sliding"', 'event = "slides"', "step[1].until.event: "),
         ('"block.bottom", event', '"block.side", event', "contacts: block.bottom"),
         ('reaction = "block.top"', 'reaction = "block.left"', "groups with supports: block.top"),
+        (REACTION, 'probe = "mid"', "step[0].until.probe: "),
+        (REACTION, 'probe = "middle", quantity = "stres"', "stres"),
+        (REACTION, 'probe = "middle", quantity = "stress"', "there are: XX, YY, ZZ, XY, YZ, XZ"),
+        (REACTION, 'probe = "middle", component = "XX"', "there are: none, it is a number"),
+        (REACTION, 'reaction = "block.top", quantity = "stress"', "given without a probe"),
         (", value = 10.0", "", "step[0].until: with reaction one of value is needed"),
         ("value = 10.0", "value = -10.0", "step[0].until.value: -10.0 given without along"),
     ],
@@ -117,3 +124,22 @@ def test_run_that_goes_on(tmp_path: Path):
         found = (folder / "history.csv").read_text().splitlines()
         assert len(found) == len(rows)
         assert found == rows
+
+
+def test_stress_at_a_probe(tmp_path: Path):
+    """A step that ends at a von Mises stress in the middle of the block.
+
+    Requirement: the table of the probe has it there, to a thousandth, and summary.json the event.
+    Source: the case. Tolerance: that of the event.
+    """
+    path = tmp_path / "case.toml"
+    case = CASE.replace(REACTION, 'probe = "middle"').replace("value = 10.0", "value = 5.0")
+    case = case.partition('[[step]]\nname = "drag"')[0] + CASE[CASE.index("[output]") :]
+    quantities = 'middle = { point = [0.5, 0.5, 0.25], quantities = ["von_mises"] }'
+    path.write_text(case.replace("middle = { point = [0.5, 0.5, 0.25] }", quantities))
+    assert main(["run", str(path), "-o", str(tmp_path / "out")]) == 0
+    rows = (tmp_path / "out" / "probes" / "middle.csv").read_text().splitlines()
+    names, last = rows[0].split(","), rows[-1].split(",")
+    assert float(last[names.index("von_mises")]) == pytest.approx(5.0, rel=1e-3)
+    events = json.loads((tmp_path / "out" / "summary.json").read_text())["events"]
+    assert "von_mises at probe 'middle' reaches 5" in json.dumps(events)

@@ -13,11 +13,12 @@ from anisocontact.contact import Contact
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box, node_near
+from anisocontact.results.probes import Peak, Probe
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, Problem, Solver, Step, Until
 from anisocontact.surfaces import make_surface
 
-E, PENALTY, MU = 1000.0, 1e4, 0.3
+E, NU, PENALTY, MU = 1000.0, 0.3, 1e4, 0.3
 PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
 
 
@@ -118,6 +119,67 @@ def test_displacement_of_a_point_is_reached(strategy: str):
     last = run(problem, Step("press", 2, PRESS, until=until), strategy=strategy)[-1]
     assert last.event == until.text
     assert last.resultants["block.bottom"][0][2] == pytest.approx(2e-4 * PENALTY, rel=1e-3)
+
+
+@pytest.mark.parametrize("strategy", ["direct", "iterative", "auto"])
+def test_stress_at_a_point_is_reached(strategy: str):
+    """A block with nu = 0 pressed by its top until the stress in its middle is reached.
+
+    Requirement: force and time are those of the stress, a thousandth. Source: springs in series; a
+    uniform stress. Tolerance: that of the event.
+    """
+    middle = Probe(((0.5, 0.5, 0.25),))
+    until = Until(measure=Peak(middle, "stress", "ZZ"), value=-10.0, name="stress ZZ")
+    last = run(block(), Step("press", 2, PRESS, until=until), strategy=strategy)[-1]
+    assert last.event == "stress ZZ reaches -10"
+    assert last.resultants["block.bottom"][0][2] == pytest.approx(10.0, rel=1e-3)
+    assert last.time == pytest.approx(10.0 / stiffness() / 0.01, rel=1e-3)
+
+
+def test_strategy_that_does_not_know_all_displacements():
+    """Requirement: one line."""
+    until = Until(measure=Peak(Probe(((0.5, 0.5, 0.25),)), "von_mises"), value=10.0)
+    with pytest.raises(InputError, match="ends on what all displacements are needed for"):
+        run(block(), Step("press", 2, PRESS, until=until), strategy="condensed")
+
+
+@pytest.mark.parametrize("component", ["ZZ", None])
+def test_stress_with_a_history_is_reached(component: str | None):
+    """A bar that yields, pulled until its stress is beyond the yield stress, in three increments.
+
+    Requirement: strain s/E + (s - Y)/H to 1e-5 at s = 8, Y = 5, whose trials see the stress of now
+    and not the one accepted before. Source: uniaxial plasticity with linear hardening. Tolerance:
+    1e-6 of the event over the slope of the stress.
+    """
+    model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    metal = make_material("plastic", E=E, nu=NU, yield_stress=5.0, hardening=100.0)
+    planes = ["bar.left", "bar.front", "bar.bottom"]
+    problem = Problem(model, {"bar": metal}, symmetry=planes)
+    quantity = "von_mises" if component is None else "stress"
+    peak = Peak(Probe(group="bar.top"), quantity, component)
+    until = Until(measure=peak, value=8.0, tolerance=1e-6)
+    last = run(problem, Step("pull", 3, {"bar.top": {"z": 0.1}}, until=until))[-1]
+    assert last.event
+    assert 0.1 * last.time == pytest.approx(8.0 / E + 3.0 / 100.0, rel=1e-5)
+
+
+def test_any_function_of_the_problem():
+    """The mean of a displacement, written by a script, of a bar that is pulled.
+
+    Requirement: half the way of the top, a thousandth. Source: a linear displacement. Tolerance:
+    that of the event.
+    """
+    model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+    elastic = make_material("linear-elastic", E=E, nu=0.0)
+    problem = Problem(model, {"bar": elastic}, symmetry=["bar.left", "bar.front", "bar.bottom"])
+
+    def mean(of: Problem, trial: bool) -> float:
+        return float(of.u.x.array.reshape(-1, 3)[:, 2].mean())
+
+    until = Until(measure=mean, value=0.02, name="mean of w")
+    last = run(problem, Step("pull", 2, {"bar.top": {"z": 0.1}}, until=until))[-1]
+    assert last.event == "mean of w reaches 0.02"
+    assert last.time == pytest.approx(0.4, rel=1e-3)
 
 
 def test_loads_stay_where_the_event_found_them():

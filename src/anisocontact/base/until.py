@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from anisocontact.base.errors import InputError
 
@@ -16,7 +17,10 @@ CONTACT_EVENTS = {
     "sliding": "all points in contact slip",
 }
 #: Where a value is looked at.
-_PLACES = ("contact", "reaction", "displacement")
+_PLACES = ("contact", "reaction", "displacement", "measure")
+
+#: Value of the state in which a problem is, a trial in equilibrium or the accepted one; collective.
+type Measure = Callable[[Any, bool], float]
 
 
 @dataclass(frozen=True)
@@ -27,12 +31,17 @@ class Until:
         contact: Name of a contact, or its slave if that has but one: its event, or the force on it.
         reaction: Facet group with supports: their force on the body.
         displacement: Facet group, or points and edges with a name: their mean displacement.
+        measure: A function of the problem and of whether its state, which `problem.u` has, is a
+            trial in equilibrium or the accepted one; it returns a number, the same on all
+            processes. `anisocontact.results.probes.Peak` is one, of what probes see.
         event: One of "closed", "lost", "slipping", "sliding"; where that is so already it has to
             cease first.
-        value: Force, or displacement, that is reached from either side.
-        along: Direction of the component that is meant, of any size; the norm if not given.
+        value: Force, displacement, or number of `measure` that is reached from either side.
+        along: Direction of the component that is meant, of any size; the norm if not given. None of
+            a measure.
         tolerance: Of the value relative to it; for events of a contact the share of an increment
             within which they happen.
+        name: What messages call the measure.
 
     Raises:
         InputError: There is not exactly one place, or not one thing that can happen there.
@@ -45,10 +54,12 @@ class Until:
     contact: str | None = None
     reaction: str | None = None
     displacement: str | None = None
+    measure: Measure | None = None
     event: str | None = None
     value: float | None = None
     along: Sequence[float] | None = None
     tolerance: float = 1e-3
+    name: str = "measure"
 
     def __post_init__(self) -> None:
         given = [name for name in _PLACES if getattr(self, name) is not None]
@@ -65,7 +76,10 @@ class Until:
             raise InputError(text, "until.event")
         if self.along is not None and not (len(self.along) == 3 and math.hypot(*self.along) > 0.0):
             raise InputError(f"{self.along!r} given, three numbers, not all 0", "until.along")
-        if self.value is not None and self.along is None and not self.value >= 0.0:
+        if self.measure is not None and self.along is not None:
+            raise InputError("given with a measure, which is a number", "until.along")
+        is_norm = self.along is None and self.measure is None
+        if self.value is not None and is_norm and not self.value >= 0.0:
             text = f"{self.value!r} given without along, so that it is a norm: must be >= 0"
             raise InputError(text, "until.value")
         if not 0.0 < self.tolerance < 1.0:
@@ -77,6 +91,8 @@ class Until:
         """What happens, in words."""
         if self.event is not None:
             return f"{CONTACT_EVENTS[self.event]} at contact {self.contact!r}"
+        if self.measure is not None:
+            return f"{self.name} reaches {self.value:g}"
         kind = next(name for name in _PLACES if getattr(self, name) is not None)
         what = {"contact": "force of contact", "displacement": "displacement of"}.get(kind)
         what = what or "reaction of"

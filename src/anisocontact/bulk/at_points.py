@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,8 @@ class AtPoints:
     linear = False
     #: Whether the material says what it stores.
     stores: bool
+    #: Expression of the true stress at the points, of the displacement now.
+    _true_stress: Any
 
     def __init__(
         self,
@@ -60,12 +63,14 @@ class AtPoints:
         places = self._at_points(ufl.SpatialCoordinate(self._mesh))
         self.places: Floats = places.eval(self._mesh, self._cells).reshape(-1, 3)
 
-    def stress(self) -> tuple[npt.NDArray[np.int32], Floats]:
+    def stress(self, trial: bool = False) -> tuple[npt.NDArray[np.int32], Floats]:
         """Cells of the body on this rank, (n,), and true stress at their points, (n, points, 3, 3).
 
-        It is that of the last accepted increment.
+        Args:
+            trial: Whether it is that of the last trial; else of the last accepted increment.
         """
-        values = self._read(self._stress)
+        now = partial(self._true_stress.eval, self._mesh, self._cells)
+        values = now() if trial else self._read(self._stress)
         return self._cells, values.reshape(len(self._cells), len(self.points), 3, 3)
 
     def means(self, name: str) -> tuple[npt.NDArray[np.int32], Floats]:

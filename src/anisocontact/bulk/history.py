@@ -95,7 +95,8 @@ class BodyHistory(AtPoints):
         self._updates = [
             (v, self._at_points(seen(after[name]))) for name, v in self.variables.items()
         ]
-        self._updates.append((self._stress, self._at_points(seen(cauchy_stress(self, u)))))
+        self._true_stress = self._at_points(seen(cauchy_stress(self, u)))
+        self._updates.append((self._stress, self._true_stress))
         told: Any = material
         self.stores = hasattr(told, "stored")
         if self.stores:

@@ -312,7 +312,8 @@ def _steps(case: Case, model: Model, schedule: Schedule) -> list[Step]:
             known = model.nodes if what in ("displacement", "rotation") else model.facets
             known(group, f"{place}.{what}")
         with objects.within(place):
-            steps.append(_step(section, schedule, begun, _weights(case, section)))
+            until = None if section.until is None else section.until.made(case.output.probe)
+            steps.append(_step(section, schedule, begun, _weights(case, section), until))
         begun += section.duration
     return steps
 
@@ -329,7 +330,11 @@ def _weights(case: Case, section: StepSection) -> dict[str, dict[str, Any]]:
 
 
 def _step(
-    section: StepSection, schedule: Schedule, begun: float, weights: Mapping[str, Any]
+    section: StepSection,
+    schedule: Schedule,
+    begun: float,
+    weights: Mapping[str, Any],
+    until: Until | None,
 ) -> Step:
     def led(kind: str) -> dict[str, dict[str, Any]]:
         return {
@@ -354,6 +359,6 @@ def _step(
         temperature={body: schedule.value(v, begun) for body, v in section.temperature.items()},
         rotation=turns,
         body_force=led("body_force") | weights,
-        until=None if section.until is None else Until(**dict(section.until)),
+        until=until,
         **{kind: led(kind) for kind in kinds},
     )

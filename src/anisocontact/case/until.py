@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated
 
 from pydantic import Field
 
+from anisocontact.base.errors import InputError
 from anisocontact.base.until import CONTACT_EVENTS, Until
-from anisocontact.case.quantity import number, word
-from anisocontact.case.section import Section
+from anisocontact.case.output import ProbeSection
+from anisocontact.case.quantity import number, shown, word
+from anisocontact.case.section import Section, near
 
 __all__ = ["UntilSection"]
 
@@ -30,11 +33,25 @@ class UntilSection(Section):
         None,
         description='facet group, or [nodes], "body.group": the mean displacement that is reached',
     )
+    probe: str | None = Field(
+        None,
+        description="table of [output.probe]: the value of a quantity there that is reached; of "
+        "several points the one of largest size",
+    )
+    quantity: str | None = Field(
+        None, description="quantity of nodes that is meant at the probe, von_mises if left out"
+    )
+    component: str | None = Field(
+        None,
+        description="component of the quantity: x, y, z of a displacement, XX, YY, ZZ, XY, YZ, XZ "
+        "of the stress, 1, 2, 3 of principal stresses",
+    )
     event: Annotated[
         str | None, word(f"what becomes of the contact ({_EVENTS})", *CONTACT_EVENTS)
     ] = None
     value: Annotated[
-        float | None, number("scalar", "force or length", "value that is reached, from either side")
+        float | None,
+        number("scalar", "force, length or stress", "value that is reached, from either side"),
     ] = None
     along: Annotated[
         tuple[float, float, float] | None,
@@ -51,3 +68,29 @@ class UntilSection(Section):
             most=1.0,
         ),
     ] = Until.tolerance
+
+    def made(self, probes: Mapping[str, ProbeSection]) -> Until:
+        """The event.
+
+        Args:
+            probes: The probes of the case, by name.
+
+        Raises:
+            InputError: There is no such probe, or something that does not go with others.
+        """
+        given = dict(self)
+        name, quantity, component = (given.pop(k) for k in ("probe", "quantity", "component"))
+        if name is None:
+            for key, value in (("quantity", quantity), ("component", component)):
+                if value is not None:
+                    raise InputError(f"{value!r} given without a probe", f"until.{key}")
+            return Until(**given)
+        if name not in probes:
+            text = f"{shown(name)} given, no such probe; {near(name, list(probes))}"
+            raise InputError(text, "until.probe")
+        from anisocontact.results.probes import Peak
+
+        quantity = quantity or "von_mises"
+        said = f"{quantity}{'' if component is None else f' {component}'} at probe {name!r}"
+        peak = Peak(probes[name].probe(), quantity, component, f"probe {name!r}")
+        return Until(measure=peak, name=said, **given)

@@ -74,9 +74,9 @@ class Bodies:
         }
         self.numbers = self._body_numbers(len(kinds))
 
-    def now(self) -> BodiesNow:
-        """The accepted state, as quantities are made of it."""
-        return BodiesNow(self)
+    def now(self, trial: bool = False) -> BodiesNow:
+        """The accepted state, or that of the last trial, as quantities are made of it."""
+        return BodiesNow(self, trial)
 
     def grid(self) -> DataSet:
         """The accepted state of the cells of this rank."""
@@ -85,14 +85,18 @@ class Bodies:
         at_nodes, at_cells = (arrays(at, now, self._chosen) for at in (NODE, CELL))
         return DataSet("UnstructuredGrid", self._points, cells, at_nodes, at_cells)
 
-    def stress(self) -> Floats:
-        """Stress of the accepted state at the nodes, XX YY ZZ XY YZ XZ, (nodes, 6); collective."""
+    def stress(self, trial: bool = False) -> Floats:
+        """Stress at the nodes, XX YY ZZ XY YZ XZ, (nodes, 6); collective.
+
+        Args:
+            trial: Whether the state is the last trial; else the accepted one.
+        """
         self.problem.bulk.set_pressures(self.problem.u)
         for expression, cells in self._expressions:
             self._stress.interpolate(expression, cells0=cells)
         values = self._stress.x.array.reshape(-1, len(_SYMMETRIC))
         for history, spread in self._histories:
-            cells, at_points = history.stress()
+            cells, at_points = history.stress(trial)
             components = np.stack([at_points[..., i, j] for i, j in _SYMMETRIC], axis=-1)
             values[self._stress.function_space.dofmap.list[cells]] = spread @ components
         stress = self._summed(np.asarray(self._stress.x.array, dtype=np.float64)) * self._share
@@ -137,14 +141,15 @@ class Bodies:
 
 
 class BodiesNow:
-    """The accepted state of all bodies, as quantities are made of it.
+    """The accepted state of all bodies, or a trial, as quantities are made of it.
 
     Args:
         bodies: The bodies.
+        trial: Whether it is the last trial.
     """
 
-    def __init__(self, bodies: Bodies) -> None:
-        self._bodies, self.problem = bodies, bodies.problem
+    def __init__(self, bodies: Bodies, trial: bool = False) -> None:
+        self._bodies, self.problem, self._trial = bodies, bodies.problem, trial
 
     @property
     def displacement(self) -> Floats:
@@ -153,7 +158,7 @@ class BodiesNow:
 
     @cached_property
     def stress(self) -> Floats:
-        return self._bodies.stress()
+        return self._bodies.stress(self._trial)
 
     @property
     def numbers(self) -> npt.NDArray[np.int32]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ from anisocontact.results.history import History
 from anisocontact.results.paraview import Bodies
 from anisocontact.results.quantities import NODE, quantities
 
-__all__ = ["Probe", "ProbeTable"]
+__all__ = ["Peak", "Probe", "ProbeTable", "ProbeValues"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -80,7 +80,39 @@ class Places:
     mine: npt.NDArray[np.int64]
 
 
-class ProbeTable:
+class ProbeValues:
+    """What is at the points of a probe; all ranks call it.
+
+    Args:
+        probe: Where.
+        bodies: The bodies.
+        field: Where the probe was written, for messages.
+
+    Raises:
+        InputError: A point lies in no body, or there is no such group or quantity.
+    """
+
+    def __init__(self, probe: Probe, bodies: Bodies, field: str) -> None:
+        self._bodies, self._comm = bodies, bodies.problem.comm
+        self._places = probe.places(bodies.problem.model, field)
+        self._quantities = [q for q in quantities(NODE) if q.name in probe.quantities]
+
+    def values(self, trial: bool = False) -> dict[str, Floats]:
+        """The quantities at all points, (points, ...); collective.
+
+        Args:
+            trial: Whether the state is the last trial; else the accepted one.
+        """
+        now, found, places = self._bodies.now(trial), {}, self._places
+        for q in self._quantities:
+            at_nodes = np.asarray(q.values(now), dtype=float)
+            own = np.zeros((len(places.points), *at_nodes.shape[1:]))
+            own[places.mine] = np.einsum("pk,pk...->p...", places.weights, at_nodes[places.nodes])
+            found[q.name] = np.asarray(self._comm.allreduce(own))
+        return found
+
+
+class ProbeTable(ProbeValues):
     """Writes the values of a probe after each accepted increment; all ranks call it.
 
     Args:
@@ -94,20 +126,8 @@ class ProbeTable:
     """
 
     def __init__(self, path: Path, probe: Probe, bodies: Bodies, name: str) -> None:
-        self._bodies, self._comm = bodies, bodies.problem.comm
-        self._places = probe.places(bodies.problem.model, f"output.probe.{name}")
-        self._quantities = [q for q in quantities(NODE) if q.name in probe.quantities]
+        super().__init__(probe, bodies, f"output.probe.{name}")
         self.history = History(path)
-
-    def values(self) -> dict[str, Floats]:
-        """The quantities at all points in the accepted state, (points, ...); collective."""
-        now, found, places = self._bodies.now(), {}, self._places
-        for q in self._quantities:
-            at_nodes = np.asarray(q.values(now), dtype=float)
-            own = np.zeros((len(places.points), *at_nodes.shape[1:]))
-            own[places.mine] = np.einsum("pk,pk...->p...", places.weights, at_nodes[places.nodes])
-            found[q.name] = np.asarray(self._comm.allreduce(own))
-        return found
 
     def rows(self, when: Mapping[str, Any], values: Mapping[str, Floats]) -> list[dict[str, Any]]:
         """The rows of an increment."""
@@ -122,12 +142,62 @@ class ProbeTable:
         ]
 
 
+class Peak:
+    """Largest value at the points of a probe, whatever its sign, as `Until` takes it.
+
+    Args:
+        probe: Where.
+        quantity: Name of a quantity of nodes.
+        component: Of a vector "x", "y" or "z", of a stress "XX" to "XZ", of principal stresses "1"
+            to "3", the largest first; none of a number.
+        field: Where the event was written, for messages.
+
+    Raises:
+        InputError: A point lies in no body, or there is no such group, quantity or component; when
+            it is called.
+
+    Example:
+        >>> Peak(Probe(((0.0, 0.0, 0.0),)), "von_mises").quantity
+        'von_mises'
+    """
+
+    def __init__(
+        self, probe: Probe, quantity: str, component: str | None = None, field: str = "until"
+    ) -> None:
+        self._probe = replace(probe, quantities=(quantity,))
+        self.quantity, self._component, self._field = quantity, component, field
+        self._values: dict[int, ProbeValues] = {}
+
+    def __call__(self, problem: Any, trial: bool) -> float:
+        """The value in a state of the problem; collective."""
+        if id(problem) not in self._values:
+            self._values = {id(problem): ProbeValues(self._probe, Bodies(problem), self._field)}
+        values = self._values[id(problem)].values(trial)[self.quantity]
+        names = _components(self.quantity, values.shape[1:])
+        found = [i for i, name in enumerate(names) if name == self._component]
+        if bool(names or self._component) != bool(found):
+            allowed = ", ".join(names) or "none, it is a number"
+            text = f"component {self._component!r} given, of {self.quantity!r} there are: {allowed}"
+            raise InputError(text, self._field)
+        column = values[:, found[0]] if found else values
+        return float(column[np.argmax(np.nan_to_num(np.abs(column)))])
+
+
+def _components(name: str, shape: tuple[int, ...]) -> list[str]:
+    """Names of the components of a quantity; none of a number."""
+    if not shape:
+        return []
+    if name.startswith("principal"):
+        return ["1", "2", "3"]
+    return ["XX", "YY", "ZZ", "XY", "YZ", "XZ"] if shape == (6,) else ["x", "y", "z"]
+
+
 def _named(name: str, value: Any) -> Any:
     """A value with the names of its components, as `history.csv` has them."""
     if np.ndim(value) == 0:
         return float(value)
     if len(value) == 6:
-        return dict(zip(("XX", "YY", "ZZ", "XY", "YZ", "XZ"), value.tolist(), strict=True))
+        return dict(zip(_components(name, (6,)), value.tolist(), strict=True))
     if name.startswith("principal"):
         return {str(k + 1): v for k, v in enumerate(value.tolist())}
     return value.tolist()

@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
-from anisocontact.base.until import Until
+from anisocontact.base.until import Measure, Until
 from anisocontact.contact import Contact
 from anisocontact.solver.stepping.acceptance import Refusal
 from anisocontact.solver.system.problem import Problem
@@ -182,7 +182,9 @@ def check_events(problem: Problem, steps: Sequence[Step]) -> None:
         if until is None:
             continue
         if until.reaction is None:
-            _measure(problem, until, field)
+            measure = _measure(problem, until, field)
+            if until.measure is not None:  # what is asked for may not be there
+                measure(None)
         elif until.reaction not in supported:
             known = ", ".join(dict.fromkeys(supported)) or "none"
             text = f"{until.reaction!r} given, groups with supports: {known}"
@@ -194,6 +196,9 @@ def _measure(problem: Problem, until: Until, field: str) -> _Measure:
     if until.event is not None:
         contact, so = _contact(problem, until, field), _STATES[until.event]
         return lambda x: 1.0 if so(contact.counts()) else -1.0
+    if until.measure is not None:
+        of_problem = until.measure
+        return lambda x: _of_problem(problem, of_problem, x)
     direction = None
     if until.along is not None:
         direction = np.array(until.along) / np.linalg.norm(until.along)
@@ -210,6 +215,13 @@ def _measure(problem: Problem, until: Until, field: str) -> _Measure:
         return lambda x: of(_bulk(problem, x).mean(group, weights, x))
     group = str(until.reaction)
     return lambda x: of(_bulk(problem, x).reactions(x).get(group, np.zeros(3)))
+
+
+def _of_problem(problem: Problem, measure: Measure, x: Vec | None) -> float:
+    """A function of the problem at a trial of all unknowns, or at the accepted state."""
+    if x is not None:
+        problem.evaluate_at(x)
+    return float(measure(problem, x is not None))
 
 
 def _bulk(problem: Problem, x: Vec | None) -> Reduction:

@@ -44,6 +44,9 @@ class CondensedStrategy:
             yield f"material.{names[0]} is not linear, and this PETSc has no MUMPS for that"
         if problem.rigid.faces:
             yield "a face follows a rigid body"
+        for step in task.steps:
+            if step.until is not None and step.until.measure is not None:
+                yield f"step {step.name!r} ends on what all displacements are needed for"
         yield from task.asked_solver()
 
     def costs(self, task: Task) -> Iterator[str]:
