@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 from pydantic import Field
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.registry import Parameter
 from anisocontact.case.bodies import Point
-from anisocontact.case.quantity import Quantity, number
+from anisocontact.case.quantity import number
 from anisocontact.case.section import Section
 
 if TYPE_CHECKING:
@@ -99,26 +98,20 @@ class Output(Section):
     )
     pictures: Annotated[
         bool,
-        Quantity(
-            Parameter(
-                "",
-                "flag",
-                "1",
-                "whether report.html and its pictures are made at the end; "
-                "`anisocontact report` makes them at any time",
-            )
+        number(
+            "flag",
+            "1",
+            "whether report.html and its pictures are made at the end; "
+            "`anisocontact report` makes them at any time",
         ),
     ] = True
     vtkhdf: Annotated[
         bool,
-        Quantity(
-            Parameter(
-                "",
-                "flag",
-                "1",
-                "whether all states are also written as one file of each sort, fields.vtkhdf, "
-                "contact.vtkhdf and surfaces.vtkhdf, at the end; needs h5py",
-            )
+        number(
+            "flag",
+            "1",
+            "whether all states are also written as one file of each sort, fields.vtkhdf, "
+            "contact.vtkhdf and surfaces.vtkhdf, at the end; needs h5py",
         ),
     ] = False
     quantities: list[str] = Field(

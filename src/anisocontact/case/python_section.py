@@ -23,8 +23,8 @@ MATERIAL = Entry(
 )
 
 
-class PythonSection(Section):
-    """A tangential law of your own, a class in a Python file, in place of adhesion and friction."""
+class PythonClass(Section):
+    """A class in a Python file."""
 
     file: str = Field(
         description="Python file, from the folder of the case file on; `run` and `check` run it "
@@ -34,6 +34,11 @@ class PythonSection(Section):
     arguments: dict[str, Any] = Field(
         default_factory=dict, description="what the class is made with, by name"
     )
+
+
+class PythonSection(PythonClass):
+    """A tangential law of your own, a class in a Python file, in place of adhesion and friction."""
+
     isotropic: Annotated[
         bool,
         number("flag", "1", "whether the law is the same in all directions, so that it needs none"),
@@ -51,14 +56,5 @@ class MaterialSection(Weighed):
     ] = 0.0
 
 
-class MaterialTable(MaterialSection):
+class MaterialTable(PythonClass, MaterialSection):
     """A material in a Python file."""
-
-    file: str = Field(
-        description="Python file, from the folder of the case file on; `run` and `check` run it "
-        "with all rights of whoever calls them, `check --no-python` does not"
-    )
-    law: str = Field(description="name of the class in it")
-    arguments: dict[str, Any] = Field(
-        default_factory=dict, description="what the class is made with, by name"
-    )

@@ -11,10 +11,9 @@ from typing import Annotated, Any
 from pydantic import Field, ValidationError, create_model
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.registry import Parameter
 from anisocontact.case import objects
 from anisocontact.case.contact_laws import laws
-from anisocontact.case.quantity import AUTO, Quantity
+from anisocontact.case.quantity import AUTO, number
 from anisocontact.case.read import CaseError, as_input, read_table, without_null
 from anisocontact.case.registered import Key, OneOf, Registered
 from anisocontact.case.registries import Registries
@@ -31,9 +30,9 @@ _NO_AUTO = '"auto" given or nothing, a number needed: a point has no mesh that a
 class TraceOutput(Section):
     """What is written beside the table and the summary."""
 
-    pictures: Annotated[
-        bool, Quantity(Parameter("", "flag", "1", "whether pictures and report.html are made"))
-    ] = True
+    pictures: Annotated[bool, number("flag", "1", "whether pictures and report.html are made")] = (
+        True
+    )
 
 
 class TraceContact(Section):

@@ -10,8 +10,8 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from anisocontact.base.registry import Entry, Parameter
-from anisocontact.case.quantity import Quantity, line, shown
+from anisocontact.base.registry import Entry
+from anisocontact.case.quantity import line, shown, word
 from anisocontact.case.registered import Registered
 from anisocontact.case.section import Section
 from anisocontact.point import DeadLoad, DraggingSpring, Group, Load, PrescribedPath, Push
@@ -92,10 +92,6 @@ def _depth(given: object) -> int:
     return inner.pop() + 1 if len(inner) == 1 and -1 not in inner else -1
 
 
-def _word(doc: str, choices: tuple[str, ...]) -> Quantity:
-    return Quantity(Parameter("", "choice", "1", doc, choices=choices))
-
-
 class LoadSection(Registered):
     """Keys that every load has."""
 
@@ -163,7 +159,7 @@ class DeadLoadSection(LoadSection):
         description="knots of the force: its components in the frame"
     )
     start: Annotated[Any, Numbers("length", (1,))] = Field(description=_START)
-    frame: Annotated[str, _word(_FRAME, FRAMES)] = "space"
+    frame: Annotated[str, word(_FRAME, *FRAMES)] = "space"
     viscosity: Annotated[Any, Numbers("force*time/length", (0,))] = Field(
         default=None,
         description="of the dashpot; if left out, 1e-4 times the largest tangential stiffness "
@@ -183,7 +179,7 @@ class PushSection(LoadSection):
         description="knots of the length moved along the direction"
     )
     start: Annotated[Any, Numbers("length", (1,))] = Field(description=_START)
-    frame: Annotated[str, _word(_FRAME, FRAMES)] = "space"
+    frame: Annotated[str, word(_FRAME, *FRAMES)] = "space"
 
 
 #: Tables of all loads.
@@ -202,7 +198,7 @@ class GroupSection(Section):
         default=1.0, description="area each point stands for, one number or a list"
     )
     orientation: Annotated[
-        str, _word('"surface" turns with the normal, "free" also about it', ORIENTATIONS)
+        str, word('"surface" turns with the normal, "free" also about it', *ORIENTATIONS)
     ] = "held"
 
     def build(self) -> Group:
