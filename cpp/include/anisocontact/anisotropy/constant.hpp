@@ -17,13 +17,7 @@ class Constant {
             "One direction in space, projected on the surface and turned about its normal.",
             {{"vector", Kind::vector, "1", "direction of the first axis before it is turned",
               Bound::nonzero},
-             {"angle",
-              Kind::scalar,
-              "angle",
-              "turn of the axes about the outward normal",
-              Bound::any,
-              false,
-              {0.0}}}};
+             Turn::parameter()}};
   }
   static Constant make(const Values& v) {
     const auto& d = v.vector("vector");

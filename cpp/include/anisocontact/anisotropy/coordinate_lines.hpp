@@ -18,13 +18,7 @@ class CoordinateLines {
   static Descriptor describe() {
     return {"coordinate-lines",
             "Along the two coordinate lines of the surface, turned about its normal.",
-            {{"angle",
-              Kind::scalar,
-              "angle",
-              "turn of the axes about the outward normal",
-              Bound::any,
-              false,
-              {0.0}}}};
+            {Turn::parameter()}};
   }
   static CoordinateLines make(const Values& v) { return CoordinateLines(v.scalar("angle")); }
 

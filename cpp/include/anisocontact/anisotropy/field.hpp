@@ -6,6 +6,7 @@
 #include <concepts>
 #include <optional>
 
+#include "anisocontact/registry/descriptor.hpp"
 #include "anisocontact/surface/geometry.hpp"
 
 namespace anisocontact::anisotropy {
@@ -35,6 +36,12 @@ class Turn {
  public:
   Turn() = default;
   explicit Turn(double angle) : c_(std::cos(angle)), s_(std::sin(angle)) {}
+
+  /// How fields ask for one.
+  static Parameter parameter() {
+    return {"angle",    Kind::scalar, "angle", "turn of the axes about the outward normal",
+            Bound::any, false,        {0.0}};
+  }
 
   template <class S>
   Vec3<S> operator()(const Vec3<S>& normal, const Vec3<S>& e) const {

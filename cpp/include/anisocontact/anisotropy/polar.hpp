@@ -19,13 +19,7 @@ class Polar {
         "polar",
         "Rays (first axis) and rings (second axis) about an axis; singular on the axis.",
         {{"axis", Kind::axis, "length", "a point of the axis and its direction", Bound::nonzero},
-         {"angle",
-          Kind::scalar,
-          "angle",
-          "turn of the axes about the outward normal",
-          Bound::any,
-          false,
-          {0.0}}}};
+         Turn::parameter()}};
   }
   static Polar make(const Values& v) { return {Axis::from(v.axis("axis")), v.scalar("angle")}; }
 

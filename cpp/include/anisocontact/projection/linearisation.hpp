@@ -65,15 +65,4 @@ inline Vec3<double> gap_gradient(const surface::Geometry<double>& g, const surfa
   return d;
 }
 
-/// Coordinates as functions of x in the scalar S: value xi, exact first derivative.
-template <class S>
-Vector<S> linearised(const surface::Geometry<double>& g, const surface::Foot& foot,
-                     const Vec3<S>& x) noexcept {
-  const auto dxi = coordinate_gradient(g, foot, value(x));
-  const Vec3<S> dx = x - constant<S>(value(x));
-  Vector<S> out;
-  for (std::size_t i = 0; i < 2; ++i) out[i] = S(foot.xi[i]) + dx.dot(constant<S>(dxi[i]));
-  return out;
-}
-
 }  // namespace anisocontact::projection

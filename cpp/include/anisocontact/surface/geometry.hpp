@@ -5,7 +5,6 @@
 #include <array>
 #include <concepts>
 #include <limits>
-#include <type_traits>
 
 #include "anisocontact/registry/descriptor.hpp"
 #include "anisocontact/tensor/dual.hpp"
@@ -81,8 +80,6 @@ struct Geometry {
   Vec3<S> spatial(const Covector<S>& t) const { return spatial(a_contra * t); }
   /// v^i rho_i.
   Vec3<S> spatial(const Vector<S>& v) const { return v[0] * jet.d1[0] + v[1] * jet.d1[1]; }
-  S gaussian_curvature() const { return det(h_mixed); }
-  S mean_curvature() const { return S(0.5) * trace(h_mixed); }
 };
 
 /// Metric, area and normal from a jet; curvature and connection stay zero.
@@ -120,31 +117,6 @@ Geometry<S> geometry(const Jet<S>& jet) {
       for (std::size_t j = 0; j < 2; ++j) g.christoffel[k](i, j) = jet.second(i, j).dot(rho_k);
   }
   return g;
-}
-
-/// A geometry of constants in the scalar type S.
-template <class S>
-Geometry<S> constant_geometry(const Geometry<double>& g) {
-  if constexpr (std::is_same_v<S, double>) {
-    return g;
-  } else {
-    Geometry<S> r;
-    r.jet.position = constant<S>(g.jet.position);
-    for (std::size_t i = 0; i < 2; ++i) {
-      r.jet.d1[i] = constant<S>(g.jet.d1[i]);
-      for (std::size_t j = 0; j < 2; ++j) {
-        r.a_co(i, j) = S(g.a_co(i, j));
-        r.a_contra(i, j) = S(g.a_contra(i, j));
-        r.h_co(i, j) = S(g.h_co(i, j));
-        r.h_mixed(i, j) = S(g.h_mixed(i, j));
-        for (std::size_t m = 0; m < 2; ++m) r.christoffel[m](i, j) = S(g.christoffel[m](i, j));
-      }
-    }
-    for (std::size_t i = 0; i < 3; ++i) r.jet.d2[i] = constant<S>(g.jet.d2[i]);
-    r.area = S(g.area);
-    r.normal = constant<S>(g.normal);
-    return r;
-  }
 }
 
 /// The geometry in plain numbers.
