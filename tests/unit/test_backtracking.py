@@ -37,7 +37,7 @@ class System:
         """As of the contacts."""
         return self.touching
 
-    def take_share(self, share: float) -> None:
+    def damp_correction(self, share: float) -> None:
         """As of the contacts."""
         self.shares.append(share)
 

@@ -178,7 +178,7 @@ def test_a_cell_turned_inside_out_is_no_solution(fe):
 def test_alternating_points_are_found():
     """Requirement: chattering is detected: points that flip, not those that change once."""
     trial = SimpleNamespace(status=np.zeros(3, dtype=np.int8))
-    contact = SimpleNamespace(trial=trial, footing=lambda: np.zeros(3, dtype=np.int64))
+    contact = SimpleNamespace(trial=trial, projected_facets=lambda: np.zeros(3, dtype=np.int64))
     watch = StatusWatch([contact])
     assert not watch.unsettled()
     for i in range(6):

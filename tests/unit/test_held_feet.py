@@ -59,16 +59,16 @@ def test_a_held_point_stays_on_its_facet():
     """
     contact, moved, _ = _over_a_valley()
     contact.update(moved(-0.05, -0.02), 1.0)
-    left = contact.footing()
+    left = contact.projected_facets()
     contact.hold(np.ones(len(left), dtype=bool))
     contact.update(moved(0.05, -0.02), 1.0)
-    np.testing.assert_array_equal(contact.footing(), left)
+    np.testing.assert_array_equal(contact.projected_facets(), left)
     held = (-0.02 + SLOPE * 0.05) / np.hypot(1.0, SLOPE)
     np.testing.assert_allclose(contact.trial.gap, held, atol=1e-14)
     np.testing.assert_allclose(contact.strayed(), 2 * SLOPE * 0.05 / np.hypot(1.0, SLOPE))
     contact.roll_back()
     contact.update(moved(0.05, -0.02), 1.0)
-    assert np.all(contact.footing() != left)
+    assert np.all(contact.projected_facets() != left)
     np.testing.assert_array_equal(contact.strayed(), 0.0)
 
 
@@ -76,10 +76,10 @@ def test_a_point_far_from_its_facet_is_let_go():
     """Farther than `BEYOND` from the facet it was held on, a point goes to the closest one."""
     contact, moved, _ = _over_a_valley()
     contact.update(moved(-0.05, -0.02), 1.0)
-    left = contact.footing()
+    left = contact.projected_facets()
     contact.hold(np.ones(len(left), dtype=bool))
     contact.update(moved(2.0 * BEYOND, -0.02), 1.0)
-    assert np.all(contact.footing() != left)
+    assert np.all(contact.projected_facets() != left)
 
 
 def test_points_held_beside_their_closest_are_let_go_once():
@@ -90,18 +90,18 @@ def test_points_held_beside_their_closest_are_let_go_once():
     """
     contact, moved, _ = _over_a_valley()
     contact.update(moved(-0.05, -0.02), 1.0)
-    contact.hold(np.ones(len(contact.footing()), dtype=bool))
+    contact.hold(np.ones(len(contact.projected_facets()), dtype=bool))
     assert not contact.trials.improve()
     contact.update(moved(0.05, -0.02), 1.0)
-    held, gap = contact.footing(), contact.trial.gap.copy()
+    held, gap = contact.projected_facets(), contact.trial.gap.copy()
     assert contact.trials.improve()
     contact.update(moved(0.05, -0.02), 1.0)
-    assert np.all(contact.footing() != held)
+    assert np.all(contact.projected_facets() != held)
     np.testing.assert_array_equal(contact.strayed(), 0.0)
     assert not contact.trials.improve()
     assert contact.trials.soften()
     contact.update(moved(0.05, -0.02), 1.0)
-    np.testing.assert_array_equal(contact.footing(), held)
+    np.testing.assert_array_equal(contact.projected_facets(), held)
     np.testing.assert_array_equal(contact.trial.gap, gap)
     assert not contact.trials.improve()
     assert not contact.trials.soften()
@@ -115,7 +115,7 @@ def test_states_with_strayed_points_are_refused(by, refuses):
     """
     contact, moved, model = _over_a_valley()
     contact.update(moved(-0.05, -0.001), 1.0)
-    contact.hold(np.ones(len(contact.footing()), dtype=bool))
+    contact.hold(np.ones(len(contact.projected_facets()), dtype=bool))
     contact.update(moved(by, -0.001), 1.0)
     comm = SimpleNamespace(allgather=lambda one: [one])
     problem: Any = SimpleNamespace(contacts=[contact], comm=comm, model=model)
@@ -131,7 +131,7 @@ def _contact(codes: list[int]) -> Any:
     trial = SimpleNamespace(status=np.ones(1, dtype=np.int8))
     codes = list(codes)
     return SimpleNamespace(
-        trial=trial, held=held, hold=held.append, footing=lambda: np.array([codes.pop(0)])
+        trial=trial, held=held, hold=held.append, projected_facets=lambda: np.array([codes.pop(0)])
     )
 
 
@@ -165,7 +165,7 @@ def test_a_point_that_hops_is_named_with_its_facets():
     facets = set()
     for i in range(6):
         contact.update(moved(0.05 * (-1) ** i, -0.02), 1.0)
-        facets.update(facet_of(contact.footing()).tolist())
+        facets.update(facet_of(contact.projected_facets()).tolist())
         watch.note(1.0)
     assert facets == {0, 1}
     comm = SimpleNamespace(allgather=lambda one: [one])

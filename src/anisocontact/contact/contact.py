@@ -180,9 +180,9 @@ class Contact(Pass):
         """Local nodes that the contact acts on; all ranks together have all of them."""
         return self.master.couplable()
 
-    def footing(self) -> npt.NDArray[np.int64]:
+    def projected_facets(self) -> npt.NDArray[np.int64]:
         """As of `Master`."""
-        return self.master.footing(len(self.state))
+        return self.master.projected_facets(len(self.state))
 
     def hold(self, points: Mask) -> None:
         """As of `Master`."""

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact.facet_answer import ByPoints, Evaluation, FacetAnswer
-from anisocontact.contact.held_feet import HeldFeet, footing, on_held_facets
+from anisocontact.contact.held_feet import HeldFeet, on_held_facets, projected_facets
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.point_tangent import Nodes, PointTangent
@@ -56,7 +56,7 @@ class FacetMaster(MeshedMaster):
 
     def _gather(self, u: Floats, histories: tuple[State, ...]) -> bool:
         """Have all facets of the master that the points can reach; whether there are others."""
-        anew = self._outrun(u)
+        anew = self._may_leave_gathered(u)
         if anew:
             # some of them can be one and the same
             states = {id(state): state for state in histories}.values()
@@ -152,8 +152,8 @@ class FacetMaster(MeshedMaster):
         return slid(self.sides, state, self._hint)
 
     @override
-    def footing(self, count: int) -> npt.NDArray[np.int64]:
-        return footing(self._hint, self._gathered.globally(self._hint.facet))
+    def projected_facets(self, count: int) -> npt.NDArray[np.int64]:
+        return projected_facets(self._hint, self._gathered.globally(self._hint.facet))
 
     @override
     def hold(self, points: Mask) -> None:

@@ -74,7 +74,7 @@ class HeldFeet:
         return before
 
 
-def footing(hit: FacetProjections, facets: Ints) -> npt.NDArray[np.int64]:
+def projected_facets(hit: FacetProjections, facets: Ints) -> npt.NDArray[np.int64]:
     """A code of the feature of a facet that each point has below it, (n,).
 
     Args:
@@ -85,7 +85,7 @@ def footing(hit: FacetProjections, facets: Ints) -> npt.NDArray[np.int64]:
 
 
 def facet_of(codes: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
-    """Facets in codes of `footing`."""
+    """Facets in codes of `projected_facets`."""
     return codes // len(FEATURES)
 
 

@@ -236,7 +236,7 @@ class Master(Protocol):
     ) -> npt.NDArray[np.int8]:
         """Why other laws would fail in the reference configuration, codes of `FAILURE`, (n,)."""
 
-    def footing(self, count: int) -> npt.NDArray[np.int64]:
+    def projected_facets(self, count: int) -> npt.NDArray[np.int64]:
         """The facet, or feature of one, below each point in the trial, a code (n,).
 
         Facets are numbered in the whole group; a smooth master is one.

@@ -112,10 +112,12 @@ class MeshedMaster(Master):
             comm=self._comm,
         )
 
-    def _outrun(self, u: Floats) -> bool:
+    def _may_leave_gathered(self, u: Floats) -> bool:
         """Whether points may reach facets of other processes; displacements of local nodes."""
         gathered = self._gathered
-        return gathered.distributed and self.sides.outrun(gathered.local(self.sides.reference) + u)
+        return gathered.distributed and self.sides.may_leave_gathered(
+            gathered.local(self.sides.reference) + u
+        )
 
     def _have(self, u: Floats, *facets: Ints) -> None:
         """Have the facets of the master that are near, and others; collective.

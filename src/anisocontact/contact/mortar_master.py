@@ -157,7 +157,7 @@ class MortarMaster(MeshedMaster):
 
     @override
     def place(self, u: Floats, *histories: State) -> bool:
-        anew = self._outrun(u)
+        anew = self._may_leave_gathered(u)
         if anew:
             hints = {id(hint): hint for hint in (self._hint, self._accepted[1])}.values()
             for hint in hints:

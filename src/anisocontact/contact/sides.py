@@ -169,7 +169,7 @@ class Sides:
             found.append(float(total / area) if total > 0.0 else np.inf)
         return found
 
-    def outrun(self, now: Floats) -> bool:
+    def may_leave_gathered(self, now: Floats) -> bool:
         """Whether points may reach facets that this rank has not gathered; the same on all ranks.
 
         Facets are gathered as far as twice the reach. A slave facet that moves comes nearer, its

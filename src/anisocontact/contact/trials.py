@@ -287,7 +287,7 @@ class Trials:
         """Take it that the trials since a mark have not been."""
         self.start, self._linear, self._base, self._slip = mark
 
-    def take_share(self, share: float) -> None:
+    def damp_correction(self, share: float) -> None:
         """Take only a share of the next step of multipliers that follow."""
         if self._follower is not None:
             self._follower.share = share

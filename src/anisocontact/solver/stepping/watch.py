@@ -48,7 +48,7 @@ class StatusWatch:
             residual: Its residual, over the forces at work.
         """
         self._statuses.append([c.trial.status.astype(np.int64) for c in self._contacts])
-        self._feet.append([contact.footing() for contact in self._contacts])
+        self._feet.append([contact.projected_facets() for contact in self._contacts])
         self._residuals.append(residual)
 
     def hold(self) -> None:
@@ -67,7 +67,7 @@ class StatusWatch:
         return self._of(self._statuses, contact)
 
     def feet(self, contact: int) -> Codes:
-        """What they had below them, see `footing`, (iterations, points)."""
+        """What they had below them, see `projected_facets`, (iterations, points)."""
         return self._of(self._feet, contact)
 
     def alternating(self) -> list[Flags]:

@@ -60,7 +60,7 @@ class Backtracking:
             largest: Largest share that may be taken.
         """
         contacts, share = self._contacts, largest
-        contacts.take_share(share)
+        contacts.damp_correction(share)
         if not contacts.retraceable:
             return share
         free = self.whole or not contacts.touch()
@@ -82,7 +82,7 @@ class Backtracking:
         """Size of the residual where a share is taken, which the multipliers take as well."""
         contacts, there = self._contacts, x.duplicate()
         marks, part = contacts.marks(), correction.copy()
-        contacts.take_share(share)
+        contacts.damp_correction(share)
         part.scale(share)
         there.waxpy(-1.0, part, x)
         self._tried = marks, np.array(there.array_r), self._system.evaluate(there)

@@ -158,10 +158,10 @@ class Contacts(Term):
         for one, mark in zip(self._trials, marks, strict=True):
             one.go_back(mark)
 
-    def take_share(self, share: float) -> None:
+    def damp_correction(self, share: float) -> None:
         """Let multipliers that follow take only a share of the next correction."""
         for one in self._trials:
-            one.take_share(share)
+            one.damp_correction(share)
 
     def multiplier_residual(self, u: Floats) -> Floats:
         """Forces of the condensed residual of multipliers that follow, (nodes, 3).
