@@ -57,7 +57,14 @@ class Expanding:
 
 
 def bare(material: Material) -> Any:
-    """A material without its expansion."""
+    """A material without its expansion.
+
+    Args:
+        material: The material.
+
+    Returns:
+        What it is made of; the material itself if it does not expand.
+    """
     return material.material if isinstance(material, Expanding) else material
 
 

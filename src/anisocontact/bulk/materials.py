@@ -36,7 +36,19 @@ class Material(Protocol):
 
 
 def small_strain(material: Any) -> bool:
-    """Whether a material takes displacement gradients to be small: a linear one, or a law does."""
+    """Whether a material takes displacement gradients to be small: a linear one, or a law does.
+
+    Args:
+        material: The material.
+
+    Returns:
+        Whether it does.
+
+    Example:
+        >>> from anisocontact.bulk import make_material
+        >>> small_strain(make_material("neo-hookean", E=1.0, nu=0.3))
+        False
+    """
     of_law = material.linear or getattr(material, "strain", "") == "small"
     return bool(getattr(material, "small_strain", of_law))
 

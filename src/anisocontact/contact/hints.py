@@ -83,11 +83,18 @@ def doubtful_sides(contacts: Sequence[Contact]) -> list[str]:
 
     Args:
         contacts: The contacts.
+
+    Returns:
+        A line for each of them.
     """
     return [*coarse_slaves(contacts), *stiff_slaves(contacts)]
 
 
 def warn_of(contacts: Sequence[Contact]) -> None:
-    """Tell a script: a Python warning of the category `ModelWarning` for each line."""
+    """Tell a script: a Python warning of the category `ModelWarning` for each line.
+
+    Args:
+        contacts: The contacts, as of `doubtful_sides`.
+    """
     for line in doubtful_sides(contacts):
         warnings.warn(line, ModelWarning, stacklevel=3)

@@ -333,6 +333,9 @@ def make_idealisation(kind: str, **parameters: Any) -> Idealisation:
         kind: "plane-strain", "plane-stress" or "axisymmetric".
         **parameters: Its parameters.
 
+    Returns:
+        The idealisation.
+
     Raises:
         InputError: Unknown name or parameter, or one that is out of range.
 

@@ -117,6 +117,12 @@ def check_around(cells: Sequence[int], multiple: int) -> None:
 def checked_blocks(shape: Shape) -> list[Block]:
     """The blocks of a shape that are not too many.
 
+    Args:
+        shape: The shape.
+
+    Returns:
+        Its blocks.
+
     Raises:
         InputError: More cells than fit in memory.
     """
