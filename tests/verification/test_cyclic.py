@@ -298,12 +298,61 @@ def test_mistakes_of_the_sector(given: dict[str, Any], line: str):
         ({"ring.top": {"x": 0.1, "y": 0.0, "z": 0.0}}, "led otherwise on one than on the other"),
         ({"ring.start": {"x": 0.0, "y": 0.0, "z": 0.0}}, "led otherwise on one than on the other"),
     ],
+    ids=["sideways", "moved", "one face"],
 )
 def test_supports_that_are_not_those_of_a_sector(held: dict[str, Any], line: str):
     """Requirement: what is not the same in every sector is refused in one line."""
     problem = Problem(ring(6), {"ring": STEEL}, cyclic=faces(6))
     with pytest.raises(InputError, match=line):
         Solver(problem, [Step("hold", 1, held)])
+
+
+def two_rings() -> Problem:
+    """A sector of 30 degrees of two rings that touch at r = 0.75, nu = 0, one cell along z."""
+    shape: Any = {"length": 0.25, "cells": (8, 8, 1), "end": math.pi / 6.0}
+    bodies = [
+        Body(name, make_shape("ring", inner=inner, outer=outer, **shape))
+        for name, inner, outer in (("inner", 0.5, 0.75), ("outer", 0.75, 1.0))
+    ]
+    model = build_mesh(bodies)
+    free = ContactLaw(LAWS[0], LAWS[1], Friction(coefficients=0.0))
+    contact = Contact(
+        model, "inner.outer", "outer.inner", free, mortar=True, augmentation=Augmentation()
+    )
+    names = ("inner", "outer")
+    return Problem(
+        model,
+        dict.fromkeys(names, make_material("linear-elastic", E=1000.0, nu=0.0)),
+        [contact],
+        cyclic=[CyclicSymmetry(f"{name}.end", f"{name}.start", 12) for name in names],
+    )
+
+
+def test_supports_on_the_master_alone():
+    """Two rings under pressure, the inner one held inside but for its nodes on the slave.
+
+    Requirement: the displacement outside is that of a ring without a joint to 0.3 %, the slave's
+    nodes stay with those of the master, which are held. Source: Lame with nu = 0, that is
+    u = A (r - a^2/r). Tolerance: order 1, 16 cells through the wall, chords of 3.75 degrees: 0.2 %.
+    """
+    problem = two_rings()
+    model = problem.model
+    x = model.space.tabulate_dof_coordinates()
+    radius, angle = np.hypot(x[:, 0], x[:, 1]), np.arctan2(x[:, 1], x[:, 0])
+    held = np.flatnonzero((radius < 0.5 + 1e-9) & (angle < math.pi / 6.0 - 1e-9))
+    model.name_nodes("inner.held", held.astype(np.int32))
+    flat = {
+        f"{name}.{side}": {"z": 0.0} for name in ("inner", "outer") for side in ("bottom", "top")
+    }
+    step = Step(
+        "press", 1, {"inner.held": {"x": 0.0, "y": 0.0}} | flat, pressure={"outer.outer": 1.0}
+    )
+    solved(problem, step)
+    u = problem.u.x.array.reshape(-1, 3)
+    out = np.einsum("ni,ni->n", x, u) / radius
+    assert np.abs(out[radius < 0.5 + 1e-9]).max() < 1e-14
+    exact = -1.0 / (1000.0 * 1.25) * (1.0 - 0.25)
+    assert out[radius > 1.0 - 1e-9] == pytest.approx(exact, rel=3e-3)
 
 
 def test_what_a_sector_is_free_to_do():

@@ -128,7 +128,7 @@ class CutFaces:
             raise InputError(text, self.name)
 
     def check_led(self, values: Floats, step: str) -> None:
-        """Refuse supports that are not the same in every sector.
+        """Refuse supports of the slave that are not those of the master; free nodes follow it.
 
         Args:
             values: Prescribed displacements of all nodes, NaN where there is none, (n, 3), length.
@@ -136,13 +136,13 @@ class CutFaces:
         """
         a, b = self.turning.across
         field = f"step {step!r}.displacement"
-        both = np.setdiff1d(np.union1d(*self.sides), self.on_axis)
-        partly = np.isnan(values[both, a]) != np.isnan(values[both, b])
+        off_axis = np.setdiff1d(self.slave, self.on_axis)
+        partly = np.isnan(values[off_axis, a]) != np.isnan(values[off_axis, b])
         if partly.any():
             text = (
-                f"of {int(partly.sum())} nodes on the cut faces of {self.name} only one component "
-                f"across the axis {'xyz'[self.turning.axis]} is held: the same in every sector are "
-                "both, none, or the one along the axis"
+                f"of {int(partly.sum())} nodes on the slave of {self.name} only one component "
+                f"across the axis {'xyz'[self.turning.axis]} is held: hold both, none, or the one "
+                "along the axis; what is free follows the master"
             )
             raise InputError(text, field)
         here = values[self.slave[self.master >= 0]]
@@ -151,12 +151,13 @@ class CutFaces:
         on = np.isin(self.slave[self.master >= 0], self.on_axis)
         here[on], turned[on] = _on_axis(here[on], self.turning.axis)
         scale = np.nanmax(np.abs(values), initial=0.0)
-        off = np.isnan(here) != np.isnan(turned)
-        off |= np.abs(np.nan_to_num(here - turned)) > SAME * scale
+        differ = np.abs(np.nan_to_num(here - turned)) > SAME * scale
+        off = ~np.isnan(here) & (np.isnan(turned) | differ)
         if off.any():
             text = (
                 f"{int(off.any(axis=1).sum())} nodes on the cut faces of {self.name} are led "
-                "otherwise on one than on the other: give the same motion in every sector"
+                "otherwise on one than on the other: give the same motion in every sector, or "
+                "leave the slave free, which follows the master"
             )
             raise InputError(text, field)
 
