@@ -64,8 +64,10 @@ class MortarWeights {
     std::vector<std::vector<std::int32_t>> masters(n);
     {
       nb::gil_scoped_release free;
-      kernel::parallel_for(facets_.size(), threads,
-                           [&](std::size_t f) { facets_[f] = weights(f, false); });
+      kernel::parallel_pieces(facets_.size(), threads, [&](std::size_t first, std::size_t last) {
+        mortar::WeightMemory memory;
+        for (std::size_t f = first; f < last; ++f) find(f, false, memory, facets_[f]);
+      });
       kernel::parallel_for(n, threads, [&](std::size_t i) {
         masters[i] = mortar::masters_of(facets_, patches_, more, i);
       });
@@ -75,7 +77,8 @@ class MortarWeights {
     Array<std::int32_t> nodes({n, most}, unset);
     std::fill_n(nodes.data, n * most, -1);
     Array<double> area({n}), weight({n, most});
-    nodal_ = {most, nodes.data, area.data, weight.data};
+    counts_.resize(n);
+    nodal_ = {most, nodes.data, area.data, weight.data, counts_.data()};
     {
       nb::gil_scoped_release free;
       kernel::parallel_for(n, threads, [&](std::size_t i) {
@@ -96,10 +99,11 @@ class MortarWeights {
                     const std::vector<Part>& moving, std::size_t threads) const;
 
  private:
-  mortar::DualWeights weights(std::size_t f, bool slopes) const {
+  void find(std::size_t f, bool slopes, mortar::WeightMemory& memory,
+            mortar::DualWeights& out) const {
     mortar::MortarInput in = in_;
     in.slopes = slopes;
-    return mortar::dual_weights(in, f, pairs_.begin(f), pairs_.size(f));
+    mortar::dual_weights(in, f, {pairs_.begin(f), pairs_.end(f)}, memory, out);
   }
 
   Given given_;
@@ -119,6 +123,7 @@ class MortarWeights {
                            given_.patch.data(),
                            given_.patch.shape(1)};
   std::vector<mortar::DualWeights> facets_;
+  std::vector<std::int32_t> counts_;
   mortar::NodalWeights nodal_{};
   nb::ndarray<nb::numpy, std::int32_t> masters_;
   nb::ndarray<nb::numpy, double> area_, weight_;
@@ -154,11 +159,15 @@ nb::tuple MortarWeights::tangent(const Indices& which, const Cube& by, const Cub
         place[static_cast<std::size_t>(patches_.facet.begin(i)[e]) * slaves +
               static_cast<std::size_t>(patches_.local.begin(i)[e])] = static_cast<std::int32_t>(q);
     }
-    kernel::parallel_for(facets_.size(), threads, [&](std::size_t f) {
-      const std::int32_t* const own = place.data() + f * slaves;
-      if (std::any_of(own, own + slaves, [](std::int32_t q) { return q >= 0; }))
-        blocks[f] =
-            mortar::facet_blocks(n, chosen, f, weights(f, true), own, of_facets.data + start[f]);
+    kernel::parallel_pieces(facets_.size(), threads, [&](std::size_t first, std::size_t last) {
+      mortar::WeightMemory memory;
+      mortar::DualWeights one;
+      for (std::size_t f = first; f < last; ++f) {
+        const std::int32_t* const own = place.data() + f * slaves;
+        if (std::none_of(own, own + slaves, [](std::int32_t q) { return q >= 0; })) continue;
+        find(f, true, memory, one);
+        blocks[f] = mortar::facet_blocks(n, chosen, f, one, own, of_facets.data + start[f]);
+      }
     });
     kernel::parallel_for(p, threads, [&](std::size_t q) {
       mortar::traction_slopes(n, blocks, parts, chosen, q,
@@ -167,8 +176,11 @@ nb::tuple MortarWeights::tangent(const Indices& which, const Cube& by, const Cub
     rows.emplace(n, chosen, slopes.data, blocks, nodes);
     columns.resize(rows->nodes().size());
     kernel::parallel_pieces(columns.size(), threads, [&](std::size_t first, std::size_t last) {
-      std::vector<std::int32_t> seen(nodes, -1);
-      for (std::size_t r = first; r < last; ++r) columns[r] = rows->columns(rows->nodes()[r], seen);
+      std::vector<std::int32_t> seen(nodes, -1), found;
+      for (std::size_t r = first; r < last; ++r) {
+        rows->columns(rows->nodes()[r], seen, found);
+        columns[r].assign(found.begin(), found.end());
+      }
     });
     for (const auto& one : columns) offset.push_back(offset.back() + one.size());
   }

@@ -82,7 +82,10 @@ struct Pair {
   ~Pair() = default;
 
   mortar::DualWeights weights() const {
-    return mortar::dual_weights(input, 0, candidates.data(), candidates.size());
+    mortar::WeightMemory memory;
+    mortar::DualWeights out;
+    mortar::dual_weights(input, 0, candidates, memory, out);
+    return out;
   }
 
  private:

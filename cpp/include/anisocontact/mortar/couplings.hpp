@@ -60,6 +60,7 @@ struct Nodes {
   const std::int32_t* patch(std::size_t i) const { return patches.nodes + i * patches.width; }
   const std::int32_t* masters(std::size_t i) const { return weights.masters + i * weights.most; }
   std::size_t place(std::size_t i, std::int32_t master) const { return weights.place(i, master); }
+  std::size_t count(std::size_t i) const { return static_cast<std::size_t>(weights.count[i]); }
 };
 
 namespace detail {
@@ -180,7 +181,7 @@ class ForceRows {
         for (std::size_t r = 0; r < n.rows; ++r)
           if (const double share = n.support[i * n.rows + r]; share != 0.0)
             put(n.patch(i)[r], Term{q, dt, -share * n.weights.area[i]});
-        for (std::size_t k = 0; k < n.weights.most && n.masters(i)[k] >= 0; ++k)
+        for (std::size_t k = 0; k < n.count(i); ++k)
           put(n.masters(i)[k], Term{q, dt, n.weights.weight[i * n.weights.most + k]});
       }
     };
@@ -201,9 +202,10 @@ class ForceRows {
   /// Nodes that have a row.
   const std::vector<std::int32_t>& nodes() const { return nodes_; }
 
-  /// Columns of a row, in the order in which they come; `place` is -1 for every node.
-  std::vector<std::int32_t> columns(std::int32_t row, std::vector<std::int32_t>& place) const {
-    std::vector<std::int32_t> out;
+  /// Writes the columns of a row, in the order in which they come; `place` is -1 for every node.
+  void columns(std::int32_t row, std::vector<std::int32_t>& place,
+               std::vector<std::int32_t>& out) const {
+    out.clear();
     const auto put = [&](std::int32_t node) {
       auto& there = place[static_cast<std::size_t>(node)];
       if (there >= 0) return;
@@ -213,11 +215,9 @@ class ForceRows {
     for (const Term& term : by_node_.of(row)) {
       const auto i = static_cast<std::size_t>(chosen_.which[term.of]);
       std::for_each_n(n_.patch(i), n_.patches.width, put);
-      for (std::size_t k = 0; k < n_.weights.most && n_.masters(i)[k] >= 0; ++k)
-        put(n_.masters(i)[k]);
+      std::for_each_n(n_.masters(i), n_.count(i), put);
     }
     for (const std::int32_t node : out) place[static_cast<std::size_t>(node)] = -1;
-    return out;
   }
 
   /// Writes the blocks of a row, (columns, 9); `place` as before.
@@ -235,8 +235,7 @@ class ForceRows {
         const double* from = term.blocks;
         for (std::size_t c = 0; c < n_.patches.width; ++c, from += block_size)
           detail::add_block(term.factor, from, to(n_.patch(i)[c]));
-        for (std::size_t k = 0; k < n_.weights.most && n_.masters(i)[k] >= 0;
-             ++k, from += block_size)
+        for (std::size_t k = 0; k < n_.count(i); ++k, from += block_size)
           detail::add_block(term.factor, from, to(n_.masters(i)[k]));
       }
       for (const Term& term : by_facet_.of(row)) {

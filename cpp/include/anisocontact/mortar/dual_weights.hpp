@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include "anisocontact/mortar/integrator.hpp"
@@ -49,17 +50,19 @@ using Eigen::Index;
 /// The inverse of m, column by column; whether there is one. Rows and columns are scaled to a diagonal
 /// of one, so that the size of what is covered does not matter.
 template <std::size_t L>
-bool invert(const Integrals<L>& in, std::size_t n, std::array<Lanes<L>, L>& out) {
-  Eigen::MatrixXd m(n, n);
+ANISOCONTACT_ONCE bool invert(const Integrals<L>& in, std::size_t n, std::array<Lanes<L>, L>& out) {
+  constexpr int most = static_cast<int>(L);
+  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
+  Square m = Square::Zero(static_cast<Index>(n), static_cast<Index>(n));
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
       m(static_cast<Index>(i), static_cast<Index>(j)) = in.value[j][i];
   if (!(m.diagonal().minCoeff() > 0.0)) return false;
-  const Eigen::VectorXd unit = m.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Eigen::MatrixXd> factor(unit.asDiagonal() * m * unit.asDiagonal());
+  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1> unit =
+      m.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::LDLT<Square> factor(unit.asDiagonal() * m * unit.asDiagonal());
   if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13)) return false;
-  const Eigen::MatrixXd inverse =
-      unit.asDiagonal() * factor.solve(Eigen::MatrixXd(unit.asDiagonal()));
+  const Square inverse = unit.asDiagonal() * factor.solve(Square(unit.asDiagonal()));
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t j = 0; j < n; ++j)
       out[j].set(i, inverse(static_cast<Index>(i), static_cast<Index>(j)));
@@ -68,18 +71,20 @@ bool invert(const Integrals<L>& in, std::size_t n, std::array<Lanes<L>, L>& out)
 
 /// W = D m^-1 c with its derivatives; whether m can be inverted.
 template <std::size_t L>
-ANISOCONTACT_INLINE bool put_weights(const Integrals<L>& in, std::size_t n, DualWeights& out) {
+ANISOCONTACT_INLINE bool put_weights(const Integrals<L>& in, std::size_t n,
+                                     std::vector<Lanes<L>>& z, DualWeights& out) {
   const std::size_t count = in.rows - n, columns = in.columns;
   std::array<Lanes<L>, L> inverse;
   if (!invert(in, n, inverse)) return false;
   const auto times = [&](const auto& x) ANISOCONTACT_INLINE_LAMBDA {
     Lanes<L> product;
-    for (std::size_t j = 0; j < n; ++j) product.add(x[j], inverse[j]);
+    each<L>([&](std::size_t j)
+                ANISOCONTACT_INLINE_LAMBDA { product.add(x[j], inverse[j]); });  // zero from n on
     return product;
   };
   Lanes<L> area;
   for (std::size_t j = 0; j < n; ++j) area.add(1.0, in.value[j]);
-  std::vector<Lanes<L>> z(count);
+  z.resize(count);
   out.area.resize(static_cast<Index>(n));
   out.weight.resize(static_cast<Index>(n), static_cast<Index>(count));
   for (std::size_t k = 0; k < count; ++k) z[k] = times(in.value[n + k]);
@@ -147,37 +152,69 @@ struct MortarInput {
   bool slopes;
 };
 
-/// Weights of a slave facet against facets of the master; none where nothing is covered.
-inline DualWeights dual_weights(const MortarInput& in, std::size_t f,
-                                const std::int32_t* candidates, std::size_t count) {
-  const Facet slave = in.slave.at(f, in.now);
-  const auto sub = sub_facets(slave.topology);
+/// What weights are found in; it keeps its memory from one facet to the next.
+class WeightMemory {
+ public:
+  template <std::size_t L>
+  struct Of {
+    Integrals<L> total;
+    IntegratorMemory<L> integrator;
+    std::vector<Lanes<L>> solved;
+  };
+  template <std::size_t L>
+  Of<L>& of() {
+    return std::get<Of<L>>(of_);
+  }
   std::vector<SlavePart> parts;
   std::vector<Overlap> found;
-  DualWeights out;
-  parts.reserve(sub.size());
-  found.reserve(count);
+
+ private:
+  std::tuple<Of<4>, Of<8>, Of<12>> of_;
+};
+
+namespace detail {
+
+/// Overlaps of a slave facet with facets of the master; none where it has no plane.
+inline void find_overlaps(const MortarInput& in, const Facet& slave, std::size_t f,
+                          std::span<const std::int32_t> candidates, WeightMemory& memory) {
+  memory.parts.clear();
+  memory.found.clear();
+  const auto sub = sub_facets(slave.topology);
+  memory.parts.reserve(sub.size());
   for (const SubFacet& part : sub) {
-    parts.emplace_back(slave, part);
-    if (!parts.back().valid()) return {};
-    if (in.reference != nullptr) parts.back().scale_to(in.slave.at(f, in.reference));
-    for (std::size_t c = 0; c < count; ++c) {
-      const auto g = static_cast<std::size_t>(candidates[c]);
-      parts.back().find(in.master.at(g, in.now), g, found);
+    SlavePart& own = memory.parts.emplace_back(slave, part);
+    if (!own.valid()) return memory.found.clear();
+    if (in.reference != nullptr) own.scale_to(in.slave.at(f, in.reference));
+    for (const std::int32_t c : candidates) {
+      const auto g = static_cast<std::size_t>(c);
+      own.find(in.master.at(g, in.now), g, memory.found);
     }
   }
-  if (found.empty()) return out;
-  for (const Overlap& o : found)
+}
+
+}  // namespace detail
+
+/// Weights of a slave facet against facets of the master; none where nothing is covered.
+inline void dual_weights(const MortarInput& in, std::size_t f,
+                         std::span<const std::int32_t> candidates, WeightMemory& memory,
+                         DualWeights& out) {
+  const Facet slave = in.slave.at(f, in.now);
+  detail::find_overlaps(in, slave, f, candidates, memory);
+  out.masters.clear();
+  for (const Overlap& o : memory.found)
     for (std::size_t a = 0; a < in.master.width(); ++a)
       out.masters.push_back(in.master.node(o.facet, a));
   std::sort(out.masters.begin(), out.masters.end());
   out.masters.erase(std::unique(out.masters.begin(), out.masters.end()), out.masters.end());
+  if (memory.found.empty()) return;
+  const SubFacet* const first = sub_facets(slave.topology).data();
   const bool any = with_lanes(slave.nodes(), [&](auto lanes) {
-    Integrals<lanes> total(slave.nodes(), out.masters.size(), in.slopes);
-    Integrator<lanes> integrator(slave, in.rules, total);
+    auto& own = memory.of<lanes>();
+    own.total.begin(slave.nodes(), out.masters.size(), in.slopes);
+    Integrator<lanes> integrator(slave, in.rules, own.integrator, own.total);
     bool good = false;
     with_longest([&]() ANISOCONTACT_INLINE_LAMBDA {
-      for (const Overlap& o : found) {
+      for (const Overlap& o : memory.found) {
         std::array<std::size_t, most> column{};
         for (std::size_t a = 0; a < in.master.width(); ++a)
           column[a] =
@@ -185,15 +222,15 @@ inline DualWeights dual_weights(const MortarInput& in, std::size_t f,
                    static_cast<std::size_t>(std::lower_bound(out.masters.begin(), out.masters.end(),
                                                              in.master.node(o.facet, a)) -
                                             out.masters.begin()));
-        integrator.add(parts[static_cast<std::size_t>(o.slave - sub.data())], o,
+        integrator.add(memory.parts[static_cast<std::size_t>(o.slave - first)], o,
                        in.master.at(o.facet, in.now), column);
       }
-      good = detail::put_weights(total, slave.nodes(), out);
+      good = detail::put_weights(own.total, slave.nodes(), own.solved, out);
     });
     return good;
   });
-  if (any && !in.whole.empty()) detail::hand_over(in.whole, out);
-  return any ? out : DualWeights{};
+  if (!any) return out.masters.clear();
+  if (!in.whole.empty()) detail::hand_over(in.whole, out);
 }
 
 }  // namespace anisocontact::mortar

@@ -68,7 +68,7 @@ class InPart {
   }
 
   /// Functions of the corners at coordinates on the part, and those of the facet that multipliers
-  /// see, see `transform`, with their derivatives by the position.
+  /// see, see `transform`, with their derivatives by the position where there is a place for them.
   ANISOCONTACT_INLINE void functions(Topology t, bool transformed, const PlanePoints& s,
                                      Batch* corner, Batch* value, PlanePoints* slope) const {
     const std::size_t count = part_.corners;
@@ -82,6 +82,10 @@ class InPart {
       const std::array<Batch, 4> f{(one - u) * (one - v), u * (one - v), u * v, (one - u) * v};
       std::copy(f.begin(), f.end(), corner);
       by = {{{v - one, u - one}, {one - v, -u}, {v, u}, {-v, one - u}}};
+    }
+    if (slope == nullptr && surface::node_count(t) == count) {
+      for (std::size_t a = 0; a < count; ++a) value[part_.node[order_[a]]] = corner[a];
+      return;
     }
     const Slopes j = slopes(s);
     for (std::size_t a = 0; a < count; ++a)
@@ -107,7 +111,7 @@ class InPart {
     if (transformed) transform(t, facet);
     for (std::size_t k = 0; k < surface::node_count(t); ++k) {
       value[k] = facet.N[k];
-      for (std::size_t d = 0; d < 2; ++d)
+      for (std::size_t d = 0; slope != nullptr && d < 2; ++d)
         slope[k][d] = facet.dN[k][0] * way[0][d] + facet.dN[k][1] * way[1][d];
     }
   }

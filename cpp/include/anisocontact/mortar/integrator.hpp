@@ -70,12 +70,45 @@ class ByNodes {
 
 }  // namespace detail
 
-/// Integrates over overlaps of a slave facet; keeps its memory from one to the next.
+/// What an integrator works in; it keeps its memory from one facet to the next.
+template <std::size_t L>
+struct IntegratorMemory {
+  using Batch = detail::Batch;
+
+  /// Values and gradients of all functions, those of the slave first, at points side by side.
+  struct Values {
+    std::array<Batch, 2 * most> value;
+    std::array<detail::PlanePoints, 2 * most> slope;
+    std::array<Batch, 8> corner;  ///< functions of the corners of both parts, times - 2 A
+  };
+  /// Functions of the slave at a point, times its weight.
+  struct AtPoint {
+    Twins<L> first, second, dN;  ///< values as first components and as second ones; gradient
+  };
+  /// A triangle of the polygon.
+  struct Triangle {
+    double twice;                ///< twice its area
+    std::array<Point, 3> grown;  ///< the derivative of this by the vertices
+  };
+  std::vector<Triangle> triangles;
+  std::vector<AtPoint> points;
+  std::vector<Values> values;
+  std::vector<Crossing> crossings;
+};
+
+/// Integrates over overlaps of a slave facet.
 template <std::size_t L>
 class Integrator {
  public:
-  Integrator(const Facet& slave, const Rules& rules, Integrals<L>& out)
-      : slave_(slave), rules_(rules), out_(out), slopes_(!out.slope.empty()) {}
+  Integrator(const Facet& slave, const Rules& rules, IntegratorMemory<L>& memory, Integrals<L>& out)
+      : slave_(slave),
+        rules_(rules),
+        out_(out),
+        slopes_(!out.slope.empty()),
+        triangles_(memory.triangles),
+        points_(memory.points),
+        values_(memory.values),
+        crossings_(memory.crossings) {}
 
   /// Adds the integrals over an overlap; columns of the nodes of the master are given, and with them
   /// rows.
@@ -108,21 +141,11 @@ class Integrator {
   using Batch = detail::Batch;
   static constexpr std::size_t batch = detail::batch;
 
-  /// Values and gradients of all functions, those of the slave first, at points side by side.
-  struct Values {
-    std::array<Batch, 2 * most> value;
-    std::array<detail::PlanePoints, 2 * most> slope;
-    std::array<Batch, 8> corner;  ///< functions of the corners of both parts, times - 2 A
-  };
-  /// Functions of the slave at a point, times its weight.
-  struct AtPoint {
-    Twins<L> first, second, dN;  ///< values as first components and as second ones; gradient
-  };
-  /// A triangle of the polygon.
-  struct Triangle {
-    double twice;                ///< twice its area
-    std::array<Point, 3> grown;  ///< the derivative of this by the vertices
-  };
+  using Memory = IntegratorMemory<L>;
+  using Values = typename Memory::Values;
+  using AtPoint = typename Memory::AtPoint;
+  using Triangle = typename Memory::Triangle;
+
   /// Integrals of a row, and their derivatives by vertices and corners.
   struct Row {
     Lanes<L> value;
@@ -144,24 +167,30 @@ class Integrator {
       const double bx = b[0] - a[0], by = b[1] - a[1], cx = c[0] - a[0], cy = c[1] - a[1];
       triangles_[i] = {bx * cy - by * cx, {{{by - cy, cx - bx}, {cy, -cx}, {-by, bx}}}};
     }
+    std::size_t i = 0, q = 0;  // triangle, and point of its rule
     for (std::size_t b = 0; b < values_.size(); ++b) {
       const std::size_t first = b * batch, end = std::min(first + batch, count);
       detail::PlanePoints x, s;
       Batch twice;
       for (std::size_t l = 0; l < batch; ++l) {
-        const std::size_t n = std::min(first + l, end - 1), i = n / rule.count, q = n % rule.count;
         const double u = rule.points[2 * q], v = rule.points[2 * q + 1], w = 1.0 - u - v;
         for (std::size_t d = 0; d < 2; ++d)
           x[d].set(l, w * p.vertex[0].x[d] + u * p.vertex[i + 1].x[d] + v * p.vertex[i + 2].x[d]);
         twice.set(l, -triangles_[i].twice);
+        if (first + l + 1 < count && ++q == rule.count) {
+          q = 0;
+          ++i;
+        }
       }
       if (!own.locate(x, s)) return false;
       Values& to = values_[b];
-      own.functions(slave_.topology, true, s, &to.corner[0], &to.value[0], &to.slope[0]);
+      own.functions(slave_.topology, true, s, &to.corner[0], &to.value[0],
+                    slopes_ ? &to.slope[0] : nullptr);
       weigh(rule, first, end, to);
       if (!other.locate(x, s)) return false;
       const std::size_t k = slave_.nodes();
-      other.functions(master, false, s, &to.corner[4], &to.value[k], &to.slope[k]);
+      other.functions(master, false, s, &to.corner[4], &to.value[k],
+                      slopes_ ? &to.slope[k] : nullptr);
       for (Batch& one : to.corner) one = twice * one;
     }
     return true;
@@ -170,9 +199,10 @@ class Integrator {
   /// Functions of the slave at points [first, end), side by side for each.
   ANISOCONTACT_INLINE void weigh(const TriangleRule& rule, std::size_t first, std::size_t end,
                                  const Values& from) {
-    for (std::size_t n = first; n < end; ++n) {
+    std::size_t q = first % rule.count;
+    for (std::size_t n = first; n < end; ++n, q = q + 1 == rule.count ? 0 : q + 1) {
       AtPoint& to = points_[n];
-      const double weight = rule.weights[n % rule.count];
+      const double weight = rule.weights[q];
       for (std::size_t i = 0; i < slave_.nodes(); ++i) {
         const double N = weight * from.value[i][n - first];
         to.first.set(Twins<L>::place(0, i), N);
@@ -254,10 +284,10 @@ class Integrator {
   const Rules& rules_;
   Integrals<L>& out_;
   bool slopes_;
-  std::vector<Triangle> triangles_;
-  std::vector<AtPoint> points_;
-  std::vector<Values> values_;
-  std::vector<Crossing> crossings_;
+  std::vector<Triangle>& triangles_;
+  std::vector<AtPoint>& points_;
+  std::vector<Values>& values_;
+  std::vector<Crossing>& crossings_;
 };
 
 }  // namespace anisocontact::mortar

@@ -8,6 +8,13 @@
 
 #include "anisocontact/tensor/inline.hpp"
 
+/// Functions that are compiled once, not for all kinds of registers: they have nothing to gain.
+#if defined(__GNUC__)
+#define ANISOCONTACT_ONCE [[gnu::noinline]]
+#else
+#define ANISOCONTACT_ONCE
+#endif
+
 namespace anisocontact::mortar {
 
 namespace detail {

@@ -29,19 +29,24 @@ struct NodalWeights {
   std::size_t most;
   std::int32_t* masters;  ///< (n, most), ascending
   double *area, *weight;  ///< (n,), (n, most)
+  std::int32_t* count;    ///< masters of each, (n,)
 
   /// Number of a node among the masters of a slave node.
   std::size_t place(std::size_t i, std::int32_t node) const {
     const auto first = static_cast<const std::int32_t*>(masters + i * most);
-    const auto last = std::find(first, first + most, -1);
-    return static_cast<std::size_t>(std::lower_bound(first, last, node) - first);
+    return static_cast<std::size_t>(std::lower_bound(first, first + count[i], node) - first);
   }
 };
 
 /// Nodes of the master that a slave node has weights on, and further ones, ascending.
 inline std::vector<std::int32_t> masters_of(const std::vector<DualWeights>& facets,
                                             const Patches& p, const ListView& more, std::size_t i) {
-  std::vector<std::int32_t> out(more.begin(i), more.end(i));
+  std::size_t count = more.size(i);
+  for (const std::int32_t* f = p.facet.begin(i); f != p.facet.end(i); ++f)
+    count += facets[static_cast<std::size_t>(*f)].masters.size();
+  std::vector<std::int32_t> out;
+  out.reserve(count);
+  out.assign(more.begin(i), more.end(i));
   for (const std::int32_t* f = p.facet.begin(i); f != p.facet.end(i); ++f) {
     const auto& m = facets[static_cast<std::size_t>(*f)].masters;
     out.insert(out.end(), m.begin(), m.end());
@@ -56,6 +61,7 @@ inline void collect(const std::vector<DualWeights>& facets, const Patches& p,
                     const std::vector<std::int32_t>& masters, std::size_t i,
                     const NodalWeights& out) {
   std::copy(masters.begin(), masters.end(), out.masters + i * out.most);
+  out.count[i] = static_cast<std::int32_t>(masters.size());
   for (std::size_t e = 0; e < p.facet.size(i); ++e) {
     const DualWeights& own = facets[static_cast<std::size_t>(p.facet.begin(i)[e])];
     if (own.masters.empty()) continue;

@@ -103,11 +103,13 @@ struct Integrals {
   std::size_t rows{0}, columns{0};
   std::vector<Lanes<L>> value, slope;  ///< (rows,), (rows, columns)
 
-  Integrals(std::size_t slaves, std::size_t masters, bool slopes)
-      : rows(slaves + masters),
-        columns(3 * rows),
-        value(rows),
-        slope(slopes ? rows * columns : 0) {}
+  /// All zero, in the memory that is there.
+  void begin(std::size_t slaves, std::size_t masters, bool slopes) {
+    rows = slaves + masters;
+    columns = 3 * rows;
+    value.assign(rows, {});
+    slope.assign(slopes ? rows * columns : 0, {});
+  }
 };
 
 /// An overlap of parts of two facets, in the plane of the slave's.
@@ -144,8 +146,11 @@ class SlavePart {
   /// Adds the overlaps with a facet of the master.
   void find(const Facet& master, std::size_t facet, std::vector<Overlap>& out) const {
     for (const SubFacet& other : sub_facets(master.topology)) {
-      out.push_back({&part_, &other, facet, {0, 1, 2, 3}, corners_, {}});
-      if (!overlap(master, out.back())) out.pop_back();
+      Corners corners = corners_;
+      const auto order = place(master, other, corners);
+      if (apart(corners)) continue;
+      out.push_back({&part_, &other, facet, order, corners, {}});
+      if (!cut(out.back())) out.pop_back();
     }
   }
 
@@ -156,24 +161,30 @@ class SlavePart {
   /// Below this share of the part an overlap is rounding.
   static constexpr double sliver = 1e-13;
 
-  bool overlap(const Facet& master, Overlap& o) const {
-    const std::size_t count = o.master->corners;
+  /// Adds the corners of a part of the master, in the order in which they turn as those of the slave.
+  std::array<std::size_t, 4> place(const Facet& master, const SubFacet& part, Corners& c) const {
+    const std::size_t count = part.corners;
+    std::array<std::size_t, 4> order{0, 1, 2, 3};
     std::array<Point, 4> x;
     double twice = 0.0;
-    for (std::size_t a = 0; a < count; ++a) x[a] = plane_.flat(master.x[o.master->node[a]]);
+    for (std::size_t a = 0; a < count; ++a) x[a] = plane_.flat(master.x[part.node[a]]);
     for (std::size_t a = 0; a < count; ++a) {
       const Point &p = x[a], &q = x[a + 1 == count ? 0 : a + 1];
       twice += p[0] * q[1] - p[1] * q[0];
     }
     if (twice < 0.0)
-      for (std::size_t a = 1; a < count; ++a) o.order[a] = count - a;
-    o.corners.masters = count;
-    for (std::size_t a = 0; a < count; ++a) o.corners.x[4 + a] = x[o.order[a]];
-    if (apart(o.corners)) return false;
+      for (std::size_t a = 1; a < count; ++a) order[a] = count - a;
+    c.masters = count;
+    for (std::size_t a = 0; a < count; ++a) c.x[4 + a] = x[order[a]];
+    return order;
+  }
+
+  /// Cuts the part with that of the master; whether anything is left.
+  bool cut(Overlap& o) const {
     Polygon spare;
     Polygon *from = &o.polygon, *to = &spare;
     *from = subject_;
-    for (std::size_t a = 0; a < count && from->count > 2; ++a) {
+    for (std::size_t a = 0; a < o.corners.masters && from->count > 2; ++a) {
       clip(*from, o.corners, 4 + a, *to);
       std::swap(from, to);
     }
