@@ -117,3 +117,44 @@ def test_every_law_is_asked_as_at_points(name: str) -> None:
     shear = np.linalg.norm(at_nodes[:, :2], axis=1)
     assert shear.min() > 0.5
     assert shear.max() < 3.0 + 1e-9
+
+
+def test_a_slave_that_leans_against_its_master() -> None:
+    """A rigid block, tilted by 14 degrees and pressed in, slides along a flat base, then turns.
+
+    Requirement: turns are those along an increment, however far the averaged normal of the slave
+    is from that of the master; slip is the way along the contact plane. Source: rigid motions:
+    nothing turns while the block slides by (0.06, 0.08), which is (0.06 cos t, 0.08) along a plane
+    tilted by t; then it turns by 0.1. Tolerances: 1e-7 radian, the root of rounding; slip 1e-6, its
+    elastic part at this stiffness.
+    """
+    law = ContactLaw(
+        NormalLaw(penalty=1.0), Adhesion(stiffness=(1e6, 1e6)), Friction(coefficients=(0.1, 0.1))
+    )
+    upper = BoxSpec((0.1, 0.05, 0), (1, 1, 1), (3, 3, 1))
+    lower = BoxSpec((-0.5, -0.5, -1), (2.2, 2.1, 1), (4, 5, 1))
+    model = build_box({"upper": upper, "lower": lower})
+    contact = Contact(model, "upper.bottom", "lower.top", law, mortar=True, current_area=False)
+    x = np.array(model.space.tabulate_dof_coordinates())
+    block = np.unique(model.space.dofmap.list[model.cells("upper")])
+    u, centre, angle = np.zeros_like(x), np.array([0.6, 0.5, 0.0]), 0.25
+
+    def move(angle: float, way: tuple[float, float]) -> Floats:
+        cos, sin = np.cos(angle), np.sin(angle)
+        turn = np.array([[cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, cos]])
+        u[block] = (x[block] - centre) @ turn.T + centre - x[block] + (*way, -0.3)
+        contact.update(u, 0.1)
+        contact.commit()
+        return np.array(contact.state["slip_accumulated"])
+
+    before = move(angle, (0.0, 0.0))
+    for i in (1, 2):
+        slipped = move(angle, (0.06 * i, 0.08 * i))
+        assert contact.counts()["slip"] == 16
+        assert contact.state["turn"].max() < 1e-7
+        np.testing.assert_allclose(
+            slipped - before, np.hypot(0.06 * np.cos(angle), 0.08), atol=1e-6
+        )
+        before = slipped
+    move(angle + 0.1, (0.12, 0.16))
+    np.testing.assert_allclose(contact.state["turn"], 0.1, atol=1e-7)

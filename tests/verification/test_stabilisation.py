@@ -14,6 +14,7 @@ from anisocontact.base.fenicsx import Vec
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
+from anisocontact.interface.augmentation import Augmentation
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, Model, build_box
 from anisocontact.solver import Cut, Problem, Solver, Step, StoppedError
@@ -79,6 +80,39 @@ def test_free_block_lands_and_carries_the_load(gap: float) -> None:
     np.testing.assert_allclose(force, [-2.0, 0.0, 10.0], atol=1e-5)
     assert len(accepted) == 4
     assert (accepted[-1].energies["stabilisation"] > 0.0) is (gap > 0.0)
+
+
+@pytest.mark.parametrize(("master", "most"), [("plane", 18), ("base.top", 22)])
+def test_a_block_that_lands_slides_no_farther_than_it_fell(master: str, most: int) -> None:
+    """A block falls on slave nodes with multipliers under a load that leans: friction catches it.
+
+    Requirement: points that come to lie carry friction from there, on a body from the material
+    below them, so that the springs are gone within few corrections; what the fall sets free is told
+    as energy. Sources: equilibrium, the contact force is the load; the balance of energy.
+    Tolerances: 1e-6 as above; corrections of both increments, of which 15 and 18 are needed, and
+    more than 90 where nothing rubs against the fall; the balance within 1 % of the work, which
+    stabilisation takes up but for the strain, in the increment of the fall alone.
+    """
+    boxes = {"block": BoxSpec((0, 0, 0.05), (1, 1, 1), (3, 3, 3))}
+    held = {}
+    normal, adhesion, friction = _laws()
+    below: Any = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    if master != "plane":
+        boxes["base"] = BoxSpec((-0.55, -0.5, -0.5), (2, 2, 0.5), (5, 5, 2))
+        below, held = master, CLAMP
+    model = build_box(boxes)
+    law, exactly = ContactLaw(normal, adhesion, friction), Augmentation()
+    contact = Contact(model, "block.bottom", below, law, mortar=True, augmentation=exactly)
+    elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
+    problem = Problem(model, dict.fromkeys(boxes, elastic), [contact])
+    force = {"block.top": {"x": 1.0, "z": -5.0}}
+    first, second = Solver(problem, [Step("load", 2, held, force=force)]).run()
+    np.testing.assert_allclose(contact.resultant()[0], [-1.0, 0.0, 5.0], atol=1e-5)
+    assert first.iterations + second.iterations <= most
+    for each in (first, second):
+        energies = each.energies
+        assert abs(energies["residual"]) < 0.01 * energies["external"]
+    assert second.energies["stabilisation"] == first.energies["stabilisation"]
 
 
 def test_a_block_that_touches_needs_no_energy() -> None:

@@ -15,13 +15,14 @@ nodes, so that history is transported and tangents are exact as on any facet.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.contact.plane_axes import Carried, Turned
 
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]
@@ -48,6 +49,7 @@ class Opposite:
         second: Their second derivatives, (n, 2, 2, j).
         edge: Direction of the edge on which the place is, in coordinates, (n, 2); not a number
             inside a facet, zero at a vertex.
+        carried: Axes of the contact plane in both tangents and their normal, (n, 2, 3).
     """
 
     masters: Ints
@@ -58,6 +60,7 @@ class Opposite:
     gradient: Floats
     second: Floats
     edge: Floats
+    carried: Floats
 
     @classmethod
     def none(cls, n: int, width: int) -> Opposite:
@@ -72,7 +75,31 @@ class Opposite:
             np.zeros((n, 2, width)),
             np.zeros((n, 2, 2, width)),
             np.zeros((n, 2)),
+            np.tile(np.eye(2, 3), (n, 1, 1)),
         )
+
+    def with_axes(self, plane: Turned) -> Opposite:
+        """The same, to carry the axes of a plane along with the master."""
+        return replace(self, carried=plane.carried)
+
+    def with_rows(self, which: Mask, other: Opposite) -> Opposite:
+        """The same with what is opposite to some nodes, (n,), from another one."""
+        width = max(self.masters.shape[1], other.masters.shape[1])
+        both = [one.as_wide(width) for one in (other, self)]
+        rows = {
+            f.name: np.where(
+                which.reshape(-1, *[1] * (getattr(self, f.name).ndim - 1)),
+                *(getattr(one, f.name) for one in both),
+            )
+            for f in fields(self)
+        }
+        return Opposite(**rows)
+
+    def as_wide(self, width: int) -> Opposite:
+        """The same with places for so many masters."""
+        more = [(0, 0), (0, width - self.masters.shape[1])]
+        masters = np.pad(self.masters, more, constant_values=-1)
+        return replace(self, masters=masters, shares=np.pad(self.shares, more))
 
     def in_order(self, names: Ints | None = None) -> Opposite:
         """The same with the nodes that have a share alone, in ascending order.
@@ -103,49 +130,6 @@ class Opposite:
 
 
 @dataclass(frozen=True)
-class Turned:
-    """Tangents of the master turned from its normal to that of the contact plane.
-
-    The turn is the least one, e = d - (d . n) / (1 + m . n) (m + n), m the normal of d_1, d_2.
-
-    Attributes:
-        tangents: d, (n, 2, 3), length.
-        normal: n, (n, 3).
-    """
-
-    tangents: Floats
-    normal: Floats
-
-    @cached_property
-    def own_normal(self) -> Floats:
-        """m, (n, 3)."""
-        cross = np.cross(self.tangents[:, 0], self.tangents[:, 1])
-        return np.asarray(cross / np.linalg.norm(cross, axis=1)[:, None])
-
-    @cached_property
-    def cosine(self) -> Floats:
-        """M . n, (n,)."""
-        return np.asarray(np.einsum("ni,ni->n", self.own_normal, self.normal))
-
-    @cached_property
-    def axes(self) -> Floats:
-        """e, (n, 2, 3), length."""
-        both = self.own_normal + self.normal
-        return np.asarray(self.tangents - self._fall[..., None] * both[:, None])
-
-    @cached_property
-    def _fall(self) -> Floats:
-        along = np.einsum("nai,ni->na", self.tangents, self.normal)
-        return np.asarray(along * self._share[:, None])
-
-    @cached_property
-    def _share(self) -> Floats:
-        """1 / (1 + m . n), (n,); zero where both are opposite, which no node in contact has."""
-        both = 1.0 + self.cosine
-        return np.divide(1.0, both, out=np.zeros_like(both), where=both > 0.0)
-
-
-@dataclass(frozen=True)
 class ContactPlanes:
     """Slave nodes with their planes, of now and of the accepted increment.
 
@@ -155,7 +139,7 @@ class ContactPlanes:
         mean: Mean position of the master opposite, (n, 3), length.
         now: Its tangents, turned.
         mean_then: Mean position now of what was opposite at the accepted increment, (n, 3), length.
-        then: Tangents now at the place of then, turned.
+        then: Axes of the plane of then, carried along with the master.
         held: Projection on directions along which slave and master do not move, (n, 3, 3): along
             these both means are where the slave point is.
     """
@@ -165,7 +149,7 @@ class ContactPlanes:
     mean: Floats
     now: Turned
     mean_then: Floats
-    then: Turned
+    then: Carried
     held: Floats
 
     @property
@@ -189,12 +173,12 @@ class ContactPlanes:
         """The nodes that stand for all this, (9 n, 3), length.
 
         The slave point and with its tangents added, the same of the plane of now and of that of
-        then, whose tangents the laws turn themselves.
+        then.
         """
         parts = (
             (self.slave, self.tangents),
             (self.mean, self.now.axes),
-            (self.mean_then, self.then.tangents),
+            (self.mean_then, self.then.axes),
         )
         found = [np.concatenate([p[:, None], p[:, None] + t], axis=1) for p, t in parts]
         return np.ascontiguousarray(np.concatenate(found, axis=1).reshape(-1, 3))

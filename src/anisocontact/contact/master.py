@@ -266,6 +266,15 @@ class Master(Protocol):
         """Take it that trials start from the accepted state."""
         return
 
+    def anchor(self, start: State) -> None:
+        """Let points that came to lie in the trial count slip from there; collective.
+
+        Args:
+            start: What the next trials start from, which names where they are; changed where it is
+                named otherwise from now on.
+        """
+        return
+
     def commit(self, before: Snapshot, state: State, now: Snapshot | None) -> Floats:
         """Make the trial the history; collective.
 

@@ -108,7 +108,7 @@ class MortarState:
             second=now.second,
             edge=now.edge,
             which=which,
-            by_nodes=by_nodes,
+            by_nodes=planes.then.pulled_back(by_nodes, which),
             threads=default_threads(),
         )
         found: tuple[Floats, Ints, Ints, Floats] = self.weights.core.tangent(

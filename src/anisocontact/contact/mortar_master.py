@@ -12,7 +12,6 @@ import numpy.typing as npt
 from anisocontact.contact.contact_planes import (
     ContactPlanes,
     Opposite,
-    Turned,
     across,
     averaged_normal,
     held_directions,
@@ -26,6 +25,7 @@ from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
 from anisocontact.contact.mortar_reach import mortar_reachable
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
+from anisocontact.contact.plane_axes import Carried, Turned
 from anisocontact.contact.plane_batch import plane_batch
 from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.reachable import NodePairs
@@ -79,6 +79,8 @@ class MortarMaster(MeshedMaster):
         self._fold = Fold(sides.points, sides.gathered) if folded else None
         width = sides.master.nodes.shape[1]
         self._then = Opposite.none(len(sides.points.facet), width)
+        # slave nodes that count slip from a trial, and what was opposite at the accepted increment
+        self._replaced: tuple[Mask, Opposite] | None = None
         super().__init__(sides, law, group=group, size=size)
         self._at = self._placed()
 
@@ -119,7 +121,7 @@ class MortarMaster(MeshedMaster):
             mean,
             Turned(opposite.tangents(now), normal),
             mean_then,
-            Turned(self._then.tangents(now), normal),
+            Carried(self._then.tangents(now), self._then.carried),
             held,
         )
         both = opposite, self._then
@@ -143,7 +145,7 @@ class MortarMaster(MeshedMaster):
         state["xi"][located] = self._at.planes.xi[located]
         state["origin"] = state["xi"]
         state["gap"][located] = self._at.planes.gap[located]
-        self._then = self._at.opposite[0].in_order()
+        self._then = self._at.opposite[0].with_axes(self._at.planes.now).in_order()
         if self._fold is not None:
             self._fold.commit()
         self._count_as_then(state)
@@ -162,37 +164,54 @@ class MortarMaster(MeshedMaster):
             hints = {id(hint): hint for hint in (self._hint, self._accepted[1])}.values()
             for hint in hints:
                 hint.facet[:] = self._gathered.globally(hint.facet)
-            self._number_anew(u, self._named(), [hint.facet for hint in hints])
+            known, before = self._replaced or (None, None)
+            thens = [one for one in (self._then, before) if one is not None]
+            named = [self._named(one) for one in thens]
+            thens = self._number_anew(u, named, [hint.facet for hint in hints])
+            self._then = thens[0]
+            if known is not None:
+                self._replaced = known, thens[1]
         moved = np.array(self._gathered.everywhere(self._gathered.moved(u)))
         self._nodes = Nodes(self.sides.reference + moved, moved)
         self._hint = self.sides.project(self._nodes.now, self._hint)
         self._at = self._placed()
         return anew
 
-    def _named(self) -> Opposite:
-        """What was opposite at the accepted increment, with numbers of any distribution."""
-        then, gathered = self._then, self._gathered
+    def _named(self, then: Opposite) -> Opposite:
+        """What was opposite before, with numbers of any distribution."""
+        gathered = self._gathered
         named = then.in_order(gathered.names(then.masters))
         return replace(named, facet=gathered.globally(then.facet))
 
-    def _number_anew(self, u: Floats, then: Opposite, hints: Sequence[Ints]) -> None:
+    def _number_anew(
+        self, u: Floats, thens: Sequence[Opposite], hints: Sequence[Ints]
+    ) -> list[Opposite]:
         """Have the facets of the master that are near and those that are named; collective.
 
         Args:
             u: Displacements of the local nodes, (nodes, 3), length.
-            then: As of `_named`.
+            thens: As of `_named`.
             hints: Facets of the whole group, -1 for none; those of this process are written.
+
+        Returns:
+            What was opposite, with the numbers of this process.
         """
         gathered = self._gathered
-        self._have(u, *hints, then.facet, gathered.facets_of_names(then.masters))
+        named = [gathered.facets_of_names(then.masters) for then in thens]
+        self._have(u, *hints, *(then.facet for then in thens), *named)
         for facets in hints:
             facets[:] = gathered.renumbered(facets)
+        self._spread_flags()
+        return [self._here(then) for then in thens]
+
+    def _here(self, then: Opposite) -> Opposite:
+        """What was opposite, from `_named`, with the numbers of this process."""
+        gathered = self._gathered
         facet, nodes = gathered.renumbered(then.facet), then.nodes
         if len(gathered.facets.nodes):
             nodes = gathered.facets.nodes[np.maximum(facet, 0)]
-        then = replace(then, masters=gathered.of_names(then.masters), facet=facet, nodes=nodes)
-        self._then = then.in_order()
-        self._spread_flags()
+        masters = gathered.of_names(then.masters)
+        return replace(then, masters=masters, facet=facet, nodes=nodes).in_order()
 
     def _spread_flags(self) -> None:
         """Take what rests among gathered nodes as well; collective."""
@@ -327,10 +346,31 @@ class MortarMaster(MeshedMaster):
         return np.asarray(way)
 
     @override
+    def begin(self) -> None:
+        if self._replaced is not None:
+            self._then, self._replaced = self._then.with_rows(*self._replaced), None
+            self._at = self._placed()
+
+    @override
+    def anchor(self, start: State) -> None:
+        fresh = (start["facet"] >= 0) & (start["facet"] < len(start))
+        if not self._comm.allreduce(int(fresh.any())):
+            return
+        here = self._at.opposite[0].with_axes(self._at.planes.now)
+        if self._replaced is None:
+            self._replaced = (np.zeros(len(start), dtype=bool), self._then)
+        known, before = self._replaced
+        self._replaced = (known | fresh, before)
+        self._then = self._then.with_rows(fresh, here).in_order()
+        start["facet"][fresh] += len(start)
+        self._at = self._placed(self._at.weights)
+
+    @override
     def commit(self, before: Snapshot, state: State, now: Snapshot | None) -> Floats:
         if now is None:
             return np.zeros((0, 3))
-        self._then = self._at.opposite[0].in_order()
+        self._then = self._at.opposite[0].with_axes(self._at.planes.now).in_order()
+        self._replaced = None
         if self._fold is not None:
             self._fold.commit()
         self._count_as_then(now.response.state)
@@ -350,18 +390,12 @@ class MortarMaster(MeshedMaster):
 
     @override
     def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
-        hint, then = self._accepted[1], self._named()
+        hint, then = self._accepted[1], self._named(self._then)
         kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
         kept["projection.facet"] = self._gathered.globally(hint.facet)
         kept["state"]["facet"] = np.minimum(kept["state"]["facet"], 0)
         # as wide as on the process that has most
-        width = max(self._comm.allgather(then.masters.shape[1]))
-        more = [(0, 0), (0, width - then.masters.shape[1])]
-        then = replace(
-            then,
-            masters=np.pad(then.masters, more, constant_values=-1),
-            shares=np.pad(then.shares, more),
-        )
+        then = then.as_wide(max(self._comm.allgather(then.masters.shape[1])))
         kept |= {f"opposite.{name}": getattr(then, name).copy() for name in OPPOSITE}
         if self._fold is not None:
             kept["sides"] = self._fold.persistent()
@@ -374,7 +408,7 @@ class MortarMaster(MeshedMaster):
         kept = {name: values.copy() for name, values in kept.items()}
         self._hint = FacetProjections(*(kept[f"projection.{f.name}"] for f in fields(self._hint)))
         then = replace(self._then, **{name: kept[f"opposite.{name}"] for name in OPPOSITE})
-        self._number_anew(u, then, [self._hint.facet])
+        self._then = self._number_anew(u, [then], [self._hint.facet])[0]
         if self._fold is not None:
             self._fold.restore(kept["sides"])
         self._count_as_then(kept["state"])

@@ -281,6 +281,17 @@ class Multipliers:
         """
         raise NotImplementedError
 
+    def settled(self, _: ContactTrial) -> State | None:
+        """What the next trial starts from where points came to lie in equilibrium on springs.
+
+        Args:
+            step: The trial.
+
+        Returns:
+            The start, in which these carry friction from where they are; None if nothing changes.
+        """
+        return None
+
     def soften(self, _: State) -> State | None:
         """After a solution that failed: take what is easier to solve with.
 

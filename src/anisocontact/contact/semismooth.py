@@ -110,6 +110,10 @@ class Semismooth(Multipliers):
         new["status"][closed] = STICK
         return new
 
+    def settled(self, step: ContactTrial) -> State | None:
+        """As of `Multipliers.settled`: springs let a body glide on that nothing rubs against."""
+        return self.begin_from(step)
+
     def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
         """What the trials of the next increment start from, see `Multipliers.begin`."""
         self.share = 1.0

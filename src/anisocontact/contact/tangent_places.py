@@ -39,4 +39,5 @@ def tangent_places(sides: Sides, hit: FacetProjections) -> Opposite:
         np.ascontiguousarray(gradient.swapaxes(1, 2)),
         np.ascontiguousarray(second),
         np.where(inside[:, None], np.nan, hit.edge),
+        np.tile(np.eye(2, 3), (len(facet), 1, 1)),
     )

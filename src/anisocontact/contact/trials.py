@@ -173,6 +173,14 @@ class Trials:
         self._start_from(better)
         return True
 
+    def settle(self) -> None:
+        """Let points that came to lie in the trial, which is in equilibrium, carry friction."""
+        if self._multipliers is None or self._layer is not None:
+            return
+        settled = self._multipliers.settled(self._step(self._now))
+        if settled is not None:
+            self._start_from(settled)
+
     def soften(self) -> bool:
         """After a solution that failed: hold points that were let go, or take softer penalties.
 
@@ -352,6 +360,7 @@ class Trials:
 
     def _start_from(self, start: State) -> None:
         """Let trials start from other multipliers, perhaps with other penalties."""
+        self.master.anchor(start)
         self.start = start
         self._let_go_of_immovable()
         self._stiffen()

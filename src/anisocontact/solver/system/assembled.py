@@ -53,6 +53,8 @@ class AssembledSystem:
                 self._go_on(x)
             if moved and aid.flow.flows:
                 return True
+            if moved:
+                self.contact_term.settle()
         return self.contact_term.improve() or moved
 
     def soften(self) -> bool:

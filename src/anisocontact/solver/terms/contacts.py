@@ -126,6 +126,11 @@ class Contacts(Term):
         """
         return any([one.improve() for one in self._trials])
 
+    def settle(self) -> None:
+        """Let points that came to lie in equilibrium carry friction from there."""
+        for one in self._trials:
+            one.settle()
+
     def soften(self) -> bool:
         """After a solution that failed: softer penalties; whether any changed."""
         return any([one.soften() for one in self._trials])

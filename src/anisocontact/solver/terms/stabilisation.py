@@ -62,6 +62,8 @@ class Stabilisation(Term):
         released: What `flow` has dissipated since the start, force times length.
         careful: Whether bodies get springs also where they stick: until the step ends, or bodies on
             springs of their own are caught.
+        landed: Whether a body was in the air before the accepted state: how it has moved says
+            nothing of the next part.
         flow: What carries the bodies on where their equilibrium is lost.
         notes: What is stabilised since the last `begin`, a line for each body.
     """
@@ -78,7 +80,7 @@ class Stabilisation(Term):
     ) -> None:
         self.enabled = enabled
         self.energy = self.released = 0.0
-        self.careful = False
+        self.careful = self.landed = False
         self.notes: list[str] = []
         self.flow = Flow(model, scale)
         self._contacts = list(contacts)
@@ -88,6 +90,8 @@ class Stabilisation(Term):
         self._unheld = UnheldBodies(model, contacts, scale, attached, sprung, coupled)
         self._free: list[FreeBody] = []
         self._loose: list[FreeBody] = []
+        self._falling: list[FreeBody] = []
+        self._fell = False
         self._where: Flags | None = None
         self._caught = False
         self._held: list[Held] = []
@@ -169,6 +173,8 @@ class Stabilisation(Term):
         """
         self._begun = self._anchor = u.copy()
         self._spent, self._count = 0.0, 0
+        self._falling = [free for free in self._free if not free.touched()]
+        self._fell = bool(self._falling)
         for free in self._loose:
             free.act_on(self._where)
             total = self._comm.allreduce(load[free.body.nodes].sum(axis=0))
@@ -221,7 +227,8 @@ class Stabilisation(Term):
         force = self.force(u)
         # In the first equilibrium the loads have grown from those of the accepted state.
         share = 0.5 if self._count == 0 else 1.0
-        self._spent -= share * self._comm.allreduce(float((force * (u - self._anchor)).sum()))
+        against = share * force + 0.5 * self._stopping(u)
+        self._spent -= self._comm.allreduce(float((against * (u - self._anchor)).sum()))
         carried = np.sqrt(self._comm.allreduce(float((force**2).sum())))
         if carried <= SHARE * at_work:
             return False
@@ -236,6 +243,18 @@ class Stabilisation(Term):
             if free.touched() and not free.trusted:
                 free.stiffness = max(FADE * free.stiffness, LEAST * self._scale)
         return True
+
+    def _stopping(self, u: Floats) -> Floats:
+        """Forces of contact that have stopped falls on the way to here, (nodes, 3).
+
+        Nothing carried the body on that way: what they leave of the work of loads is lost.
+        """
+        out = np.zeros_like(u)
+        landed = [free for free in self._falling if free.touched()]
+        for contact in {id(c): c for free in landed for c in free.contacts}.values():
+            contact.add_force(out)
+        self._falling = [free for free in self._falling if not free.touched()]
+        return out
 
     def lets_go(self, u: Floats) -> str:
         """Why contact does not hold the free bodies in equilibrium; empty if it does.
@@ -327,6 +346,7 @@ class Stabilisation(Term):
         self.released += self.flow.spent
         self._spent = 0.0
         self.careful = self.careful and not self._caught
+        self.landed = self._fell
         if self.flow.flows:
             steps = self.flow.steps
             self.notes.append(f"equilibrium was lost: {steps} steps of viscous flow to the next")
