@@ -9,11 +9,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from matplotlib.artist import Artist
+from matplotlib.image import imread
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact import __version__
 from anisocontact.base.errors import InputError
+from anisocontact.base.figure_style import new_figure, save
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.results import Results
@@ -253,6 +256,31 @@ def test_report_can_be_made_again_from_the_folder(quick, run):
     picture.unlink()
     assert write_report(run.folder) == []
     assert picture.read_bytes() == before
+
+
+def test_a_picture_is_drawn_once(tmp_path):
+    """`savefig` of Matplotlib draws twice; the pixels are the same."""
+    figure, twice, drawn = new_figure(3.0, 2.0), tmp_path / "twice.png", []
+    left, right = figure.subplots(1, 2)
+    left.plot([0.0, 1.0], [1.0, 3.0], label="line")
+    right.set(title="title", xlabel="x [length]")
+    figure.legend(loc="outside lower center")
+    figure.savefig(twice)
+    figure.add_artist(_Counting(drawn))
+    save(figure, tmp_path / "once.png")
+    assert drawn == [figure]
+    assert np.array_equal(imread(tmp_path / "once.png"), imread(twice))
+
+
+class _Counting(Artist):
+    """Nothing to be seen; counts how often it is drawn."""
+
+    def __init__(self, drawn):
+        super().__init__()
+        self.drawn = drawn
+
+    def draw(self, renderer):
+        self.drawn.append(self.figure)
 
 
 def test_a_picture_that_fails_does_not_cost_the_report(run, monkeypatch):

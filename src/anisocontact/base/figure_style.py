@@ -62,10 +62,15 @@ def save(figure: Figure, path: Path) -> None:
         figure: The picture.
         path: The file; it is written whole or not at all.
     """
-    out = io.BytesIO()
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.image import imsave
+
+    out, canvas = io.BytesIO(), FigureCanvasAgg(figure)
     with warnings.catch_warnings():
         # letters of a name that the font has not are drawn as boxes
         warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from font", UserWarning)
-        figure.savefig(out, format="png", metadata={"Software": None})
+        canvas.draw()  # `savefig` draws twice: once for the layout, once for the picture
+    told = {"Software": None}
+    imsave(out, canvas.buffer_rgba(), format="png", dpi=figure.dpi, metadata=told)
     with replacing(path) as draft:
         draft.write_bytes(out.getvalue())
