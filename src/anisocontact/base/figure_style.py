@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import warnings
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from anisocontact.base.errors import printable
 from anisocontact.base.whole_files import replacing
@@ -65,12 +65,13 @@ def save(figure: Figure, path: Path) -> None:
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.image import imsave
 
-    out, canvas = io.BytesIO(), FigureCanvasAgg(figure)
+    out = io.BytesIO()
+    canvas: Any = FigureCanvasAgg(figure)
+    told: Any = {"Software": None}
     with warnings.catch_warnings():
         # letters of a name that the font has not are drawn as boxes
         warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from font", UserWarning)
         canvas.draw()  # `savefig` draws twice: once for the layout, once for the picture
-    told = {"Software": None}
     imsave(out, canvas.buffer_rgba(), format="png", dpi=figure.dpi, metadata=told)
     with replacing(path) as draft:
         draft.write_bytes(out.getvalue())

@@ -57,7 +57,7 @@ class ContactTangent:
         self.count, self._spread = count, spread
         self.scale = max((float(np.abs(np.diagonal(b)).max()) for _, b in blocks), default=1.0)
         self._blocks = blocks
-        self._singles: list[Block] = []
+        self._singles: list[tuple[slice, Singles]] = []
         self._places = Places(number if spread is None else np.arange(len(number)))
         self._contact = scipy.sparse.csr_array((count, count))
         self._slaves = np.zeros(count, dtype=np.bool_)
@@ -90,7 +90,7 @@ class ContactTangent:
     def bodies_times(self, x: Singles) -> Singles:
         """The product of S over `scale` with a vector that is zero on most blocks, (c,)."""
         if not self._singles:
-            self._singles = [(p, (b / self.scale).astype(np.float32)) for p, b in self._blocks]
+            self._singles = [(place, self._single(block)) for place, block in self._blocks]
         out = np.zeros_like(x)
         for place, block in self._singles:
             if x[place].any():
@@ -115,6 +115,7 @@ class ContactTangent:
 
     def front_of(self, shares: Sparse, stays: Flags) -> Front:
         """The same with what is known of it, see `Front`."""
+        self._singles = []  # gives the memory back
         return Front(self._bodies, shares, stays)
 
     def _bodies(self) -> Singles:
@@ -123,6 +124,11 @@ class ContactTangent:
         for place, block in self._blocks:
             np.divide(block, self.scale, out=matrix[place, place], casting="same_kind")
         return matrix
+
+    def _single(self, block: Floats) -> Singles:
+        """A block of S over `scale`."""
+        out: Singles = np.empty_like(block, dtype=np.float32)
+        return np.divide(block, self.scale, out=out, casting="same_kind")
 
     def clearly(self, change: Sparse, share: float = CLEARLY) -> Flags:
         """Rows in which a change, over `scale`, is more than a share of the bodies' stiffness."""

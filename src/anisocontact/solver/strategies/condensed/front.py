@@ -8,7 +8,7 @@ All of it is in single precision.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -16,8 +16,12 @@ import numpy.typing as npt
 import scipy
 
 Flags = npt.NDArray[np.bool_]
+Ints = npt.NDArray[np.int64]
 Singles = npt.NDArray[np.float32]
 type Sparse = Any  # scipy.sparse.csr_array
+
+#: Rows or columns of a dense matrix in one product.
+_AT_ONCE = 512
 
 
 class Front:
@@ -51,12 +55,16 @@ class Front:
 
     def _eliminate(self) -> None:
         whole, rest, own = self._summed(), self._rest, self.unknowns
-        whole += (self.shares.T @ whole.T).T
-        whole += self.shares.T @ whole
-        self._factor = _factor(np.asfortranarray(whole[np.ix_(rest, rest)]))
-        self._across = np.asfortranarray(whole[np.ix_(own, rest)])
-        self._follows = self._factor(np.asfortranarray(whole[np.ix_(rest, own)]))
-        front = np.asfortranarray(whole[np.ix_(own, own)])
+        back = self.shares.T.tocsr()
+        for part in _parts(len(whole)):  # all at once needs twice the memory
+            whole[part] += (back @ whole[part].T).T
+        for part in _parts(len(whole)):
+            whole[:, part] += back @ whole[:, part]
+        self._across, front = _taken(whole, own, rest), _taken(whole, own, own)
+        follows, left = _taken(whole, rest, own), _taken(whole, rest, rest)
+        del whole
+        self._factor = _factor(left)
+        self._follows = self._factor(follows)
         self._matrix = scipy.linalg.blas.sgemm(
             -1.0, self._across, self._follows, beta=1.0, c=front, overwrite_c=1
         )
@@ -100,6 +108,16 @@ class Front:
         x[own] = solve(product(-1.0, self._across, alone, beta=1.0, y=b[own]))
         x[rest] = product(-1.0, self._follows, x[own], beta=1.0, y=alone)
         return x
+
+
+def _taken(whole: Singles, rows: Ints, columns: Ints) -> Singles:
+    """Some rows and columns of a matrix, by columns."""
+    return whole.T[np.ix_(columns, rows)].T
+
+
+def _parts(count: int) -> Iterator[slice]:
+    """Rows or columns of a matrix, some at a time."""
+    return (slice(first, first + _AT_ONCE) for first in range(0, count, _AT_ONCE))
 
 
 def _factor(matrix: Singles) -> Callable[[Singles], Singles]:

@@ -146,6 +146,7 @@ class KeptFactor:
         front = self._front
         if front is not None and (least <= _PRECISE or not self._moved(front)):
             return False
+        self._front = self._solve = front = None  # gives the memory back
         self._begin(self._tangent.front())
         return True
 
@@ -158,6 +159,7 @@ class KeptFactor:
         """Make a factor with nothing eliminated."""
         if least < _USEFUL or (self._front is not None and self._front.stays.all()):
             return False
+        self._front = self._solve = None  # gives the memory back
         self._begin(self._tangent.front(whole=True))
         return True
 

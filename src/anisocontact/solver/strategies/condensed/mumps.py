@@ -27,6 +27,10 @@ Floats = npt.NDArray[np.float64]
 _ICNTL_SCHUR_SOLUTION, _INTERIOR_ALONE = 26, 0
 #: MUMPS: workspace beyond what it expects to need, percent: tried one after the other.
 _ICNTL_WORKSPACE, WORKSPACE = 14, (30, 200, 1000)
+#: MUMPS: whether workspace that a factorisation leaves is given back, and "by a copy".
+_ICNTL_COMPACT, _BY_COPY = 49, 1
+#: The same where no pivots are looked for, as a rule: what is expected is what is needed.
+WORKSPACE_SYMMETRIC = (5, *WORKSPACE)
 #: MUMPS: what it says where its workspace was too small.
 TOO_SMALL = (-8, -9, -14, -15, -17, -20)
 
@@ -50,9 +54,9 @@ def reachable() -> bool:
 class MumpsFactor(Eliminated):
     """An interior eliminated by MUMPS; arguments as of `Way`.
 
-    MUMPS makes S as the last front of one factorisation, which then solves with `A_ii`. LU takes
-    0.6 of the time of LDL^T, with twice the operations: OpenBLAS has a fast product of matrices
-    and a slow one of which a triangle is wanted (73 and 13 Gflop/s).
+    MUMPS makes S as the last front of one factorisation, which then solves with `A_ii`. LDL^T takes
+    0.63 of the memory of LU and, with half of the operations, 1.3 times its time: OpenBLAS has a
+    fast product of matrices and a slow one of which a triangle is wanted.
 
     Example:
         >>> springs = scipy.sparse.csr_array([[2.0, -1.0], [-1.0, 2.0]])
@@ -63,14 +67,19 @@ class MumpsFactor(Eliminated):
 
     def __init__(self, matrix: scipy.sparse.csr_array, border: Ints) -> None:
         self._border = border
-        self._matrix = aij(matrix)
-        self._matrix.setOption(PETSc.Mat.Option.SYMMETRIC, True)
-        for extra in WORKSPACE:
-            self._pc, self._factor = partial_factor(self._matrix, border, extra)
+        given = aij(matrix)
+        given.setOption(PETSc.Mat.Option.SYMMETRIC, True)
+        kind = PETSc.PC.Type.CHOLESKY
+        for extra in WORKSPACE_SYMMETRIC:
+            pc, self._factor = partial_factor(given, border, extra, kind=kind)
             if self._factor.getMumpsInfog(1) not in TOO_SMALL:
                 break
-        if self._pc.getFailedReason() != 0:
-            check_memory(self._pc)
+        failed = pc.getFailedReason() != 0
+        if failed:
+            check_memory(pc)
+        pc.destroy()  # the factor goes without the matrix
+        given.destroy()
+        if failed:
             self.close()
             raise singular()
         # of the solutions that MUMPS offers: the interior, border at zero
@@ -98,8 +107,7 @@ class MumpsFactor(Eliminated):
 
     @override
     def close(self) -> None:
-        self._pc.destroy()
-        self._matrix.destroy()
+        self._factor.destroy()
 
     def _schur_view(self, count: int) -> Floats:
         """S without a copy, made symmetric to the last bit."""
@@ -108,7 +116,9 @@ class MumpsFactor(Eliminated):
         return view
 
 
-def partial_factor(matrix: Mat, border: Ints, extra: int, prefix: str = "") -> tuple[Any, Mat]:
+def partial_factor(
+    matrix: Mat, border: Ints, extra: int, prefix: str = "", kind: str = PETSc.PC.Type.LU
+) -> tuple[Any, Mat]:
     """Factorise with a border left.
 
     Args:
@@ -116,18 +126,20 @@ def partial_factor(matrix: Mat, border: Ints, extra: int, prefix: str = "") -> t
         border: Numbers of the border unknowns.
         extra: Percent of workspace beyond what MUMPS expects.
         prefix: Prefix of PETSc's options.
+        kind: PETSc's name of the factorisation.
 
     Returns:
         PETSc's preconditioner, which owns it, and the factor.
     """
     pc = PETSc.PC().create(comm=PETSc.COMM_SELF)
     pc.setOperators(matrix)
-    pc.setType(PETSc.PC.Type.LU)
+    pc.setType(kind)
     pc.setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
     pc.setFactorSetUpSolverType()
     factor = pc.getFactorMatrix()
     factor.setOptionsPrefix(prefix)
     factor.setMumpsIcntl(_ICNTL_WORKSPACE, extra)
+    factor.setMumpsIcntl(_ICNTL_COMPACT, _BY_COPY)
     numbers = PETSc.IS().createGeneral(border.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
     call_petsc("MatFactorSetSchurIS", factor, numbers)
     numbers.destroy()

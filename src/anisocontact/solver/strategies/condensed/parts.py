@@ -70,16 +70,21 @@ class Condensation:
         self.stiffness = stiffness
         self.prescribed: Ints = np.flatnonzero(prescribed)
         self._note = note
-        self._parts: dict[int, CondensedPart] = {}
-        old = {} if before is None else before._parts
-        for number in range(int(part_of.max()) + 1):
-            free = np.flatnonzero((part_of == number) & ~prescribed)
+        old: dict[int, CondensedPart] = {} if before is None else before._parts
+        frees = {
+            number: np.flatnonzero((part_of == number) & ~prescribed)
+            for number in range(int(part_of.max()) + 1)
+        }
+        made: dict[int, CondensedPart] = {}
+        # the largest one first: while a part is factorised it needs most of its memory
+        for number, free in sorted(frees.items(), key=lambda part: -len(part[1])):
             known = old.pop(number, None)
             if len(free):
                 border = free[touched[free]]
-                self._parts[number] = self._part(known, free, border if len(border) else free[:1])
+                made[number] = self._part(known, free, border if len(border) else free[:1])
             elif known is not None:
                 known.factor.close()
+        self._parts: dict[int, CondensedPart] = dict(sorted(made.items()))
         parts = self._parts.values()
         self.contact: Ints = np.concatenate([np.zeros(0, np.int64), *(p.border for p in parts)])
         ends = np.cumsum([0, *(len(p.border) for p in parts)])
