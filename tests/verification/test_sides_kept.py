@@ -18,7 +18,7 @@ from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.rigid import MovingSurface, RigidBody
-from anisocontact.solver import ContactProblem, Problem, Solver, Step, StoppedError
+from anisocontact.solver import ContactProblem, Problem, Solver, Spring, Step, StoppedError
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
 from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.system.culprit import Culprit, LostError
@@ -143,6 +143,46 @@ def test_a_block_that_has_sunk_in(master: str) -> None:
     """Pressed into its master by 0.7 of its height, against a penalty that holds it there."""
     said = _said(_problem(master), _shifted(0, 0, -0.7))
     assert "body 'block' is behind its master with 67% of it, the farthest of it 0.7 behind" in said
+
+
+@pytest.mark.parametrize("master", MASTERS)
+def test_a_block_of_which_the_face_alone_is_known(master: str) -> None:
+    """The same with displacements at the nodes that can be touched, as `condensed` has them.
+
+    Requirement: the same words, whatever stands at the other nodes, and none where it may be.
+    """
+    for move, said in (
+        (_shifted(0, 0, -0.7), "with 67% of it, the farthest of it 0.7"),
+        (_turned(20.0), ""),
+    ):
+        problem = _problem(master)
+        x = _state(problem, move)
+        problem.begin(Step("any", 1, CLAMP if "base" in problem.model.body_names() else {}))
+        problem.set_load_factor(1.0, 1.0)
+        problem.behind_a_master(x)
+        u = problem.nodal.copy()
+        inside = np.ones(len(u), dtype=bool)
+        inside[problem.contacts[0].couplable()] = False
+        u[inside] = 5.0
+        found = problem.sides.objection(u, whole=False)
+        assert said in ("" if found is None else found.why)
+        assert (found is None) == (said == "")
+
+
+@pytest.mark.parametrize("strategy", ["direct", "condensed", "iterative"])
+def test_a_block_that_sinks_in_is_not_done(strategy: str) -> None:
+    """A force of 0.4 on a block of unit size; a penalty balances it 0.8 behind its master."""
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+    surface = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    laws = NormalLaw(penalty=0.5), Adhesion(stiffness=(0.5, 0.5)), Friction(coefficients=(0.0, 0.0))
+    contact = Contact(model, "block.bottom", Interface(surface, *laws))
+    material = make_material("linear-elastic", E=10.0, nu=0.3)
+    hold = Spring("hold", "block.top", (0.0, 0.0, 1e-3))
+    problem = Problem(model, {"block": material}, [contact], [hold])
+    press = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0}}, force={"block.top": {"z": -0.4}})
+    limits = Limits(smallest=1.0)
+    with pytest.raises(StoppedError, match=r"body 'block' is behind its master with \d+% of it"):
+        list(Solver(problem, [press], limits=limits, strategy=strategy).run())
 
 
 @pytest.mark.parametrize("master", MASTERS)

@@ -42,12 +42,35 @@ class _Watched:
         body: The body; None where slave and master are one.
         nodes: Nodes of this rank.
         places: Where they were, (n, 3), length.
+        touchable: Nodes of the body that the contact acts on, of those this rank owns.
+        arms: Their places relative to the centre over the size of the body, (m, 3).
     """
 
     one: Contact
     body: ConnectedBody | None
     nodes: Ints
     places: Floats
+    touchable: Ints
+    arms: Floats
+
+    def carried(self, u: Floats) -> Floats:
+        """Displacement of the nodes where those that can be touched alone are known, (n, 3).
+
+        The body is taken to go with them as a rigid one, in the sense of least squares; what it
+        is strained is small where displacements inside of it are not known.
+
+        Args:
+            u: Displacement of the local nodes, (nodes, 3), length.
+        """
+        assert self.body is not None
+        motions = _motions(self.arms)
+        square = np.einsum("mij,mik->jk", motions, motions)
+        right = np.einsum("mij,mi->j", motions, u[self.touchable])
+        total = self.one.space.mesh.comm.allreduce(np.column_stack([square, right]))
+        motion = np.linalg.lstsq(total[:, :6], total[:, 6], rcond=1e-10)[0]
+        arms = (self.places - self.body.centre) / self.body.size
+        moved: Floats = _motions(arms) @ motion
+        return moved
 
 
 class SidesKept:
@@ -83,7 +106,7 @@ class SidesKept:
         where = watched.one.whereabouts(u)
         comm = where.comm
         name = watched.one.slave.partition(".")[0]
-        behind, depth, place = self._behind(watched, u if whole else None)
+        behind, depth, place = self._behind(watched, u, whole)
         pressed = where.from_behind()
         gone, below = where.through()
         far = f", the farthest of it {depth:.3g} behind" if depth > 0.0 else ""
@@ -102,12 +125,12 @@ class SidesKept:
             text = f"body {name!r} is behind its master with {behind:.0%} of it"
             yield Culprit("behind", place, text + far, watched.one.name)
 
-    def _behind(self, watched: _Watched, u: Floats | None) -> tuple[float, float, Point]:
+    def _behind(self, watched: _Watched, u: Floats, whole: bool) -> tuple[float, float, Point]:
         """Share of a body behind the master that was in front of it, how far at most, and where."""
-        if watched.body is None or u is None:
+        if watched.body is None:
             return 0.0, 0.0, (0.0, 0.0, 0.0)
         comm = watched.one.space.mesh.comm
-        x = watched.places + u[watched.nodes]
+        x = watched.places + (u[watched.nodes] if whole else watched.carried(u))
         seen = watched.one.master.look(x)
         depth = np.where(seen.on, -seen.gap, 0.0)
         behind = depth > DEEP * watched.body.size
@@ -131,8 +154,15 @@ class SidesKept:
         return Culprit("behind", position, why, watched.one.name, point, facet)
 
 
+def _motions(arms: Floats) -> Floats:
+    """Translations and turns of unit size at places relative to a centre, (n, 3, 6)."""
+    still = np.broadcast_to(np.eye(3), (len(arms), 3, 3))
+    return np.concatenate([still, np.cross(np.eye(3), arms[:, None, :]).swapaxes(1, 2)], axis=2)
+
+
 def _alone(one: Contact) -> _Watched:
-    return _Watched(one, None, np.zeros(0, dtype=np.int64), np.zeros((0, 3)))
+    nodes, places = np.zeros(0, dtype=np.int64), np.zeros((0, 3))
+    return _Watched(one, None, nodes, places, nodes, places)
 
 
 def _watched(model: Model, one: Contact, groups: list[ConnectedBody]) -> _Watched:
@@ -144,4 +174,5 @@ def _watched(model: Model, one: Contact, groups: list[ConnectedBody]) -> _Watche
     nodes = body.nodes[:: max(1, len(body.nodes) // MOST_NODES)]
     seen = one.master.look(places[nodes])
     nodes = nodes[seen.on & (seen.gap > -DEEP * body.size)]
-    return _Watched(one, body, nodes, places[nodes])
+    touchable = np.isin(body.nodes, one.couplable())
+    return _Watched(one, body, nodes, places[nodes], body.nodes[touchable], body.arms[touchable])
