@@ -18,9 +18,9 @@ Floats = npt.NDArray[np.float64]
 
 #: Cosine of the angle of the normals of slave and master above which they point the same way.
 SAME_WAY = 0.5
-#: Depth over the facet size above which surfaces count as overlapping: more than the rounding of a
-#: mesh file.
-OVERLAP = 1e-6
+#: Depth over the facet size above which surfaces count as overlapping: more than the rounding of
+#: CAD kernels and mesh files.
+OVERLAP = 1e-5
 #: Distance over the facet size within which a point can be in contact at once.
 NEAR = 1.0
 

@@ -28,10 +28,12 @@ Floats = npt.NDArray[np.float64]
 
 #: Ends of the parts of an edge by the number of its nodes, and their coordinates.
 _PARTS = {2: ([[0, 1]], [[0.0, 1.0]]), 3: ([[0, 2], [2, 1]], [[0.0, 0.5], [0.5, 1.0]])}
-#: Share of a part below which an overlap is rounding, least pivot of scaled dual functions, and
-#: least share of its weight that is covered for a node, over the largest; as in
-#: cpp/include/anisocontact/mortar.
-SLIVER, LEAST, EXTRAPOLATED = 1e-13, 1e-13, 0.2
+#: Share of a part below which an overlap is rounding, and least pivot of scaled dual functions, as
+#: in cpp/include/anisocontact/mortar.
+SLIVER, LEAST = 1e-13, 1e-13
+#: Shares of its weight that are covered, over the largest, below which a node gives all of its
+#: weights away and above which it keeps them, as there.
+GIVEN, KEPT = 0.1, 0.3
 #: Share of a whole edge that each function makes up, by their number.
 _WHOLE = {2: [1 / 2, 1 / 2], 3: [1 / 6, 1 / 6, 2 / 3]}
 
@@ -234,16 +236,32 @@ class LineWeights:
 
     def handed_over(self, whole: Floats) -> LineWeights:
         """Without nodes that would be extrapolated to; `whole`, (k,), are those all of which is."""
-        share = self.area / whole
-        kept = share > EXTRAPOLATED * share.max(axis=1, keepdims=True)
-        # row i has what node i gets of the others, its own included
-        gets = kept[:, :, None] / np.maximum(kept.sum(axis=1), 1)[:, None, None] * ~kept[:, None]
-        gets = gets + kept[:, :, None] * np.eye(kept.shape[1])
-        given = (
-            np.einsum("fij,fj...->fi...", gets, one)
-            for one in (self.area, self.weight, self.d_area, self.d_weight)
-        )
-        return LineWeights(self.masters, *given)
+        share, d_share = self.area / whole, self.d_area / whole[:, None]
+        most = share.argmax(axis=1)[:, None]
+        covered = np.take_along_axis(share, most, axis=1)
+        covered = np.where(covered > 0.0, covered, 1.0)
+        share = share / covered
+        d_share = d_share - share[..., None] * np.take_along_axis(d_share, most[..., None], axis=1)
+        t = np.clip((KEPT - share) / (KEPT - GIVEN), 0.0, 1.0)
+        gives = t * t * (3.0 - 2.0 * t)
+        d_gives = (-6.0 * t * (1.0 - t) / ((KEPT - GIVEN) * covered))[..., None] * d_share
+        rest = np.maximum((1.0 - gives).sum(axis=1), 1.0)[:, None]
+        gets = (1.0 - gives) / rest
+        d_gets = (gets[..., None] * d_gives.sum(axis=1, keepdims=True) - d_gives) / rest[..., None]
+
+        def moved(x: Floats, dx: Floats) -> tuple[Floats, Floats]:
+            """(1 - lambda_i) x_i + q_i sum_j lambda_j x_j, x of (f, k, c), and its derivative."""
+            total = np.einsum("fj,fjc->fc", gives, x)
+            d_total = np.einsum("fjv,fjc->fcv", d_gives, x) + np.einsum("fj,fjcv->fcv", gives, dx)
+            slope = (1.0 - gives)[..., None, None] * dx
+            slope += gets[..., None, None] * d_total[:, None]
+            slope += d_gets[:, :, None] * total[:, None, :, None]
+            slope -= d_gives[:, :, None] * x[..., None]
+            return (1.0 - gives)[..., None] * x + gets[..., None] * total[:, None], slope
+
+        area, d_area = moved(self.area[..., None], self.d_area[:, :, None])
+        weight, d_weight = moved(self.weight, self.d_weight)
+        return LineWeights(self.masters, area[..., 0], weight, d_area[:, :, 0], d_weight)
 
 
 def listed(owner: Numbers, nodes: Ints, count: int) -> Ints:

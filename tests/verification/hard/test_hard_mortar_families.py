@@ -131,7 +131,7 @@ def _members(fast: int, count: int) -> list:
     return [*range(fast), *slow]
 
 
-@pytest.mark.parametrize("seed", _members(3, 48))
+@pytest.mark.parametrize("seed", _members(3, 200))
 def test_pairs(to_the_end, seed):
     """Block on base, stiffness ratio 1e-3 to 1e3, meshes that do not match: none fails.
 
@@ -141,7 +141,7 @@ def test_pairs(to_the_end, seed):
     """
     text, mu = member(seed)
     run = to_the_end(text, most=MOST)
-    assert len(run.cuts) <= 1
+    assert not run.cuts
     _asked(run, mu)
 
 

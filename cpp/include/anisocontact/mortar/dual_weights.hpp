@@ -111,32 +111,69 @@ ANISOCONTACT_INLINE bool put_weights(const Integrals<L>& in, std::size_t n,
   return true;
 }
 
-/// Least share of its weight that has to be covered for a node, over that of the node of the facet of
-/// which most is: dual functions of less extrapolate from a strip to where nothing is covered.
-inline constexpr double extrapolated = 0.2;
+/// Shares of its weight that are covered, over that of the node of the facet of which most is, below
+/// which a node gives all of its weights away and above which it keeps them: dual functions of less
+/// extrapolate from a strip to where nothing is covered.
+inline constexpr double given = 0.1, kept = 0.3;
+
+/// What nodes of a facet give away and what they get of it, with derivatives.
+struct HandOver {
+  Eigen::VectorXd gives, gets;          ///< shares, of the node's own and of what all give
+  DualWeights::Matrix d_gives, d_gets;  ///< (slaves, columns)
+};
+
+/// Shares lambda that nodes give, smooth in what is covered, and those q that they get,
+///   lambda = t^2 (3 - 2 t), t = (kept - s) / (kept - given), s = D_i / D_i^whole over the largest,
+///   q_i = (1 - lambda_i) / sum_k (1 - lambda_k) .
+inline HandOver shares_handed_over(std::span<const double> whole, const DualWeights& in) {
+  const auto n = static_cast<Index>(whole.size()), columns = in.d_area.cols();
+  const Eigen::VectorXd per_whole =
+      Eigen::Map<const Eigen::VectorXd>(whole.data(), n).cwiseInverse();
+  const Eigen::VectorXd covered = in.area.cwiseProduct(per_whole);
+  Index most = 0;
+  const double largest = covered.maxCoeff(&most);
+  const Eigen::ArrayXd share = covered.array() / largest;
+  const Eigen::ArrayXd t = ((kept - share) / (kept - given)).max(0.0).min(1.0);
+  HandOver out;
+  out.gives = t * t * (3.0 - 2.0 * t);
+  const double rest = static_cast<double>(n) - out.gives.sum();
+  out.gets = (1.0 - out.gives.array()) / rest;
+  if (columns == 0) return out;
+  const Eigen::VectorXd slope = -6.0 * t * (1.0 - t) / ((kept - given) * largest);
+  out.d_gives = per_whole.asDiagonal() * in.d_area;
+  out.d_gives -= share.matrix() * Eigen::RowVectorXd(out.d_gives.row(most));
+  out.d_gives = slope.asDiagonal() * out.d_gives;
+  out.d_gets = out.gets * out.d_gives.colwise().sum() - out.d_gives;
+  out.d_gets /= rest;
+  return out;
+}
 
 /// Gives the weights of nodes that would be extrapolated to the other nodes of the facet, so that a
 /// uniform traction is still handed over exactly; `whole` are the weights where all is covered.
 inline void hand_over(std::span<const double> whole, DualWeights& out) {
-  const auto n = static_cast<Index>(whole.size()), masters = out.weight.cols();
-  const Eigen::VectorXd share =
-      out.area.array() / Eigen::Map<const Eigen::ArrayXd>(whole.data(), n);
-  const auto kept = share.array() > extrapolated * share.maxCoeff();
-  const double part = 1.0 / static_cast<double>(kept.count());
-  const auto move = [&](auto& rows, Index width) {
-    for (Index from = 0; from < n; ++from) {
-      if (kept[from]) continue;
-      auto little = rows.middleRows(from * width, width);
-      for (Index to = 0; to < n; ++to)
-        if (kept[to]) rows.middleRows(to * width, width) += part * little;
-      little.setZero();
+  const HandOver by = shares_handed_over(whole, out);
+  if (!(by.gives.maxCoeff() > 0.0)) return;
+  const auto n = static_cast<Index>(whole.size()), columns = out.d_area.cols();
+  const Eigen::VectorXd keeps = 1.0 - by.gives.array();
+  // x_i becomes (1 - lambda_i) x_i + q_i sum_j lambda_j x_j
+  const auto move = [&](DualWeights::Matrix& x, DualWeights::Matrix& dx) {
+    const Eigen::RowVectorXd sum = by.gives.transpose() * x;
+    for (Index k = 0; k < x.cols() && columns > 0; ++k) {
+      Eigen::RowVectorXd d_sum = Eigen::RowVectorXd::Zero(columns);
+      for (Index j = 0; j < n; ++j)
+        d_sum += by.d_gives.row(j) * x(j, k) + by.gives[j] * dx.row(j * x.cols() + k);
+      for (Index i = 0; i < n; ++i) {
+        auto row = dx.row(i * x.cols() + k);
+        row = keeps[i] * row - by.d_gives.row(i) * x(i, k) + by.d_gets.row(i) * sum[k] +
+              by.gets[i] * d_sum;
+      }
     }
+    x = (keeps.asDiagonal() * x + by.gets * sum).eval();
   };
-  move(out.area, 1);
-  move(out.weight, 1);
-  if (out.d_area.size() == 0) return;
-  move(out.d_area, 1);
-  move(out.d_weight, masters);
+  move(out.weight, out.d_weight);
+  DualWeights::Matrix area = out.area;
+  move(area, out.d_area);
+  out.area = area;
 }
 
 }  // namespace detail
