@@ -40,17 +40,23 @@ nb::tuple plane_slopes(const Points& slave, const Cube& tangents, const Points& 
                        const Scalars& area, const Table& masters, const Rows& shares,
                        const Indices& facet, const Table& nodes, const Rows& shape,
                        const Cube& gradient, const Blocks& second, const Coordinates& edge,
+                       const Table& around, const Cube& along, const Blocks& bending,
                        const Indices& which, const Slopes& by_nodes, std::size_t threads) {
-  const mortar::PlanesView planes{
-      slave.data(),
-      tangents.data(),
-      normal.data(),
-      held.data(),
-      now.data(),
-      reference.data(),
-      area.data(),
-      {masters.shape(1), nodes.shape(1), masters.data(), shares.data(), facet.data(), nodes.data(),
-       shape.data(), gradient.data(), second.data(), edge.data()}};
+  const mortar::PlanesView planes{slave.data(),
+                                  tangents.data(),
+                                  normal.data(),
+                                  held.data(),
+                                  now.data(),
+                                  reference.data(),
+                                  area.data(),
+                                  {masters.shape(1),
+                                   masters.data(),
+                                   shares.data(),
+                                   facet.data(),
+                                   shape.data(),
+                                   edge.data(),
+                                   {nodes.shape(1), nodes.data(), gradient.data(), second.data()},
+                                   {around.shape(1), around.data(), along.data(), bending.data()}}};
   const std::size_t p = which.shape(0), most = masters.shape(1);
   Array<double> by({p, mortar::moving_parts, mortar::block_size}, unset), lift({p, most, 3}, unset);
   {
@@ -71,8 +77,9 @@ void bind_contact_planes(nb::module_& m) {
   m.def("plane_slopes", &plane_slopes, nb::arg("slave"), nb::arg("tangents"), nb::arg("normal"),
         nb::arg("held"), nb::arg("now"), nb::arg("reference"), nb::arg("area"), nb::arg("masters"),
         nb::arg("shares"), nb::arg("facet"), nb::arg("nodes"), nb::arg("shape"),
-        nb::arg("gradient"), nb::arg("second"), nb::arg("edge"), nb::arg("which"),
-        nb::arg("by_nodes"), nb::arg("threads"));
+        nb::arg("gradient"), nb::arg("second"), nb::arg("edge"), nb::arg("around"),
+        nb::arg("along"), nb::arg("bending"), nb::arg("which"), nb::arg("by_nodes"),
+        nb::arg("threads"));
 }
 
 }  // namespace anisocontact::bindings

@@ -49,6 +49,9 @@ class Opposite:
         second: Their second derivatives, (n, 2, 2, j).
         edge: Direction of the edge on which the place is, in coordinates, (n, 2); not a number
             inside a facet, zero at a vertex.
+        around: Nodes that the material tangents depend on, (n, i), -1 for none.
+        along: What they are made of, (n, 2, i), see `SurfaceGradient.tangents`.
+        bending: How that changes with the coordinates, (n, 2, 2, i).
         carried: Axes of the contact plane in both tangents and their normal, (n, 2, 3).
     """
 
@@ -60,6 +63,9 @@ class Opposite:
     gradient: Floats
     second: Floats
     edge: Floats
+    around: Ints
+    along: Floats
+    bending: Floats
     carried: Floats
 
     @classmethod
@@ -75,6 +81,9 @@ class Opposite:
             np.zeros((n, 2, width)),
             np.zeros((n, 2, 2, width)),
             np.zeros((n, 2)),
+            none,
+            np.zeros((n, 2, 1)),
+            np.zeros((n, 2, 2, 1)),
             np.tile(np.eye(2, 3), (n, 1, 1)),
         )
 
@@ -84,8 +93,10 @@ class Opposite:
 
     def with_rows(self, which: Mask, other: Opposite) -> Opposite:
         """The same with what is opposite to some nodes, (n,), from another one."""
-        width = max(self.masters.shape[1], other.masters.shape[1])
-        both = [one.as_wide(width) for one in (other, self)]
+        pair = (other, self)
+        masters = max(one.masters.shape[1] for one in pair)
+        around = max(one.around.shape[1] for one in pair)
+        both = [one.as_wide(masters, around) for one in pair]
         rows = {
             f.name: np.where(
                 which.reshape(-1, *[1] * (getattr(self, f.name).ndim - 1)),
@@ -94,12 +105,6 @@ class Opposite:
             for f in fields(self)
         }
         return Opposite(**rows)
-
-    def as_wide(self, width: int) -> Opposite:
-        """The same with places for so many masters."""
-        more = [(0, 0), (0, width - self.masters.shape[1])]
-        masters = np.pad(self.masters, more, constant_values=-1)
-        return replace(self, masters=masters, shares=np.pad(self.shares, more))
 
     def in_order(self, names: Ints | None = None) -> Opposite:
         """The same with the nodes that have a share alone, in ascending order.
@@ -113,20 +118,33 @@ class Opposite:
         masters = np.take_along_axis(names, order, axis=1).astype(np.int32)
         return replace(self, masters=masters, shares=np.take_along_axis(self.shares, order, axis=1))
 
+    def as_wide(self, masters: int, around: int) -> Opposite:
+        """The same with places for so many masters and nodes around."""
+        more, beside = masters - self.masters.shape[1], around - self.around.shape[1]
+        return replace(
+            self,
+            masters=np.pad(self.masters, [(0, 0), (0, more)], constant_values=-1),
+            shares=np.pad(self.shares, [(0, 0), (0, more)]),
+            around=np.pad(self.around, [(0, 0), (0, beside)], constant_values=-1),
+            along=np.pad(self.along, [(0, 0), (0, 0), (0, beside)]),
+            bending=np.pad(self.bending, [(0, 0), (0, 0), (0, 0), (0, beside)]),
+        )
+
     def mean(self, x: Floats) -> Floats:
         """Mean position, (n, 3), length, of nodes at x, (nodes, 3)."""
         return _core.node_sums(self.masters, self.shares[:, None], x)[:, 0]
 
     def tangents(self, x: Floats) -> Floats:
-        """Tangents, (n, 2, 3), length, of nodes at x, (nodes, 3)."""
-        found = _core.node_sums(self.nodes, self.gradient, x)
+        """Material tangents, (n, 2, 3), length, of nodes at x, (nodes, 3)."""
+        found = _core.node_sums(self.around, self.along, x)
         found[self.facet < 0] = np.eye(3)[:2]
         return found
 
     def named(self) -> Ints:
-        """All nodes of these, (n, k + j), -1 for none."""
-        facets = np.where(self.facet[:, None] >= 0, self.nodes, np.int32(-1))
-        return np.concatenate([self.masters, facets], axis=1).astype(np.int32)
+        """All nodes of these, (n, k + j + i), -1 for none."""
+        none = self.facet[:, None] < 0
+        found = [np.where(none, np.int32(-1), one) for one in (self.nodes, self.around)]
+        return np.concatenate([self.masters, *found], axis=1).astype(np.int32)
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ _PARTS = {2: ([[0, 1]], [[0.0, 1.0]]), 3: ([[0, 2], [2, 1]], [[0.0, 0.5], [0.5, 
 SLIVER, LEAST = 1e-13, 1e-13
 #: Shares of its weight that are covered, over the largest, below which a node gives all of its
 #: weights away and above which it keeps them, as there.
-GIVEN, KEPT = 0.1, 0.3
+GIVEN, KEPT = 0.15, 0.25
 #: Share of a whole edge that each function makes up, by their number.
 _WHOLE = {2: [1 / 2, 1 / 2], 3: [1 / 6, 1 / 6, 2 / 3]}
 

@@ -64,18 +64,18 @@ class MortarState:
 
     @property
     def _moving(self) -> list[tuple[int, Ints | None, Floats]]:
-        """How slave point, tangents and planes are made of nodes: first of ten, nodes, values.
+        """How slave point, tangents and planes are made of nodes: first of twelve, nodes, values.
 
         The slave point and its tangents, the mean of the master and the tangents there, these of
-        the accepted increment, and the place where the tangents are taken now.
+        the accepted increment, the place where the tangents are taken now and those of its facet.
         """
         quadrature, (now, then) = self.quadrature, self.opposite
         own = [quadrature.basis, quadrature.gradient[:, 0].swapaxes(1, 2)]
         parts: list[tuple[int, Ints | None, Floats]] = [(0, None, np.concatenate(own, axis=1))]
         for first, one in ((3, now), (6, then)):
             parts += [(first, one.masters, one.shares[:, None])]
-            parts += [(first + 1, one.nodes, one.gradient)]
-        return [*parts, (9, now.nodes, now.shape[:, None])]
+            parts += [(first + 1, one.around, one.along)]
+        return [*parts, (9, now.nodes, now.shape[:, None]), (10, now.nodes, now.gradient)]
 
     def tangent(
         self, by_nodes: Floats, which: Ints, traction: Floats
@@ -107,6 +107,9 @@ class MortarState:
             gradient=now.gradient,
             second=now.second,
             edge=now.edge,
+            around=now.around,
+            along=now.along,
+            bending=now.bending,
             which=which,
             by_nodes=planes.then.pulled_back(by_nodes, which),
             threads=default_threads(),

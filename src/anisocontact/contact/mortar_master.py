@@ -181,7 +181,8 @@ class MortarMaster(MeshedMaster):
         """What was opposite before, with numbers of any distribution."""
         gathered = self._gathered
         named = then.in_order(gathered.names(then.masters))
-        return replace(named, facet=gathered.globally(then.facet))
+        around = gathered.names(then.around)
+        return replace(named, facet=gathered.globally(then.facet), around=around)
 
     def _number_anew(
         self, u: Floats, thens: Sequence[Opposite], hints: Sequence[Ints]
@@ -197,8 +198,9 @@ class MortarMaster(MeshedMaster):
             What was opposite, with the numbers of this process.
         """
         gathered = self._gathered
-        named = [gathered.facets_of_names(then.masters) for then in thens]
-        self._have(u, *hints, *(then.facet for then in thens), *named)
+        named = [(then.masters, then.around) for then in thens]
+        owners = [gathered.facets_of_names(one) for both in named for one in both]
+        self._have(u, *hints, *(then.facet for then in thens), *owners)
         for facets in hints:
             facets[:] = gathered.renumbered(facets)
         self._spread_flags()
@@ -210,8 +212,9 @@ class MortarMaster(MeshedMaster):
         facet, nodes = gathered.renumbered(then.facet), then.nodes
         if len(gathered.facets.nodes):
             nodes = gathered.facets.nodes[np.maximum(facet, 0)]
-        masters = gathered.of_names(then.masters)
-        return replace(then, masters=masters, facet=facet, nodes=nodes).in_order()
+        masters, around = (gathered.of_names(one) for one in (then.masters, then.around))
+        there = replace(then, masters=masters, around=around, facet=facet, nodes=nodes)
+        return there.in_order()
 
     def _spread_flags(self) -> None:
         """Take what rests among gathered nodes as well; collective."""
@@ -395,7 +398,8 @@ class MortarMaster(MeshedMaster):
         kept["projection.facet"] = self._gathered.globally(hint.facet)
         kept["state"]["facet"] = np.minimum(kept["state"]["facet"], 0)
         # as wide as on the process that has most
-        then = then.as_wide(max(self._comm.allgather(then.masters.shape[1])))
+        widths = self._comm.allgather((then.masters.shape[1], then.around.shape[1]))
+        then = then.as_wide(*(int(most) for most in np.max(widths, axis=0)))
         kept |= {f"opposite.{name}": getattr(then, name).copy() for name in OPPOSITE}
         if self._fold is not None:
             kept["sides"] = self._fold.persistent()

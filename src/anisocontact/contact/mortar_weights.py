@@ -49,7 +49,7 @@ class Differentiated(Protocol):
 
         Args:
             which: Slave nodes that have tractions, (p,).
-            by: Derivatives of the tractions by ten sums over nodes, (p, 10, 9).
+            by: Derivatives of the tractions by twelve sums over nodes, (p, 12, 9).
             lift: And by the weights, (p, k, 3).
             traction: The tractions, (p, 3).
             moving: First sums, nodes of the master or those of the patch, and values.

@@ -26,6 +26,7 @@ from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.slave_nodes import SlaveNodes
+from anisocontact.contact.surface_gradient import SurfaceGradient
 from anisocontact.contact.sweep import Sweep
 from anisocontact.contact.whereabouts import Seen
 from anisocontact.interface import State
@@ -90,6 +91,11 @@ class Sides:
             around = self.points.around
             return self.near.unseen.joined(around.offsets, around.facets)
         return self.near.unseen.take(self.points.facet)
+
+    @cached_property
+    def surface_gradient(self) -> SurfaceGradient:
+        """Gradients on the master, continuous across the edges of its facets."""
+        return SurfaceGradient.of(self.master, self.reference)
 
     @property
     def reference(self) -> Floats:
@@ -214,7 +220,9 @@ def _collect(
     """Gather what is near a slave, and more; all is there on one process."""
     if not gathered.distributed:
         return
+    # and the facets around those that points can meet, see `surface_gradient`
     margin = far + max(gathered.comm.allgather(largest_radius(slave, now)))
+    margin += 2.0 * max(gathered.comm.allgather(largest_radius(gathered.own, now)))
     x = points.everywhere(now)[np.unique(points.nodes)]
     low = x.min(axis=0, initial=np.inf) - margin
     high = x.max(axis=0, initial=-np.inf) + margin

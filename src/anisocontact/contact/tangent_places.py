@@ -30,14 +30,22 @@ def tangent_places(sides: Sides, hit: FacetProjections) -> Opposite:
     second = np.moveaxis(second[:, :, [[0, 1], [1, 2]]], 1, 3)
     inside = hit.feature == FEATURES.index("interior")
     none = np.zeros((len(facet), 0))
+    gradient = np.ascontiguousarray(gradient.swapaxes(1, 2))
+    x = sides.reference[nodes[which]]
+    own, bend = gradient @ x, np.einsum("nabk,nki->nabi", second, x)
+    smooth = sides.surface_gradient
+    along, bending = smooth.tangents(which, np.nan_to_num(hit.xi), own, bend)
     return Opposite(
         none.astype(np.int32),
         none,
         facet,
         nodes[which],
         np.ascontiguousarray(shape),
-        np.ascontiguousarray(gradient.swapaxes(1, 2)),
+        gradient,
         np.ascontiguousarray(second),
         np.where(inside[:, None], np.nan, hit.edge),
+        smooth.nodes[which],
+        along,
+        bending,
         np.tile(np.eye(2, 3), (len(facet), 1, 1)),
     )

@@ -12,8 +12,9 @@
 namespace anisocontact::mortar {
 
 /// How many things a traction depends on that are sums over nodes: slave point and tangents, mean of
-/// the master and tangents, the same of the accepted increment, place of the tangents.
-inline constexpr std::size_t moving_parts = 10;
+/// the master and tangents, the same of the accepted increment, place of the tangents and tangents of
+/// its facet.
+inline constexpr std::size_t moving_parts = 12;
 inline constexpr std::size_t block_size = 9;
 
 /// The nodes that moving parts are made of, for each slave node: `count` parts from `first` on.

@@ -114,7 +114,7 @@ ANISOCONTACT_INLINE bool put_weights(const Integrals<L>& in, std::size_t n,
 /// Shares of its weight that are covered, over that of the node of the facet of which most is, below
 /// which a node gives all of its weights away and above which it keeps them: dual functions of less
 /// extrapolate from a strip to where nothing is covered.
-inline constexpr double given = 0.1, kept = 0.3;
+inline constexpr double given = 0.15, kept = 0.25;
 
 /// What nodes of a facet give away and what they get of it, with derivatives.
 struct HandOver {

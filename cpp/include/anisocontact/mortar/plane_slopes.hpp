@@ -4,8 +4,8 @@
 //
 // A plane has the averaged normal n of the slave. Material tangents d of the master at the place closest
 // to the node are turned into it, e = d - (d . n) / (1 + m . n) (m + n), m the normal of d_1, d_2. The
-// place follows the slave point, d xi = w [(dx - dy) . d_b + (x - y) . d d_b], and the mean of the
-// master the weights.
+// place follows the slave point, d xi = w [(dx - dy) . c_b + (x - y) . d c_b] with the tangents c of its
+// facet, and the mean of the master the weights.
 
 #include <array>
 #include <cmath>
@@ -17,39 +17,51 @@ namespace anisocontact::mortar {
 
 using Tangents = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
 
-/// What is opposite to slave nodes, n of them.
-struct OppositeView {
-  std::size_t masters, width;  ///< how many masters, and nodes of a facet
-  const std::int32_t* master;  ///< (n, masters), -1 for none
-  const double* share;         ///< (n, masters)
-  const std::int32_t *facet,
-      *node;  ///< (n,), -1 for none, and (n, width)
-  const double *shape, *gradient,
-      *second;         ///< (n, width), (n, 2, width), (n, 2, 2, width)
-  const double* edge;  ///< (n, 2), not a number inside a facet
+/// Two tangents at slave nodes and their derivatives by the coordinates, as sums over nodes.
+struct TangentSums {
+  std::size_t width;                ///< how many nodes
+  const std::int32_t* node;         ///< (n, width), -1 for none
+  const double *gradient, *second;  ///< (n, 2, width), (n, 2, 2, width)
 
-  /// Sum of values at the nodes of the facet, of nodes at x.
+  static Vec3<double> at(const double* x, std::int32_t node) {
+    const double* const p = x + 3 * static_cast<std::ptrdiff_t>(node);
+    return {p[0], p[1], p[2]};
+  }
+  /// Sum of values at the nodes, of nodes at x.
   Vec3<double> sum(std::size_t i, const double* values, const double* x) const {
     Vec3<double> out = Vec3<double>::Zero();
-    for (std::size_t k = 0; k < width; ++k) out += values[k] * at(x, node[i * width + k]);
+    for (std::size_t k = 0; k < width; ++k)
+      if (const std::int32_t m = node[i * width + k]; m >= 0) out += values[k] * at(x, m);
     return out;
   }
   Tangents tangents(std::size_t i, const double* x) const {
-    Tangents out = Tangents::Identity();
-    if (facet[i] < 0) return out;
+    Tangents out;
     for (std::size_t a = 0; a < 2; ++a)
       out.row(static_cast<Eigen::Index>(a)) = sum(i, gradient + (2 * i + a) * width, x).transpose();
     return out;
   }
+  Vec3<double> bend(std::size_t i, std::size_t a, std::size_t b, const double* x) const {
+    return sum(i, second + (4 * i + 2 * a + b) * width, x);
+  }
+};
+
+/// What is opposite to slave nodes, n of them.
+struct OppositeView {
+  std::size_t masters;         ///< how many
+  const std::int32_t* master;  ///< (n, masters), -1 for none
+  const double* share;         ///< (n, masters)
+  const std::int32_t* facet;   ///< (n,), -1 for none
+  const double *shape, *edge;  ///< of the facet (n, width), (n, 2), not a number inside a facet
+  TangentSums own, material;   ///< of the facet; of the surface, continuous across edges
+
   Vec3<double> mean(std::size_t i, const double* x) const {
     Vec3<double> out = Vec3<double>::Zero();
     for (std::size_t k = i * masters; k < (i + 1) * masters; ++k)
-      if (master[k] >= 0) out += share[k] * at(x, master[k]);
+      if (master[k] >= 0) out += share[k] * TangentSums::at(x, master[k]);
     return out;
   }
-  static Vec3<double> at(const double* x, std::int32_t node) {
-    const double* const p = x + 3 * static_cast<std::ptrdiff_t>(node);
-    return {p[0], p[1], p[2]};
+  Tangents tangents(std::size_t i, const double* x) const {
+    return facet[i] < 0 ? Tangents(Tangents::Identity()) : material.tangents(i, x);
   }
 };
 
@@ -148,21 +160,22 @@ class AveragedNormal {
 /// taken.
 struct PlaceSlopes {
   std::array<std::array<Vec3<double>, 2>, 2> turn;
-  Tangents along;  ///< w d
+  Tangents along;  ///< w c
   Matrix2 w;
   Vec3<double> apart;  ///< x - y
 
   PlaceSlopes(const PlanesView& p, std::size_t i, const Tangents& d, const Tangents& dual) {
     const OppositeView& o = p.opposite;
-    apart = OppositeView::at(p.slave, static_cast<std::int32_t>(i)) -
-            o.sum(i, o.shape + i * o.width, p.now);
-    Matrix2 metric = d * d.transpose();
+    const Tangents c = o.facet[i] < 0 ? d : o.own.tangents(i, p.now);
+    apart = TangentSums::at(p.slave, static_cast<std::int32_t>(i)) -
+            o.own.sum(i, o.shape + i * o.own.width, p.now);
+    Matrix2 metric = c * c.transpose();
     for (std::size_t a = 0; a < 2; ++a)
       for (std::size_t b = 0; b < 2; ++b) {
-        const double* const second = o.second + (4 * i + 2 * a + b) * o.width;
-        const Vec3<double> bend = o.sum(i, second, p.now);
-        turn[a][b] = bend - d.transpose() * (dual * o.sum(i, second, p.reference));
-        metric(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) -= bend.dot(apart);
+        turn[a][b] = o.material.bend(i, a, b, p.now) -
+                     d.transpose() * (dual * o.material.bend(i, a, b, p.reference));
+        metric(static_cast<Eigen::Index>(a), static_cast<Eigen::Index>(b)) -=
+            o.own.bend(i, a, b, p.now).dot(apart);
       }
     const Eigen::Vector2d e(o.edge[2 * i], o.edge[2 * i + 1]);
     if (std::isnan(e[0])) {
@@ -171,7 +184,7 @@ struct PlaceSlopes {
       const double slope = e.dot(metric * e);
       w = e * e.transpose() / (slope == 0.0 ? 1.0 : slope);
     }
-    along = w * d;
+    along = w * c;
   }
 };
 
@@ -214,7 +227,7 @@ inline void plane_slopes(const PlanesView& p, std::size_t i, const double* by_no
     const Eigen::Vector2d lean = place.w.transpose() * by_place;
     for (std::size_t a = 0; a < 2; ++a) {
       const auto row = static_cast<Index>(a);
-      g[1][1 + a] = axes.row(row).transpose() + lean[row] * place.apart;
+      g[1][1 + a] = axes.row(row).transpose();
       g[0][1 + a] += own.row(row).transpose();
     }
     g[0][0] += foot;
@@ -223,6 +236,8 @@ inline void plane_slopes(const PlanesView& p, std::size_t i, const double* by_no
     };
     for (std::size_t part = 0; part < 9; ++part) put(part, g[part / 3][part % 3]);
     put(9, -foot);
+    put(10, lean[0] * place.apart);
+    put(11, lean[1] * place.apart);
     by_mean.row(static_cast<Index>(r)) = g[1][0].transpose();
   }
   // the mean moves along the plane less what the point of the reference moves there, at which
@@ -234,8 +249,8 @@ inline void plane_slopes(const PlanesView& p, std::size_t i, const double* by_no
     const std::int32_t m = o.master[i * o.masters + k];
     Vec3<double> way = Vec3<double>::Zero();
     if (m >= 0)
-      way = share * (OppositeView::at(p.now, m) - mean -
-                     follow * (OppositeView::at(p.reference, m) - material));
+      way = share * (TangentSums::at(p.now, m) - mean -
+                     follow * (TangentSums::at(p.reference, m) - material));
     const Vec3<double> v = by_mean * way;
     std::copy(v.data(), v.data() + 3, lift + 3 * k);
   }
