@@ -170,6 +170,31 @@ class ContactPlanes:
     then: Carried
     held: Floats
 
+    @classmethod
+    def at(
+        cls,
+        now: Floats,
+        slave: Floats,
+        tangents: Floats,
+        opposite: tuple[Opposite, Opposite],
+        held: Floats,
+    ) -> ContactPlanes:
+        """Planes where the nodes are.
+
+        Args:
+            now: Positions of the nodes, (nodes, 3), length.
+            slave: Those of the slave points, (n, 3), length.
+            tangents: Tangents of the slave there, (n, 2, 3), length.
+            opposite: What is opposite now, and what was at the accepted increment.
+            held: As of the attribute.
+        """
+        normal = across(held, averaged_normal(tangents))
+        means = (one.mean(now) for one in opposite)
+        mean, mean_then = (y + (held @ (slave - y)[..., None])[..., 0] for y in means)
+        turned = Turned(opposite[0].tangents(now), normal)
+        carried = Carried(opposite[1].tangents(now), opposite[1].carried)
+        return cls(slave, tangents, mean, turned, mean_then, carried, held)
+
     @property
     def normal(self) -> Floats:
         """Averaged normal, from the master to the slave, (n, 3)."""

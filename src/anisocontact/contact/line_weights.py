@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.contact.facing import Facing, Pairs
+from anisocontact.contact.line_overlap import Number, Overlap
 from anisocontact.contact.slave_edges import SlaveEdges, line_rule, line_shapes
 from anisocontact.contact.slave_nodes import Patches
 
@@ -38,95 +39,7 @@ GIVEN, KEPT = 0.15, 0.25
 _WHOLE = {2: [1 / 2, 1 / 2], 3: [1 / 6, 1 / 6, 2 / 3]}
 
 
-@dataclass(frozen=True)
-class _Number:
-    """Numbers, (q,), and their derivatives by both coordinates of four points, (q, 8).
-
-    The points are the ends of the part of the slave, then of the master.
-    """
-
-    of: Floats
-    by: Floats
-
-    def __add__(self, other: _Number) -> _Number:
-        return _Number(self.of + other.of, self.by + other.by)
-
-    def __mul__(self, other: _Number) -> _Number:
-        by = self.of[:, None] * other.by + other.of[:, None] * self.by
-        return _Number(self.of * other.of, by)
-
-    def __truediv__(self, other: _Number) -> _Number:
-        share = self.of / other.of
-        return _Number(share, (self.by - share[:, None] * other.by) / other.of[:, None])
-
-    def times(self, factor: Floats | float) -> _Number:
-        """Multiplied by what stays."""
-        column = np.asarray(factor)[..., None] if np.ndim(factor) else factor
-        return _Number(factor * self.of, column * self.by)
-
-    def less(self, other: _Number) -> _Number:
-        """The difference."""
-        return self + other.times(-1.0)
-
-    def where(self, own: npt.NDArray[np.bool_], other: _Number) -> _Number:
-        """These numbers, or others."""
-        by = np.where(own[:, None], self.by, other.by)
-        return _Number(np.where(own, self.of, other.of), by)
-
-    def take(self, which: Numbers) -> _Number:
-        """Some of them."""
-        return _Number(self.of[which], self.by[which])
-
-
-@dataclass(frozen=True)
-class _Overlap:
-    """Parts of edges that face each other, as numbers along the part of the slave.
-
-    Attributes:
-        length: Length of the part of the slave.
-        ends: Where the part of the master begins and ends on it.
-        low, high: Where the overlap begins and ends.
-    """
-
-    length: _Number
-    ends: tuple[_Number, _Number]
-    low: _Number
-    high: _Number
-
-    @classmethod
-    def of(cls, x: Floats) -> _Overlap:
-        """Overlap of parts with their ends at x, (q, 4, 2), length."""
-        t = x[:, 1] - x[:, 0]
-        size = np.linalg.norm(t, axis=1)
-        e = t / size[:, None]
-        by = np.zeros((len(x), 4, 2))
-        by[:, 0], by[:, 1] = -e, e
-        length = _Number(size, by.reshape(-1, 8))
-        ends = []
-        for i in (2, 3):
-            r = x[:, i] - x[:, 0]
-            along = np.einsum("qi,qi->q", e, r)
-            turn = (r - along[:, None] * e) / size[:, None]  # by the second end of the slave
-            by = np.zeros((len(x), 4, 2))
-            by[:, 0], by[:, 1], by[:, i] = -e - turn, turn, e
-            ends.append(_Number(along, by.reshape(-1, 8)))
-        first, last = ends
-        back = first.of > last.of
-        low, high = last.where(back, first), first.where(back, last)
-        zero = length.times(0.0)
-        low = low.where(low.of > 0.0, zero)
-        high = high.where(high.of < length.of, length)
-        return cls(length, (first, last), low, high)
-
-    def take(self, which: Numbers) -> _Overlap:
-        """Some of them."""
-        first, last = (one.take(which) for one in self.ends)
-        return _Overlap(
-            self.length.take(which), (first, last), self.low.take(which), self.high.take(which)
-        )
-
-
-def _coordinate(share: _Number, ends: Floats, count: int) -> tuple[Floats, Floats]:
+def _coordinate(share: Number, ends: Floats, count: int) -> tuple[Floats, Floats]:
     """Shape functions of edges, (q, k), and their derivatives, (q, k, 8), at shares of a part."""
     width = ends[:, 1] - ends[:, 0]
     value, slope = line_shapes(ends[:, 0] + width * share.of, count)
@@ -174,7 +87,7 @@ class _Edges:
             [self.slave[f[pair][:, None], ends[own]], self.master[g[pair][:, None], ends[other]]],
             axis=1,
         )
-        overlap = _Overlap.of(self.now[nodes])
+        overlap = Overlap.of(self.now[nodes])
         there = overlap.high.of - overlap.low.of > SLIVER * overlap.length.of
         kept = np.flatnonzero(there)
         overlap, nodes, places = overlap.take(kept), nodes[kept], (at[own[kept]], at[other[kept]])
@@ -198,14 +111,14 @@ class _Edges:
             slopes += product[..., None] * area.by[:, None, None]
         return pair[kept], local[kept], values, slopes
 
-    def _across(self, share: _Number, nodes: Ints, length: Floats) -> _Number:
+    def _across(self, share: Number, nodes: Ints, length: Floats) -> Number:
         """Length across the plane at points of the slave; of reference per length of now."""
         offset, rate = self.across
         x = self.now if self.reference is None else self.reference
         ends = x[nodes[:, :2]]
         first, step = ends[:, 0, 0], ends[:, 1, 0] - ends[:, 0, 0]
         found = share.times(rate * step)
-        found = _Number(found.of + offset + rate * first, found.by)
+        found = Number(found.of + offset + rate * first, found.by)
         if self.reference is None:
             found.by[:, 0] += rate * (1.0 - share.of)
             found.by[:, 2] += rate * share.of
@@ -213,7 +126,7 @@ class _Edges:
         size = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         e = (self.now[nodes[:, 1]] - self.now[nodes[:, 0]]) / length[:, None]
         by = np.concatenate([-e, e, np.zeros((len(e), 4))], axis=1)
-        return found * (_Number(size, np.zeros_like(by)) / _Number(length, by))
+        return found * (Number(size, np.zeros_like(by)) / Number(length, by))
 
 
 @dataclass(frozen=True)

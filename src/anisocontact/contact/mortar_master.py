@@ -12,7 +12,6 @@ import numpy.typing as npt
 from anisocontact.contact.contact_planes import (
     ContactPlanes,
     Opposite,
-    across,
     averaged_normal,
     held_directions,
 )
@@ -25,7 +24,7 @@ from anisocontact.contact.meshed_master import MeshedMaster
 from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
 from anisocontact.contact.mortar_reach import mortar_reachable
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
-from anisocontact.contact.plane_axes import Carried, Turned
+from anisocontact.contact.opposite_names import names_of, numbers_of
 from anisocontact.contact.plane_batch import plane_batch
 from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.reachable import NodePairs
@@ -104,30 +103,20 @@ class MortarMaster(MeshedMaster):
                 sides, points.around, now, more, pairs, current_area=area, hand_over=True
             )
         opposite = replace(opposite, masters=weights.masters, shares=weights.shares)
-        tangents = points.at(now).tangents[:, 0]
-        normal = averaged_normal(tangents)
-        x = points.positions(now)
-        named = self._gathered.local_names
-        under = replace(opposite, masters=named(opposite.masters))
-        held = held_directions(self._flags, points.nodes[:, 0], under, normal)
-        normal = across(held, normal)
-        mean, mean_then = (
-            y + (held @ (x - y)[..., None])[..., 0]
-            for y in (opposite.mean(now), self._then.mean(now))
-        )
-        planes = ContactPlanes(
-            x,
-            tangents,
-            mean,
-            Turned(opposite.tangents(now), normal),
-            mean_then,
-            Carried(self._then.tangents(now), self._then.carried),
-            held,
-        )
+        planes = self._planes(opposite)
         both = opposite, self._then
         return MortarState(
             self._gathered, points.quadrature, weights, planes, both, now, sides.reference
         )
+
+    def _planes(self, opposite: Opposite) -> ContactPlanes:
+        """Contact planes of now, and of the accepted increment where the nodes are now."""
+        points, named = self._points, self._gathered.local_names
+        under = replace(opposite, masters=named(opposite.masters))
+        own, now = points.at(self._nodes.now).tangents[:, 0], self._nodes.now
+        normal = averaged_normal(own)
+        held = held_directions(self._flags, points.nodes[:, 0], under, normal)
+        return ContactPlanes.at(now, points.positions(now), own, (opposite, self._then), held)
 
     @property
     def _located(self) -> Mask:
@@ -166,7 +155,7 @@ class MortarMaster(MeshedMaster):
                 hint.facet[:] = self._gathered.globally(hint.facet)
             known, before = self._replaced or (None, None)
             thens = [one for one in (self._then, before) if one is not None]
-            named = [self._named(one) for one in thens]
+            named = [names_of(one, self._gathered) for one in thens]
             thens = self._number_anew(u, named, [hint.facet for hint in hints])
             self._then = thens[0]
             if known is not None:
@@ -177,13 +166,6 @@ class MortarMaster(MeshedMaster):
         self._at = self._placed()
         return anew
 
-    def _named(self, then: Opposite) -> Opposite:
-        """What was opposite before, with numbers of any distribution."""
-        gathered = self._gathered
-        named = then.in_order(gathered.names(then.masters))
-        around = gathered.names(then.around)
-        return replace(named, facet=gathered.globally(then.facet), around=around)
-
     def _number_anew(
         self, u: Floats, thens: Sequence[Opposite], hints: Sequence[Ints]
     ) -> list[Opposite]:
@@ -191,7 +173,7 @@ class MortarMaster(MeshedMaster):
 
         Args:
             u: Displacements of the local nodes, (nodes, 3), length.
-            thens: As of `_named`.
+            thens: As of `names_of`.
             hints: Facets of the whole group, -1 for none; those of this process are written.
 
         Returns:
@@ -204,17 +186,7 @@ class MortarMaster(MeshedMaster):
         for facets in hints:
             facets[:] = gathered.renumbered(facets)
         self._spread_flags()
-        return [self._here(then) for then in thens]
-
-    def _here(self, then: Opposite) -> Opposite:
-        """What was opposite, from `_named`, with the numbers of this process."""
-        gathered = self._gathered
-        facet, nodes = gathered.renumbered(then.facet), then.nodes
-        if len(gathered.facets.nodes):
-            nodes = gathered.facets.nodes[np.maximum(facet, 0)]
-        masters, around = (gathered.of_names(one) for one in (then.masters, then.around))
-        there = replace(then, masters=masters, around=around, facet=facet, nodes=nodes)
-        return there.in_order()
+        return [numbers_of(then, gathered) for then in thens]
 
     def _spread_flags(self) -> None:
         """Take what rests among gathered nodes as well; collective."""
@@ -393,7 +365,7 @@ class MortarMaster(MeshedMaster):
 
     @override
     def persistent(self, kept: dict[str, npt.NDArray[Any]]) -> dict[str, npt.NDArray[Any]]:
-        hint, then = self._accepted[1], self._named(self._then)
+        hint, then = self._accepted[1], names_of(self._then, self._gathered)
         kept |= {f"projection.{f.name}": getattr(hint, f.name).copy() for f in fields(hint)}
         kept["projection.facet"] = self._gathered.globally(hint.facet)
         kept["state"]["facet"] = np.minimum(kept["state"]["facet"], 0)

@@ -12,8 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from anisocontact.contact.facet_mesh import FacetMesh, facet_corners
 from anisocontact.surfaces.facets import FacetSurface
@@ -171,6 +169,10 @@ def _sides(x: Floats, topology: str) -> Floats:
 
 def _smooth(mesh: FacetMesh, normals: Floats, corners: int) -> Numbers:
     """Groups of facets at a vertex between which the surface is smooth, (s,)."""
+    # SciPy takes a while to be imported
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
     once = facet_corners(mesh.topology)
     first, second = once, once[1:] + once[:1]
     vertices = mesh.nodes[:, :corners].astype(np.int64)
