@@ -18,8 +18,20 @@ def names_of(then: Opposite, gathered: MasterSurface) -> Opposite:
         gathered: The master as this process has it.
     """
     named = then.in_order(gathered.names(then.masters))
-    around = gathered.names(then.around)
-    return replace(named, facet=gathered.globally(then.facet), around=around)
+    around = np.where(then.facet[:, None] >= 0, gathered.names(then.around), -1)
+    count = max(int((around >= 0).sum(axis=1).max(initial=0)), 1)
+    order = np.argsort(np.where(around < 0, np.iinfo(np.int32).max, around), axis=1)[:, :count]
+    around = np.take_along_axis(around, order, axis=1)
+    along = np.take_along_axis(then.along, order[:, None], axis=2)
+    bending = np.take_along_axis(then.bending, order[:, None, None], axis=3)
+    there = around[:, None] >= 0
+    return replace(
+        named,
+        facet=gathered.globally(then.facet),
+        around=around,
+        along=np.where(there, along, 0.0),
+        bending=np.where(there[:, None], bending, 0.0),
+    )
 
 
 def numbers_of(named: Opposite, gathered: MasterSurface) -> Opposite:

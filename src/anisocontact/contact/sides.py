@@ -220,9 +220,10 @@ def _collect(
     """Gather what is near a slave, and more; all is there on one process."""
     if not gathered.distributed:
         return
+    radii = [largest_radius(mesh, now) for mesh in (slave, gathered.own)]
+    own, other = np.max(gathered.comm.allgather(radii), axis=0).tolist()
     # and the facets around those that points can meet, see `surface_gradient`
-    margin = far + max(gathered.comm.allgather(largest_radius(slave, now)))
-    margin += 2.0 * max(gathered.comm.allgather(largest_radius(gathered.own, now)))
+    margin = far + own + max(0.0, 2.0 * other - 0.5 * far)
     x = points.everywhere(now)[np.unique(points.nodes)]
     low = x.min(axis=0, initial=np.inf) - margin
     high = x.max(axis=0, initial=-np.inf) + margin

@@ -58,7 +58,11 @@ class SurfaceGradient:
         total = np.bincount(group, slots.angles, minlength=count)
         weight = slots.angles / total[group]
         owner = np.repeat(group, mesh.nodes.shape[1])
-        nodes, place = _listed(owner, np.repeat(mesh.nodes, corners, axis=0).reshape(-1), count)
+        # sums in an order that does not depend on how a mesh is distributed: that of the facets
+        known, first, which = np.unique(mesh.nodes, return_index=True, return_inverse=True)
+        order = np.argsort(first)
+        ranks = np.argsort(order)[which].reshape(mesh.nodes.shape).astype(np.int32)
+        nodes, place = _listed(owner, np.repeat(ranks, corners, axis=0).reshape(-1), count)
         at_groups = np.zeros((*nodes.shape, 3))
         rates = weight[:, None, None] * slots.gradients
         np.add.at(at_groups, (owner, place), rates.reshape(-1, 3))
@@ -73,6 +77,7 @@ class SurfaceGradient:
         at_vertices = np.zeros((len(named), corners, around.shape[1], 3))
         vertex = np.broadcast_to(np.arange(corners)[None, :, None], named.shape)
         at_vertices[facet[there], vertex[there], place] = at_groups[by_facet][there]
+        around = np.where(around >= 0, known[order][around], np.int32(-1))
         return cls(around, at_vertices, normals[by_facet])
 
     def tangents(self, facet: Ints, xi: Floats, own: Floats, bend: Floats) -> tuple[Floats, Floats]:
