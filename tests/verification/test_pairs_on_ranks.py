@@ -22,7 +22,8 @@ Arrays = dict[str, np.ndarray]
 MORTAR = tuple(name for name in CASES if name.startswith("mortar"))
 LEFT = ("gap", "elastic", "energy_normal")
 #: What is told in coordinates of the facet below a point.
-ON_FACET = tuple(f"projection.{name}" for name in ("facet", "xi", "feature", "entity", "edge"))
+NAMES = ("facet", "xi", "feature", "entity", "edge", "position", "normal")
+ON_FACET = tuple(f"projection.{name}" for name in NAMES)
 
 
 def start(ranks: int, folder: Path, mode: str, *cases: str) -> None:
@@ -69,15 +70,15 @@ def difference(one: Arrays, other: Arrays) -> dict[str, float]:
 
 
 def _same_facet(one: Arrays, other: Arrays, prefix: str, rows: np.ndarray) -> np.ndarray:
-    """Points whose closest point is on the same facet; that of others is on an edge, the same."""
+    """Points whose closest point is on the same facet; others are as near to one as to the other."""
     if prefix + "projection.facet" not in one:
         return np.ones(len(rows), dtype=bool)
-    facets, features, places = (
+    facets, features, gaps = (
         [one[f"{prefix}projection.{name}"], other[f"{prefix}projection.{name}"][rows]]
-        for name in ("facet", "feature", "position")
+        for name in ("facet", "feature", "gap")
     )
     same = np.asarray((facets[0] == facets[1]) & (features[0] == features[1]))
-    assert np.abs(places[0] - places[1])[~same].max(initial=0.0) < 1e-10
+    assert np.abs(gaps[0] - gaps[1])[~same].max(initial=0.0) < 1e-10
     return same
 
 
