@@ -230,8 +230,8 @@ def _under_a_lid(**options: bool) -> Made:
 def _mortar_folded() -> Made:
     """Each rank finds the same side of the fold to be the slave.
 
-    It closes askew: nodes that come to lie right above an edge of two facets have the plane of
-    one or of the other by rounding.
+    It closes askew: states of nodes in front of an edge have their components in the axes of the
+    one facet or of the other, by rounding.
     """
     model = hairpin(half=False)
     law = ContactLaw(

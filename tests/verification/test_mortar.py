@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from scipy.spatial.transform import Rotation
+from tests.verification.slid_blocks import force_of, linear_force, offset_pair, slid
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
@@ -124,44 +125,6 @@ def test_partly_covered_facets() -> None:
     np.testing.assert_allclose(contact.resultant()[0][2], PRESSURE * 0.63 * 0.55, rtol=1e-8)
 
 
-def _offset_pair(cell: str, order: int) -> Model:
-    upper = BoxSpec((0.1, 0.05, 0), (1, 1, 1), (3, 3, 1), cell=cell, order=order)
-    lower = BoxSpec((-0.5, -0.5, -1), (2.2, 2.1, 1), (4, 5, 1), cell=cell, order=order)
-    return build_box({"upper": upper, "lower": lower})
-
-
-def _slid(contact: Contact, model: Model) -> Floats:
-    """Two committed increments of warped surfaces, and displacements on the way to a third one."""
-    rng = np.random.default_rng(3)
-    u = np.zeros_like(model.space.tabulate_dof_coordinates())
-    block = np.unique(model.space.dofmap.list[model.cells("upper")])
-    for way, noise in (((0.02, 0.01, -0.02), 0.01), ((0.3, 0.12, -0.01), 0.004)):
-        u[block] += way
-        u += noise * rng.normal(size=u.shape)
-        contact.update(u, 1.0)
-        contact.commit()
-    u[block] += (-0.03, 0.015, -0.002)
-    return u + 0.002 * rng.normal(size=u.shape)
-
-
-def _force(contact: Contact, u: Floats) -> Floats:
-    contact.update(u, 1.0)
-    out = np.zeros_like(u)
-    contact.add_force(out)
-    return out
-
-
-def _linear_force(contact: Contact, way: Floats) -> Floats:
-    """What the tangent makes of a displacement, (nodes, 3)."""
-    out = np.zeros_like(way)
-    for rows, columns, blocks in contact.answer.couplings():
-        square = blocks.reshape(len(rows), rows.shape[1], 3, columns.shape[1], 3)
-        there = np.where(columns[..., None] >= 0, way[columns], 0.0)
-        found = -np.einsum("pricj,pcj->pri", square, there)
-        np.add.at(out, rows[rows >= 0], found[rows >= 0])
-    return out
-
-
 def _on(master: str) -> Any:
     if master == "facets":
         return "lower.top"
@@ -179,7 +142,7 @@ def test_tangent(master: str, cell: str, order: int, current_area: bool) -> None
     that turn along the master. Source: central differences; at steps of 1e-5 and 1e-6 the error
     falls a hundredfold until rounding (2e-8 of the largest entry) is reached.
     """
-    model = _offset_pair(cell, order)
+    model = offset_pair(cell, order)
     rays = make_directions("polar", axis=((5.0, 3.0, 0.0), (0, 0, 1.0)))
     law = ContactLaw(
         NormalLaw(penalty=100.0),
@@ -189,23 +152,23 @@ def test_tangent(master: str, cell: str, order: int, current_area: bool) -> None
     contact = Contact(
         model, "upper.bottom", _on(master), law, mortar=True, current_area=current_area
     )
-    u = _slid(contact, model)
+    u = slid(contact, model)
     way = np.random.default_rng(5).normal(size=u.shape)
-    _force(contact, u)
+    force_of(contact, u)
     assert min(contact.counts()[name] for name in ("stick", "slip")) > 0
-    exact = _linear_force(contact, way)
+    exact = linear_force(contact, way)
     errors = []
     for h in (1e-5, 1e-6):
-        found = (_force(contact, u + h * way) - _force(contact, u - h * way)) / (2.0 * h)
+        found = (force_of(contact, u + h * way) - force_of(contact, u - h * way)) / (2.0 * h)
         errors.append(np.abs(found - exact).max() / np.abs(exact).max())
     assert errors[1] < max(errors[0] / 50.0, 2e-8)
 
 
 def test_forces_balance() -> None:
     """Forces on both bodies add up to nothing: 1e-12, whatever is covered and however warped."""
-    model = _offset_pair("hexahedron", 1)
+    model = offset_pair("hexahedron", 1)
     contact = Contact(model, "upper.bottom", "lower.top", _law(), mortar=True)
-    force = _force(contact, _slid(contact, model))
+    force = force_of(contact, slid(contact, model))
     assert np.abs(force.sum(axis=0)).max() < 1e-12 * np.abs(force).sum()
 
 
@@ -213,7 +176,7 @@ def test_forces_balance() -> None:
 @pytest.mark.parametrize("master", ["facets", "sphere"])
 def test_area(master: str, current_area: bool, area: float) -> None:
     """A slave stretched by 1.1 and 1.2: its area of now or of the reference, whole, 1e-12."""
-    model = _offset_pair("hexahedron", 1)
+    model = offset_pair("hexahedron", 1)
     contact = Contact(
         model, "upper.bottom", _on(master), _law(), mortar=True, current_area=current_area
     )
@@ -232,7 +195,7 @@ def test_rotation() -> None:
     Source: slip is that of material points that were opposite each other, and history is turned
     with the normals.
     """
-    model = _offset_pair("hexahedron", 1)
+    model = offset_pair("hexahedron", 1)
     x = model.space.tabulate_dof_coordinates()
     turn = Rotation.from_euler("xyz", (20.0, -50.0, 70.0), degrees=True)
     forces = []
@@ -240,11 +203,11 @@ def test_rotation() -> None:
         contact = Contact(model, "upper.bottom", "lower.top", _law(), mortar=True)
         contact.update(np.zeros_like(x), 1.0)
         contact.commit()
-        u = _slid(contact, model)
+        u = slid(contact, model)
         contact.update(u, 1.0)
         contact.commit()
         u[:, 0] += 1e-3 * x[:, 2]
-        forces.append(rotation.inv().apply(_force(contact, rotation.apply(x + u) - x)))
+        forces.append(rotation.inv().apply(force_of(contact, rotation.apply(x + u) - x)))
     assert np.abs(forces[0] - forces[1]).max() < 1e-9 * np.abs(forces[0]).max()
 
 

@@ -53,14 +53,19 @@ def difference(one: Arrays, other: Arrays) -> dict[str, float]:
     for i in range(sum(name.endswith("/reference") for name in one)):
         prefix = f"points/{i}/"
         rows = _matched(one[prefix + "reference"], other[prefix + "reference"])
-        same = _same_facet(one, other, prefix, rows)
+        same, met = _same_facet(one, other, prefix, rows), slice(None)
+        if prefix + "opposite.facet" in one:  # places of slave nodes that are on an edge
+            facets = [both[prefix + "opposite.facet"] for both in (one, other)]
+            met = facets[0] == facets[1][rows]
         for name in filter(lambda n: n.startswith(prefix), one):
             a, b = (both[name] for both in (one, other))
             if name.endswith("shares"):  # they count as much as of a node is covered
                 a, b = (v * both[prefix + "areas"][:, None] for v, both in ((a, one), (b, other)))
             b = b[rows]
-            if name.removeprefix(prefix) in ON_FACET or name.startswith(prefix + "opposite."):
+            if name.removeprefix(prefix) in ON_FACET:
                 a, b = a[same], b[same]
+            if name.startswith(prefix + "opposite."):
+                a, b = a[met], b[met]
             if name == prefix + "state":
                 _compare(out, name, a[["xi", "origin"]][same], b[["xi", "origin"]][same])
                 rest = [field for field in a.dtype.names or () if field not in ("xi", "origin")]
@@ -70,7 +75,7 @@ def difference(one: Arrays, other: Arrays) -> dict[str, float]:
 
 
 def _same_facet(one: Arrays, other: Arrays, prefix: str, rows: np.ndarray) -> np.ndarray:
-    """Points whose closest point is on the same facet; others are as near to one as to the other."""
+    """Points with the same facet below them; others are as near to one as to the other."""
     if prefix + "projection.facet" not in one:
         return np.ones(len(rows), dtype=bool)
     facets, features, gaps = (

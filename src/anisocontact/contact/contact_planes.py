@@ -228,7 +228,7 @@ class ContactPlanes:
 
 
 def held_directions(
-    resting: Sequence[tuple[Mask, Floats]], nodes: Ints, opposite: Opposite, normal: Floats
+    resting: Sequence[tuple[Mask, Floats]], nodes: Ints, below: Ints, normal: Floats
 ) -> Floats:
     """Directions in the contact plane along which supports hold slave nodes and the master.
 
@@ -238,18 +238,17 @@ def held_directions(
     Args:
         resting: Nodes that are held along directions.
         nodes: The slave nodes, (n,).
-        opposite: What is opposite.
+        below: Nodes of the master below them, (n, j), -1 for none.
         normal: Averaged normals, (n, 3).
 
     Returns:
         The projection on them, (n, 3, 3).
     """
     out = np.zeros((len(nodes), 3, 3))
-    masters = opposite.masters
     for there, direction in resting:
-        below = there[np.maximum(masters, 0)] & (masters >= 0) & (opposite.shares != 0.0)
+        held = there[np.maximum(below, 0)] & (below >= 0)
         across = np.abs(normal @ direction) < ACROSS
-        which = np.flatnonzero(there[nodes] & below.any(axis=1) & across)
+        which = np.flatnonzero(there[nodes] & held.any(axis=1) & across)
         rest = direction - out[which] @ direction
         size = np.linalg.norm(rest, axis=1)
         new = size > ACROSS

@@ -9,9 +9,11 @@ from typing import Any, override
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.contact.along_normals import OPPOSED, along_normals
 from anisocontact.contact.contact_planes import (
     ContactPlanes,
     Opposite,
+    across,
     averaged_normal,
     held_directions,
 )
@@ -48,8 +50,6 @@ NEAR = 1e-6
 COVERED = 1e-8
 #: Distance along held directions, as a share of the size of the facets, that is none.
 ROUNDING = 1e-12
-#: Least cosine between the averaged normal and that of the master below a node.
-OPPOSED = 0.1
 #: Of `Opposite` what a checkpoint has.
 OPPOSITE = tuple(f.name for f in fields(Opposite) if f.name != "nodes")
 
@@ -90,7 +90,11 @@ class MortarMaster(MeshedMaster):
             weights: As they are there, if that is known.
         """
         sides, points, now = self.sides, self._points, self._nodes.now
-        opposite = tangent_places(self.sides, self._hint)
+        x, tangents = points.positions(now), points.at(now).tangents[:, 0]
+        normal = averaged_normal(tangents)
+        held = held_directions(self._flags, points.nodes[:, 0], self._below, normal)
+        places = along_normals(sides, x, across(held, normal), self._hint)
+        opposite = tangent_places(sides, places)
         if weights is None:
             more = np.concatenate([opposite.named(), self._then.named()], axis=1)
             # the same on all processes, so that a facet counts on any number of them
@@ -103,20 +107,20 @@ class MortarMaster(MeshedMaster):
                 sides, points.around, now, more, pairs, current_area=area, hand_over=True
             )
         opposite = replace(opposite, masters=weights.masters, shares=weights.shares)
-        planes = self._planes(opposite)
         both = opposite, self._then
+        planes = ContactPlanes.at(now, x, tangents, both, held)
         return MortarState(
             self._gathered, points.quadrature, weights, planes, both, now, sides.reference
         )
 
-    def _planes(self, opposite: Opposite) -> ContactPlanes:
-        """Contact planes of now, and of the accepted increment where the nodes are now."""
-        points, named = self._points, self._gathered.local_names
-        under = replace(opposite, masters=named(opposite.masters))
-        own, now = points.at(self._nodes.now).tangents[:, 0], self._nodes.now
-        normal = averaged_normal(own)
-        held = held_directions(self._flags, points.nodes[:, 0], under, normal)
-        return ContactPlanes.at(now, points.positions(now), own, (opposite, self._then), held)
+    @property
+    def _below(self) -> Ints:
+        """Nodes of the facets closest to the slave nodes, (n, j), -1 for none."""
+        facet, nodes = self._hint.facet, self.sides.master.nodes
+        if not len(nodes):
+            return np.full((len(facet), 1), -1, dtype=np.int32)
+        found = self._gathered.local_names(nodes[np.maximum(facet, 0)])
+        return np.where(facet[:, None] >= 0, found, np.int32(-1))
 
     @property
     def _located(self) -> Mask:

@@ -1,42 +1,38 @@
-"""Places on the master that are closest to the slave nodes, where contact planes touch it."""
+"""Tangents of the master at the places that slave nodes meet."""
 
 from __future__ import annotations
 
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.contact.along_normals import Places
 from anisocontact.contact.contact_planes import Opposite
 from anisocontact.contact.sides import Sides
-from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, FacetProjections
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
 
 
-def tangent_places(sides: Sides, hit: FacetProjections) -> Opposite:
+def tangent_places(sides: Sides, places: Places) -> Opposite:
     """Where the tangents of the master are taken, opposite to no nodes yet.
 
     Args:
         sides: Slave nodes and facets.
-        hit: Projections of the slave nodes.
+        places: Where the normals of the slave nodes meet the master.
 
     Returns:
-        Facets, nodes and the shape functions there; no facet where there is no projection.
+        Facets, nodes and the shape functions there; no facet where there is no place.
     """
-    nodes = sides.master.nodes
+    nodes, facet = sides.master.nodes, places.facet
     if not len(nodes):
-        return Opposite.none(len(hit.facet), nodes.shape[1])
-    there = hit.status <= FACET_STATUS.index("off")
-    facet = np.where(there, hit.facet, -1).astype(np.int32)
+        return Opposite.none(len(facet), nodes.shape[1])
     which = np.maximum(facet, 0)
-    found = sides.surface.shapes(which, np.nan_to_num(hit.xi))
+    found = sides.surface.shapes(which, places.xi)
     shape, gradient, second = (one[:, : nodes.shape[1]] for one in found)
     second = np.moveaxis(second[:, :, [[0, 1], [1, 2]]], 1, 3)
-    inside = hit.feature == FEATURES.index("interior")
     none = np.zeros((len(facet), 0))
     gradient = np.ascontiguousarray(gradient.swapaxes(1, 2))
-    xi = np.nan_to_num(hit.xi)
-    around, along, bending = _material(sides, which, xi, gradient, second)
+    around, along, bending = _material(sides, which, places.xi, gradient, second)
     return Opposite(
         none.astype(np.int32),
         none,
@@ -45,7 +41,7 @@ def tangent_places(sides: Sides, hit: FacetProjections) -> Opposite:
         np.ascontiguousarray(shape),
         gradient,
         np.ascontiguousarray(second),
-        np.where(inside[:, None], np.nan, hit.edge),
+        places.edge,
         around,
         along,
         bending,

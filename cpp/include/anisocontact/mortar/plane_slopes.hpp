@@ -2,10 +2,10 @@
 // Derivatives of tractions at slave nodes: what laws give by the nodes of the contact planes, carried
 // on to what these are made of, see `MovingPart`.
 //
-// A plane has the averaged normal n of the slave. Material tangents d of the master at the place closest
-// to the node are turned into it, e = d - (d . n) / (1 + m . n) (m + n), m the normal of d_1, d_2. The
-// place follows the slave point, d xi = w [(dx - dy) . c_b + (x - y) . d c_b] with the tangents c of its
-// facet, and the mean of the master the weights.
+// A plane has the averaged normal n of the slave. Material tangents d of the master at the place y that
+// the node x meets along it, c . P (x - y) = 0 with the tangents c of its facet and P = I - n n, are turned
+// into the plane, e = d - (d . n) / (1 + m . n) (m + n), m the normal of d_1, d_2. The place follows the
+// slave point and the normal, and the mean of the master the weights.
 
 #include <array>
 #include <cmath>
@@ -155,21 +155,27 @@ class AveragedNormal {
   double size_, length_;
 };
 
-/// How tangents of the master follow the place where they are taken, and it the slave point:
-/// d d_a = (d_ab - d_c (D^c . D_ab)) d xi^b , less what the reference turns, in which directions are
-/// taken.
+/// How tangents of the master follow the place where they are taken, and it the slave point and n:
+///   d d_a = (d_ab - d_c (D^c . D_ab)) d xi^b , less what the reference turns, in which directions are
+///   taken;
+///   d xi^b = w^ba [c_a . P (dx - dy) + dc_a . r - (s c_a + (c_a . n) r) . dn] .
 struct PlaceSlopes {
   std::array<std::array<Vec3<double>, 2>, 2> turn;
-  Tangents along;  ///< w c
+  Tangents c, along;  ///< of the facet; w c P
   Matrix2 w;
-  Vec3<double> apart;  ///< x - y
+  Vec3<double> n, apart;  ///< apart: r = P (x - y)
+  double distance;        ///< s = n . (x - y)
 
-  PlaceSlopes(const PlanesView& p, std::size_t i, const Tangents& d, const Tangents& dual) {
+  PlaceSlopes(const PlanesView& p, std::size_t i, const Tangents& d, const Tangents& dual)
+      : n(p.normal + 3 * i) {
     const OppositeView& o = p.opposite;
-    const Tangents c = o.facet[i] < 0 ? d : o.own.tangents(i, p.now);
+    c = o.facet[i] < 0 ? d : o.own.tangents(i, p.now);
     apart = TangentSums::at(p.slave, static_cast<std::int32_t>(i)) -
             o.own.sum(i, o.shape + i * o.own.width, p.now);
-    Matrix2 metric = c * c.transpose();
+    distance = n.dot(apart);
+    apart -= distance * n;
+    const Tangents across = c - (c * n) * n.transpose();
+    Matrix2 metric = across * across.transpose();
     for (std::size_t a = 0; a < 2; ++a)
       for (std::size_t b = 0; b < 2; ++b) {
         turn[a][b] = o.material.bend(i, a, b, p.now) -
@@ -184,7 +190,13 @@ struct PlaceSlopes {
       const double slope = e.dot(metric * e);
       w = e * e.transpose() / (slope == 0.0 ? 1.0 : slope);
     }
-    along = w * c;
+    along = w * across;
+  }
+
+  /// Derivative by n, from that by d xi, through `lean` = w^T of it.
+  Vec3<double> by_normal(const Eigen::Vector2d& lean) const {
+    const Vec3<double> way = c.transpose() * lean;
+    return -distance * way - n.dot(way) * apart;
   }
 };
 
@@ -213,7 +225,7 @@ inline void plane_slopes(const PlanesView& p, std::size_t i, const double* by_no
     }
     Tangents axes;
     axes << g[1][1].transpose(), g[1][2].transpose();
-    const Tangents own = normal.pull_back(turned.pull_back(axes));
+    Vec3<double> by_normal = turned.pull_back(axes);
     for (std::size_t part = 1; part < 3; ++part) {  // both means follow the slave point there
       const Vec3<double> along = held.transpose() * g[part][0];
       g[part][0] -= along;
@@ -225,6 +237,8 @@ inline void plane_slopes(const PlanesView& p, std::size_t i, const double* by_no
         by_place[static_cast<Index>(b)] += axes.row(static_cast<Index>(a)).dot(place.turn[a][b]);
     const Vec3<double> foot = place.along.transpose() * by_place;
     const Eigen::Vector2d lean = place.w.transpose() * by_place;
+    by_normal += place.by_normal(lean);
+    const Tangents own = normal.pull_back(by_normal);
     for (std::size_t a = 0; a < 2; ++a) {
       const auto row = static_cast<Index>(a);
       g[1][1 + a] = axes.row(row).transpose();

@@ -1,0 +1,170 @@
+"""Places of a master of facets that slave nodes meet along their averaged normals.
+
+The closest point jumps where two facets are equally near, on the hollow side of every edge between
+them. Along a normal that does not turn there it passes the edge without a jump
+[Puso Laursen 2004]: the place p of a slave node x is where with P = I - n n
+
+    d_a . P (x - p) = 0 ,
+
+d_a the tangents of the facet: p = x - s n inside the surface, and beyond its border the point of it
+that is closest as seen along n.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.sides import Sides, located
+from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, FacetProjections
+
+Ints = npt.NDArray[np.int32]
+Numbers = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+#: Corrections of a place on a facet, and the last one that is good enough.
+MOST, ENOUGH = 12, 1e-14
+#: Facets that are tried one after the other.
+TRIED = 8
+#: Least cosine between a normal and that of a facet that it meets.
+OPPOSED = 0.1
+#: How far coordinates may be beyond the sides of a facet: rounding.
+ROUNDING = 1e-10
+
+
+@dataclass(frozen=True)
+class Places:
+    """Places on the master.
+
+    Attributes:
+        facet: Facets, (n,); -1 where there is none.
+        xi: Coordinates on them, (n, 2).
+        edge: Direction of the border of the surface on which a place is, in coordinates, (n, 2);
+            not a number inside the surface; zero where the place does not follow the slave node.
+    """
+
+    facet: Ints
+    xi: Floats
+    edge: Floats
+
+
+def along_normals(sides: Sides, x: Floats, normal: Floats, hit: FacetProjections) -> Places:
+    """Where normals of slave nodes meet the master.
+
+    Args:
+        sides: Both sides; the surface is where it is now.
+        x: Slave nodes, (n, 3), length.
+        normal: Unit normals there, (n, 3).
+        hit: Closest points of the slave nodes. Nodes whose normal meets nothing that is near to
+            these keep them.
+
+    Returns:
+        The places.
+    """
+    there = hit.status <= FACET_STATUS.index("off")
+    facet = np.where(there, hit.facet, -1).astype(np.int32)
+    places = Places(facet, np.nan_to_num(hit.xi), np.zeros((len(facet), 2)))
+    rest, at = np.flatnonzero(there), hit.take(np.flatnonzero(there))
+    for tried in range(TRIED):
+        found, xi = _met(sides, x[rest], normal[rest], at)
+        _put(places, rest[found], at.facet[found], xi[found], np.nan)
+        if tried:
+            off = ~found & ~located(at)
+            border = _border(sides, x[rest], normal[rest], at)
+            _put(places, rest[off], at.facet[off], border.xi[off], border.edge[off])
+            found |= off
+        if found.all():
+            break
+        rest = rest[~found]
+        ahead, opposed = _ahead(sides, x[rest], normal[rest], at.take(np.flatnonzero(~found)))
+        rest, ahead = rest[opposed], ahead[opposed]
+        excluded = None if sides.excluded is None else sides.excluded.take(rest)
+        at = sides.surface.project(ahead, None, sides.reach, excluded)
+        near = np.flatnonzero(at.status <= FACET_STATUS.index("off"))
+        rest, at = rest[near], at.take(near)
+    return places
+
+
+def _put(places: Places, rows: Numbers, facet: Ints, xi: Floats, edge: Floats | float) -> None:
+    places.facet[rows], places.xi[rows], places.edge[rows] = facet, xi, edge
+
+
+def _across(v: Floats, normal: Floats) -> Floats:
+    """What of vectors, (n, ..., 3), is across unit normals, (n, 3)."""
+    n = normal.reshape(len(normal), *[1] * (v.ndim - 2), 3)
+    return np.asarray(v - (v * n).sum(axis=-1, keepdims=True) * n)
+
+
+def _met(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple[Mask, Floats]:
+    """Whether normals meet facets inside, (n,), and where, (n, 2), by Newton's method."""
+    inside = at.feature == FEATURES.index("interior")
+    xi = np.where(inside[:, None], at.xi, np.clip(at.xi, 0.0, 1.0))
+    flat = np.zeros(len(xi), dtype=bool)
+    for _ in range(MOST):
+        jet = sides.surface.jet(at.facet, xi)
+        across, rest = _across(jet.d1, normal), _across(x - jet.position, normal)
+        curved = np.einsum("nkd,nd->nk", jet.d2, rest)[:, [[0, 1], [1, 2]]]
+        metric = across @ across.swapaxes(1, 2)
+        own = np.linalg.det(jet.d1 @ jet.d1.swapaxes(1, 2))
+        flat |= np.linalg.det(metric) <= OPPOSED**2 * own
+        matrix = np.where(flat[:, None, None], np.eye(2), metric - curved)
+        step = np.linalg.solve(matrix, np.einsum("nad,nd->na", across, rest)[..., None])[..., 0]
+        flat |= np.abs(step).max(axis=1, initial=0.0) > 1.0 / ROUNDING
+        xi = np.where(flat[:, None], xi, xi + step)
+        if np.abs(step[~flat]).max(initial=0.0) <= ENOUGH:
+            break
+    return ~flat & (_outside(sides, xi) <= ROUNDING), xi
+
+
+def _outside(sides: Sides, xi: Floats) -> Floats:
+    """How far coordinates are beyond the sides of a facet, (n,); negative inside."""
+    triangle = sides.master.topology.startswith("tri")
+    last = xi.sum(axis=1) if triangle else xi.max(axis=1)
+    return np.asarray(np.maximum(-xi.min(axis=1), last - 1.0))
+
+
+def _ahead(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple[Floats, Mask]:
+    """Where normals meet the planes of what is closest, (n, 3), and whether they do, (n,)."""
+    jet = sides.surface.jet(at.facet, at.xi)
+    plane = np.cross(jet.d1[:, 0], jet.d1[:, 1])
+    plane /= np.linalg.norm(plane, axis=1)[:, None]
+    ridge = located(at) & (at.feature != FEATURES.index("interior"))
+    plane[ridge] = at.normal[ridge]
+    cosine = np.einsum("ni,ni->n", plane, normal)
+    opposed = np.abs(cosine) > OPPOSED
+    way = np.einsum("ni,ni->n", jet.position - x, plane) / np.where(opposed, cosine, 1.0)
+    return x + way[:, None] * normal, opposed
+
+
+def _border(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> Places:
+    """Places on the edges of the border that are closest as seen along normals."""
+    edge, xi = at.edge.copy(), at.xi.copy()
+    least, most = _ends(xi, edge)
+    along = np.zeros(len(xi))
+    for _ in range(MOST):
+        jet = sides.surface.jet(at.facet, xi + along[:, None] * edge)
+        tangent = np.einsum("na,nad->nd", edge, jet.d1)
+        second = np.stack([edge[:, 0] ** 2, 2.0 * edge[:, 0] * edge[:, 1], edge[:, 1] ** 2], axis=1)
+        rest = _across(x - jet.position, normal)
+        slope = (_across(tangent, normal) ** 2).sum(axis=1)
+        slope -= np.einsum("nk,nkd,nd->n", second, jet.d2, rest)
+        step = np.einsum("nd,nd->n", tangent, rest) / np.where(slope > 0.0, slope, np.inf)
+        new = np.clip(along + step, least, most)
+        done, along = np.abs(new - along).max(initial=0.0) <= ENOUGH, new
+        if done:
+            break
+    edge[(along <= least) | (along >= most)] = 0.0
+    return Places(at.facet, xi + along[:, None] * at.edge, edge)
+
+
+def _ends(xi: Floats, edge: Floats) -> tuple[Floats, Floats]:
+    """How far an edge goes on from places on it, in both directions, (n,) each."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ends = np.sort(np.stack([-xi / edge, (1.0 - xi) / edge], axis=2), axis=2)
+    ends[edge == 0.0] = -np.inf, np.inf
+    least, most = ends[..., 0].max(axis=1), ends[..., 1].min(axis=1)
+    still = (edge == 0.0).all(axis=1)
+    return np.where(still, 0.0, least), np.where(still, 0.0, most)
