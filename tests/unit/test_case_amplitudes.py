@@ -92,6 +92,16 @@ def test_check_can_leave_the_file_alone(case, capsys):
     assert capsys.readouterr().err == line
 
 
+def test_a_function_that_ends_the_program(case, capsys):
+    """Requirement: what an amplitude does is one line, also where it calls `exit` of its own."""
+    own = case.parent / "own.py"
+    own.write_text(own.read_text().replace("return", "exit(0) if time > 0.9 else 0\n    return"))
+    for command in ("check", "run"):
+        assert main([command, str(case)]) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert ": own.py, line 2: SystemExit: 0" in line
+
+
 @pytest.mark.parametrize(
     ("old", "new", "line"),
     [

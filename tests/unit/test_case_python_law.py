@@ -143,6 +143,15 @@ FAULTY = [
     (("class Smooth", "import sys\nsys.exit()\nclass Smooth"), "line 6: SystemExit"),
     (("n = len", "raise SystemExit(0)\n        n = len"), "smooth.py, line 9: SystemExit: 0"),
     (("internal = 0", "__init__ = lambda self: exit(0)"), "SystemExit: 0"),
+    (
+        ("n = len", "state.internal[:] = 1.0\n        n = len"),
+        "line 9: ValueError: assignment dest",
+    ),
+    (("n = len", "kinematics.increment[:] = 0\n        n = len"), "assignment destination is read"),
+    (("return LawResult", "return None and LawResult"), "returned a NoneType, a LawResult needed"),
+    (("(none, none, block", "(1j * none, none, block"), "an array of real numbers needed"),
+    (("(none, none, block", "([[1], []], none, block"), "[[1], []], an array of real numbers"),
+    (("(none, none, block", "(none.astype(str), none, block"), "an array of real numbers needed"),
 ]
 
 
@@ -184,6 +193,19 @@ def test_restart_with_another_law(tmp_path, capsys):
     assert capsys.readouterr().err == (
         "error: contact[0].python.file: 'smooth.py' given, no such file\n"
     )
+
+
+def test_restart_with_another_file_that_the_law_imports(tmp_path, capsys):
+    """A law is what its file imports, too: what lies beside it and has changed is named."""
+    (tmp_path / "size.py").write_text("from unit import ONE\n", encoding="utf-8")
+    (tmp_path / "unit.py").write_text("ONE = 1.0\n", encoding="utf-8")
+    path = smooth(tmp_path, ("import numpy", "import os.path, size\nimport numpy"))
+    out = tmp_path / "out"
+    assert main(["run", str(path), "-o", str(out)]) == 0
+    assert main(["run", str(path), "-o", str(out), "--restart"]) == 0
+    (tmp_path / "unit.py").write_text("ONE = 2.0\n", encoding="utf-8")
+    assert main(["run", str(path), "-o", str(out), "--restart"]) == 2
+    assert "'unit.py' has changed since the run" in capsys.readouterr().err
 
 
 def test_check_without_running_the_law(tmp_path, capsys):

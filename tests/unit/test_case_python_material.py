@@ -108,6 +108,10 @@ def test_law_of_points(tmp_path: Path) -> None:
         ("Counting", ("return PointResult(stress, slope, after)", "return 1"), "returned a int"),
         ("Counting", ("history =", "strain = 'big'; history ="), "'big' given, allowed: small"),
         ("Counting", ("young=3.0", "E=3.0"), "own.py, line 19: NameError"),
+        ("Counting", ("eye = np.eye(3)", "raise SystemExit(0)"), "own.py, line 21: SystemExit: 0"),
+        ("Stress", ("return F -", "exit(0); F -"), "Stress.piola failed: own.py, line 14: System"),
+        ("Counting", ("self.young * state", "1j * state"), "an array of real numbers needed"),
+        ("Counting", ("eye = np.eye(3)", "state.strain[:] = 0"), "own.py, line 21: ValueError"),
     ],
 )
 def test_mistakes_are_one_line(

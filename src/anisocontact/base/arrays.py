@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 
 Floats = npt.NDArray[np.float64]
+
+#: Kinds of NumPy's types that are real numbers, or objects that may be.
+_REAL = "biufO"
 
 
 def points(x: npt.ArrayLike, columns: int, name: str = "x", rows: int | None = None) -> Floats:
@@ -39,6 +44,61 @@ def points(x: npt.ArrayLike, columns: int, name: str = "x", rows: int | None = N
             f"an array of shape {a.shape} given, ({needed}, {columns}) needed", field=name
         )
     return a
+
+
+def answered(x: object, shape: tuple[int, ...], who: str, part: str) -> Floats:
+    """What code of a user's has returned, as doubles.
+
+    Args:
+        x: What it has returned.
+        shape: The shape that is needed.
+        who: Whose it is, for the message: "the law Creeping".
+        part: Which of its answers it is, for the message.
+
+    Returns:
+        The array, of that shape.
+
+    Raises:
+        InputError: It has another shape, or is no array of real numbers.
+
+    Example:
+        >>> answered([1, 2], (2,), "the law Creeping", "energy").tolist()
+        [1.0, 2.0]
+    """
+    found = None
+    try:
+        given = np.asarray(x)
+        if given.dtype.kind in _REAL:
+            found = np.asarray(given, dtype=np.float64)
+    except (TypeError, ValueError):
+        pass
+    if found is None:
+        text = " ".join(f"{who} returned {x!r:.60}".split())
+        raise InputError(f"{text}, an array of real numbers needed", field=part)
+    if found.shape != shape:
+        text = f"{who} returned an array of shape {found.shape}, {shape} needed"
+        raise InputError(text, field=part)
+    return found
+
+
+def read_only(x: npt.NDArray[Any]) -> npt.NDArray[Any]:
+    """The same numbers, which whoever is given them cannot change.
+
+    Args:
+        x: An array.
+
+    Returns:
+        A view of it.
+
+    Example:
+        >>> read_only(np.ones(2))[0] = 3.0
+        Traceback (most recent call last):
+        ...
+        ValueError: assignment destination is read-only
+    """
+    seen = x.view()
+    seen.flags.writeable = False
+    return seen
 
 
 def connected(count: int, *links: npt.NDArray[np.integer]) -> npt.NDArray[np.int64]:

@@ -99,7 +99,7 @@ class Course:
     def _number(self, time: float) -> float:
         try:
             found = float(self.amplitude(time))
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise InputError(f"amplitude at the time {time:g}: {where_failed(error)}") from None
         if not math.isfinite(found):
             raise InputError(f"amplitude at the time {time:g} is {found}, a finite number needed")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import importlib.util
 import sys
 import traceback
@@ -10,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 
-__all__ = ["module_of", "where_failed"]
+__all__ = ["imported_beside", "module_of", "where_failed"]
 
 
 def module_of(path: Path) -> ModuleType:
@@ -36,15 +37,51 @@ def module_of(path: Path) -> ModuleType:
     return module
 
 
+def imported_beside(path: Path) -> list[Path]:
+    """Python files in the folder of one that it imports, and those that these import.
+
+    Args:
+        path: The file; nothing is run.
+
+    Returns:
+        The other files, in the order in which they are found; none where the file is no Python.
+    """
+    found = [path]
+    for file in found:
+        others = (path.with_name(f"{name}.py") for name in _imports(file))
+        found += [
+            other for other in dict.fromkeys(others) if other not in found and other.is_file()
+        ]
+    return found[1:]
+
+
+def _imports(path: Path) -> Iterator[str]:
+    """Names of the modules that a file imports."""
+    try:
+        tree = ast.parse(path.read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.partition(".")[0] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
+            yield node.module.partition(".")[0]
+
+
 def where_failed(error: BaseException) -> str:
     """An error of somebody's code in one line: file and line, and what it says."""
     at: tuple[str | None, int | None] = (None, None)
     if isinstance(error, SyntaxError):
         at = (error.filename, error.lineno)
-    elif frames := traceback.extract_tb(error.__traceback__)[1:]:
+    elif frames := _readable(traceback.extract_tb(error.__traceback__)[1:]):
         at = (frames[-1].filename, frames[-1].lineno)
     said = " ".join(f"{type(error).__name__}: {getattr(error, 'msg', None) or error}".split())
     return said if at[0] is None else f"{Path(at[0]).name}, line {at[1]}: {said}"
+
+
+def _readable(frames: list[traceback.FrameSummary]) -> list[traceback.FrameSummary]:
+    """Those that stand in files: not what Python itself has frozen, as `exit`."""
+    return [frame for frame in frames if not frame.filename.startswith("<frozen")]
 
 
 @contextmanager

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import partial
 from typing import Any, cast
 
 import numpy as np
 
+from anisocontact.base.arrays import answered, read_only
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.python_file import where_failed
@@ -48,27 +50,30 @@ class UserLaw:
             InputError: The law fails, or returns something else.
         """
         name, n = type(self._law).__name__, len(state.strain)
+        before = {name: read_only(values) for name, values in state.before.items()}
+        strain, place = read_only(state.strain), read_only(state.place)
         try:
-            result = self._law.update(state)
-        except Exception as error:
+            result = self._law.update(PointState(strain, before, state.dt, place))
+        except (Exception, SystemExit) as error:
             raise InputError(f"the law {name} failed: {where_failed(error)}") from error
         if not isinstance(result, PointResult):
             text = f"the law {name} returned a {type(result).__name__}, a PointResult needed"
             raise InputError(text)
-        given = {"stress": result.stress, "tangent": result.tangent, **result.after}
-        shapes = {"stress": (n, 3, 3), "tangent": (n, 3, 3, 3, 3)}
-        shapes |= {name: (n, *shape) for name, shape in self.history.items()}
-        for part in ("stored", "dissipated"):
-            if getattr(result, part) is not None:
-                given[part], shapes[part] = getattr(result, part), (n,)
-        if given.keys() != shapes.keys():
+        if result.after.keys() != self.history.keys():
             text = f"{', '.join(result.after) or 'none'} given, {', '.join(self.history)} needed"
             raise InputError(f"the law {name} returned other variables: {text}", "after")
-        for part, shape in shapes.items():
-            if np.shape(given[part]) != shape:
-                text = f"an array of shape {np.shape(given[part])}, {shape} needed"
-                raise InputError(f"the law {name} returned {text}", part)
-        return result
+        right = partial(answered, who=f"the law {name}")
+        energies = {
+            part: right(getattr(result, part), (n,), part=part)
+            for part in ("stored", "dissipated")
+            if getattr(result, part) is not None
+        }
+        return PointResult(
+            right(result.stress, (n, 3, 3), part="stress"),
+            right(result.tangent, (n, 3, 3, 3, 3), part="tangent"),
+            {v: right(result.after[v], (n, *s), part=v) for v, s in self.history.items()},
+            **energies,
+        )
 
 
 def user_material(given: Any) -> Material:
@@ -121,7 +126,7 @@ def _try(function: Any, name: str, shape: tuple[int, ...]) -> None:
     """Let a function of the deformation gradient show what it returns."""
     try:
         found = ufl.as_ufl(function(ufl.variable(ufl.Identity(3)))).ufl_shape
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise InputError(f"{name} failed: {where_failed(error)}") from error
     if found != shape:
         raise InputError(f"{name} returned something of shape {found}, {shape} needed")

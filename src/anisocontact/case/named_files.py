@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.python_file import imported_beside
 from anisocontact.case.amplitudes import FunctionTable
 from anisocontact.case.python_section import MaterialTable
 
 if TYPE_CHECKING:
+    from anisocontact.case.model import Case
     from anisocontact.case.read import CaseFile
 
 __all__ = ["check_files", "fingerprints"]
@@ -23,19 +26,29 @@ def named(file: CaseFile) -> Iterator[tuple[str, str]]:
         yield "mesh.file", mesh.file
     for name, section in mesh.files.items():
         yield f"mesh.files.{name}.path", section.path
-    for i, contact in enumerate(file.case.contact):
+    for place, given in _programs(file.case):
+        yield place, given
+        for other in imported_beside(file.resolve(given)):
+            yield place, Path(given).with_name(other.name).as_posix()
+
+
+def _programs(case: Case) -> Iterator[tuple[str, str]]:
+    """Place and path of each Python file."""
+    for i, contact in enumerate(case.contact):
         if contact.python is not None:
             yield f"contact[{i}].python.file", contact.python.file
-    for name, material in file.case.material.items():
+    for name, material in case.material.items():
         if isinstance(material, MaterialTable):
             yield f"material.{name}.file", material.file
-    for name, amplitude in file.case.amplitude.items():
+    for name, amplitude in case.amplitude.items():
         if isinstance(amplitude, FunctionTable):
             yield f"amplitude.{name}.file", amplitude.file
 
 
 def fingerprints(file: CaseFile) -> dict[str, str]:
     """What the files that a case names contain: meshes; laws, materials and amplitudes in Python.
+
+    With a Python file come those beside it that it imports.
 
     Args:
         file: The case.
@@ -72,6 +85,6 @@ def check_files(before: Mapping[str, str], file: CaseFile) -> None:
     """
     now = fingerprints(file)
     for place, given in named(file):
-        if now[given] != before[given]:
+        if now[given] != before.get(given):
             text = f"'{given}' has changed since the run that is to go on began"
             raise InputError(f"{text}: run without --restart", place)

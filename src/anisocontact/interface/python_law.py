@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.anisotropy import DirectionField
+from anisocontact.base.arrays import answered, read_only
 from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import where_failed
 from anisocontact.interface.series import History
@@ -266,10 +267,13 @@ def evaluate(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> 
         InputError: The law failed, or an array has another shape or numbers that are not finite.
     """
     n, own = state.internal.shape
+    who = f"the law {type(law).__name__}"
     try:
-        result = law.update(state, kinematics)
+        result = law.update(_locked(state), _locked(kinematics))
     except (Exception, SystemExit) as error:
-        raise InputError(f"the law {type(law).__name__} failed: {where_failed(error)}") from error
+        raise InputError(f"{who} failed: {where_failed(error)}") from error
+    if not isinstance(result, LawResult):
+        raise InputError(f"{who} returned a {type(result).__name__}, a LawResult needed")
     shapes: dict[str, tuple[int, ...]] = {
         **dict.fromkeys(("traction", "slip", "d_pressure"), (n, 2)),
         **dict.fromkeys(("d_increment", "d_traction", "d_elastic"), (n, 2, 2)),
@@ -278,18 +282,24 @@ def evaluate(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> 
     }
     if result.stored is not None:
         shapes["stored"] = (n, 2)
-    for name, shape in shapes.items():
-        values = np.asarray(getattr(result, name))
-        if values.shape != shape:
-            text = f"the law returned an array of shape {values.shape}, {shape} needed"
-            raise InputError(text, field=name)
+    given = {
+        name: answered(getattr(result, name), s, "the law", name) for name, s in shapes.items()
+    }
+    for name, values in given.items():
         if np.isfinite(values.sum()):  # a sum is finite where all is, but for what is too large
             continue
         bad = np.flatnonzero(~np.isfinite(values).all(axis=tuple(range(1, values.ndim))))
         if bad.size:
             text = f"the law returned {values[bad[0]].tolist()} at {len(bad)} of {n} points, "
             raise InputError(text + "finite numbers needed", field=name)
-    return result
+    return replace(result, **given)
+
+
+def _locked[T: (LawState, LawKinematics)](record: T) -> T:
+    """The same record with arrays that a law cannot change: some are the accepted history."""
+    parts: dict[str, Any] = vars(record)
+    arrays = {k: read_only(v) for k, v in parts.items() if isinstance(v, np.ndarray)}
+    return replace(record, **(parts | arrays))
 
 
 def state_type(count: int) -> np.dtype[np.void]:
