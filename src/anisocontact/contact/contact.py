@@ -62,6 +62,7 @@ class Contact(Pass):
         space: Vector space of the displacement.
         master: What the slave points meet.
         slave_points: Where the laws are evaluated.
+        nodes_of_groups: Local nodes, with ghosts, of each of `groups`.
         physical_adhesion: Whether the stiffness of adhesion is physical, so that elastic slip is
             none of its faults.
         facet_of_point: Number of each point's facet in the group it lies on, (n,).
@@ -125,6 +126,7 @@ class Contact(Pass):
         )
         parts = parts_of(model, slave, master, law, options)
         super().__init__(model.space, slave, name or slave, *parts, **options.of_pass)
+        self.nodes_of_groups = tuple(model.facet_nodes(group) for group in self.groups)
         self.physical_adhesion = True
         self.facet_of_point = self.slave_points.facet
 

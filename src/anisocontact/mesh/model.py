@@ -212,9 +212,24 @@ class Model:
         """
         if name in self._nodes:
             return self._nodes[name]
-        dim = self.mesh.topology.dim - 1
-        nodes = fem.locate_dofs_topological(self.space, dim, self.facets(name, field))
+        nodes = self.facet_nodes(name, field)
         return np.asarray(nodes[nodes < self.space.dofmap.index_map.size_local])
+
+    def facet_nodes(self, name: str, field: str = "") -> Ints:
+        """Nodes of a facet group on this rank; the call is collective.
+
+        Args:
+            name: "body.group".
+            field: Where the name was written, for the message.
+
+        Returns:
+            Their local numbers, with ghosts, (nodes,).
+
+        Raises:
+            InputError: No such group; the line suggests the nearest name.
+        """
+        dim = self.mesh.topology.dim - 1
+        return np.asarray(fem.locate_dofs_topological(self.space, dim, self.facets(name, field)))
 
     def boundary(self, name: str, field: str = "") -> Ints:
         """Local facets of a group that has to lie on the boundary; the call is collective.

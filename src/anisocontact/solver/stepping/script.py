@@ -26,6 +26,7 @@ from anisocontact.solver.terms.bodies import Bodies
 from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.form import Dirichlet, FormBulk
+from anisocontact.solver.terms.free_modes import connected_body
 from anisocontact.solver.terms.loose import MeshPart, loose_motions, parts
 from anisocontact.solver.terms.persistent import under
 from anisocontact.solver.terms.rigid import RigidBodies
@@ -80,7 +81,6 @@ class ContactProblem(AssembledSystem):
         self._bodies = _checked(contacts, space)
         warn_of(contacts)
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
-        self._sides = SidesKept(contacts)
         form = FormBulk(F, u, J)
         bodies, layout = Bodies(form), Layout(space, 0)
         suit(contacts, bodies, [form.finite] * len(contacts))
@@ -96,6 +96,8 @@ class ContactProblem(AssembledSystem):
         self.balance = ForceBalance.none(layout.owned)
         self._tangent = Tangent(self._assembly, space)
         self._parts = parts(space)
+        bodies_of = [connected_body(space, (), [part.nodes]) for part in self._parts]
+        self._sides = SidesKept(contacts, bodies_of)
         self.newton = Newton(self, petsc_options_prefix, petsc_options or {}, lambda *_: None)
 
     def solve(self, dt: float = 1.0) -> int:

@@ -18,6 +18,7 @@ from anisocontact.solver.system.sides_kept import SidesKept
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.bodies import Bodies
+from anisocontact.solver.terms.free_modes import bodies as all_bodies
 from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.cyclic import CyclicSymmetry
@@ -128,7 +129,7 @@ def make_parts(
         loads=loads,
         planes=planes,
         stabilisation=aid,
-        sides=SidesKept(contacts, model),
+        sides=SidesKept(contacts, all_bodies(model)),
         assembly=assembly,
     )
 

@@ -14,9 +14,8 @@ import numpy.typing as npt
 
 from anisocontact.contact import Contact
 from anisocontact.contact.whereabouts import CRUSHED
-from anisocontact.mesh import Model
 from anisocontact.solver.system.culprit import Culprit
-from anisocontact.solver.terms.free_modes import ConnectedBody, bodies
+from anisocontact.solver.terms.free_modes import ConnectedBody
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -78,15 +77,11 @@ class SidesKept:
 
     Args:
         contacts: The contacts, in the reference configuration.
-        model: Mesh of the bodies; where there is none slave points alone are looked at.
+        groups: Bodies in which slaves and masters are looked for; a slave of several is of all.
     """
 
-    def __init__(self, contacts: Sequence[Contact], model: Model | None = None) -> None:
-        groups = [] if model is None else bodies(model)
-        self._watched = [
-            _alone(contact) if model is None else _watched(model, contact, groups)
-            for contact in contacts
-        ]
+    def __init__(self, contacts: Sequence[Contact], groups: Sequence[ConnectedBody]) -> None:
+        self._watched = [one for contact in contacts for one in _watched(contact, groups)]
 
     def objection(self, u: Floats, whole: bool = True) -> Culprit | None:
         """The first body that is not where it may be, the same on all ranks; None if all are.
@@ -160,17 +155,23 @@ def _motions(arms: Floats) -> Floats:
     return np.concatenate([still, np.cross(np.eye(3), arms[:, None, :]).swapaxes(1, 2)], axis=2)
 
 
-def _alone(one: Contact) -> _Watched:
+def _watched(one: Contact, groups: Sequence[ConnectedBody]) -> list[_Watched]:
+    """The bodies of a slave that are not its master's too; the slave points alone if none is."""
+    slave, *masters = (
+        [bool(one.space.mesh.comm.allreduce(len(np.intersect1d(nodes, g.local)))) for g in groups]
+        for nodes in one.nodes_of_groups
+    )
+    found = [
+        _body(one, group)
+        for i, group in enumerate(groups)
+        if slave[i] and not any(master[i] for master in masters)
+    ]
     nodes, places = np.zeros(0, dtype=np.int64), np.zeros((0, 3))
-    return _Watched(one, None, nodes, places, nodes, places)
+    return found or [_Watched(one, None, nodes, places, nodes, places)]
 
 
-def _watched(model: Model, one: Contact, groups: list[ConnectedBody]) -> _Watched:
-    places = np.asarray(model.space.tabulate_dof_coordinates())
-    slave = model.body_of(one.slave)
-    body = next(group for group in groups if slave in group.parts)
-    if any(model.body_of(group) in body.parts for group in one.groups[1:]):
-        return _alone(one)
+def _body(one: Contact, body: ConnectedBody) -> _Watched:
+    places = np.asarray(one.space.tabulate_dof_coordinates())
     nodes = body.nodes[:: max(1, len(body.nodes) // MOST_NODES)]
     seen = one.master.look(places[nodes])
     nodes = nodes[seen.on & (seen.gap > -DEEP * body.size)]

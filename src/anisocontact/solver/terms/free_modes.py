@@ -12,7 +12,8 @@ import numpy.typing as npt
 from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import fem
 from anisocontact.contact import Contact
-from anisocontact.mesh import Model
+from anisocontact.mesh import Idealisation, Model
+from anisocontact.mesh.idealisation import SOLID
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
@@ -106,7 +107,10 @@ def bodies(model: Model, links: Iterable[tuple[str, str]] = ()) -> list[Connecte
     groups = [
         [n for n, k in zip(names, number, strict=True) if k == one] for one in np.unique(number)
     ]
-    return [_body(model, group, [local[name] for name in group]) for group in groups]
+    return [
+        connected_body(space, group, [local[name] for name in group], model.idealisation)
+        for group in groups
+    ]
 
 
 def joined(
@@ -134,18 +138,28 @@ def joined(
     return [body for body in bodies(model, links) if not others & set(body.parts)]
 
 
-def _body(model: Model, parts: list[str], local: list[Ints]) -> ConnectedBody:
-    comm = model.mesh.comm
+def connected_body(
+    space: Any, parts: Sequence[str], local: Sequence[Ints], ideal: Idealisation = SOLID
+) -> ConnectedBody:
+    """Nodes as a body; collective.
+
+    Args:
+        space: Vector space of the displacement.
+        parts: Names of the bodies that it is.
+        local: Local nodes of each, with ghosts.
+        ideal: What the mesh is taken for.
+    """
+    comm = space.mesh.comm
     here = np.unique(np.concatenate(local))
-    nodes = here[here < model.space.dofmap.index_map.size_local]
-    places = np.asarray(model.space.tabulate_dof_coordinates())
+    nodes = here[here < space.dofmap.index_map.size_local]
+    places = np.asarray(space.tabulate_dof_coordinates())
     x = places[nodes]
     count = comm.allreduce(len(nodes))
     centre = comm.allreduce(x.sum(axis=0)) / count
     arms = x - centre
     size = np.sqrt(comm.allreduce(float((arms**2).sum())) / count)
     fields = _fields((places[here] - centre) / size)
-    resisted = model.idealisation.resisted(centre / size)
+    resisted = ideal.resisted(centre / size)
     shape = float(size), resisted, np.asarray(centre)
     return ConnectedBody(tuple(parts), nodes, arms / size, count, here, fields, *shape)
 
