@@ -18,6 +18,8 @@ from anisocontact.rigid import RigidBody
 from anisocontact.solver import Problem, Step
 from anisocontact.surfaces import make_surface
 
+from dolfinx.mesh import meshtags
+
 PLANE = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
 LAWS = (
     NormalLaw(penalty=1e3),
@@ -28,6 +30,12 @@ INTERFACE, PAIR = Interface(PLANE, *LAWS), ContactLaw(*LAWS)
 START = INTERFACE.initial_state([[0, 0, 0]])
 KNOTS = [(0, 0, 0), (1, 0, 0)]
 STEEL = make_material("linear-elastic", E=1.0, nu=0.3)
+
+
+def _tags_of_another_mesh() -> object:
+    other = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))}).mesh
+    one = np.ones(1, dtype=np.int32)
+    return meshtags(other, 2, one, one)
 
 
 @pytest.fixture(scope="module")
@@ -88,6 +96,34 @@ WRONG = {
     "no degree on facets": (
         lambda m: Contact(m, "block.bottom", "base.top", law=PAIR, degree=-1),
         "degree: -1 given, must be >= 1",
+    ),
+    "a word for yes or no": (
+        lambda m: Contact(m, "block.bottom", INTERFACE, mortar="no"),
+        "mortar: 'no' given, True or False needed",
+    ),
+    "a word for an area": (
+        lambda m: Contact(m, "block.bottom", INTERFACE, current_area="reference"),
+        "current_area: 'reference' given, True or False needed",
+    ),
+    "a word for a gap": (
+        lambda m: Contact(m, "block.bottom", INTERFACE, adjust="all"),
+        "adjust: 'all' given, a finite number needed",
+    ),
+    "half a degree": (
+        lambda m: Contact(m, "block.bottom", INTERFACE, degree=2.5),
+        "degree: 2.5 given, a whole number needed",
+    ),
+    "yes for an augmentation": (
+        lambda m: Contact(m, "block.bottom", INTERFACE, augmentation=True),
+        "augmentation: True given, Augmentation needed",
+    ),
+    "a name for an idealisation": (
+        lambda m: Model.of(m.space, {}, "plane-strain"),
+        r"idealisation: 'plane-strain' given, PlaneStrain\(\) or another one needed",
+    ),
+    "tags of another mesh": (
+        lambda m: Model.of(m.space, {"pad.sole": 1}, tags=_tags_of_another_mesh()),
+        "tags: MeshTags of another mesh than that of the space given",
     ),
     "a facet too far": (
         lambda m: Model.of(m.space, {"pad.sole": np.array([0, 9999], dtype=np.int32)}),

@@ -11,6 +11,7 @@ import pytest
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.errors import ModelWarning
+from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.bulk import make_material
 from anisocontact.cli import main
 from anisocontact.contact import Contact, coarse_slaves
@@ -18,7 +19,8 @@ from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.results.warnings import at_end
-from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver import ContactProblem, Problem, Solver, Step
+from anisocontact.surfaces import make_surface
 
 LAW = ContactLaw(NormalLaw(penalty=1e3), Adhesion(stiffness=1e3), Friction(coefficients=0.3))
 
@@ -51,6 +53,24 @@ def test_a_script_gets_a_warning_of_the_package():
     held = {group: dict.fromkeys("xyz", 0.0) for group in ("base.bottom", "pin.top")}
     with pytest.warns(ModelWarning, match="swap slave and master"):
         Solver(problem, [Step("rest", 1, held)])
+
+
+@pytest.mark.parametrize(("depth", "adjust"), [(0.0, None), (0.02, None), (0.02, 0.0)])
+def test_a_script_is_told_of_bodies_that_overlap(depth, adjust):
+    """An overlap of the mesh pushes bodies apart: a script hears of it, as a run does; none where
+    they just touch, or are adjusted."""
+    low = BoxSpec((0, 0, -depth), (1, 1, 1), (2, 2, 2))
+    model = build_box({"pad": low})
+    plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    contact = Contact(model, "pad.bottom", plane, LAW, adjust=adjust)
+    u, v = fem.Function(model.space), ufl.TestFunction(model.space)
+    form = ufl.inner(ufl.grad(u), ufl.grad(v)) * ufl.dx
+    with warnings.catch_warnings(record=True) as heard:
+        warnings.simplefilter("always")
+        ContactProblem(form, u, contacts=[contact]).close()
+    found = [str(one.message) for one in heard if one.category is ModelWarning]
+    said = "contact of pad.bottom: the bodies overlap by 0.02 at the start, 4% of the facet size"
+    assert [line.startswith(said) for line in found] == [True] * bool(depth and adjust is None)
 
 
 PAIR = """

@@ -311,6 +311,17 @@ def geometry(mesh: Any) -> tuple[Any, Ints, Floats]:
     return element, mesh.geometry.dofmaps[0], mesh.geometry.x
 
 
+def tags_of_mesh(tags: Any, mesh: Any) -> bool:
+    """Whether MeshTags are those of a mesh: numbers of facets of another one mean nothing.
+
+    Args:
+        tags: The MeshTags.
+        mesh: The mesh.
+    """
+    one, other = (getattr(t, "_cpp_object", t) for t in (tags.topology, mesh.topology))
+    return one is other
+
+
 def vector_space(mesh: Any, degree: int) -> Any:
     """Continuous Lagrange vectors in space."""
     return fem.functionspace(mesh, ("Lagrange", degree, (3,)))

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from anisocontact.base.errors import ModelWarning
 from anisocontact.contact.contact import Contact
+from anisocontact.contact.initial import initial_overlap
 
 __all__ = ["COARSE", "coarse_slaves", "doubtful_sides", "warn_of"]
 
@@ -90,11 +91,49 @@ def doubtful_sides(contacts: Sequence[Contact]) -> list[str]:
     return [*coarse_slaves(contacts), *stiff_slaves(contacts)]
 
 
+def overlapping(pairs: Iterable[tuple[Contact, str, float]], cure: str) -> list[str]:
+    """Contacts whose bodies overlap where they are.
+
+    Args:
+        pairs: Each contact, what it is called, and the size of its facets, length.
+        cure: What lets them just touch.
+
+    Returns:
+        A line for each of them.
+    """
+    found = []
+    for contact, name, size in pairs:
+        overlap = initial_overlap(contact, size)
+        if overlap is None or overlap.depth <= contact.slave_points.beside:
+            continue
+        place = ", ".join(f"{v:.4g}" for v in overlap.point)
+        found.append(
+            f"{name}: the bodies overlap by {overlap.depth:.3g} at the start, "
+            f"{100.0 * overlap.depth / size:.2g}% of the facet size, at {overlap.count} points, "
+            f"most at ({place}); the first increment pushes them apart, {cure} lets them just touch"
+        )
+    return found
+
+
 def warn_of(contacts: Sequence[Contact]) -> None:
     """Tell a script: a Python warning of the category `ModelWarning` for each line.
 
     Args:
         contacts: The contacts, as of `doubtful_sides`.
     """
-    for line in doubtful_sides(contacts):
-        warnings.warn(line, ModelWarning, stacklevel=3)
+    _warn(doubtful_sides(contacts))
+
+
+def warn_of_overlaps(contacts: Sequence[Contact]) -> None:
+    """The same of bodies that overlap before the first step.
+
+    Args:
+        contacts: The contacts, as of `overlapping`.
+    """
+    pairs = ((one, f"contact of {one.name}", one.facet_size) for one in contacts)
+    _warn(overlapping(pairs, "Contact(..., adjust=0.0)"))
+
+
+def _warn(lines: Iterable[str]) -> None:
+    for line in lines:
+        warnings.warn(line, ModelWarning, stacklevel=4)

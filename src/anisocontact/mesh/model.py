@@ -54,6 +54,7 @@ class Model:
     ) -> None:
         if order not in (1, 2):
             raise InputError(f"order: got {order!r}, allowed: 1, 2", "order")
+        _check_kind(idealisation)
         _check_dimension(mesh, idealisation)
         self.mesh = mesh
         self.idealisation = idealisation
@@ -117,7 +118,7 @@ class Model:
                 or facets that are none of its mesh.
         """
         order = check_space(space)
-        named = named_facets(facets, space.mesh.topology.dim - 1, tags)
+        named = named_facets(facets, space.mesh, tags)
         body = next(iter(named), "body").partition(".")[0]
         topology = space.mesh.topology
         cells = np.arange(topology.index_map(topology.dim).size_local, dtype=np.int32)
@@ -327,6 +328,12 @@ def _with_two_cells(mesh: Any, facets: Ints) -> int:
     topology.create_connectivity(dim - 1, dim)
     owned = facets[facets < topology.index_map(dim - 1).size_local]
     return int((np.diff(topology.connectivity(dim - 1, dim).offsets)[owned] > 1).sum())
+
+
+def _check_kind(idealisation: object) -> None:
+    if not isinstance(idealisation, Idealisation):
+        text = f"{idealisation!r:.60} given, PlaneStrain() or another one needed"
+        raise InputError(text, "idealisation")
 
 
 def _check_dimension(mesh: Any, idealisation: Idealisation) -> None:

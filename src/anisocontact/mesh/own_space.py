@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import tags_of_mesh
 
 Ints = npt.NDArray[np.int32]
 
@@ -53,13 +54,13 @@ def check_space(space: Any) -> int:
     return int(element.degree)
 
 
-def named_facets(facets: Any, dim: int = 2, tags: Any = None) -> dict[str, Ints]:
+def named_facets(facets: Any, mesh: Any, tags: Any = None) -> dict[str, Ints]:
     """Facet groups by name, each facet once.
 
     Args:
         facets: "body.group" -> local facets, or their value in `tags`; MeshTags alone make a group
             "body.<value>" of each value.
-        dim: Dimension of facets.
+        mesh: Mesh of the facets.
         tags: MeshTags of facets.
 
     Returns:
@@ -77,9 +78,12 @@ def named_facets(facets: Any, dim: int = 2, tags: Any = None) -> dict[str, Ints]
             "MeshTags.find",
             "facets",
         )
+    dim = mesh.topology.dim - 1
     if tags is not None and not (_are_tags(tags) and tags.dim == dim):
         text = f"{type(tags).__name__} given, MeshTags of facets (dimension {dim}) needed"
         raise InputError(text, "tags")
+    if tags is not None and not tags_of_mesh(tags, mesh):
+        raise InputError("MeshTags of another mesh than that of the space given", "tags")
     return {_name(name): _numbers(name, _found(name, g, tags)) for name, g in facets.items()}
 
 

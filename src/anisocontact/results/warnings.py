@@ -7,8 +7,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from anisocontact.base.limits import FOLLOWED
-from anisocontact.contact import Contact, coarse_slaves, doubtful_sides, initial_overlap
-from anisocontact.contact.hints import MISSED
+from anisocontact.contact import Contact, coarse_slaves, doubtful_sides
+from anisocontact.contact.hints import MISSED, overlapping
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
 from anisocontact.solver.stepping.turned import MARGIN
@@ -36,18 +36,11 @@ def at_start(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> li
         contacts: The contacts.
         shown: Their entries in the summary.
     """
-    found = doubtful_sides(contacts)
-    for contact, entry in zip(contacts, shown, strict=True):
-        overlap = initial_overlap(contact, entry["facet_size"])
-        if overlap is not None and overlap.depth > contact.slave_points.beside:
-            place = ", ".join(f"{v:.4g}" for v in overlap.point)
-            found.append(
-                f"{_pair(entry)}: the bodies overlap by {overlap.depth:.3g} at the start, "
-                f"{100.0 * overlap.depth / entry['facet_size']:.2g}% of the facet size, "
-                f"at {overlap.count} points, most at ({place}); the first increment pushes them "
-                "apart, adjust = true lets them just touch"
-            )
-    return found
+    pairs = (
+        (contact, _pair(entry), entry["facet_size"])
+        for contact, entry in zip(contacts, shown, strict=True)
+    )
+    return [*doubtful_sides(contacts), *overlapping(pairs, "adjust = true")]
 
 
 def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> dict[str, float]:

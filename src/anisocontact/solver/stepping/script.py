@@ -14,6 +14,7 @@ from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.limits import Limits
 from anisocontact.base.whole_files import replacing
 from anisocontact.contact import Contact, warn_of
+from anisocontact.contact.hints import warn_of_overlaps
 from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.strategies.newton import Newton, OptionValue
 from anisocontact.solver.system.assembled import AssembledSystem
@@ -80,6 +81,7 @@ class ContactProblem(AssembledSystem):
         space = u.function_space
         self._bodies = _checked(contacts, space)
         warn_of(contacts)
+        warn_of_overlaps(contacts)
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
         form = FormBulk(F, u, J)
         bodies, layout = Bodies(form), Layout(space, 0)

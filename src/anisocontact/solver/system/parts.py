@@ -18,11 +18,11 @@ from anisocontact.solver.system.sides_kept import SidesKept
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.bodies import Bodies
-from anisocontact.solver.terms.free_modes import bodies as all_bodies
 from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.cyclic import CyclicSymmetry
 from anisocontact.solver.terms.faces import CoupledFace, CoupledFaces
+from anisocontact.solver.terms.free_modes import bodies as all_bodies
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.middles import follow_corners, middle_nodes
 from anisocontact.solver.terms.rigid import RigidBodies
