@@ -42,8 +42,8 @@ _PUBLIC = {
     "Plastic PointLaw StVenantKirchhoff TransverselyIsotropic UserEnergy UserStress Viscoelastic "
     "Yeoh cauchy_stress deformation_gradient make_material register_material small_strain",
     "contact": "Contact close_gaps facet_directions facet_size",
-    "solver": "Accepted Amplitude ContactProblem CyclicSymmetry ElasticSupport Limits Newton Path "
-    "Problem Solver Spring Step Strategy Tie Turn Until make_amplitude make_path "
+    "solver": "Accepted Amplitude ContactProblem CyclicSymmetry Cylindrical ElasticSupport Limits "
+    "Newton Path Problem Solver Spring Step Strategy Tie Turn Until make_amplitude make_path "
     "register_amplitude register_path register_strategy",
 }
 _ROOM_OF = {name: room for room, names in _PUBLIC.items() for name in names.split()}

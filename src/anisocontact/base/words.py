@@ -51,6 +51,7 @@ _SAME = {
     "cyclic": "cyclic_symmetry cyclic_symmetry_model cyclsym cyclic_region rotational_symmetry "
     "rotational_periodicity",
     "sectors": "n number_of_sectors repetitions",
+    "cylindrical": "transform csys nrotat polar local_system radial_displacement",
     "symmetry": "xsymm ysymm zsymm symmetry_planes symmetric",
     "elastic_support": "foundation elastic_foundation bedding",
     "until": "event stop_when terminate termination end_on stop_criterion stopping_criterion",

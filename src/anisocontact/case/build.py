@@ -34,6 +34,7 @@ from anisocontact.rigid import RigidBody
 from anisocontact.solver import (
     CoupledFace,
     CyclicSymmetry,
+    Cylindrical,
     ElasticSupport,
     Problem,
     Solver,
@@ -45,6 +46,9 @@ from anisocontact.solver import (
 )
 
 __all__ = ["Built", "build", "mesh_of"]
+
+#: What leads points and edges as well as facet groups.
+LEADS = ("displacement", "cylindrical", "rotation")
 
 
 @dataclass(frozen=True)
@@ -309,7 +313,7 @@ def _steps(case: Case, model: Model, schedule: Schedule) -> list[Step]:
     for i, section in enumerate(case.step):
         place = f"step[{i}]"
         for what, group in section.groups():
-            known = model.nodes if what in ("displacement", "rotation") else model.facets
+            known = model.nodes if what in LEADS else model.facets
             known(group, f"{place}.{what}")
         with objects.within(place):
             until = None if section.until is None else section.until.made(case.output.probe)
@@ -327,6 +331,16 @@ def _weights(case: Case, section: StepSection) -> dict[str, dict[str, Any]]:
         for name, density in heavy.items()
         if given
     }
+
+
+def _cylinders(section: StepSection, schedule: Schedule, begun: float) -> dict[str, Cylindrical]:
+    """What is led along cylindrical directions."""
+    found = {}
+    for name, given in section.cylindrical.items():
+        with objects.within(f"cylindrical.{name}"):
+            values = schedule.values(given.given(), None, begun)
+            found[name] = Cylindrical(values, given.axis, given.point)
+    return found
 
 
 def _step(
@@ -358,6 +372,7 @@ def _step(
         pressure={group: schedule.value(v, begun) for group, v in section.pressure.items()},
         temperature={body: schedule.value(v, begun) for body, v in section.temperature.items()},
         rotation=turns,
+        cylindrical=_cylinders(section, schedule, begun),
         body_force=led("body_force") | weights,
         until=until,
         **{kind: led(kind) for kind in kinds},

@@ -306,10 +306,7 @@ def _steps(case: Case) -> Iterator[InputError]:
             yield InputError(text, field=f"step[{i}].name")
         for what, group in step.groups():
             yield from _group(case, group, f"step[{i}].{what}")
-        for group in step.rotation:
-            if group in step.displacement:
-                text = "given with a displacement of the same group, one of the two is allowed"
-                yield InputError(text, field=f'step[{i}].rotation."{group}"')
+        yield from _led_once(step, f"step[{i}]")
         grounded = [name for name, spring in case.spring.items() if spring.to is None]
         for name in step.anchor:
             if name not in grounded:
@@ -325,6 +322,16 @@ def _steps(case: Case) -> Iterator[InputError]:
             if body not in expand:
                 text = f'"{body}" given, no such body whose material has an expansion; '
                 yield InputError(text + near(body, expand), field=f"step[{i}].temperature")
+
+
+def _led_once(step: StepSection, place: str) -> Iterator[InputError]:
+    pairs = (("rotation", "displacement"), ("rotation", "cylindrical"))
+    for kind, other in (*pairs, ("cylindrical", "displacement")):
+        for group in getattr(step, kind):
+            if group in getattr(step, other):
+                said = "a displacement" if other == "displacement" else other
+                text = f"given with {said} of the same group, one of the two is allowed"
+                yield InputError(text, field=f'{place}.{kind}."{group}"')
 
 
 def _gravity(case: Case, step: StepSection, place: str) -> Iterator[InputError]:

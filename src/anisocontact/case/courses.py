@@ -137,6 +137,8 @@ def _values(step: StepSection) -> Iterator[tuple[str, Any]]:
     for kind in ("displacement", "motion", "load", "anchor", "traction", "force", "body_force"):
         for name, given in getattr(step, kind).items():
             yield from ((f"{kind}.{_key(name)}.{key}", value) for key, value in given)
+    for name, given in step.cylindrical.items():
+        yield from ((f"cylindrical.{_key(name)}.{k}", v) for k, v in given.given().items())
     yield from ((f"gravity.{axis}", value) for axis, value in step.gravity or ())
     for kind in ("pressure", "temperature"):
         yield from ((f"{kind}.{_key(name)}", value) for name, value in getattr(step, kind).items())

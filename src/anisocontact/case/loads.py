@@ -46,6 +46,31 @@ class Displacement(Components):
     path: str | None = PATH
 
 
+class CylindricalLead(Section):
+    """Displacement of a group along directions of cylinder coordinates; "free" releases them.
+
+    Directions are those at the places of the nodes in the mesh, about an axis through a point.
+    """
+
+    radial: Annotated[
+        float | Scheduled | str | None, led("length", "away from the axis", word=FREE)
+    ] = None
+    tangential: Annotated[
+        float | Scheduled | str | None,
+        led("length", "about the axis, right-handed", word=FREE),
+    ] = None
+    axial: Annotated[float | Scheduled | str | None, led("length", "along the axis", word=FREE)] = (
+        None
+    )
+    axis: Annotated[Point, number("vector", "1", "direction of the axis")] = (0.0, 0.0, 1.0)
+    point: Annotated[Point, number("vector", "length", "a point of the axis")] = (0.0, 0.0, 0.0)
+
+    def given(self) -> dict[str, Any]:
+        """The components that are prescribed."""
+        values = {name: getattr(self, name) for name in ("radial", "tangential", "axial")}
+        return {name: value for name, value in values.items() if value is not None}
+
+
 class Traction(Components):
     """Force per reference area on a facet group at the end of the step."""
 
@@ -145,6 +170,10 @@ class Loading(Section):
     displacement: dict[str, Displacement] = Field(
         default_factory=dict, description='prescribed displacements by "body.group"'
     )
+    cylindrical: dict[str, CylindricalLead] = Field(
+        default_factory=dict,
+        description='prescribed displacements along cylindrical directions by "body.group"',
+    )
     rotation: dict[str, Turning] = Field(
         default_factory=dict, description='prescribed rotations by "body.group" or rigid body'
     )
@@ -174,6 +203,6 @@ class Loading(Section):
 
     def groups(self) -> list[tuple[str, str]]:
         """Every facet group that is named, with the key it is named under."""
-        kinds = ("displacement", "rotation", "traction", "force", "pressure")
+        kinds = ("displacement", "cylindrical", "rotation", "traction", "force", "pressure")
         named = [(kind, group) for kind in kinds for group in getattr(self, kind)]
         return [(kind, name) for kind, name in named if kind != "rotation" or "." in name]

@@ -47,12 +47,17 @@ def command(arguments: argparse.Namespace) -> int:
 def _is_mesh(path: Path) -> bool:
     """Say what is in a mesh file; whether it is one, by the ending of its name."""
     from anisocontact.mesh.described import described
+    from anisocontact.mesh.inp import deck_supports
     from anisocontact.mesh.readers import file_arrays, is_mesh
 
     if not is_mesh(path):
         return False
-    for line in described(file_arrays(path, field="")):
+    mesh = file_arrays(path, field="")
+    for line in described(mesh):
         say(line)
+    if path.suffix.lower() == ".inp":
+        for line in deck_supports(path, list(dict.fromkeys([*mesh.facets, *mesh.nodes]))):
+            say(f"support   {line}")
     say("units     a mesh file has none: the numbers are taken as they are")
     return True
 

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
+
+#: Cosine, and distance over that from the origin, by which lines that are one may differ.
+SAME_LINE = 1e-9
 
 Floats = npt.NDArray[np.float64]
 
@@ -45,6 +49,13 @@ class Turning:
         """The turn in words."""
         at = ", ".join(f"{v:g}" for v in self.point)
         return f"turned by {math.degrees(self.angle):.6g} degrees about {'xyz'[self.axis]} ({at})"
+
+    def about(self, axis: Sequence[float], point: Sequence[float]) -> bool:
+        """Whether a line through a point, along a direction of any length, is the axis."""
+        along = np.abs(np.asarray(axis, dtype=float) / np.linalg.norm(axis))
+        apart = float(self.distance(np.asarray(point, dtype=float)[None])[0])
+        size = max(1.0, float(np.abs(self.point).max()))
+        return bool(along[self.axis] > 1.0 - SAME_LINE and apart <= SAME_LINE * size)
 
     def of(self, x: Floats) -> Floats:
         """Where points go, (n, 3), length."""

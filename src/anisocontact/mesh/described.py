@@ -50,7 +50,8 @@ def described(mesh: MeshArrays) -> list[str]:
         lines.append(f"group     {name}: {len(facets)} facets, {word} {area:.6g}")
     for name, places in mesh.nodes.items():
         low, high = _place(places.min(axis=0)), _place(places.max(axis=0))
-        lines.append(f"nodes     {name}: {len(places)}, box {low} to {high}")
+        more = " beside its facets" if name in mesh.facets else ""
+        lines.append(f"nodes     {name}: {len(places)}{more}, box {low} to {high}")
     return [*lines, *(f"cells     {note}" for note in mesh.notes)]
 
 

@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, read_cards
+from anisocontact.mesh.deck_supports import support_lines
 from anisocontact.mesh.placement import Rotation
 from anisocontact.mesh.tetrahedra import FACES
 from anisocontact.mesh.whole import WholeMesh
@@ -65,7 +66,33 @@ def read_inp(path: Path) -> WholeMesh:
             keyword generates nodes or elements.
         OSError: It cannot be read.
     """
+    return _whole_mesh(_read(path))
+
+
+def deck_supports(path: Path, groups: Iterable[str]) -> list[str]:
+    """Supports of an input file as a step of a case file has them, a line for each.
+
+    Args:
+        path: The file.
+        groups: Groups "body.set" of its mesh.
+
+    Raises:
+        InputError: As of `read_inp`.
+        OSError: It cannot be read.
+    """
+    deck, known = _read(path), list(groups)
+
+    def named(entry: str) -> list[str]:
+        name = _plain(entry)
+        return [one for one in known if one.partition(".")[2] == name or one == entry.lower()]
+
+    return list(support_lines(deck.supports, deck.nodes_of, named))
+
+
+def _read(path: Path) -> _Deck:
+    """What is in an input file, parts where their instances are."""
     whole = current = _Deck()
+    step = 0
     parts: dict[str, _Deck] = {}
     for card in read_cards(path):
         try:
@@ -79,11 +106,14 @@ def read_inp(path: Path) -> WholeMesh:
                 whole.add_instance(card, parts)
             elif card.name in _READERS:
                 _READERS[card.name](current, card)
+            elif card.name in ("TRANSFORM", "BOUNDARY"):
+                whole.supports.append((step, card))
+            step += card.name == "STEP"
         except InputError as error:
             raise InputError(f"line {card.line}: *{card.name}: {error}") from None
         except (ValueError, IndexError):
             raise InputError(f"line {card.line}: *{card.name}: its data cannot be read") from None
-    return _whole_mesh(whole)
+    return whole
 
 
 @dataclass
@@ -99,6 +129,7 @@ class _Deck:
         sections: Body -> set of elements.
         left_out: Elements that are no solids -> how many.
         offsets: Instance -> what is added to the numbers of its part.
+        supports: Cards that hold nodes, with the number of the step in which they stand.
     """
 
     nodes: dict[int, list[float]] = field(default_factory=dict)
@@ -109,6 +140,7 @@ class _Deck:
     sections: dict[str, str] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
     offsets: dict[str, int] = field(default_factory=dict)
+    supports: list[tuple[int, Card]] = field(default_factory=list)
 
     def read_nodes(self, card: Card) -> None:
         """Take `*NODE`."""
@@ -191,6 +223,10 @@ class _Deck:
             self.sections[name if only else f"{name}_{body}"] = f"{name}.{key}".upper()
         for element, count in part.left_out.items():
             self.left_out[element] = self.left_out.get(element, 0) + count
+
+    def nodes_of(self, entry: str) -> list[int]:
+        """Nodes of a set, or the one of a number."""
+        return self._of(entry, self.node_sets)
 
     def members_of(self, entry: str) -> list[int]:
         """Elements of a set, or the one of a number."""

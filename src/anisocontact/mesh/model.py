@@ -63,6 +63,8 @@ class Model:
         self._bodies = dict(bodies)
         self._facets = dict(facets)
         self._nodes: dict[str, Ints] = {}
+        #: Nodes of groups of facets that are on none of these.
+        self._beside: dict[str, Ints] = {}
 
     @classmethod
     def from_arrays(
@@ -88,8 +90,11 @@ class Model:
         facets = _located(mesh, dim - 1, own.facets)
         model = cls(mesh, bodies, facets, arrays.order, arrays.linear, idealisation)
         for name, places in arrays.nodes.items():
-            if name not in facets:
-                model.name_nodes(name, nodes_at(model, name.partition(".")[0], places))
+            found = nodes_at(model, name.partition(".")[0], places)
+            if name in facets:
+                model._beside[name] = found
+            else:
+                model.name_nodes(name, found)
         return model
 
     @classmethod
@@ -199,7 +204,7 @@ class Model:
         self._nodes[name] = nodes
 
     def nodes(self, name: str, field: str = "") -> Ints:
-        """Nodes of a group that this rank owns, of facets or of nodes with a name.
+        """Nodes of a group that this rank owns, of facets or of nodes with a name, or of both.
 
         Args:
             name: "body.group".
@@ -214,7 +219,8 @@ class Model:
         if name in self._nodes:
             return self._nodes[name]
         nodes = self.facet_nodes(name, field)
-        return np.asarray(nodes[nodes < self.space.dofmap.index_map.size_local])
+        own = nodes[nodes < self.space.dofmap.index_map.size_local]
+        return np.union1d(own, self._beside[name]) if name in self._beside else np.asarray(own)
 
     def facet_nodes(self, name: str, field: str = "") -> Ints:
         """Nodes of a facet group on this rank; the call is collective.

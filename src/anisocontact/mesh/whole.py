@@ -167,7 +167,7 @@ class WholeMesh:
         return replace(mesh, facets=groups.facets, nodes=self._points_and_edges(groups, numbers))
 
     def _points_and_edges(self, groups: _Groups, numbers: Nodes) -> dict[str, Floats]:
-        """Sets of nodes of each body that hold no facets: places by "body.set"."""
+        """Sets of nodes of each body, what they have beyond their facets: places by "body.set"."""
         mesh, found = groups.mesh, {}
         for body, cells in mesh.bodies.items():
             own = np.zeros(len(mesh.points) + 1, dtype=bool)  # the last one stands for no node
@@ -175,7 +175,9 @@ class WholeMesh:
             for name, nodes in self.node_sets.items():
                 key = f"{body}.{name.removeprefix(f'{body}.')}"
                 there = numbers[nodes][own[numbers[nodes]]]
-                if key not in groups.facets and len(there):
+                if name not in self.surfaces and key in groups.facets:
+                    there = np.setdiff1d(there, groups.facets[key])
+                if len(there):
                     found[key] = mesh.points[there]
         return found
 

@@ -106,7 +106,9 @@ def _numbered(mesh: MeshArrays, blocks: list[tuple[str, Nodes]]) -> dict[str, An
     numbers = [np.full(len(rows), k, dtype=np.int64) for k, (_, rows) in enumerate(blocks, 1)]
     dim = 2 if mesh.vertices_per_facet == 2 else 3
     dims = [dim] * len(mesh.bodies) + [dim - 1] * len(mesh.facets) + [0] * len(mesh.nodes)
-    names = [*mesh.bodies, *mesh.facets, *mesh.nodes]
+    # gmsh has a name once: nodes beside the facets of a group have one of their own
+    beside = [f"{name}_nodes" if name in mesh.facets else name for name in mesh.nodes]
+    names = [*mesh.bodies, *mesh.facets, *beside]
     return {
         "cell_data": {"gmsh:physical": numbers, "gmsh:geometrical": numbers},
         "field_data": {
@@ -121,7 +123,10 @@ def _marked(names: list[str], blocks: list[tuple[str, Nodes]]) -> dict[str, Any]
     sizes = [len(rows) for _, rows in blocks]
     return {
         "cell_data": {
-            f"{GROUP}{name}": [np.full(n, k == i, dtype=np.int32) for i, n in enumerate(sizes)]
-            for k, name in enumerate(names)
+            f"{GROUP}{name}": [
+                np.full(n, name == other, dtype=np.int32)
+                for other, n in zip(names, sizes, strict=True)
+            ]
+            for name in names
         }
     }

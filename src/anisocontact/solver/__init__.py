@@ -20,6 +20,7 @@ from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.cyclic import CyclicSymmetry
+from anisocontact.solver.terms.cylindrical import Cylindrical
 from anisocontact.solver.terms.faces import CoupledFace
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.tied_faces import Tie
@@ -34,6 +35,7 @@ __all__ = [
     "Culprit",
     "Cut",
     "CyclicSymmetry",
+    "Cylindrical",
     "ElasticSupport",
     "Limits",
     "Newton",

@@ -175,7 +175,7 @@ def check_events(problem: Problem, steps: Sequence[Step]) -> None:
     Raises:
         InputError: The problem has no such contact, or no such group.
     """
-    supported = list(problem.planes.groups)
+    supported = list(problem.guides.groups)
     for step in steps:
         supported += step.led()
         until, field = step.until, f"step {step.name!r}.until"

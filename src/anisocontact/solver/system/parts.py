@@ -23,6 +23,7 @@ from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.cyclic import CyclicSymmetry
 from anisocontact.solver.terms.faces import CoupledFace, CoupledFaces
 from anisocontact.solver.terms.free_modes import bodies as all_bodies
+from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.middles import follow_corners, middle_nodes
 from anisocontact.solver.terms.rigid import RigidBodies
@@ -46,7 +47,7 @@ class Parts:
         attached: Elastic supports and springs.
         supports: Prescribed displacements.
         loads: Loads on the bodies.
-        planes: Symmetry planes.
+        guides: Symmetry planes and cylindrical supports.
         stabilisation: Springs that keep bodies in reach.
         sides: Finds bodies behind their masters.
         assembly: All of it as one system of terms.
@@ -61,7 +62,7 @@ class Parts:
     attached: Attachments
     supports: Supports
     loads: Loads
-    planes: SymmetryPlanes
+    guides: Guides
     stabilisation: Stabilisation
     sides: SidesKept
     assembly: Assembly
@@ -96,12 +97,13 @@ def make_parts(
     layout = Layout(model.space, rigid.size)
     attached, supports, loads = Attachments(specs, model), Supports(model), Loads(model, materials)
     like = layout.new_vector()
-    planes = SymmetryPlanes(model, symmetry, like, middle_nodes(model))
-    faces.check_planes(
-        np.unique(np.concatenate([np.zeros(0, int), *(n for n, _ in planes.held())]))
-    )
     tied = TiedFaces(ties, model, like, sectors) if ties or sectors else None
-    constraints = Constraints(like, follow_corners(model, like), tied, planes, faces)
+    planes = SymmetryPlanes(model, symmetry, middle_nodes(model))
+    guides = Guides(model, planes, like, middle_nodes(model), tied)
+    faces.check_planes(
+        np.unique(np.concatenate([np.zeros(0, int), *(n for n, _ in guides.held())]))
+    )
+    constraints = Constraints(like, follow_corners(model, like), tied, guides, faces)
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
     holders = {model.body_of(group) for one in specs for group in one.groups}
     links = faces.links + ([] if tied is None else tied.links)
@@ -127,7 +129,7 @@ def make_parts(
         attached=attached,
         supports=supports,
         loads=loads,
-        planes=planes,
+        guides=guides,
         stabilisation=aid,
         sides=SidesKept(contacts, all_bodies(model)),
         assembly=assembly,

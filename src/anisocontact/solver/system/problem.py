@@ -101,7 +101,7 @@ class Problem(ReportedSystem):
         self.model, self.materials = model, dict(materials)
         self.contacts, self.bulk, self.rigid = parts.contacts, parts.bulk, parts.rigid
         self.layout, self.attached = parts.layout, parts.attached
-        self.supports, self.loads, self.planes = parts.supports, parts.loads, parts.planes
+        self.supports, self.loads, self.guides = parts.supports, parts.loads, parts.guides
         self.sides, self.stabilisation = parts.sides, parts.stabilisation
         self._aid = parts.stabilisation
         self.assembly = assembly = parts.assembly
@@ -160,7 +160,7 @@ class Problem(ReportedSystem):
     @property
     def holding(self) -> list[str]:
         """Names in `reactions` of what holds the bodies for the whole run."""
-        return [*self.planes.groups, *self.attached.names]
+        return [*self.guides.groups, *self.attached.names]
 
     @property
     def deformable(self) -> list[str]:
@@ -203,6 +203,7 @@ class Problem(ReportedSystem):
     def end_at(self, factor: float) -> None:
         """End the step that has begun at a fraction of it: what it leads stays where it is."""
         self.supports.stop()
+        self.guides.stop()
         self.assembly.terms.end_at(factor)
 
     def check(self, steps: Sequence[Step]) -> list[str]:
@@ -247,6 +248,7 @@ class Problem(ReportedSystem):
         self._bodies.forget()
         self.load_factor, self.dt = factor, dt
         self.supports.set_load_factor(factor)
+        self.guides.set_load_factor(factor)
         self.assembly.terms.set_load_factor(factor, dt)
         self._stabilise()
 

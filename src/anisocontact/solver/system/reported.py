@@ -13,7 +13,7 @@ from anisocontact.solver.system.layout import Layout
 from anisocontact.solver.system.reduction import Reduction
 from anisocontact.solver.system.whole import Whole
 from anisocontact.solver.terms.attachments import Attachments
-from anisocontact.solver.terms.symmetry import SymmetryPlanes
+from anisocontact.solver.terms.guides import Guides
 
 Floats = npt.NDArray[np.float64]
 
@@ -28,7 +28,7 @@ class ReportedSystem(AssembledSystem):
         assembly: Its terms.
         layout: Where the unknowns are.
         attached: Springs and elastic supports.
-        planes: Planes of symmetry.
+        guides: Planes of symmetry and cylindrical supports.
         whole: Who answers for the bulk where every state is one of all unknowns.
         reduction: Who answers for it now.
     """
@@ -36,7 +36,7 @@ class ReportedSystem(AssembledSystem):
     assembly: Assembly
     layout: Layout
     attached: Attachments
-    planes: SymmetryPlanes
+    guides: Guides
     whole: Whole
     reduction: Reduction
     _bodies: Configuration
@@ -57,8 +57,8 @@ class ReportedSystem(AssembledSystem):
         Unknowns on an edge that several groups prescribe count for the first of them.
         """
         source = self.reduction
-        if self.planes:
-            source.recover()  # forces of the planes need all displacements on them
+        if self.guides:
+            source.recover()  # their forces need all displacements on them
             source = self.whole
         sums = source.reactions()
         for name, force in self.attached.reactions(self._bodies.nodal).items():

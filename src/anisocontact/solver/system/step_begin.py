@@ -11,8 +11,9 @@ from anisocontact.base.errors import InputError
 from anisocontact.contact.far_nodes import with_ghosts
 from anisocontact.mesh.idealisation import Idealisation
 from anisocontact.solver.system.parts import Parts
-from anisocontact.solver.system.swallowed import check_swallowed
+from anisocontact.solver.system.swallowed import check_swallowed, not_held
 from anisocontact.solver.terms.free_modes import HeldFrame
+from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.step import AXES, Step
 from anisocontact.solver.terms.supports import Supports
@@ -33,16 +34,17 @@ def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again:
     Raises:
         InputError: See `Supports.begin` and `DeadLoads.begin`.
     """
-    supports, planes = parts.supports, parts.planes
-    before = supports.unknowns
+    supports, guides = parts.supports, parts.guides
+    before, let_go = supports.unknowns, guides.released(reaction, step)
+    _, of_supports = guides.forces(reaction)
     supports.begin(step, start)
+    guides.begin(step, start, supports.unknowns, supports.end)
+    held = [*supports.held(), *guides.held()]
     gone = np.setdiff1d(before, supports.unknowns)
+    let_go[gone] += of_supports[gone]
     released = np.zeros(len(start))
-    _, of_supports = planes.forces(reaction)
-    released[gone] = of_supports[gone]
+    released[: len(let_go)] = not_held(let_go.reshape(-1, 3), held).reshape(-1)
     parts.assembly.terms.begin(step, released)
-    planes.begin(supports.unknowns, supports.end, step.name)
-    held = [*supports.held(), *planes.held()]
     if parts.assembly.constraints.ties is not None:
         parts.assembly.constraints.ties.begin(held, _on_bodies(parts))
     _tell_contacts(parts, len(start))
@@ -55,7 +57,7 @@ def _tell_contacts(parts: Parts, count: int) -> None:
     """Let contacts know which nodes are prescribed, and which are held along which directions."""
     fixed = np.zeros(count, dtype=bool)
     fixed[parts.supports.unknowns] = True
-    held = [*parts.supports.resting(), *parts.planes.held()]
+    held = [*parts.supports.resting(), *parts.guides.resting()]
     there = np.zeros((count // 3, len(held)), dtype=bool)
     for i, (nodes, _) in enumerate(held):
         there[nodes, i] = True
@@ -65,40 +67,45 @@ def _tell_contacts(parts: Parts, count: int) -> None:
         contact.take_supports(flags[:, :3], resting)
 
 
-def _rehearsed(parts: Parts, steps: Sequence[Step]) -> Iterator[tuple[Step, Supports, Loads]]:
-    """Supports and loads of every step, begun without solving."""
+def _rehearsed(
+    parts: Parts, steps: Sequence[Step]
+) -> Iterator[tuple[Step, Supports, Guides, Loads]]:
+    """Supports, guides and loads of every step, begun without solving."""
     model = parts.model
     supports, loads = Supports(model), Loads(model, parts.materials)
+    guides = parts.guides.fresh()
     nothing = np.zeros(model.space.tabulate_dof_coordinates().size)
     for step in steps:
         supports.begin(step, nothing)
+        guides.take_over(step, nothing)
         loads.begin(step, nothing)
-        yield step, supports, loads
+        yield step, supports, guides, loads
 
 
 def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
     """Go through the supports and loads of all steps without solving.
 
     Raises:
-        InputError: See `Supports.begin`, `DeadLoads.begin`, `SymmetryPlanes.begin` and
+        InputError: See `Supports.begin`, `DeadLoads.begin`, `Guides.begin` and
             `check_swallowed`.
     """
-    planes, turned = parts.planes, False
-    for step, supports, loads in _rehearsed(parts, steps):
+    turned = False
+    for step, supports, guides, loads in _rehearsed(parts, steps):
         parts.assembly.bodies.check(step)
         _check_motions(parts.model.idealisation, step)
         # Where a turn ends is not known before it has been.
         turned = turned or bool(step.rotation)
         for share in () if turned else supports.places:
             supports.set_load_factor(float(share))
-            planes.check(supports.unknowns, supports.values, step.name)
+            guides.check(supports.unknowns, supports.values, step.name, float(share))
         if parts.rigid.faces:
-            parts.rigid.faces.check(supports.unknowns, step.name)
-        held = [*supports.held(), *planes.held()]
+            all_led = np.concatenate([supports.unknowns, guides.cylinders.unknowns])
+            parts.rigid.faces.check(all_led, step.name)
+        held = [*supports.held(), *guides.held()]
         if (ties := parts.assembly.constraints.ties) is not None:
             ties.check(held, _on_bodies(parts))
             led = supports.unknowns, supports.end
-            ties.check_led(*led, planes.held(), step.name)
+            ties.check_led(*led, guides.of_planes(), step.name)
         check_swallowed(parts.layout, step, loads.given(step), held)
 
 
@@ -141,8 +148,9 @@ def contact_must_hold(parts: Parts, steps: Sequence[Step]) -> bool:
     """
     found = False
     all_frames = parts.rigid.rehearsed(steps)
-    for (step, supports, loads), frames in zip(_rehearsed(parts, steps), all_frames, strict=True):
-        held = [*supports.held(), *parts.planes.held()]
+    rehearsed = _rehearsed(parts, steps)
+    for (step, supports, guides, loads), frames in zip(rehearsed, all_frames, strict=True):
+        held = [*supports.held(), *guides.held()]
         rest = np.zeros_like(parts.model.space.tabulate_dof_coordinates())
         load = loads.at_end(rest) if parts.attached else None
         all_held = [*frames, *_cut_faces(parts)]

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.solver.system.layout import Layout
+from anisocontact.solver.terms.free_modes import Held
 from anisocontact.solver.terms.pressure import Given
 from anisocontact.solver.terms.step import Step
 
@@ -21,26 +22,23 @@ NOTHING = 1e-20
 SAME = 1e-12
 
 
-def check_swallowed(
-    layout: Layout, step: Step, given: Iterable[Given], held: list[tuple[Ints, Floats]]
-) -> None:
+def check_swallowed(layout: Layout, step: Step, given: Iterable[Given], held: list[Held]) -> None:
     """Refuse loads that act on nothing but prescribed displacements.
 
     Args:
         layout: Where the unknowns are.
         step: The step.
         given: What it gives, other than zero.
-        held: Nodes this rank owns and the direction along which each is held, (3,).
+        held: Nodes this rank owns and the directions along which each is held.
 
     Raises:
         InputError: Names group, component and step.
     """
     count = layout.owned // 3
-    onto = _held_space(count, held)
     comm = layout.comm
     for one in given:
         force = layout.assembled(one.force.ravel())[: 3 * count].reshape(-1, 3)
-        rest = force - np.einsum("nij,nj->ni", onto, force)
+        rest = not_held(force, held)
         total, left = comm.allreduce(np.array([(force**2).sum(), (rest**2).sum()]))
         if total > 0.0 and left <= NOTHING * total:
             along = f".{one.axis}" if one.axis else ""
@@ -53,11 +51,18 @@ def check_swallowed(
             )
 
 
-def _held_space(count: int, held: Iterable[tuple[Ints, Floats]]) -> Floats:
+def not_held(force: Floats, held: Iterable[Held]) -> Floats:
+    """Forces on the nodes this rank owns without what acts along held directions, (nodes, 3)."""
+    onto = _held_space(len(force), held)
+    return np.asarray(force - np.einsum("nij,nj->ni", onto, force))
+
+
+def _held_space(count: int, held: Iterable[Held]) -> Floats:
     """Projectors on what is held of each node, (nodes, 3, 3): directions made orthonormal."""
     onto = np.zeros((count, 3, 3))
     for nodes, direction in held:
-        d = direction - onto[nodes] @ direction
+        along = np.broadcast_to(direction, (len(nodes), 3))
+        d = along - np.einsum("nij,nj->ni", onto[nodes], along)
         size = np.einsum("ni,ni->n", d, d)
         new = size > SAME
         unit = d[new] / np.sqrt(size[new])[:, None]

@@ -95,7 +95,7 @@ class Whole:
             self._system.evaluate_at(x)
             balance = self._system.balance
             force = balance.outside - balance.load
-        across, rest = self._parts.planes.forces(force)
+        across, rest = self._parts.guides.forces(force)
         sums = self._parts.supports.reactions(rest)
         for name, force in across.items():
             sums[name] = sums.get(name, 0.0) + force

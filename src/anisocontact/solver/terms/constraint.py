@@ -13,11 +13,11 @@ Ints = npt.NDArray[np.int64]
 
 
 class Constraint:
-    """Unknowns `u_s = sum of c_sm u_m`, on top of a system `r(u) = 0`.
+    """Unknowns `u_s = sum of c_sm u_m + d_s`, on top of a system `r(u) = 0`.
 
     The equation of a slave is its constraint; its force goes to the masters, as virtual work says:
-    `r <- R r + s (u_s - c u)`, with R the unit matrix without the rows of slaves and with c^T, and
-    the same for the tangent.
+    `r <- R r + s (u_s - c u - d)`, with R the unit matrix without the rows of slaves and with c^T,
+    and the same for the tangent.
 
     Args:
         like: A vector of the unknowns.
@@ -28,6 +28,7 @@ class Constraint:
 
     Attributes:
         followers: Slaves on this rank, local numbers.
+        offset: The d of the unknowns of this rank, length; None where they are zero.
     """
 
     def __init__(
@@ -51,6 +52,7 @@ class Constraint:
         ones = np.ones(len(coupled))
         self._involved.setValues(coupled.astype(PETSc.IntType), ones, PETSc.InsertMode.ADD_VALUES)
         self._involved.assemble()
+        self.offset: Floats | None = None
         self._constrain = _matrix(like, (followers, followers, own), (slaves, masters, -factors))
 
     def gather(self, force: Vec) -> Vec:
@@ -60,9 +62,11 @@ class Constraint:
         return out
 
     def violation(self, u: Vec) -> Vec:
-        """`u_s - c u` of the slaves, zero elsewhere, a new vector."""
+        """`u_s - c u - d` of the slaves, zero elsewhere, a new vector."""
         out = u.duplicate()
         self._constrain.mult(u, out)
+        if self.offset is not None:
+            out.array[:] -= self.offset
         return out
 
     def gathering(self) -> scipy.sparse.csr_array:

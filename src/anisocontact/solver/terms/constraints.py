@@ -1,4 +1,4 @@
-"""All multi-point constraints of a problem: middle nodes, ties, symmetry planes, faces."""
+"""All multi-point constraints of a problem: middle nodes, ties, guided nodes, faces."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.faces import CoupledFaces
-from anisocontact.solver.terms.symmetry import SymmetryPlanes
+from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.tied_faces import TiedFaces
 
 Floats = npt.NDArray[np.float64]
@@ -26,7 +26,7 @@ class Constraints:
         like: A vector of the unknowns; those of the mesh come first.
         middles: Middle nodes that follow corners, if there are any.
         ties: Faces that are tied to others, if there are any.
-        planes: Symmetry planes, if there are any.
+        guides: Symmetry planes and cylindrical supports, if there are any.
         faces: Faces that follow rigid bodies, if there are any.
     """
 
@@ -35,18 +35,18 @@ class Constraints:
         like: Vec,
         middles: Constraint | None = None,
         ties: TiedFaces | None = None,
-        planes: SymmetryPlanes | None = None,
+        guides: Guides | None = None,
         faces: CoupledFaces | None = None,
     ) -> None:
-        self._like, self._middles, self._planes = like, middles, planes
+        self._like, self._middles, self._guides = like, middles, guides
         #: Faces that are tied to others; None if there are none.
         self.ties = ties
         self._faces = faces if faces else None
 
     @property
     def holding(self) -> Ints:
-        """Unknowns of this rank on symmetry planes and faces that follow others, local numbers."""
-        found = [] if self._planes is None else [self._planes.slaves]
+        """Unknowns of this rank that guides and faces have follow others, local numbers."""
+        found = [] if self._guides is None else [self._guides.slaves]
         found += [] if self._faces is None else [self._faces.followers]
         return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
@@ -129,8 +129,8 @@ class Constraints:
         return columns
 
     def _all(self) -> list[Constraint]:
-        planes = self._planes.constraint if self._planes else None
-        return self._between_nodes() + ([] if planes is None else [planes])
+        guides = self._guides.constraint if self._guides else None
+        return self._between_nodes() + ([] if guides is None else [guides])
 
     def _between_nodes(self) -> list[Constraint]:
         found = (self._middles, None if self.ties is None else self.ties.constraint)

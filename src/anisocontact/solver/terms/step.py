@@ -10,6 +10,7 @@ from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.base.until import Until
 from anisocontact.rigid import turns_in_radian
+from anisocontact.solver.terms.cylindrical import Cylindrical
 from anisocontact.solver.terms.turn import Turn
 
 AXES = ("x", "y", "z")
@@ -52,6 +53,7 @@ class Step:
             step.
         temperature: Body whose material has an expansion -> temperature at the end, over that at
             which it has no stress.
+        cylindrical: Facet group -> displacement along radial, tangential and axial directions.
         anchor: Spring -> axis -> displacement of its end on ground at the end, length.
         until: Event at which the step ends, before its end; what it leads then stays where it is.
 
@@ -77,6 +79,7 @@ class Step:
     body_force: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
     rotation: Mapping[str, Turn] = field(default_factory=dict)
     anchor: Mapping[str, Mapping[str, Goal]] = field(default_factory=dict)
+    cylindrical: Mapping[str, Cylindrical] = field(default_factory=dict)
     temperature: Mapping[str, Goal] = field(default_factory=dict)
     until: Until | None = None
 
@@ -100,13 +103,7 @@ class Step:
         for kind in _PLAIN:
             for name, value in getattr(self, kind).items():
                 self._check_value(kind, f"{kind}.{name}", value)
-        for group in self.rotation:
-            if group in self.displacement:
-                text = "given with a displacement of the same group, one of the two is allowed"
-                raise self._error(f"rotation.{group}", text)
-            if group in self.motion:
-                text = "given with a motion of the same rigid body, one of the two is allowed"
-                raise self._error(f"rotation.{group}", text)
+        self._check_once()
         rotation = {
             name: replace(turn, duration=self.duration) for name, turn in self.rotation.items()
         }
@@ -118,6 +115,8 @@ class Step:
             named: Mapping[str, Mapping[str, Goal | None]] = getattr(self, kind)
             for name, values in named.items():
                 yield from (((kind, name, component), goal) for component, goal in values.items())
+        for name, led in self.cylindrical.items():
+            yield from ((("cylindrical", name, part), goal) for part, goal in led.values.items())
         for kind in _PLAIN:
             plain: Mapping[str, Goal] = getattr(self, kind)
             yield from (((kind, name, ""), goal) for name, goal in plain.items())
@@ -128,7 +127,7 @@ class Step:
 
     def led(self) -> list[str]:
         """Names of the facet groups with prescribed displacements, each once."""
-        return list(dict.fromkeys([*self.displacement, *self.turned_groups()]))
+        return list(dict.fromkeys([*self.displacement, *self.cylindrical, *self.turned_groups()]))
 
     def turned_groups(self) -> dict[str, Turn]:
         """Rotations of facet groups; names of rigid bodies have no dot."""
@@ -142,6 +141,20 @@ class Step:
         """Names of all groups and bodies that are led or loaded, each once."""
         loaded = [name for kind in (*_FORCES, "pressure", "anchor") for name in getattr(self, kind)]
         return list(dict.fromkeys([*self.led(), *loaded, *self.rotation, *self.motion, *self.load]))
+
+    def _check_once(self) -> None:
+        """Refuse what is led twice."""
+        pairs = (
+            ("rotation", "displacement", "a displacement of the same group"),
+            ("rotation", "cylindrical", "cylindrical of the same group"),
+            ("rotation", "motion", "a motion of the same rigid body"),
+            ("cylindrical", "displacement", "a displacement of the same group"),
+        )
+        for kind, other, said in pairs:
+            for name in getattr(self, kind):
+                if name in getattr(self, other):
+                    text = f"given with {said}, one of the two is allowed"
+                    raise self._error(f"{kind}.{name}", text)
 
     def _check_vectors(self, kind: str) -> None:
         groups: Mapping[str, object] = getattr(self, kind)

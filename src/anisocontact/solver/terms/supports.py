@@ -153,6 +153,9 @@ class Supports:
                 self._goals.pop((group, AXES.index(name)), None)
                 if given is not None:
                     self._goals[group, AXES.index(name)] = given
+        for group in step.cylindrical:
+            for axis in range(3):
+                self._goals.pop((group, axis), None)
         for group, turn in step.turned_groups().items():
             self._model.nodes(group, f"step {step.name!r}.rotation")
             for axis in range(3):

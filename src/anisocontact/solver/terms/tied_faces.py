@@ -113,11 +113,45 @@ class TiedFaces:
         for cut in self._cuts.values():
             held = np.ones(6, dtype=bool)
             held[[cut.turning.axis, 3 + cut.turning.axis]] = False
-            faces = np.union1d(*cut.sides)
-            own = faces[self._groups.owned()[faces]]
-            nodes = self._groups.nodes[own] - self._model.space.dofmap.index_map.local_range[0]
+            nodes = self._own(np.union1d(*cut.sides))
             found.append(HeldFrame(nodes, np.array(cut.turning.point), held))
         return found
+
+    def repeated(self, nodes: Ints, axis: Sequence[float], point: Sequence[float]) -> Ints:
+        """Those of nodes whose motion in cylinder coordinates a sector gives them; collective.
+
+        What is led along radial, tangential and axial directions about the axis of a sector is
+        alike in all sectors: slave nodes of its cut faces have it from the master.
+
+        Args:
+            nodes: Nodes this rank owns.
+            axis: Direction of the axis of the coordinates.
+            point: A point of it, length.
+
+        Raises:
+            InputError: The axis of the sector is another, or the master is not among the nodes.
+        """
+        found = [np.zeros(0, dtype=np.int64)]
+        for name, cut in self._cuts.items():
+            slave, master = (np.intersect1d(self._own(side), nodes) for side in cut.sides)
+            counts = np.array([len(slave), len(master)])
+            of_slave, of_master = self._model.mesh.comm.allreduce(counts)
+            if not of_slave:
+                continue
+            if not cut.turning.about(axis, point):
+                text = f"its nodes on the cut faces of {name} need the axis of that"
+                raise InputError(text)
+            if not of_master:
+                text = f"it has nodes on the slave of {name} and none on the master"
+                raise InputError(text)
+            found.append(slave)
+        return np.unique(np.concatenate(found))
+
+    def _own(self, members: Ints) -> Ints:
+        """Local numbers of nodes of the groups that this rank owns."""
+        own = members[self._groups.owned()[members]]
+        first = self._model.space.dofmap.index_map.local_range[0]
+        return np.asarray(self._groups.nodes[own] - first)
 
     def check_led(
         self, unknowns: Ints, values: Floats, planes: Sequence[tuple[Ints, Floats]], step: str
@@ -263,8 +297,8 @@ class TiedFaces:
         index_map = self._model.space.dofmap.index_map
         own = np.zeros((index_map.size_local, 3), dtype=bool)
         for nodes, direction in held:
-            axis = np.abs(direction) > ALONG
-            own[nodes] |= axis if axis.any() else True
+            axis = np.abs(np.broadcast_to(direction, (len(nodes), 3))) > ALONG
+            own[nodes] |= axis | ~axis.any(axis=1, keepdims=True)
         own.reshape(-1)[followers] = True
         flags = self._everywhere(own, False)
         for cut in self._cuts.values():

@@ -341,7 +341,7 @@ class Condensed:
 
     def _reusable(self) -> Condensation | None:
         """The condensation so far where parts of it are good still; constraints change the bulk."""
-        changes = bool(self._problem.planes) or self._problem.constraints.ties is not None
+        changes = bool(self._problem.guides) or self._problem.constraints.ties is not None
         if not changes or self._bulk is None:
             return self._bulk
         self._bulk.close()

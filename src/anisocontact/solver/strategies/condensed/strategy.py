@@ -45,6 +45,8 @@ class CondensedStrategy:
         if problem.rigid.faces:
             yield "a face follows a rigid body"
         for step in task.steps:
+            if step.cylindrical:
+                yield f"step {step.name!r} leads nodes along cylindrical directions"
             if step.until is not None and step.until.measure is not None:
                 yield f"step {step.name!r} ends on what all displacements are needed for"
         yield from task.asked_solver()

@@ -1,0 +1,196 @@
+"""Supports of a deck as lines of a case file: `*BOUNDARY`, in the directions of `*TRANSFORM`.
+
+The directions are as either manual has them: of TYPE=C the first is away from the axis through
+the two points that are given, the second about it and the third along it; of TYPE=R the first is
+towards the first point, the third normal to the plane with the second.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.errors import InputError
+from anisocontact.mesh.deck import Card
+
+__all__ = ["Transform", "support_lines", "transform_of"]
+
+Floats = npt.NDArray[np.float64]
+
+#: Names of supports in the place of components.
+NAMED = {
+    "ENCASTRE": (1, 2, 3),
+    "PINNED": (1, 2, 3),
+    "XSYMM": (1,),
+    "YSYMM": (2,),
+    "ZSYMM": (3,),
+    "XASYMM": (2, 3),
+    "YASYMM": (1, 3),
+    "ZASYMM": (1, 2),
+}
+#: Single nodes that are named in a line.
+SHOWN = 6
+#: Share of a direction along an axis of space that counts as none.
+NO_SHARE = 1e-9
+
+
+@dataclass(frozen=True)
+class Transform:
+    """Directions of a set of nodes.
+
+    Attributes:
+        cylindrical: Whether they are those of cylinder coordinates, else the same at all nodes.
+        axis: Direction of the axis, or rows of the three directions.
+        point: A point of the axis.
+    """
+
+    cylindrical: bool
+    axis: Floats
+    point: Floats
+
+    def entries(self, values: Mapping[int, float]) -> tuple[str, dict[str, object]] | None:
+        """Key of a step and components for values of the directions 1 to 3; None if there are none.
+
+        Example:
+            >>> turned = transform_of("R", [0, 1, 0, -1, 0, 0])
+            >>> turned.entries({1: 0.5, 2: 0.25})
+            ('displacement', {'y': 0.5, 'x': -0.25})
+        """
+        if self.cylindrical:
+            names = ("radial", "tangential", "axial")
+            given: dict[str, object] = {names[k - 1]: v for k, v in values.items()}
+            given["axis"] = [float(v) for v in self.axis]
+            if self.point.any():
+                given["point"] = [float(v) for v in self.point]
+            return "cylindrical", given
+        if np.any((np.abs(self.axis) > NO_SHARE).sum(axis=1) != 1):
+            return None
+        along = np.abs(self.axis).argmax(axis=1)
+        signs = np.sign(self.axis[np.arange(3), along])
+        return "displacement", {
+            "xyz"[along[k - 1]]: v * float(signs[k - 1]) + 0.0 for k, v in values.items()
+        }
+
+
+def transform_of(kind: str, numbers: Sequence[float]) -> Transform:
+    """Directions of a `*TRANSFORM`.
+
+    Args:
+        kind: Its TYPE: R or C.
+        numbers: Its six numbers, two points.
+
+    Raises:
+        InputError: Another type, fewer numbers, or points that give no directions.
+    """
+    if kind not in ("R", "C") or len(numbers) < 6:
+        raise InputError(f"TYPE={kind} with {len(numbers)} numbers given, R or C with 6 is read")
+    a, b = np.array(numbers[:3]), np.array(numbers[3:6])
+    if kind == "C":
+        if not np.any(b - a):
+            raise InputError("its two points are one")
+        return Transform(True, b - a, a)
+    third = np.cross(a, b)
+    if not np.linalg.norm(third) > NO_SHARE * np.linalg.norm(a) * np.linalg.norm(b):
+        raise InputError("its two points are on one line with the origin")
+    rows = np.array([a, np.cross(third, a), third])
+    return Transform(False, rows / np.linalg.norm(rows, axis=1)[:, None], np.zeros(3))
+
+
+def support_lines(
+    cards: Sequence[tuple[int, Card]],
+    members: Callable[[str], list[int]],
+    named: Callable[[str], list[str]],
+) -> Iterator[str]:
+    """What a step of a case file needs for the supports of a deck.
+
+    Args:
+        cards: `*TRANSFORM` and `*BOUNDARY` with the number of the step in which each stands, 0 in
+            front of the first.
+        members: Name of a node set, or number of a node -> numbers of its nodes.
+        named: Name of a node set -> groups "body.set".
+
+    Yields:
+        A line for each set of nodes and step, and for what cannot be read.
+    """
+    of_node: dict[int, Transform] = {}
+    for step, card in cards:
+        try:
+            if card.name == "TRANSFORM":
+                numbers = [float(v) for line in card.fields() for v in line]
+                found = transform_of(card.options.get("TYPE", "R").upper(), numbers)
+                of_node |= dict.fromkeys(members(card.option("NSET")), found)
+            else:
+                single: dict[str, list[str]] = {}
+                for entry, values in _values(card).items():
+                    text = _written(entry, values, of_node, members, named)
+                    if entry.isdigit():
+                        single.setdefault(text, []).append(entry)
+                    else:
+                        yield f"{_where(step)}: {text}"
+                for text, nodes in single.items():
+                    yield f"{_where(step)}: {_nodes(nodes)}, which [nodes] can name: {text}"
+        except (InputError, ValueError, IndexError) as error:
+            said = error if isinstance(error, InputError) else "its data are of another kind"
+            yield f"{_where(step)}: *{card.name} of line {card.line} is not read: {said}"
+
+
+def _nodes(numbers: Sequence[str]) -> str:
+    """Some nodes by their numbers."""
+    more = f" and {len(numbers) - SHOWN} more" if len(numbers) > SHOWN else ""
+    return f"node{'s'[: len(numbers) > 1]} {', '.join(numbers[:SHOWN])}{more}"
+
+
+def _where(step: int) -> str:
+    return f"step {step}" if step else "from the start"
+
+
+def _values(card: Card) -> dict[str, dict[int, float]]:
+    """Set or node -> direction -> displacement at the end of the step."""
+    found: dict[str, dict[int, float]] = {}
+    for entry, first, *rest in card.fields():
+        if first.upper() in NAMED:
+            found.setdefault(entry, {}).update(dict.fromkeys(NAMED[first.upper()], 0.0))
+            continue
+        last = int(rest[0]) if rest else int(first)
+        value = float(rest[1]) if len(rest) > 1 else 0.0
+        led = {k: value for k in range(int(first), last + 1) if k <= 3}
+        if led:
+            found.setdefault(entry, {}).update(led)
+    return found
+
+
+def _written(
+    entry: str,
+    values: Mapping[int, float],
+    of_node: Mapping[int, Transform],
+    members: Callable[[str], list[int]],
+    named: Callable[[str], list[str]],
+) -> str:
+    """One support as it is in a step of a case file, or why it is none."""
+    nodes = members(entry)
+    space = Transform(False, np.eye(3), np.zeros(3))
+    systems = {id(one): one for one in (of_node.get(node, space) for node in nodes or [0])}
+    if len(systems) > 1:
+        return f"the nodes of {entry.lower()} have several *TRANSFORM: give each a set of its own"
+    found = next(iter(systems.values())).entries(values)
+    if found is None:
+        return (
+            f"{entry.lower()} has directions that are no axes of space: symmetry, or turn the mesh"
+        )
+    kind, given = found
+    table = ", ".join(f"{key} = {_number(value)}" for key, value in given.items())
+    if entry.isdigit():
+        return f"{kind} {{ {table} }}"
+    groups = named(entry)
+    if not groups:
+        return f"{entry.lower()} is on no body"
+    return f"{kind} = {{ {', '.join(f'"{group}" = {{ {table} }}' for group in groups)} }}"
+
+
+def _number(value: object) -> str:
+    if isinstance(value, list):
+        return f"[{', '.join(map(_number, value))}]"
+    return f"{value:g}"

@@ -1,0 +1,163 @@
+"""Cylindrical supports along the steps, and what guides of nodes have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.course import Course
+from anisocontact.base.errors import InputError, within
+from anisocontact.mesh import Model
+from anisocontact.solver.terms.cylindrical import COMPONENTS, NO_SHARE, Cylindrical
+from anisocontact.solver.terms.step import Goal, Step
+from anisocontact.solver.terms.tied_faces import TiedFaces
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Guide:
+    """Nodes of a group whose displacement along directions is known.
+
+    Attributes:
+        group: Name of the group.
+        component: What the direction is called.
+        kind: Field of a step or case that asks for it.
+        nodes: Nodes this rank owns, (n,).
+        direction: Unit vector, or one for each node, (3,) or (n, 3).
+        at: Share of the step -> displacement along it, (n,), length.
+    """
+
+    group: str
+    component: str
+    kind: str
+    nodes: Ints
+    direction: Floats
+    at: Callable[[float], Floats]
+
+    @property
+    def directions(self) -> Floats:
+        """The direction at each node, (n, 3)."""
+        return np.broadcast_to(self.direction, (len(self.nodes), 3))
+
+    def contradicted(self, off: float) -> str:
+        """What to say where other supports lead nodes elsewhere, by a length."""
+        if self.component in COMPONENTS:
+            return (
+                f"{self.group!r} and another support prescribe different displacements of shared "
+                f"nodes along {self.component}, by {off:.3g}"
+            )
+        return f"leads nodes out of the symmetry plane {self.group!r}, by {off:.3g}"
+
+
+type _Key = tuple[str, str]
+
+
+class Cylinders:
+    """What the steps so far hold or lead along directions of cylinder coordinates.
+
+    Args:
+        model: Mesh with named facets and nodes.
+        tied: Nodes that follow from others, which keep them where they have to be.
+        ties: Faces that are tied to others, cut faces of sectors too, if there are any.
+    """
+
+    def __init__(self, model: Model, tied: Ints, ties: TiedFaces | None = None) -> None:
+        self._model, self._tied, self._ties = model, tied, ties
+        self._systems: dict[str, Cylindrical] = {}
+        self._goals: dict[_Key, Goal | None] = {}
+        self._guides: list[Guide] = []
+
+    @property
+    def unknowns(self) -> Ints:
+        """Local numbers of all unknowns of nodes that are held or led."""
+        nodes = np.unique(np.concatenate([np.zeros(0, np.int64), *(g.nodes for g in self._guides)]))
+        return (3 * nodes[:, None] + np.arange(3)).reshape(-1)
+
+    def resting(self) -> list[tuple[Ints, Floats]]:
+        """Nodes that are held where they are along one direction; collective."""
+        comm = self._model.mesh.comm
+        found: list[tuple[Ints, Floats]] = []
+        for guide in self._guides:
+            if isinstance(self._goals[guide.group, guide.component], Course):
+                continue
+            e, moved = guide.directions, np.abs(guide.at(1.0) - guide.at(0.0))
+            local = [e.max(axis=0, initial=-2.0), -e.min(axis=0, initial=2.0)]
+            local.append(np.full(3, moved.max(initial=0.0)))
+            ends = np.max(comm.allgather(local), axis=0)
+            if np.all(ends[0] + ends[1] <= NO_SHARE) and not ends[2].any():
+                found.append((guide.nodes, 0.5 * (ends[0] - ends[1])))
+        return found
+
+    def guides(self) -> list[Guide]:
+        """Those of the step that has begun."""
+        return self._guides
+
+    def begin(self, step: Step, u: Floats) -> None:
+        """Take over a step.
+
+        Args:
+            step: The step.
+            u: Local unknowns at its beginning, length.
+
+        Raises:
+            InputError: An unknown group, or a node on the axis.
+        """
+        self._goals = {
+            key: None if isinstance(goal, Course) else goal
+            for key, goal in self._goals.items()
+            if not self._taken(key, step)
+        }
+        for group, given in step.cylindrical.items():
+            self._systems[group] = given
+            for name, goal in given.values.items():
+                self._goals.pop((group, name), None)
+                if goal is not None:
+                    self._goals[group, name] = goal
+        self._guides = [self._guide(step, *key, goal, u) for key, goal in self._goals.items()]
+
+    def stop(self) -> None:
+        """The step ends where it is: what it leads stays there."""
+        self._goals = dict.fromkeys(self._goals)
+
+    def lets_go(self, guide: Guide, step: Step) -> bool:
+        """Whether a step that has not begun yet ends a guide of these."""
+        key = guide.group, guide.component
+        if key not in self._goals:
+            return False
+        given = step.cylindrical.get(guide.group)
+        freed = given is not None and given.values.get(guide.component, 0.0) is None
+        return freed or self._taken(key, step)
+
+    def _taken(self, key: _Key, step: Step) -> bool:
+        """Whether something else of a step takes the group over."""
+        group, _ = key
+        given = step.cylindrical.get(group)
+        other = given is not None and given.system != self._systems[group].system
+        return other or group in step.displacement or group in step.rotation
+
+    def _guide(self, step: Step, group: str, name: str, goal: Goal | None, u: Floats) -> Guide:
+        field = f"step {step.name!r}.cylindrical"
+        nodes = np.setdiff1d(self._model.nodes(group, field).astype(np.int64), self._tied)
+        if self._ties is not None:
+            system = self._systems[group]
+            with within(field):
+                nodes = np.setdiff1d(nodes, self._ties.repeated(nodes, system.axis, system.point))
+        x = np.asarray(self._model.space.tabulate_dof_coordinates())[nodes]
+        directions = self._systems[group].directions(x)[name]
+        lost = int(self._model.mesh.comm.allreduce(int(np.isnan(directions[:, 0]).sum())))
+        if lost:
+            text = f"{lost} nodes of {group!r} are on the axis, where nothing is {name}"
+            raise InputError(text, field)
+        start = np.einsum("ni,ni->n", directions, u.reshape(-1, 3)[nodes])
+
+        def at(share: float) -> Floats:
+            if isinstance(goal, Course):
+                return np.asarray(goal.at(share, step.duration, start))
+            return start if goal is None else np.asarray((1.0 - share) * start + share * goal)
+
+        return Guide(group, name, "cylindrical", nodes, directions, at)

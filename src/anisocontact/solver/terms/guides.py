@@ -1,0 +1,262 @@
+"""Nodes that are held or led along directions that are no axes: planes and cylinders."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import Vec
+from anisocontact.mesh import Model
+from anisocontact.solver.terms.constraint import Constraint
+from anisocontact.solver.terms.cylinders import Cylinders, Guide
+from anisocontact.solver.terms.elimination import Elimination, eliminated
+from anisocontact.solver.terms.step import Step
+from anisocontact.solver.terms.symmetry import SymmetryPlanes
+from anisocontact.solver.terms.tied_faces import TiedFaces
+
+Floats = npt.NDArray[np.float64]
+Ints = npt.NDArray[np.int64]
+
+#: What cannot be met of the displacements over the largest one that counts as nothing.
+OUT = 1e-6
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """The conditions `e . u = g` of all nodes that have some, up to R each.
+
+    Attributes:
+        nodes: The nodes, (m,).
+        directions: Their unit vectors, zero where a node has fewer than R, (m, R, 3).
+        guides: Number of the guide of each, -1 where there is none, (m, R).
+        places: Place of the node in that guide, (m, R).
+    """
+
+    nodes: Ints
+    directions: Floats
+    guides: Ints
+    places: Ints
+
+    @classmethod
+    def of(cls, guides: Sequence[Guide]) -> _Rows:
+        """Those of some guides."""
+        nodes = np.unique(np.concatenate([np.zeros(0, np.int64), *(g.nodes for g in guides)]))
+        at = [np.searchsorted(nodes, guide.nodes) for guide in guides]
+        count = np.zeros(len(nodes), dtype=np.int64)
+        for here in at:
+            count[here] += 1
+        shape = len(nodes), int(count.max(initial=0))
+        directions = np.zeros((*shape, 3))
+        which, places = np.full(shape, -1), np.zeros(shape, dtype=np.int64)
+        count[:] = 0
+        for i, (guide, here) in enumerate(zip(guides, at, strict=True)):
+            directions[here, count[here]] = guide.directions
+            which[here, count[here]] = i
+            places[here, count[here]] = np.arange(len(here))
+            count[here] += 1
+        return cls(nodes, directions, which, places)
+
+    def values(self, guides: Sequence[Guide], share: float) -> Floats:
+        """The g at a share of the step, (m, R), length."""
+        out = np.zeros(self.guides.shape)
+        for i, guide in enumerate(guides):
+            there = self.guides == i
+            out[there] = guide.at(share)[self.places[there]]
+        return out
+
+
+class Guides:
+    """Conditions `e . u = g` at nodes, with directions e that are no axes of space.
+
+    Symmetry planes hold all along the run, g = 0; cylindrical supports are led by the steps. At a
+    node one component for each condition follows from the others, `u_s = c . u + d`: a
+    `Constraint`.
+
+    Args:
+        model: Mesh with named facets.
+        planes: Symmetry planes.
+        like: A vector of the unknowns.
+        tied: Nodes that follow from others, which keep them where they have to be.
+        ties: Faces that are tied to others, cut faces of sectors too, if there are any.
+
+    Attributes:
+        constraint: The constraints of the step that has begun.
+        slaves: Unknowns that follow from others, local numbers.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        planes: SymmetryPlanes,
+        like: Vec,
+        tied: Ints,
+        ties: TiedFaces | None = None,
+    ) -> None:
+        self._model, self._like, self._tied, self._ties = model, like, tied, ties
+        self._planes = planes
+        self._cylinders = Cylinders(model, tied, ties)
+        self.constraint: Constraint | None = None
+        self.slaves: Ints = np.zeros(0, dtype=np.int64)
+        self._take(self._planes.guides())
+
+    @property
+    def groups(self) -> list[str]:
+        """The symmetry planes."""
+        return self._planes.groups
+
+    @property
+    def cylinders(self) -> Cylinders:
+        """The cylindrical supports."""
+        return self._cylinders
+
+    def __bool__(self) -> bool:
+        return bool(self._guides)
+
+    def fresh(self) -> Guides:
+        """The same before the first step, to go through the steps without solving."""
+        return Guides(self._model, self._planes, self._like, self._tied, self._ties)
+
+    def held(self) -> list[tuple[Ints, Floats]]:
+        """Nodes this rank owns that are held or led, and the directions, (3,) or (nodes, 3)."""
+        return [(guide.nodes, guide.direction) for guide in self._guides]
+
+    def of_planes(self) -> list[tuple[Ints, Floats]]:
+        """Nodes this rank owns on each symmetry plane, and its normal, (3,)."""
+        return [(guide.nodes, guide.direction) for guide in self._planes.guides()]
+
+    def resting(self) -> list[tuple[Ints, Floats]]:
+        """Nodes that are held where they are all along the step, and the direction, (3,)."""
+        return self.of_planes() + self._cylinders.resting()
+
+    def begin(self, step: Step, u: Floats, prescribed: Ints, values: Floats) -> None:
+        """Take over a step.
+
+        Args:
+            step: The step.
+            u: Local unknowns at its beginning, length.
+            prescribed: Local numbers of the unknowns that supports prescribe in it.
+            values: Their values at the end of the step, length.
+
+        Raises:
+            InputError: Some of what is prescribed contradicts the rest.
+        """
+        self.take_over(step, u)
+        self._found = self.check(prescribed, values, step.name)
+        self._build(self._found)
+        self.set_load_factor(0.0)
+
+    def take_over(self, step: Step, u: Floats) -> None:
+        """Take over what a step leads, without constraints."""
+        self._cylinders.begin(step, u)
+        self._take(self._planes.guides() + self._cylinders.guides())
+
+    def stop(self) -> None:
+        """The step ends where it is: what it leads stays there."""
+        self._cylinders.stop()
+
+    def set_load_factor(self, factor: float) -> None:
+        """Go to a fraction of the step."""
+        if self.constraint is None:
+            return
+        values = self._rows.values(self._guides, factor)
+        offsets = np.einsum("msr,mr->ms", self._found.gain, values)
+        led = np.zeros(self._like.getLocalSize())
+        node, component = np.nonzero(self._found.slave)
+        led[3 * self._rows.nodes[node] + component] = offsets[node, component]
+        self.constraint.offset = led
+
+    def check(self, prescribed: Ints, values: Floats, step: str, share: float = 1.0) -> Elimination:
+        """Which unknowns follow from which, and that nothing contradicts.
+
+        Args:
+            prescribed: Local numbers of the unknowns that supports prescribe.
+            values: Their values, length.
+            step: Name of the step, for messages.
+            share: Share of the step at which they have these.
+
+        Raises:
+            InputError: Some of what is prescribed contradicts the rest.
+        """
+        owned = self._model.space.dofmap.index_map.size_local
+        held, led = np.zeros(3 * owned, dtype=bool), np.zeros(3 * owned)
+        held[prescribed], led[prescribed] = True, values
+        rows = self._rows
+        found = eliminated(rows.directions, held.reshape(-1, 3)[rows.nodes])
+        given = rows.values(self._guides, share)
+        largest = max(np.abs(led).max(initial=0.0), np.abs(given).max(initial=0.0))
+        off = np.abs(found.left(led.reshape(-1, 3)[rows.nodes], given))
+        if np.any(off > OUT * largest):
+            node, row = np.unravel_index(int(np.argmax(off)), off.shape)
+            guide = self._guides[rows.guides[node, row]]
+            raise InputError(guide.contradicted(float(off.max())), f"step {step!r}.{guide.kind}")
+        return found
+
+    def forces(self, supporting: Floats) -> tuple[dict[str, Floats], Floats]:
+        """Forces of planes and cylindrical supports on the bodies.
+
+        Args:
+            supporting: Force of all supports on the unknowns this rank owns.
+
+        Returns:
+            Group -> force, (3,), over all ranks; and what is left for prescribed unknowns.
+        """
+        rest, rows = supporting.copy(), self._rows
+        nodal = rest.reshape(-1, 3)
+        names = list(dict.fromkeys(guide.group for guide in self._guides))
+        sums = np.zeros((len(names), 3))
+        if self.constraint is not None:
+            of_rows = self._of_rows(nodal)
+            nodal[rows.nodes] -= of_rows.sum(axis=1)
+            for i, guide in enumerate(self._guides):
+                sums[names.index(guide.group)] += of_rows[rows.guides == i].sum(axis=0)
+        total = self._model.mesh.comm.allreduce(sums)
+        return dict(zip(names, total, strict=True)), rest
+
+    def released(self, supporting: Floats, step: Step) -> Floats:
+        """Forces of the cylindrical supports that a step lets go, (owned unknowns,), force.
+
+        Args:
+            supporting: Force of all supports on the unknowns this rank owns, before the step.
+            step: The step, not begun yet.
+        """
+        out = np.zeros_like(supporting)
+        gone = [self._cylinders.lets_go(guide, step) for guide in self._guides]
+        if self.constraint is not None and any(gone):
+            of_rows = self._of_rows(supporting.reshape(-1, 3))
+            for i in np.flatnonzero(gone):
+                node, row = np.nonzero(self._rows.guides == i)
+                out.reshape(-1, 3)[self._rows.nodes[node]] += of_rows[node, row]
+        return out
+
+    def _of_rows(self, nodal: Floats) -> Floats:
+        """Force of each condition on its node, (m, R, 3)."""
+        along = np.einsum("mri,mi->mr", self._found.share, nodal[self._rows.nodes])
+        return np.asarray(along[..., None] * self._rows.directions)
+
+    def _take(self, guides: Sequence[Guide]) -> None:
+        self._guides = list(guides)
+        self._rows = _Rows.of(self._guides)
+
+    def _build(self, found: Elimination) -> None:
+        node, slave, component = np.nonzero(
+            np.broadcast_to(found.slave[:, :, None], (len(self._rows.nodes), 3, 3))
+        )
+        slaves = 3 * self._rows.nodes[node] + slave
+        masters = 3 * self._rows.nodes[node] + component
+        factors = found.follow[node, slave, component]
+        self.slaves = np.unique(slaves)
+        first, _ = self._like.getOwnershipRange()
+        kept = factors != 0.0
+        alone = np.setdiff1d(self.slaves, slaves[kept])
+        if self.constraint is not None:
+            self.constraint.close()
+        self.constraint = Constraint(
+            self._like,
+            first + np.concatenate([slaves[kept], alone]),
+            first + np.concatenate([masters[kept], alone]),
+            np.concatenate([factors[kept], np.zeros(len(alone))]),
+        )
