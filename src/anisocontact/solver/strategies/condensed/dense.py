@@ -87,6 +87,13 @@ class ContactTangent:
         """The product with a vector, (c,)."""
         return np.asarray(self._contact @ x + blocks_times(self._blocks, x))
 
+    def whole(self) -> Floats:
+        """All of it, (c, c)."""
+        matrix = self._contact.toarray(order="F")
+        for place, block in self._blocks:
+            matrix[place, place] += block
+        return matrix
+
     def bodies_times(self, x: Singles) -> Singles:
         """The product of S over `scale` with a vector that is zero on most blocks, (c,)."""
         if not self._singles:

@@ -1,7 +1,7 @@
 """Newton corrections of the contact unknowns: a kept dense factor and Krylov iterations.
 
 All of this is in single precision but the residual of a correction: products and solutions are
-bound by the memory that they read.
+bound by the memory that they read. Where that is not enough a factor in double precision is made.
 """
 
 from __future__ import annotations
@@ -37,6 +37,9 @@ _ROUNDS = 4
 #: Residual over its right-hand side that another factor does not make smaller, and the largest
 #: that is still a direction for the line search.
 _PRECISE, _USEFUL = 1e-10, 0.5
+#: Residual over the one asked for, and over its right-hand side, up to which double precision gains
+#: no iteration of Newton's method: a correction leaves a thousandth of the forces out of balance.
+_ENOUGH, _ROUGH = 100.0, 0.1
 #: Change of a row over the stiffness of the bodies that is a constraint.
 CONSTRAINT = 10.0
 #: Names of sparse matrices that are kept: of the factor and of the front; and of their wear.
@@ -85,7 +88,9 @@ class KeptFactor:
                 begun = self.iterations
                 best, least = self._improved(best, b, rtol)
                 self._front_wear.add(self.iterations - begun, least)
-        # what single precision cannot do better is still a direction for the line search
+        if least > max(min(_ENOUGH * rtol, _ROUGH), _PRECISE):
+            best, least = self._in_double(b, best, least)
+        # what cannot be done better is still a direction for the line search
         return best if least < _USEFUL else None
 
     def persistent(self) -> Arrays:
@@ -213,6 +218,21 @@ class KeptFactor:
                 break
         self._wear.add(patience - most, left)
         return x, left
+
+    def _in_double(self, b: Floats, x: Floats, least: float) -> tuple[Floats, float]:
+        """A solution with a factor in double precision, or `x` where that is as good.
+
+        Where next to nothing of a slave node is covered, what is opposite may follow it many times
+        over; with multipliers what single precision leaves of that is more than the bodies hold.
+        """
+        lu, pivots, info = scipy.linalg.lapack.dgetrf(self._tangent.whole(), overwrite_a=1)
+        self.factors += 1
+        if info != 0:
+            return x, least
+        found = np.asarray(scipy.linalg.lapack.dgetrs(lu, pivots, b)[0])
+        rest = b - self._tangent.times(found)
+        left = float(np.linalg.norm(rest) / (np.linalg.norm(b) or 1.0))
+        return (found, left) if left < least else (x, least)
 
     def _step(self, front: Front) -> Step:
         """Approximate solution with the tangent, and the product of the tangent with it.
