@@ -213,8 +213,9 @@ class Multipliers:
     def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
         """What the trials of the next increment start from.
 
-        A point nearer than the tolerance counts as touching: friction acts from the start. One that
-        is apart comes to lie at no gap, so that nothing of the increment is left for friction: it
+        A point nearer than the tolerance counts as touching: it bears a pressure that closes the
+        tolerance, or rounding of its gap would say whether it is held, and friction acts from the
+        start. One that is apart comes to lie at no gap, so that nothing of the increment is left for friction: it
         counts as far away, or the part that is left were that of the gap's rounding.
 
         Args:
@@ -225,6 +226,7 @@ class Multipliers:
         start["multiplier"] = state["pressure"]
         touching = located & (state["status"] == OPEN) & (state["gap"] <= self._limit)
         start["gap"][touching] = np.minimum(state["gap"][touching], 0.0)
+        start["multiplier"][touching] = self._penalties[0] * self.factors[0] * self._limit
         start["gap"][(state["status"] == OPEN) & ~touching] *= FAR
         if self.tangential:
             start["status"][touching] = STICK

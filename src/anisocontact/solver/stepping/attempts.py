@@ -189,7 +189,8 @@ class Attempts:
                 damping = self._damping if way.damped else None
                 result = self._newton.solve(x, way.full_steps, damping)
             refusal = None if result.reason else refused(problem, x)
-            if not result.reason and refusal is None:
+            if not (result.reason or refusal or way.flowing):
+                # a jump turns points by as much in the smallest part
                 refusal = self._turns.objection(problem)
             if not result.reason and refusal is None and self.events is not None:
                 refusal = self.events.objection(x)

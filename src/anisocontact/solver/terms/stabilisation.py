@@ -259,10 +259,13 @@ class Stabilisation(Term):
     def lets_go(self, u: Floats) -> str:
         """Why contact does not hold the free bodies in equilibrium; empty if it does.
 
+        Where contact alone does not, the next attempt has springs.
+
         Args:
             u: Displacement of the local nodes, (nodes, 3), length.
         """
         if self.trusts and self.doubtful(u):
+            self.careful = True
             return "contact alone does not hold all bodies"
         lost = self.lost(u)
         # a body on springs has been caught where contact and springs have stiffness again
