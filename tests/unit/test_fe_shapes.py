@@ -14,6 +14,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.mesh import (
+    AnnulusSpec,
     BallSpec,
     Body,
     BoxSpec,
@@ -98,6 +99,16 @@ FLAT = {
         lambda fine, **kind: DiscSpec(1.0, (8 * fine, fine), part="quarter", **kind),
         PI / 4.0,
         {"outer": PI / 2.0, "left": 1.0, "top": 1.0},
+    ),
+    "annulus": (
+        lambda fine, **kind: AnnulusSpec(1.0, 2.0, (fine, 12 * fine), **kind),
+        3.0 * PI,
+        {"inner": 2.0 * PI, "outer": 4.0 * PI},
+    ),
+    "sector": (
+        lambda fine, **kind: AnnulusSpec(1.0, 2.0, (fine, 4 * fine), end=PI / 2.0, **kind),
+        0.75 * PI,
+        {"inner": PI / 2.0, "outer": PI, "start": 1.0, "end": 1.0},
     ),
     "rectangle": (
         lambda fine, **kind: RectangleSpec((0, 1), (2, 3), (fine, fine), **kind),

@@ -17,6 +17,7 @@ from anisocontact.mesh.placement import Placement, Rotation
 from anisocontact.mesh.readers import register_reader, whole_reader
 from anisocontact.mesh.selectors import make_selector, register_selector, selectors
 from anisocontact.mesh.shapes import (
+    AnnulusSpec,
     BallSpec,
     BoxSpec,
     CylinderSpec,
@@ -31,6 +32,7 @@ from anisocontact.mesh.shapes import (
 from anisocontact.mesh.whole import WholeMesh
 
 __all__ = [
+    "AnnulusSpec",
     "Axisymmetric",
     "BallSpec",
     "Body",

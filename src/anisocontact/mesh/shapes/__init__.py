@@ -6,6 +6,7 @@ from typing import Any
 
 from anisocontact.base import registry
 from anisocontact.base.registry import Entry
+from anisocontact.mesh.shapes.annulus import AnnulusSpec
 from anisocontact.mesh.shapes.ball import BallSpec
 from anisocontact.mesh.shapes.box import BoxSpec
 from anisocontact.mesh.shapes.cylinder import CylinderSpec
@@ -15,6 +16,7 @@ from anisocontact.mesh.shapes.ring import RingSpec
 from anisocontact.mesh.shapes.shape import Shape, checked_blocks
 
 __all__ = [
+    "AnnulusSpec",
     "BallSpec",
     "BoxSpec",
     "CylinderSpec",
@@ -30,7 +32,10 @@ __all__ = [
 
 _SHAPES: dict[str, type[Any]] = {
     s.entry.name: s
-    for s in (BoxSpec, CylinderSpec, RingSpec, BallSpec, DomeSpec, RectangleSpec, DiscSpec)
+    for s in (
+        *(BoxSpec, CylinderSpec, RingSpec, BallSpec, DomeSpec),
+        *(RectangleSpec, DiscSpec, AnnulusSpec),
+    )
 }
 
 
