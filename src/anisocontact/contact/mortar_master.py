@@ -355,9 +355,10 @@ class MortarMaster(MeshedMaster):
         self._count_as_then(now.response.state)
         self._accepted = (self._gathered.local(self._nodes.now), self._hint)
         self._at = self._placed(self._at.weights)
-        lost = (state["facet"] >= 0) & (now.response.state["facet"] < 0)
-        gone = now.points[lost & (self._at.weights.area <= 0.0)]
-        return np.concatenate(self._comm.allgather(gone))
+        lost = (state["pressure"] > 0.0) & (now.response.state["facet"] < 0)
+        beyond = self._hint.status == FACET_STATUS.index("off")
+        gone = lost & beyond & (self._at.weights.area <= 0.0)
+        return np.concatenate(self._comm.allgather(now.points[gone]))
 
     @override
     def roll_back(self, tried: bool) -> None:

@@ -131,8 +131,9 @@ class Sides:
         return Seen(located(hit), np.nan_to_num(hit.gap), np.nan_to_num(hit.normal))
 
     def lost(self, before: State, now: Snapshot) -> Floats:
-        """Points that had a facet below them and now lie beyond the border, (n, 3)."""
-        which = np.flatnonzero((before["facet"] >= 0) & (now.response.state["facet"] < 0))
+        """Points that were pressed on a facet and now lie beyond the border, (n, 3)."""
+        pressed = (before["facet"] >= 0) & (before["pressure"] > 0.0)
+        which = np.flatnonzero(pressed & (now.response.state["facet"] < 0))
         x = now.points[which]
         excluded = None if self.excluded is None else self.excluded.take(which)
         # What this rank has ends somewhere: beyond that nothing is said.

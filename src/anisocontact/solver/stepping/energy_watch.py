@@ -25,7 +25,7 @@ CAUSES = (
     "slave points slid off the end of a master",
     "bodies jumped to another equilibrium",
     "contact began or ended within increments, more of them are needed where it does",
-    "too few increments, forces at their ends stand for those on the way",
+    "too few increments, forces at their ends stand for those on the way; or a body snaps through",
     "bodies overlapped at the start, what pushes them apart is no work from outside",
 )
 _ROUND_OFF = 4.0 * float(np.finfo(np.float64).eps)
