@@ -215,12 +215,9 @@ class Multipliers:
 
         A point nearer than the tolerance counts as touching: it bears a pressure that closes the
         tolerance, or rounding of its gap would say whether it is held, and friction acts from the
-        start. One that is apart comes to lie at no gap, so that nothing of the increment is left for friction: it
-        counts as far away, or the part that is left were that of the gap's rounding.
-
-        Args:
-            state: Committed state.
-            located: Whether each point has a surface below it, (n,).
+        start. One that is apart comes to lie at no gap, so that nothing of the increment is left
+        for friction: it counts as far away, or the part that is left were that of the gap's
+        rounding.
         """
         start = state.copy()
         start["multiplier"] = state["pressure"]

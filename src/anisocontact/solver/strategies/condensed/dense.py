@@ -89,7 +89,7 @@ class ContactTangent:
 
     def whole(self) -> Floats:
         """All of it, (c, c)."""
-        matrix = self._contact.toarray(order="F")
+        matrix: Floats = self._contact.toarray(order="F")
         for place, block in self._blocks:
             matrix[place, place] += block
         return matrix
