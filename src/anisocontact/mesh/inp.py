@@ -17,7 +17,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, read_cards
 from anisocontact.mesh.deck_supports import support_lines
 from anisocontact.mesh.placement import Rotation
-from anisocontact.mesh.tetrahedra import FACES
+from anisocontact.mesh.tetrahedra import EDGES, FACES
 from anisocontact.mesh.whole import WholeMesh
 
 Nodes = npt.NDArray[np.int64]
@@ -34,6 +34,14 @@ SOLIDS = {
     "C3D5": ("pyramid", 5),
     "C3D13": ("pyramid", 13),
 }
+#: What elements of a mesh in the plane z = 0 are: beginning of their names -> idealisation.
+IDEAL = {"CPE": "plane-strain", "CPS": "plane-stress", "CAX": "axisymmetric"}
+#: Cells of these by the number of their nodes.
+_IN_PLANE = {3: "triangle", 6: "triangle", 4: "quadrilateral", 8: "quadrilateral"}
+PLANE = {f"{kind}{n}": (cell, n) for kind in IDEAL for n, cell in _IN_PLANE.items()}
+_KNOWN = SOLIDS | PLANE
+#: Faces of cells by their corners; of those in the plane their edges.
+SIDES = FACES | {cell: tuple(EDGES[cell]) for cell in ("triangle", "quadrilateral")}
 #: Keywords that make nodes or elements in a way that is not read.
 GENERATED = ("NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "NMAP")
 
@@ -41,13 +49,15 @@ GENERATED = ("NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "NMAP")
 def solid(element: str) -> str:
     """The solid that an element is, without the letters of its integration; empty if it is none.
 
+    Those of a mesh in the plane are solids too, with and without twist.
+
     Example:
-        >>> solid("C3D20R"), solid("c3d8i"), solid("S8R")
-        ('C3D20', 'C3D8', '')
+        >>> solid("C3D20R"), solid("c3d8i"), solid("CGAX4R"), solid("S8R")
+        ('C3D20', 'C3D8', 'CAX4', '')
     """
-    name = element.upper()
+    name = element.upper().replace("CGAX", "CAX")
     kind = name.rstrip("".join(set("RIHTMSEP")))
-    return kind if kind in SOLIDS else ""
+    return kind if kind in _KNOWN else ""
 
 
 def read_inp(path: Path) -> WholeMesh:
@@ -159,7 +169,7 @@ class _Deck:
         if not kind:
             self.left_out[written] = self.left_out.get(written, 0) + len(card.data)
             return
-        size = SOLIDS[kind][1] + 1
+        size = _KNOWN[kind][1] + 1
         numbers = card.numbers().astype(np.int64)
         rows = numbers.reshape(-1, size).tolist() if len(numbers) % size == 0 else []
         if not rows:  # nodes beyond those of the element are allowed where it is a line
@@ -281,7 +291,7 @@ def _whole_mesh(deck: _Deck) -> WholeMesh:
     """The deck in arrays, its names as a user may write them."""
     if not deck.elements:
         others = ", ".join(f"{n} {kind}" for kind, n in deck.left_out.items()) or "none at all"
-        allowed = ", ".join(SOLIDS)
+        allowed = ", ".join([*SOLIDS, *IDEAL])
         raise InputError(f"no solid element ({allowed}); there are: {others}")
     numbers = np.array(list(deck.nodes), dtype=np.int64)
     order = np.argsort(numbers)
@@ -289,6 +299,7 @@ def _whole_mesh(deck: _Deck) -> WholeMesh:
     for number, (kind, _) in deck.elements.items():
         by_kind.setdefault(kind, []).append(number)
     mesh = WholeMesh(np.array(list(deck.nodes.values()), dtype=np.float64).reshape(-1, 3)[order])
+    mesh.notes = _notes(by_kind)
     bodies = _bodies(deck)
     for kind, elements in by_kind.items():
         nodes = np.array([deck.elements[n][1] for n in elements], dtype=np.int64)
@@ -298,7 +309,7 @@ def _whole_mesh(deck: _Deck) -> WholeMesh:
             row, column = np.argwhere(wrong)[0]
             text = f"element {elements[row]} has node {nodes[row, column]}, which is not there"
             raise InputError(text)
-        cell, _ = SOLIDS[kind]
+        cell, _ = _KNOWN[kind]
         mesh.add_cells(cell, places, [bodies.get(n, "") for n in elements])
     for name, members in deck.node_sets.items():
         places = np.searchsorted(numbers[order], np.unique(members)).clip(max=len(numbers) - 1)
@@ -309,6 +320,26 @@ def _whole_mesh(deck: _Deck) -> WholeMesh:
         mesh.surfaces[_plain(name)] = _faces(deck, faces, at)
     mesh.left_out = deck.left_out
     return mesh
+
+
+def _notes(by_kind: dict[str, list[int]]) -> tuple[str, ...]:
+    """What elements of a mesh in the plane ask a case file for; solids beside them are alone taken.
+
+    Raises:
+        InputError: They are of several kinds.
+    """
+    in_plane = {IDEAL[kind[:3]] for kind in by_kind if kind in PLANE}
+    if not in_plane:
+        return ()
+    if set(by_kind) & set(SOLIDS):
+        for kind in set(by_kind) & set(PLANE):
+            del by_kind[kind]
+        return ("elements of a plane beside solids are left out",)
+    if len(in_plane) > 1:
+        text = f"elements of {' and '.join(sorted(in_plane))}: a mesh in the plane is one of them"
+        raise InputError(text)
+    (ideal,) = in_plane
+    return (f'in the plane: a case needs [idealisation] kind = "{ideal}"',)
 
 
 def _bodies(deck: _Deck) -> dict[int, str]:
@@ -334,7 +365,7 @@ def _faces(deck: _Deck, faces: Iterable[tuple[str, str]], at: Mapping[int, int])
             if number not in deck.elements:
                 continue  # of an element that is no solid
             kind, nodes = deck.elements[number]
-            sides = FACES[SOLIDS[kind][0]]
+            sides = SIDES[_KNOWN[kind][0]]
             known = ["", *(f"S{k + 1}" for k in range(len(sides)))]
             if face not in known:
                 raise InputError(f"surface: face {face!r} given, S1 to S{len(sides)} are read")

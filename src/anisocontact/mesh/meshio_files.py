@@ -38,6 +38,12 @@ SOLIDS = {
 }
 #: Facets of meshio -> corners.
 FACETS = {"triangle": 3, "triangle6": 3, "quad": 4, "quad8": 4, "quad9": 4}
+#: The same of a mesh in the plane z = 0, whose facets are edges.
+PLANE = {
+    **dict.fromkeys(("triangle", "triangle6"), "triangle"),
+    **dict.fromkeys(("quad", "quad8", "quad9"), "quadrilateral"),
+}
+EDGES = {"line": 2, "line3": 2}
 #: Points and edges of meshio -> dimension.
 LOWER = {"vertex": 0, "line": 1, "line3": 1}
 #: Names under which formats keep the group of each cell as a number.
@@ -66,30 +72,41 @@ def read_by_meshio(path: Path) -> WholeMesh:
     points = np.zeros((len(given.points), 3))
     points[:, : given.points.shape[1]] = given.points
     mesh = WholeMesh(points)
-    names = _names(given)
+    dim = _dimension(given, points)
+    solids, facets = (SOLIDS, FACETS) if dim == 3 else (PLANE, EDGES)
+    names = _names(given, dim)
     for block, labels in zip(given.cells, names, strict=True):
         nodes = np.asarray(block.data, dtype=np.int64)
-        if block.type in SOLIDS:
+        if block.type in solids:
             bodies = labels if any(labels) else ["body"] * len(nodes)
-            mesh.add_cells(SOLIDS[block.type], nodes, bodies)
-        elif block.type in LOWER:
+            mesh.add_cells(solids[block.type], nodes, bodies)
+        elif block.type in LOWER and block.type not in facets:
             for name in dict.fromkeys(label for label in labels if label):
                 own = nodes[[label == name for label in labels]]
                 before = mesh.node_sets.get(name, np.zeros(0, dtype=np.int64))
                 mesh.node_sets[name] = np.union1d(before, own)
-        elif block.type in FACETS:
-            corners = nodes[:, : FACETS[block.type]]
+        elif block.type in facets:
+            corners = nodes[:, : facets[block.type]]
             for name in dict.fromkeys(label for label in labels if label):
                 own = corners[[label == name for label in labels]]
                 mesh.surfaces.setdefault(name, []).append(own)
     if not mesh.cells:
         found = ", ".join(f"{len(b.data)} {b.type}" for b in given.cells) or "none at all"
-        raise InputError(f"no solid cell ({', '.join(SOLIDS)}); there are: {found}")
+        kinds = {block.type for block in given.cells}
+        flat = "surfaces are bodies in the plane z = 0 alone; " if kinds & set(PLANE) else ""
+        text = f"no solid cell ({', '.join(SOLIDS)}); {flat}there are: {found}"
+        raise InputError(text)
     for name, found in given.point_sets.items():
         nodes = np.asarray(found, dtype=np.int64).ravel()
         before = mesh.node_sets.get(_plain(name), np.zeros(0, dtype=np.int64))
         mesh.node_sets[_plain(name)] = np.union1d(before, nodes)
     return mesh
+
+
+def _dimension(given: Any, points: npt.NDArray[np.float64]) -> int:
+    """3, or 2 for a mesh in the plane z = 0."""
+    kinds = {block.type for block in given.cells}
+    return 2 if not kinds & set(SOLIDS) and kinds & set(PLANE) and not points[:, 2].any() else 3
 
 
 def needed(path: Path) -> Any:
@@ -120,10 +137,10 @@ def _read(path: Path) -> Any:
         raise InputError(f"meshio cannot read it: {text}") from None
 
 
-def _names(mesh: Any) -> list[list[str]]:
+def _names(mesh: Any, dim: int) -> list[list[str]]:
     """Group of each cell by its name, block by block; empty where it is in none."""
     found = [[""] * len(block.data) for block in mesh.cells]
-    for labels, numbers in zip(found, _tags(mesh), strict=True):
+    for labels, numbers in zip(found, _tags(mesh, dim), strict=True):
         labels[:] = numbers or labels
     for name, parts in mesh.cell_data.items():
         if name.startswith(GROUP):
@@ -139,7 +156,7 @@ def _names(mesh: Any) -> list[list[str]]:
     return found
 
 
-def _tags(mesh: Any) -> Iterator[list[str]]:
+def _tags(mesh: Any, of_bodies: int) -> Iterator[list[str]]:
     """Names of the numbers that a format gives its cells, block by block; empty without numbers."""
     key = next((key for key in TAGS if key in mesh.cell_data), None)
     known = {
@@ -157,10 +174,10 @@ def _tags(mesh: Any) -> Iterator[list[str]]:
             yield []
             continue
         dim = 3 if block.type in SOLIDS else LOWER.get(block.type, 2)
-        word = {3: "body", 2: "surface"}.get(dim, "edge")
+        word = ("edge", "surface", "body")[max(dim - of_bodies, -2) + 2]
         numbers = np.asarray(mesh.cell_data[key][k]).astype(np.int64).tolist()
         yield [
-            of_med.get(n) or known.get((dim, n)) or (f"{word}{n}" if n or dim == 3 else "")
+            of_med.get(n) or known.get((dim, n)) or (f"{word}{n}" if n or dim == of_bodies else "")
             for n in numbers
         ]
 

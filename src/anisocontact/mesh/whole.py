@@ -23,6 +23,10 @@ from anisocontact.mesh.tetrahedra import COUNT, EDGES, Middles, tetrahedra, tria
 Nodes = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 
+#: A cell and how many nodes it has; nodes and body of each element.
+type Kind = tuple[str, int]
+type Elements = tuple[Nodes, list[str]]
+
 #: Corners of a cell in VTK's order -> DOLFINx's, which goes along one axis after the other.
 CORNERS = {
     "tetrahedron": [0, 1, 2, 3],
@@ -87,6 +91,8 @@ class WholeMesh:
         cells = {cell for cell, _ in joined}
         if cells <= set(COUNT) and (len(cells) > 1 or cells & {"prism", "pyramid"}):
             return self._cut(joined).arrays(wanted)
+        if cells == {"triangle", "quadrilateral"}:
+            return in_triangles(self, joined).arrays(wanted)
         self._check_apart(joined)
         mesh = merge([self._of_kind(cell, *part) for (cell, _), part in joined.items()])
         return replace(mesh, notes=self.notes)
@@ -182,6 +188,34 @@ class WholeMesh:
         return found
 
 
+def in_triangles(mesh: WholeMesh, kinds: Mapping[Kind, Elements]) -> WholeMesh:
+    """A mesh in the plane whose quadrilaterals are cut at the shorter diagonal.
+
+    Args:
+        mesh: The mesh.
+        kinds: Nodes and bodies of the elements of it that are taken, by cell and number of nodes.
+
+    Raises:
+        InputError: Some cells have middle nodes on their edges, others have none, or all have.
+    """
+    said = " and ".join(f"{cell}s of {n} nodes" for cell, n in sorted(kinds))
+    if any(n > 4 or (cell == "triangle" and n > 3) for cell, n in kinds):
+        raise InputError(f"{said}: a mesh in the plane of order 2 needs cells of one kind")
+    cut = WholeMesh(mesh.points, node_sets=mesh.node_sets, surfaces=mesh.surfaces)
+    for (cell, _), (nodes, labels) in kinds.items():
+        if cell == "triangle":
+            cut.add_cells(cell, nodes, labels)
+            continue
+        corners = mesh.points[nodes]
+        across = np.linalg.norm(corners[:, [0, 1]] - corners[:, [2, 3]], axis=2)
+        turned = np.where((across[:, 0] <= across[:, 1])[:, None], nodes, np.roll(nodes, -1, 1))
+        cut.add_cells("triangle", turned[:, [0, 1, 2]], labels)
+        cut.add_cells("triangle", turned[:, [0, 2, 3]], labels)
+    count = sum(len(nodes) for _, nodes in cut.cells)
+    cut.notes = (*mesh.notes, f"{said} are taken as {count} triangles")
+    return cut
+
+
 def _in_order(cell: str, nodes: Nodes, points: Floats) -> tuple[Floats, Nodes, int]:
     """Points, cells in DOLFINx's order, and their degree."""
     order = CORNERS[cell]
@@ -193,7 +227,8 @@ def _in_order(cell: str, nodes: Nodes, points: Floats) -> tuple[Floats, Nodes, i
     cells[:, : len(order)] = corners
     given = {frozenset(edge): len(order) + k for k, edge in enumerate(EDGES[cell])}
     if nodes.shape[1] > count:
-        given |= {frozenset(face): count + k for k, face in enumerate(FACES)}
+        faces = FACES if cell == "hexahedron" else [tuple(order)]
+        given |= {frozenset(face): count + k for k, face in enumerate(faces)}
         cells[:, -1] = nodes[:, -1]
     missing = []
     for ends, places in middle_nodes(cell):
@@ -206,6 +241,7 @@ def _in_order(cell: str, nodes: Nodes, points: Floats) -> tuple[Floats, Nodes, i
                 missing.append((place, corners[:, end], nodes[:, edges]))
     if missing:
         points = _with_faces(points, cells, missing)
+    if missing and cell == "hexahedron":
         middle = 0.25 * (points[nodes[:, 8:20]].sum(axis=1) - points[nodes[:, :8]].sum(axis=1))
         cells[:, -1] = len(points) + np.arange(len(cells))
         points = np.concatenate([points, middle])
