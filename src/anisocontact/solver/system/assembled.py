@@ -49,7 +49,7 @@ class AssembledSystem:
             if wrong is not None:
                 raise LostError(wrong)
             moved = aid.improve(self.nodal, self.balance.force_scale)
-            if moved and (aid.flow.flows or aid.untouched()):
+            if moved:
                 self._go_on(x)
             if moved and aid.flow.flows:
                 return True

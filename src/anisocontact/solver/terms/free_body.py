@@ -94,10 +94,11 @@ class FreeBody:
     def reach(self) -> float:
         """How far stabilisation lets it move at once, length.
 
-        A facet; one on springs no farther than it takes to touch: beside stiff springs that hold
-        some of its motions it would turn in the others.
+        A facet; one that nothing touches no farther than it takes, or curved cells would be thrown
+        into each other, and one on springs neither: beside stiff springs that hold some of its
+        motions it would turn in the others.
         """
-        if not self.sprung:
+        if not self.sprung and self.touched():
             return self.size
         near = [
             np.abs(c.trial.gap[c.master.located(c.state)]).min(initial=np.inf)

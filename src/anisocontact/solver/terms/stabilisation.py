@@ -173,6 +173,7 @@ class Stabilisation(Term):
         """
         self._begun = self._anchor = u.copy()
         self._spent, self._count = 0.0, 0
+        self._carried = np.zeros_like(u)
         self._falling = [free for free in self._free if not free.touched()]
         self._fell = bool(self._falling)
         for free in self._loose:
@@ -225,9 +226,8 @@ class Stabilisation(Term):
         if not self._free:
             return False
         force = self.force(u)
-        # In the first equilibrium the loads have grown from those of the accepted state.
-        share = 0.5 if self._count == 0 else 1.0
-        against = share * force + 0.5 * self._stopping(u)
+        # what springs have carried is let go where the next equilibrium starts
+        against = 0.5 * (self._carried + force + self._stopping(u))
         self._spent -= self._comm.allreduce(float((against * (u - self._anchor)).sum()))
         carried = np.sqrt(self._comm.allreduce(float((force**2).sum())))
         if carried <= SHARE * at_work:
@@ -238,10 +238,11 @@ class Stabilisation(Term):
             raise NotHeldError(
                 "; ".join(f"nothing holds body {f.body.name!r}: {f.modes}" for f in lost)
             )
-        self._anchor = u.copy()
+        self._anchor, self._carried = u.copy(), force
         for free in self._free:
             if free.touched() and not free.trusted:
-                free.stiffness = max(FADE * free.stiffness, LEAST * self._scale)
+                fades = min(FADE * free.stiffness, free.load / (free.count * free.reach()))
+                free.stiffness = max(fades, LEAST * self._scale)
         return True
 
     def _stopping(self, u: Floats) -> Floats:
