@@ -81,6 +81,38 @@ def graded(cells: int, ratio: float) -> Floats:
     return np.asarray(ends / ends[-1])
 
 
+def focused(cells: int, focus: float, low: float = -1.0, high: float = 1.0) -> Floats:
+    """Planes of cells that are fine around 0 and grow geometrically away from it.
+
+    Args:
+        cells: Number of cells.
+        focus: Size of the cells at 0 over that of those farthest from it.
+        low: Where they begin, -1 or 0.
+        high: Where they end, 0 or 1.
+
+    Returns:
+        Positions of the planes between `low` at 0 and `high` at 1, (cells + 1,).
+
+    Raises:
+        InputError: More cells than anybody can mean, or an odd number to both sides of 0.
+
+    Example:
+        >>> focused(4, 1 / 3).tolist()
+        [0.0, 0.375, 0.5, 0.625, 1.0]
+    """
+    if focus == 1.0:
+        return even(cells)
+    if low == 0.0:
+        return graded(cells, 1.0 / focus)
+    if high == 0.0:
+        return np.asarray(1.0 - graded(cells, 1.0 / focus)[::-1])
+    if cells % 2:
+        text = f"{cells} cells to both sides of where focus is, an even number is needed"
+        raise InputError(text, "cells")
+    right = 0.5 * graded(cells // 2, 1.0 / focus)
+    return np.concatenate([0.5 - right[:0:-1], 0.5 + right])
+
+
 def check_line(cells: int) -> None:
     """Refuse more cells along one direction than anybody can mean.
 

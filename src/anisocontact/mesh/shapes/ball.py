@@ -11,13 +11,15 @@ import numpy as np
 
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.lattice import Block, Side, even, graded
+from anisocontact.mesh.lattice import Block, Side, focused, graded
 from anisocontact.mesh.shapes.shape import (
     cells_parameter,
     check_around,
     check_core,
+    check_focus,
     check_shape,
     core_parameter,
+    focus_parameter,
     part_parameter,
     ratio_parameter,
 )
@@ -48,6 +50,8 @@ class BallSpec:
         order: Order of the displacement, 1 or 2; cells of order 2 are curved.
         ratio: Size of the cell at the surface over that at the cube, > 0.
         core: Distance of the corners of the inner cube from the middle over the radius, < 1.
+        focus: Size of the cells at the poles x = y = 0 over that of those farthest from there,
+            <= 1.
 
     Raises:
         InputError: A value is out of range.
@@ -66,6 +70,7 @@ class BallSpec:
     order: int = 1
     ratio: float = 1.0
     core: float = 0.5
+    focus: float = 1.0
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
@@ -81,6 +86,7 @@ class BallSpec:
             part_parameter(PARTS),
             ratio_parameter("outwards"),
             core_parameter(),
+            focus_parameter("at the poles x = y = 0"),
         ),
     )
 
@@ -88,14 +94,20 @@ class BallSpec:
         check_shape(self)
         check_around(self.cells, 4 if self.part == "ball" else 8)
         check_core(self.core)
+        check_focus(self.focus)
+        self.blocks()
 
     def blocks(self) -> list[Block]:
         """The cube and a block for each face of it that is not cut away; see `Shape`."""
         half = self.core * self.radius / np.sqrt(3.0)
         ranges = PARTS[self.part]
-        planes = [even(self.cells[0] // 8 * (high - low)) for low, high in ranges]
-        if self.part == "ball":
-            planes = [even(self.cells[0] // 4)] * 3
+        whole = self.part == "ball"
+        planes = [
+            focused(
+                self.cells[0] // 4 if whole else self.cells[0] // 8 * (high - low), f, low, high
+            )
+            for f, (low, high) in zip((self.focus, self.focus, 1.0), ranges, strict=True)
+        ]
         low, high = np.array(ranges, dtype=float).T
         cube = Block(
             (planes[0], planes[1], planes[2]),

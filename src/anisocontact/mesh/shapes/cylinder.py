@@ -11,6 +11,7 @@ import numpy as np
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.lattice import Block
 from anisocontact.mesh.shapes.disc import PARTS, check_disc, disc_blocks, disc_parameters
+from anisocontact.mesh.shapes.shape import check_focus, focus_parameter
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,7 @@ class CylinderSpec:
         ratio: Size of the last cell over the first, to the rim and along z, > 0.
         core: Distance of the corners of the inner square from the axis over the radius, < 1.
         part: "whole", "half" (x >= 0) or "quarter" (also y >= 0).
+        focus: Size of the cells at the lines x = 0 over that of those farthest from there, <= 1.
 
     Raises:
         InputError: A value is out of range.
@@ -46,6 +48,7 @@ class CylinderSpec:
     ratio: Sequence[float] = (1.0, 1.0)
     core: float = 0.5
     part: str = "whole"
+    focus: float = 1.0
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
@@ -57,14 +60,18 @@ class CylinderSpec:
             Parameter("radius", "scalar", "length", "radius", "positive"),
             Parameter("length", "scalar", "length", "length along z", "positive"),
             *disc_parameters(),
+            focus_parameter("at the lines x = 0"),
         ),
     )
 
     def __post_init__(self) -> None:
         check_disc(self, self.cells, self.core, self.part)
+        check_focus(self.focus)
+        self.blocks()
 
     def blocks(self) -> list[Block]:
         """A square and four blocks around it; see `Shape`."""
         size = np.array([self.radius, self.radius, self.length])
         part = PARTS[self.part]
-        return disc_blocks(self.cells, self.ratio, self.core, lambda p: p * size, part)
+        place, focus = (lambda p: p * size), self.focus
+        return disc_blocks(self.cells, self.ratio, self.core, place, part, focus=focus)

@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.registry import Parameter
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.lattice import Block, Side, even, graded
+from anisocontact.mesh.lattice import Block, Side, focused, graded
 from anisocontact.mesh.shapes.shape import (
     Shape,
     cells_parameter,
@@ -71,6 +71,7 @@ def disc_blocks(
     part: Ranges = PARTS["whole"],
     cuts: Sequence[str] = CUTS,
     ends: Mapping[Side, str] = ENDS,
+    focus: float = 1.0,
 ) -> list[Block]:
     """Blocks of a cylinder of radius 1 and height 1, or a part; each point taken to its place.
 
@@ -82,6 +83,7 @@ def disc_blocks(
         part: How far it goes along x and y.
         cuts: Facet groups of cuts at x = 0 and at y = 0.
         ends: Facet groups of the ends.
+        focus: Size of the cells around x = 0 over that of those farthest from there.
 
     Returns:
         The blocks, with the facet groups outer and those of cuts and ends.
@@ -91,7 +93,7 @@ def disc_blocks(
     shares = [((1 + low) / 2.0, (1 + high) / 2.0) for low, high in part]
     square = partial(_part, partial(_square, half=half), shares[0], shares[1])
     sides = {(axis, end): cuts[axis] for axis in (0, 1) for end in (0, 1) if not part[axis][end]}
-    x, y = (_planes(cells[0], share) for share in shares)
+    x, y = _planes(cells[0], shares[0], focus), _planes(cells[0], shares[1])
     blocks = [Block((x, y, along), partial(_through, square, place), {**sides, **ends})]
     for quarter in range(4):
         axis, end = quarter % 2, int(quarter < 2)
@@ -103,14 +105,15 @@ def disc_blocks(
         rim = partial(_rim, half=half, start=(quarter - 0.5) * np.pi / 2.0)
         cut = {(1, e): cuts[1 - axis] for e in (0, 1) if around[e] == 0.5}
         to_rim = partial(_through, partial(_part, rim, (0.0, 1.0), around), place)
-        planes = out, _planes(cells[0], around), along
+        planes = out, _planes(cells[0], around, focus if axis else 1.0), along
         blocks.append(Block(planes, to_rim, {(0, 1): "outer", **cut, **ends}))
     return blocks
 
 
-def _planes(around: int, share: tuple[float, float]) -> Floats:
-    """Planes of the cells along a share of a side of the square."""
-    return even(round(around / 4 * (share[1] - share[0])))
+def _planes(around: int, share: tuple[float, float], focus: float = 1.0) -> Floats:
+    """Planes of the cells along a share of a side of the square, fine around its middle."""
+    low, high = (2.0 * s - 1.0 for s in share)
+    return focused(round(around / 4 * (share[1] - share[0])), focus, low, high)
 
 
 def _part(

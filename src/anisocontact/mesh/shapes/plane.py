@@ -14,8 +14,10 @@ from anisocontact.mesh.shapes.disc import AROUND, PARTS, Ranges, check_disc, dis
 from anisocontact.mesh.shapes.shape import (
     FACE,
     cells_parameter,
+    check_focus,
     check_shape,
     core_parameter,
+    focus_parameter,
     part_parameter,
     ratio_parameter,
 )
@@ -108,6 +110,7 @@ class DiscSpec:
         ratio: Size of the cell at the rim over that at the square, > 0.
         core: Distance of the corners of the inner square from the middle over the radius, < 1.
         part: "whole", "half" or "quarter".
+        focus: Size of the cells at the points x = 0 over that of those farthest from there, <= 1.
 
     Raises:
         InputError: A value is out of range.
@@ -126,6 +129,7 @@ class DiscSpec:
     ratio: float = 1.0
     core: float = 0.5
     part: str = "whole"
+    focus: float = 1.0
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
@@ -139,17 +143,18 @@ class DiscSpec:
             ratio_parameter("outwards"),
             core_parameter(),
             part_parameter(_PARTS),
+            focus_parameter("at the points x = 0"),
         ),
     )
 
     def __post_init__(self) -> None:
         check_disc(self, self.cells, self.core, self.part)
+        check_focus(self.focus)
+        self.blocks()
 
     def blocks(self) -> list[Block]:
         """A square and blocks around it; see `Shape`."""
         cells, part = (*self.cells, 1), _PARTS[self.part]
         radius, ends = [self.radius, self.radius, 1.0], {(2, 0): FACE}
-        ratio = (self.ratio, 1.0)
-        return disc_blocks(
-            cells, ratio, self.core, lambda p: p * radius, part, ("left", "top"), ends
-        )
+        ratio, cuts, place = (self.ratio, 1.0), ("left", "top"), (lambda p: p * radius)
+        return disc_blocks(cells, ratio, self.core, place, part, cuts, ends, self.focus)

@@ -13,10 +13,12 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.lattice import Block, Side, graded
+from anisocontact.mesh.lattice import Block, Side, focused, graded
 from anisocontact.mesh.shapes.shape import (
     cells_parameter,
+    check_focus,
     check_shape,
+    focus_parameter,
     full_circle,
     ratio_parameter,
 )
@@ -36,6 +38,8 @@ class RingSpec:
         start: Angle at which the sector starts, from x towards y, radian.
         end: Angle at which it ends, > start, at most a full turn further; radian.
         ratio: Size of the last cell over the first, through the wall, around and along z, > 0.
+        focus: Size of the cells in the middle between start and end over that of those farthest
+            from there, <= 1; instead of the second ratio.
 
     Raises:
         InputError: A value is out of range.
@@ -55,6 +59,7 @@ class RingSpec:
     start: float = 0.0
     end: float = 2.0 * math.pi
     ratio: Sequence[float] = (1.0, 1.0, 1.0)
+    focus: float = 1.0
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
@@ -84,11 +89,16 @@ class RingSpec:
                 default=(2.0 * math.pi,),
             ),
             ratio_parameter("through the wall", "around", "along z"),
+            focus_parameter("in the middle between start and end"),
         ),
     )
 
     def __post_init__(self) -> None:
         check_shape(self)
+        check_focus(self.focus)
+        if self.focus != 1.0 and self.ratio[1] != 1.0:
+            text = f"given with ratio {self.ratio[1]:g} around, one of the two"
+            raise InputError(text, "focus")
         if not self.inner < self.outer:
             text = f"{self.outer:g} given, must be > inner, {self.inner:g}"
             raise InputError(text, "outer")
@@ -103,6 +113,7 @@ class RingSpec:
         if self._turn / self.cells[1] >= math.pi:
             text = f"{self.cells[1]} cells around {math.degrees(self._turn):g} degrees given, more "
             raise InputError(f"{text}needed", "cells")
+        self.blocks()
 
     @property
     def _turn(self) -> float:
@@ -111,6 +122,7 @@ class RingSpec:
     def blocks(self) -> list[Block]:
         """One block; see `Shape`."""
         wall, around, along = (graded(n, r) for n, r in zip(self.cells, self.ratio, strict=True))
+        around = around if self.focus == 1.0 else focused(self.cells[1], self.focus)
         sides: dict[Side, str] = {
             (0, 0): "inner",
             (0, 1): "outer",

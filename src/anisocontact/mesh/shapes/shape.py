@@ -67,6 +67,18 @@ def core_parameter() -> Parameter:
     return Parameter("core", "scalar", "1", doc, "positive", required=False, default=(0.5,))
 
 
+def focus_parameter(where: str) -> Parameter:
+    """Parameter `focus`: how fine cells are where contact is expected."""
+    doc = f"size of the cells {where} over that of those farthest from there, around the shape"
+    return Parameter("focus", "scalar", "1", doc, "positive", required=False, default=(1.0,))
+
+
+def check_focus(focus: float) -> None:
+    """Refuse cells that are coarse where they ought to be fine."""
+    if focus > 1.0:
+        raise InputError(f"{focus!r} given, must be <= 1", "focus")
+
+
 def part_parameter(parts: Iterable[str]) -> Parameter:
     """Parameter `part`: how much of a round shape, all of it by default."""
     return Parameter(
