@@ -136,8 +136,8 @@ def test_a_point_contact_with_a_third_of_the_cells():
     """An eighth of a ball on a plane, contact radius 0.1, even cells and those with focus.
 
     Requirement: the pressure of Hertz from the force that is found, not worse than by three times
-    as many even cells, and the peak to 1 %. Source: closed form. Tolerance: mean square 0.15: the edge
-    of the contact lies within a cell, of which there are four along its radius.
+    as many even cells, and the peak to 1 %. Source: closed form. Tolerance: mean square 0.15: the
+    edge of the contact lies within a cell, of which there are four along its radius.
     """
     held = {"b.left": {"x": 0.0}, "b.front": {"y": 0.0}}
     found = []
