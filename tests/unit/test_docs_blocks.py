@@ -175,7 +175,9 @@ turned = milled = make_directions("constant", vector=(1, 0, 0))
 #: What has to hold afterwards.
 AFTER = {
     "amplitudes": "assert Solver(Problem(model, materials), steps).cautions == []",
-    "own-script": "assert problem.solve() is not None and contact.last.status.max() > 0",
+    "own-script": "assert problem.solve() is not None and contact.last.status.max() > 0\n"
+    "assert held.last.status.min() > 0 and 0.0 < held.resultant()[0][2] < 0.1\n"
+    "assert pressure.x.array.max() < 0.0",
     "own-law": """
 u = np.zeros((len(model.space.tabulate_dof_coordinates()), 3))
 u[on_plane.couplable()] = (1e-3, 0.0, -1e-3)

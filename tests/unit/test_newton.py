@@ -13,7 +13,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.newton import STUCK_OVER, Newton
-from anisocontact.solver.system.assembly import ForceBalance
+from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
 
 

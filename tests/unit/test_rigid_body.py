@@ -192,5 +192,7 @@ def test_a_script_moves_bodies_and_frees_none(fe):
 
 def _on(block, space):
     """The contact as one of another space, whose body is checked all the same."""
-    block.contact.space = space
+    from anisocontact.mesh.node_unknowns import NodeUnknowns
+
+    block.contact.unknowns = NodeUnknowns(space)
     return block.contact

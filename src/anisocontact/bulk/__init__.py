@@ -20,7 +20,7 @@ from anisocontact.bulk.materials import (
     Material,
     small_strain,
 )
-from anisocontact.bulk.nonlinear import NonlinearBulk
+from anisocontact.bulk.nonlinear import NonlinearBulk, cell_size
 from anisocontact.bulk.ogden import Ogden
 from anisocontact.bulk.orthotropic import Orthotropic, TransverselyIsotropic
 from anisocontact.bulk.plasticity import PLASTIC_STRAIN, Hill, Plastic
@@ -71,6 +71,7 @@ __all__ = [
     "Yeoh",
     "bare",
     "cauchy_stress",
+    "cell_size",
     "deformation_gradient",
     "make_material",
     "materials",

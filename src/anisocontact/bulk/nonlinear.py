@@ -87,7 +87,7 @@ class NonlinearBulk:
         self._force = create_force(self._work)
         #: Length whose strain is round-off where nothing moves: F = I + grad(u) is rounded over
         #: the size of a cell.
-        self.rest_length = _cell_size(model)
+        self.rest_length = cell_size(model.mesh)
         #: Diagonal of the tangent at rest: the scale of forces that displacements of one unit make.
         self.diagonal = self.stiffness.getDiagonal()
         #: The same for surfaces that give way by shear, as of `Pressures`.
@@ -207,12 +207,19 @@ def _cells(model: Model) -> int:
     return int(topology.index_map(topology.dim).size_local)
 
 
-def _cell_size(model: Model) -> float:
-    """Edge of a cube, or of a square, of the mean size of a cell."""
-    comm, cells = model.mesh.comm, model.mesh.topology.index_map(model.mesh.topology.dim)
-    one = compiled(fem.Constant(model.mesh, 1.0) * ufl.dx(domain=model.mesh), comm)
+def cell_size(mesh: Any) -> float:
+    """Edge of a cube, or of a square, of the mean size of a cell.
+
+    Args:
+        mesh: DOLFINx mesh; the call is collective.
+
+    Returns:
+        Its length.
+    """
+    comm, cells = mesh.comm, mesh.topology.index_map(mesh.topology.dim)
+    one = compiled(fem.Constant(mesh, 1.0) * ufl.dx(domain=mesh), comm)
     volume = comm.allreduce(fem.assemble_scalar(one))
-    return float((volume / cells.size_global) ** (1.0 / model.mesh.topology.dim))
+    return float((volume / cells.size_global) ** (1.0 / mesh.topology.dim))
 
 
 class _Forms:

@@ -59,7 +59,8 @@ class Contact(Pass):
     Attributes:
         slave: As given.
         name: Name in output.
-        space: Vector space of the displacement.
+        unknowns: Where the displacement of nodes is among the unknowns.
+        space: Vector space of the displacement of nodes.
         master: What the slave points meet.
         slave_points: Where the laws are evaluated.
         nodes_of_groups: Local nodes, with ghosts, of each of `groups`.
@@ -125,7 +126,7 @@ class Contact(Pass):
             mortar or before_mortar or self_contact,
         )
         parts = parts_of(model, slave, master, law, options)
-        super().__init__(model.space, slave, name or slave, *parts, **options.of_pass)
+        super().__init__(model.unknowns, slave, name or slave, *parts, **options.of_pass)
         self.nodes_of_groups = tuple(model.facet_nodes(group) for group in self.groups)
         self.physical_adhesion = True
         self.facet_of_point = self.slave_points.facet

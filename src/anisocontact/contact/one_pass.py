@@ -21,6 +21,7 @@ from anisocontact.contact.whereabouts import Whereabouts
 from anisocontact.interface import FAILURE, Response
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.interface.failed_point import FailedPoint
+from anisocontact.mesh.node_unknowns import NodeUnknowns
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -41,7 +42,7 @@ class Pass:
     A `Contact` is one, made from the names of groups.
 
     Args:
-        space: Vector space of the displacement.
+        unknowns: Where the displacement of nodes is among the unknowns.
         slave: Facet group "body.group".
         name: Name in output.
         points: Where the laws are evaluated.
@@ -54,7 +55,8 @@ class Pass:
     Attributes:
         slave: As given.
         name: As given.
-        space: As given.
+        unknowns: As given.
+        space: Vector space of the displacement of nodes.
         slave_points: Where the laws are evaluated.
         master: What the points meet.
         trials: What trials start from and which laws answer, with their multipliers.
@@ -72,7 +74,7 @@ class Pass:
 
     def __init__(
         self,
-        space: Any,
+        unknowns: NodeUnknowns,
         slave: str,
         name: str,
         points: SlavePoints,
@@ -83,9 +85,10 @@ class Pass:
         adjust: float | None = None,
         area_told: bool = False,
     ) -> None:
-        self.space, self.slave, self.name = space, slave, name
+        self.unknowns, self.space = unknowns, unknowns.nodes
+        self.slave, self.name = slave, name
         self.slave_points, self.master = points, master
-        self._comm, self._area_told = space.mesh.comm, area_told
+        self._comm, self._area_told = unknowns.comm, area_told
         self._dt = 1.0
         self.body_stiffness = self.master_yields = 0.0
         self.ran_off: Floats = np.zeros((0, 3))

@@ -15,7 +15,8 @@ from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.idealisation import SOLID, Idealisation
 from anisocontact.mesh.node_groups import nodes_at
-from anisocontact.mesh.own_space import check_space, named_facets
+from anisocontact.mesh.node_unknowns import NodeUnknowns
+from anisocontact.mesh.own_space import named_facets, own_unknowns
 
 Ints = npt.NDArray[np.int32]
 
@@ -109,7 +110,9 @@ class Model:
         """Names on the facets of a user's own displacement space.
 
         Args:
-            space: Vector Lagrange space of order 1 or 2, `fem.functionspace(mesh, ("P", 1, (3,)))`.
+            space: Vector Lagrange space of order 1 or 2, `fem.functionspace(mesh, ("P", 1, (3,)))`,
+                or a sub-space of a mixed one, `W.sub(0)`; on a mesh in the plane two components
+                will do.
             facets: "body.group" -> local boundary facets, as of `MeshTags.find`, or the value that
                 they have in `tags`; MeshTags alone make a group "body.<value>" of each value.
             idealisation: As of `Model`.
@@ -119,10 +122,10 @@ class Model:
             The names on that space; every cell belongs to the body of the first group.
 
         Raises:
-            InputError: Not a vector Lagrange space of order 1 or 2 on cells that `Model` takes,
+            InputError: No vector Lagrange space of order 1 or 2 on cells that `Model` takes,
                 or facets that are none of its mesh.
         """
-        order = check_space(space)
+        unknowns = own_unknowns(space)
         named = named_facets(facets, space.mesh, tags)
         body = next(iter(named), "body").partition(".")[0]
         topology = space.mesh.topology
@@ -134,14 +137,20 @@ class Model:
             outside = found[(found < 0) | (found >= count)]
             if len(outside):
                 raise InputError(f"facet {outside[0]} given, the mesh has 0 to {count - 1}", name)
+        order = space.element.basix_element.degree
         model = cls(space.mesh, {body: cells}, named, order, (), idealisation)
-        model.space = space
+        model.unknowns, model.space = unknowns, unknowns.nodes
         return model
 
     @cached_property
     def space(self) -> Any:
         """Vector Lagrange space of the displacement."""
         return vector_space(self.mesh, self.order)
+
+    @cached_property
+    def unknowns(self) -> NodeUnknowns:
+        """Where the displacement of the nodes of `space` is among the unknowns."""
+        return NodeUnknowns(self.space)
 
     def body_names(self) -> list[str]:
         """Names of the bodies.

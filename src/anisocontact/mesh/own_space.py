@@ -9,26 +9,29 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import tags_of_mesh
+from anisocontact.base.fenicsx import tags_of_mesh, vector_space
+from anisocontact.mesh.node_unknowns import NodeUnknowns, PlacedUnknowns
 
 Ints = npt.NDArray[np.int32]
 
 _CELLS = ("tetrahedron", "hexahedron", "triangle", "quadrilateral")
 _NEEDED = '("Lagrange", 1 or 2, (3,)) needed'
+_IN_THE_PLANE = '("Lagrange", 1 or 2, (2,)) or (3,) needed'
 
 
-def check_space(space: Any) -> int:
-    """Refuse a space that is no displacement of bodies in space.
+def own_unknowns(space: Any) -> NodeUnknowns:
+    """Where the displacement of nodes is among the unknowns of a space of the user's.
 
     Args:
-        space: A DOLFINx function space.
+        space: A DOLFINx function space, or a sub-space.
 
     Returns:
-        Its order.
+        The places; every node has three components, whatever the space has.
 
     Raises:
         InputError: No function space, cells other than tetrahedra, hexahedra, triangles and
-            quadrilaterals, or no vector Lagrange space of order 1 or 2.
+            quadrilaterals, or no vector Lagrange space of order 1 or 2 with three components, in
+            the plane two.
     """
     if not (hasattr(space, "element") and hasattr(space, "dofmap")):
         raise InputError(f"{type(space).__name__} given, a function space, {_NEEDED}", "space")
@@ -36,22 +39,22 @@ def check_space(space: Any) -> int:
     if len(types) != 1 or types[0] not in _CELLS:
         text = f"a mesh of {' and '.join(types)} cells given, {' or '.join(_CELLS)} needed"
         raise InputError(text, "space")
+    needed = _NEEDED if space.mesh.topology.dim == 3 else _IN_THE_PLANE
     try:
         element = space.element.basix_element
     except RuntimeError:  # DOLFINx: a mixed element has none
-        raise InputError(
-            f"a mixed element given, {_NEEDED}: a sub-space of it cannot carry contact, give each "
-            "field a space of its own",
-            "space",
-        ) from None
-    if space.dofmap.index_map_bs != 3 or element.degree not in (1, 2):
-        components = space.dofmap.index_map_bs
-        text = f"a space of degree {element.degree} with {components} components given, {_NEEDED}"
+        text = f"a mixed element given, {needed}: name its displacement, as W.sub(0)"
+        raise InputError(text, "space") from None
+    components = space.num_sub_spaces if len(space.value_shape) == 1 else 1
+    if components not in {3, space.mesh.topology.dim} or element.degree not in (1, 2):
+        text = f"a space of degree {element.degree} with {components} components given, {needed}"
         raise InputError(text, "space")
     if element.family.name != "P" or element.discontinuous:
         kind = "discontinuous" if element.discontinuous else f"family {element.family.name}"
-        raise InputError(f"an element that is {kind} given, continuous {_NEEDED}", "space")
-    return int(element.degree)
+        raise InputError(f"an element that is {kind} given, continuous {needed}", "space")
+    if not space.component() and components == 3:
+        return NodeUnknowns(space)
+    return PlacedUnknowns(vector_space(space.mesh, element.degree), space)
 
 
 def named_facets(facets: Any, mesh: Any, tags: Any = None) -> dict[str, Ints]:

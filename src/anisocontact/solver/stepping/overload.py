@@ -57,7 +57,7 @@ def too_much_load(problem: Problem, fraction: float) -> str:
     problem.loads.set_load_factor(fraction, problem.dt)
     load = problem.loads.force(problem.u.x.array.reshape(-1, 3))
     problem.loads.set_load_factor(problem.load_factor, problem.dt)
-    found = list(_found(problem, problem.layout.assembled(load.reshape(-1)).reshape(-1, 3)))
+    found = list(_found(problem, problem.layout.assembled(load).reshape(-1, 3)))
     return "; ".join(found)
 
 

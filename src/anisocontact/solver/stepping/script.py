@@ -15,10 +15,14 @@ from anisocontact.base.limits import Limits
 from anisocontact.base.whole_files import replacing
 from anisocontact.contact import Contact, warn_of
 from anisocontact.contact.hints import warn_of_overlaps
+from anisocontact.mesh.node_unknowns import NodeUnknowns
+from anisocontact.mesh.own_space import own_unknowns
 from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.strategies.newton import Newton, OptionValue
 from anisocontact.solver.system.assembled import AssembledSystem
-from anisocontact.solver.system.assembly import Assembly, ForceBalance, TrialState
+from anisocontact.solver.system.assembly import Assembly, TrialState
+from anisocontact.solver.system.fields import fields_beside
+from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.system.layout import Layout
 from anisocontact.solver.system.parts import suit
 from anisocontact.solver.system.sides_kept import SidesKept
@@ -48,11 +52,12 @@ class ContactProblem(AssembledSystem):
 
     Args:
         F: Residual form, linear in its test function, of the function `u`.
-        u: The displacement, a DOLFINx function of a vector Lagrange space.
+        u: The displacement, a DOLFINx function of a vector Lagrange space, or of a mixed space that
+            has it as a sub-space; every field then has to be in equilibrium by itself.
         bcs: Dirichlet conditions; their values may change between solutions.
-        contacts: Contacts on a `Model.of` the space of `u`. A rigid body that carries a surface is
-            where `RigidBody.move` has brought it. Where J depends on `u` tractions act on the area
-            of now unless a contact was told otherwise.
+        contacts: Contacts on a `Model.of` the space of `u`, or its displacement. A rigid body that
+            carries a surface is where `RigidBody.move` has brought it. Where J depends on `u`
+            tractions act on the area of now unless a contact was told otherwise.
         J: Derivative of F; made by UFL if left out.
         petsc_options_prefix: Prefix of the options in the PETSc database.
         petsc_options: PETSc options without prefix.
@@ -79,12 +84,14 @@ class ContactProblem(AssembledSystem):
         petsc_options: Mapping[str, OptionValue] | None = None,
     ) -> None:
         space = u.function_space
-        self._bodies = _checked(contacts, space)
+        unknowns = _unknowns(contacts, space)
+        self._bodies = _movable(contacts)
         warn_of(contacts)
         warn_of_overlaps(contacts)
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
         form = FormBulk(F, u, J)
-        bodies, layout = Bodies(form), Layout(space, 0)
+        bodies, layout = Bodies(form, unknowns), Layout(unknowns, 0)
+        self._unknowns, self._fields = unknowns, fields_beside(unknowns, space)
         suit(contacts, bodies, [form.finite] * len(contacts))
         self._assembly = Assembly(
             layout,
@@ -93,14 +100,17 @@ class ContactProblem(AssembledSystem):
             Dirichlet(self.bcs),
             Constraints(layout.new_vector()),
             RigidBodies([], space.mesh.comm),
+            fields=self._fields,
         )
         self.contact_term = self._assembly.contacts
         self.balance = ForceBalance.none(layout.owned)
-        self._tangent = Tangent(self._assembly, space)
-        self._parts = parts(space)
-        bodies_of = [connected_body(space, (), [part.nodes]) for part in self._parts]
+        self._fields.measure(bodies)
+        self._tangent = Tangent(self._assembly)
+        self._parts = parts(unknowns.nodes)
+        bodies_of = [connected_body(unknowns.nodes, (), [part.nodes]) for part in self._parts]
         self._sides = SidesKept(contacts, bodies_of)
-        self.newton = Newton(self, petsc_options_prefix, petsc_options or {}, lambda *_: None)
+        options = {**self._fields.options, **(petsc_options or {})}
+        self.newton = Newton(self, petsc_options_prefix, options, lambda *_: None)
 
     def solve(self, dt: float = 1.0) -> int:
         """Bring `u` into equilibrium and accept the history of the contacts.
@@ -125,6 +135,8 @@ class ContactProblem(AssembledSystem):
         x = self.new_vector()
         x.array[:] = before[: x.getLocalSize()]
         self._check_held(x)
+        self._fields.measure(self._assembly.bodies)
+        self._fields.weigh_by(lambda: self._start(x))
         result = self.newton.solve(x)
         reason = result.reason
         if not reason:
@@ -190,7 +202,7 @@ class ContactProblem(AssembledSystem):
         return total
 
     def save(self, path: str | Path) -> None:
-        """Write what the next steps depend on: `u` and the history of the contacts.
+        """Write what the next steps depend on: `u` with all its fields, histories of the contacts.
 
         Args:
             path: The file (.npz); each of several processes writes one with its number.
@@ -277,12 +289,18 @@ class ContactProblem(AssembledSystem):
     @property
     @override
     def nodal(self) -> Floats:
-        return np.asarray(self.u.x.array.reshape(-1, 3))
+        return self._unknowns.nodal(self.u.x.array)
 
     @override
     def evaluate_at(self, x: Vec) -> None:
         if not np.array_equal(self.u.x.array[: x.getLocalSize()], x.array_r):
             self.evaluate(x)
+
+    def _start(self, x: Vec) -> ForceBalance:
+        """Balance of the state from which a solution starts, of which nothing stays."""
+        self.evaluate(x)
+        self._assembly.terms.roll_back()
+        return self.balance
 
     def _check_held(self, x: Vec) -> None:
         """Refuse a part of the mesh that can move as a rigid body."""
@@ -297,7 +315,7 @@ class ContactProblem(AssembledSystem):
         stiffness = bodies.bulk.stiffness
         bodies.add_tangent(stiffness)
         for part in free:
-            motions = loose_motions(part, stiffness, bodies.scale, rows, self.comm)
+            motions = loose_motions(part, stiffness, bodies.scale, rows, self._unknowns)
             if motions:
                 at = ", ".join(f"{v:.4g}" for v in part.middle)
                 raise InputError(
@@ -322,11 +340,18 @@ class ContactProblem(AssembledSystem):
         return [part for part in self._parts if not self._any(np.isin(part.nodes, touched))]
 
 
-def _checked(contacts: Sequence[Contact], space: Any) -> list[Any]:
-    """Rigid bodies of contacts that a script can have."""
+def _unknowns(contacts: Sequence[Contact], space: Any) -> NodeUnknowns:
+    """Where the displacement is among the unknowns of a script."""
     for contact in contacts:
-        if contact.space != space:
+        if not (contact.unknowns.among(space) and contact.unknowns.same(contacts[0].unknowns)):
             raise InputError(f"contact {contact.name!r} lives on another space than u", "contacts")
+    if contacts:
+        return contacts[0].unknowns
+    return own_unknowns(space)
+
+
+def _movable(contacts: Sequence[Contact]) -> list[Any]:
+    """Rigid bodies of contacts that a script can have."""
     found: list[Any] = [contact.body for contact in contacts if contact.body is not None]
     for body in found:
         if body.free:

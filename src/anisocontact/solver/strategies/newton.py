@@ -14,8 +14,8 @@ from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.strategies.backtracking import Backtracking
-from anisocontact.solver.system.assembly import ForceBalance
 from anisocontact.solver.system.culprit import Culprit, LostError
+from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
@@ -126,8 +126,8 @@ class Newton:
 
     An iterate is accepted when the norm of the residual is below `snes_rtol` times
     `ForceBalance.force_scale`, or below what floating point can resolve. Both are forces, so the
-    choice of units changes nothing. Every PETSc option works with the prefix, for example
-    `-anisocontact_snes_linesearch_type basic`.
+    choice of units changes nothing; of a mixed problem that is asked of each field. Every PETSc
+    option works with the prefix, for example `-anisocontact_snes_linesearch_type basic`.
 
     Args:
         problem: The system.
@@ -276,16 +276,15 @@ class Newton:
     ) -> PETSc.SNES.ConvergedReason:
         reasons = PETSc.SNES.ConvergedReason
         balance, contacts = self._problem.balance, self._problem.contact_term
-        norm = balance.norm if contacts.follows else norms[2]
+        norm = balance.norm if contacts.follows or balance.fields else norms[2]
         rtol, atol, _, _ = snes.getTolerances()
-        # where next to no forces are at work, what is left of them is rounding of larger ones
-        rounded = balance.round_off / max(rtol, _EPSILON)
-        relative = norm / max(balance.force_scale, rounded, _TINY)
+        fields = balance.of_fields(norm)
+        relative = max(field.relative(rtol) for field in fields)
         self._residuals.append(relative)
         self._on_iteration(iteration, relative)
         if not np.isfinite(norm):
             return reasons.DIVERGED_FUNCTION_NANORINF
-        small = norm <= max(rtol * balance.force_scale, balance.round_off, atol)
+        small = all(field.small(rtol, atol) for field in fields)
         if small and contacts.held():
             return reasons.CONVERGED_FNORM_RELATIVE
         if relative > DIVERGED * min(self._residuals[1:], default=np.inf):
@@ -333,11 +332,6 @@ class Newton:
         }
         text = known.get(reason, f"SNES stopped with reason {reason}")
         return text.format(n=self.snes.getIterationNumber(), r=last)
-
-
-# Stands for the forces where there are none, so that zero over zero is zero.
-_TINY = float(np.finfo(np.float64).tiny)
-_EPSILON = float(np.finfo(np.float64).eps)
 
 
 class Database:

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import Vec
-from anisocontact.solver.system.assembly import ForceBalance
 from anisocontact.solver.system.culprit import Culprit, LostError
+from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.stabilisation import Stabilisation
 

@@ -114,7 +114,7 @@ class ContactWork:
         local = np.zeros_like(nodal)
         for contact in self._contacts:
             contact.add_force(local)
-        return self._parts.layout.assembled(local.reshape(-1))
+        return self._parts.layout.assembled(local)
 
     def beyond_the_means(self, nodal: Floats, dt: float, work: float) -> float:
         """Work that the means of the ends have missed on the way to a state in equilibrium.

@@ -14,6 +14,7 @@ from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.far_nodes import globally
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.reachable import NodePairs
+from anisocontact.mesh.node_unknowns import NodeUnknowns
 
 Ints = npt.NDArray[np.int32]
 Keys = npt.NDArray[np.int64]
@@ -39,24 +40,24 @@ class CoupledTangent:
 
     Args:
         stiffness: Matrix of the bulk; its pattern stays.
-        space: Vector space of the displacement.
+        unknowns: Where the displacement of nodes is among those of the bulk.
         extra: Number of nodes beyond those of the mesh.
     """
 
-    def __init__(self, stiffness: Mat, space: Any, extra: int = 0) -> None:
-        self._stiffness = stiffness
+    def __init__(self, stiffness: Mat, unknowns: NodeUnknowns, extra: int = 0) -> None:
+        self._stiffness, self._unknowns = stiffness, unknowns
         self._lg = stiffness.getLGMap()
-        self._comm = comm = space.mesh.comm
+        self._comm = comm = unknowns.comm
+        self._space = space = unknowns.nodes
         (own, total), _ = stiffness.getSizes()
         added = 3 * extra
         self._size = (own + added * (comm.rank == comm.size - 1), total + added)
         index_map = space.dofmap.index_map
         local = index_map.size_local + index_map.num_ghosts
-        self._space = space
         #: What couplings call the first node beyond those of the mesh.
         self.first_extra = int(local + index_map.size_global)
         self._numbers = self.first_extra + extra
-        self._first = 3 * index_map.local_range[0]
+        self._first, _ = stiffness.getOwnershipRange()
         self._keys: Keys = np.empty(0, dtype=np.int64)
         self._given = self._keys
         self._sum = scipy.sparse.csr_array((0, 0), dtype=np.float64)
@@ -112,7 +113,7 @@ class CoupledTangent:
             self._keys = np.union1d(self._keys, self._named(foreseen))
             self._given = np.full(1, -1, dtype=np.int64)
         matrix = PETSc.Mat().create(self._comm)
-        matrix.setSizes((self._size, self._size), bsize=3)
+        matrix.setSizes((self._size, self._size), bsize=self._unknowns.block)
         matrix.setType(PETSc.Mat.Type.AIJ)
         matrix.setLGMap(*self._lg)
         self._preallocate(matrix)
@@ -144,12 +145,7 @@ class CoupledTangent:
         """Add the couplings of `make_room` to the bulk in the matrix, and assemble it."""
         row, column = self._places()
         blocks = self._blocks.reshape(-1, 3, 3)
-        out.setValuesBlockedRCV(
-            row.astype(PETSc.IntType)[:, None],
-            column.astype(PETSc.IntType)[:, None],
-            blocks,
-            PETSc.InsertMode.ADD_VALUES,
-        )
+        self._unknowns.add_blocks(out, row[:, None], column[:, None], blocks)
         out.assemble()
 
     def _locate(self, keys: Keys, out: Mat, foresee: Callable[[], Sequence[NodePairs]]) -> bool:
@@ -173,17 +169,13 @@ class CoupledTangent:
     def _preallocate(self, matrix: Mat) -> None:
         row, column = self._places()
         if self._comm.size == 1:  # a quarter of the time of the way for several
-            whole = self._of_bulk + _entries_of(row, column, self._size[0])
+            whole = self._of_bulk + self._unknowns.pattern(row, column, self._size[0])
             sides = (a.astype(PETSc.IntType) for a in (whole.indptr, whole.indices))
             matrix.setPreallocationCSR(tuple(sides))
         else:
-            component = np.arange(3)
-            rows = 3 * row[:, None, None] + component[:, None]
-            columns = 3 * column[:, None, None] + component
-            shape = (len(self._keys), 3, 3)
+            rows, columns = self._unknowns.entries(row, column)
             matrix.setPreallocationCOO(
-                _joined(self._entries[0], np.broadcast_to(rows, shape)),
-                _joined(self._entries[1], np.broadcast_to(columns, shape)),
+                _joined(self._entries[0], rows), _joined(self._entries[1], columns)
             )
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         matrix.assemble()
@@ -208,20 +200,8 @@ def _found(known: Keys, keys: Keys) -> npt.NDArray[np.bool_]:
     return np.asarray(known[places] == keys)
 
 
-def _entries_of(row: Keys, column: Keys, unknowns: int) -> scipy.sparse.csr_array:
-    """Pattern of the unknowns of pairs of nodes, (unknowns, unknowns)."""
-    nodes = unknowns // 3
-    pairs = scipy.sparse.csr_array(
-        (np.ones(len(row), dtype=bool), (row, column)), shape=(nodes, nodes)
-    )
-    blocks = np.ones((pairs.nnz, 3, 3), dtype=bool)
-    return scipy.sparse.bsr_array(
-        (blocks, pairs.indices, pairs.indptr), shape=(unknowns, unknowns)
-    ).tocsr()
-
-
 def _joined(bulk: Any, contact: Any) -> Any:
-    return np.concatenate([bulk, contact.reshape(-1)]).astype(PETSc.IntType)
+    return np.concatenate([bulk, contact]).astype(PETSc.IntType)
 
 
 def _keys(rows: Ints, columns: Ints, nodes: int) -> Keys:

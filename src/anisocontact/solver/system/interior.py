@@ -33,7 +33,8 @@ def with_interior(
     u.array[:], right.array[:] = values, force
     first, _ = stiffness.getOwnershipRange()
     rows = (first + np.flatnonzero(known)).astype(PETSc.IntType)
-    stiffness.zeroRowsColumns(rows, mean_diagonal(bulk), u, right)
+    scale = mean_diagonal(np.array(bulk.diagonal.array_r), stiffness.comm.tompi4py())
+    stiffness.zeroRowsColumns(rows, scale, u, right)
     _solve(stiffness, right, u)
     found = np.array(u.array_r)
     found[known] = values[known]  # without rounding

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.fenicsx import MPI, PETSc, Vec, fem
+from anisocontact.base.fenicsx import MPI, PETSc, Vec
+from anisocontact.mesh.node_unknowns import NodeUnknowns
 
 Floats = npt.NDArray[np.float64]
 
@@ -16,28 +15,29 @@ class Layout:
     """Unknowns of the mesh on every rank, those of rigid bodies behind them on the last one.
 
     Args:
-        space: Vector space of the displacement.
+        unknowns: Where the displacement of nodes is among those of the mesh.
         rigid: Number of unknowns of rigid bodies.
 
     Attributes:
+        unknowns: As given.
         comm: Communicator of the mesh.
         owned: Number of unknowns of the mesh this rank owns.
         rigid: Number of unknowns of rigid bodies.
         last_rank: Whether this rank has them.
     """
 
-    def __init__(self, space: Any, rigid: int) -> None:
-        self.comm = space.mesh.comm
-        self.owned = int(3 * space.dofmap.index_map.size_local)
+    def __init__(self, unknowns: NodeUnknowns, rigid: int) -> None:
+        self.unknowns, self.comm = unknowns, unknowns.comm
+        self.owned = unknowns.owned
         self.rigid = rigid
         self.last_rank = bool(self.comm.rank == self.comm.size - 1)
-        self._nodal = fem.Function(space)  # owns the memory behind its PETSc vector
-        self._ghosted = self._nodal.x.petsc_vec
+        self._memory = unknowns.ghosted()  # owns what is behind its PETSc vector
+        self._ghosted = self._memory.petsc_vec
 
     def new_vector(self) -> Vec:
         """Vector of the unknowns, zero."""
         vector = PETSc.Vec().create(self.comm)
-        vector.setSizes((self.owned + self.rigid * self.last_rank, None), bsize=3)
+        vector.setSizes((self.owned + self.rigid * self.last_rank, None), bsize=self.unknowns.block)
         vector.setType(PETSc.Vec.Type.STANDARD)
         return vector
 
@@ -57,10 +57,14 @@ class Layout:
             x.array[self.owned :] = rigid
         return x
 
-    def assembled(self, local: Floats) -> Floats:
-        """Owned entries of forces on local unknowns, with what other ranks add to them."""
+    def assembled(self, nodal: Floats) -> Floats:
+        """Forces on the local nodes, (nodes, 3), with what other ranks add to them.
+
+        Returns:
+            Of the unknowns this rank owns.
+        """
         with self._ghosted.localForm() as form:
-            form.array[:] = local
+            form.array[:] = self.unknowns.local(nodal)
         self._ghosted.ghostUpdate(PETSc.InsertMode.ADD_VALUES, PETSc.ScatterMode.REVERSE)
         return np.array(self._ghosted.array_r)
 

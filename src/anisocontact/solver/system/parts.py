@@ -93,8 +93,8 @@ def make_parts(
         raise InputError("all bodies follow rigid ones as a whole: nothing deforms", "coupled")
     linear = all(material.linear for material in soft.values())
     bulk = LinearBulk(model, soft) if linear else NonlinearBulk(model, soft)
-    bodies, rigid = Bodies(bulk), RigidBodies(contacts, model.mesh.comm, faces)
-    layout = Layout(model.space, rigid.size)
+    bodies, rigid = Bodies(bulk, model.unknowns), RigidBodies(contacts, model.mesh.comm, faces)
+    layout = Layout(model.unknowns, rigid.size)
     attached, supports, loads = Attachments(specs, model), Supports(model), Loads(model, materials)
     like = layout.new_vector()
     tied = TiedFaces(ties, model, like, sectors) if ties or sectors else None
@@ -139,7 +139,7 @@ def make_parts(
 def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) -> None:
     """Tell contacts how stiff their bodies are, which are at finite strain, and what they share."""
     tell_shared(contacts)
-    diagonal = np.array(bodies.bulk.yielding.array_r).reshape(-1, 3)
+    diagonal = bodies.unknowns.own_nodal(np.array(bodies.bulk.yielding.array_r))
     for contact, is_finite in zip(contacts, finite, strict=True):
         contact.suit_strain(is_finite)
         contact.suit(diagonal)

@@ -15,11 +15,11 @@ from anisocontact.bulk import LinearBulk, Material
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 from anisocontact.solver.system.accepted import AcceptedState
-from anisocontact.solver.system.assembly import ForceBalance
 from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.contact_work import ContactWork
 from anisocontact.solver.system.coupled import CoupledTangent
 from anisocontact.solver.system.culprit import Culprit
+from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.memory import BEGUN, Memory
 from anisocontact.solver.system.parts import make_parts
@@ -108,7 +108,7 @@ class Problem(ReportedSystem):
         self.constraints, self.contact_term = assembly.constraints, assembly.contacts
         self.together = Together(self.comm)
         coupling = parts.attached.coupling or assembly.constraints.ties is not None
-        self._tangent = Tangent(assembly, model.space, coupling)
+        self._tangent = Tangent(assembly, coupling)
         self._bodies = Configuration(parts)
         self.rotations = Rotations(model, materials)
         self.balance = ForceBalance.none(self.layout.owned)
@@ -326,7 +326,7 @@ class Problem(ReportedSystem):
         if self.stabilisation.watches:
             load = self.loads.force(nodal)
             self.attached.add_force(nodal, load)
-            self.stabilisation.start(nodal, self.layout.assembled(load.reshape(-1)).reshape(-1, 3))
+            self.stabilisation.start(nodal, self.layout.assembled(load).reshape(-1, 3))
 
     def commit(self, x: Vec) -> None:
         """Accept a state: the history of the contacts advances and energies are summed.

@@ -37,7 +37,7 @@ def check_swallowed(layout: Layout, step: Step, given: Iterable[Given], held: li
     count = layout.owned // 3
     comm = layout.comm
     for one in given:
-        force = layout.assembled(one.force.ravel())[: 3 * count].reshape(-1, 3)
+        force = layout.assembled(one.force)[: 3 * count].reshape(-1, 3)
         rest = not_held(force, held)
         total, left = comm.allreduce(np.array([(force**2).sum(), (rest**2).sum()]))
         if total > 0.0 and left <= NOTHING * total:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +21,6 @@ class Tangent:
 
     Args:
         assembly: The terms.
-        space: Vector space of the displacement.
         coupling: Whether terms other than contacts couple nodes of different cells.
 
     Attributes:
@@ -30,14 +28,14 @@ class Tangent:
             any.
     """
 
-    def __init__(self, assembly: Assembly, space: Any, coupling: bool = False) -> None:
+    def __init__(self, assembly: Assembly, coupling: bool = False) -> None:
         self._assembly = assembly
-        self._comm = space.mesh.comm
+        self._comm = assembly.layout.comm
         self._stiffness = assembly.bodies.bulk.stiffness
         self._meshed = assembly.contacts.meshed
         extra = assembly.rigid.size // 3
         self.coupled = (
-            CoupledTangent(self._stiffness, space, extra)
+            CoupledTangent(self._stiffness, assembly.layout.unknowns, extra)
             if self._meshed or extra or coupling
             else None
         )
@@ -100,8 +98,7 @@ class Tangent:
             self.coupled.add(out)
         assembly.constraints.transform(out, assembly.scale)
         rows = np.concatenate([assembly.conditions.unknowns, assembly.prescribed_of_bodies()])
-        first, _ = out.getOwnershipRange()
-        out.zeroRows((first + rows).astype(PETSc.IntType), assembly.scale)
+        assembly.fields.prescribe(out, rows, assembly.scale)
         return grown
 
     def _foreseen(self) -> Sequence[NodePairs]:

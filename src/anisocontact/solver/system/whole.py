@@ -82,7 +82,7 @@ class Whole:
         assembly, owned = self._parts.assembly, self._parts.layout.owned
         self._accepted.x.array[:owned] = u
         trial = self._bodies.take(self._accepted.x)
-        outside = -(assembly.bodies.force(trial.nodal).reshape(-1)[:owned] + contact_force)
+        outside = -(assembly.bodies.inner(trial.nodal) + contact_force)
         tied = assembly.constraints.tied
         self._accepted.take(tied(outside), tied(load))
 

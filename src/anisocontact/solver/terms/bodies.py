@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import override
+from typing import Any, override
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,7 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.bulk import LinearBulk, NonlinearBulk
+from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.solver.terms.form import FormBulk
 from anisocontact.solver.terms.led import Led
 from anisocontact.solver.terms.persistent import Arrays
@@ -24,11 +25,17 @@ Floats = npt.NDArray[np.float64]
 type Bulk = LinearBulk | NonlinearBulk | FormBulk
 
 
-def mean_diagonal(bulk: Bulk) -> float:
-    """Mean diagonal of the tangent at rest of nodes that have a stiffness, force/length."""
-    here: Floats = np.array(bulk.diagonal.array_r)
-    comm = bulk.stiffness.comm.tompi4py()
-    return float(comm.allreduce(here.sum()) / comm.allreduce(np.count_nonzero(here)))
+def mean_diagonal(diagonal: Floats, comm: Any) -> float:
+    """Mean diagonal of the tangent at rest of nodes that have a stiffness, force/length.
+
+    Args:
+        diagonal: Of the displacements this rank owns.
+        comm: Communicator of the mesh; the call is collective.
+
+    Returns:
+        The mean over all ranks.
+    """
+    return float(comm.allreduce(diagonal.sum()) / comm.allreduce(np.count_nonzero(diagonal)))
 
 
 class Bodies(Term):
@@ -38,21 +45,28 @@ class Bodies(Term):
 
     Args:
         bulk: Internal forces.
+        unknowns: Where the displacement of nodes is among the unknowns.
 
     Attributes:
+        unknowns: As given.
         scale: Mean diagonal of the tangent at rest, force/length.
     """
 
-    def __init__(self, bulk: Bulk) -> None:
-        self.bulk = bulk
-        self.scale = mean_diagonal(bulk)
+    def __init__(self, bulk: Bulk, unknowns: NodeUnknowns) -> None:
+        self.bulk, self.unknowns = bulk, unknowns
+        diagonal = unknowns.own_nodal(np.array(bulk.diagonal.array_r))
+        self.scale = mean_diagonal(diagonal, unknowns.comm)
         self._u = bulk.stiffness.createVecRight()
         self._temperatures = {name: Led(1) for name in bulk.heated}
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:
-        owned = self._owned(u).getLocalSize() // 3
-        out[:owned] -= self.bulk.force(self._u).array_r.reshape(-1, 3)
+        inner = self.unknowns.own_nodal(self.inner(u))
+        out[: len(inner)] += inner
+
+    def inner(self, u: Floats) -> Floats:
+        """The same of all unknowns this rank owns: those of other fields have a residual, too."""
+        return -np.asarray(self.bulk.force(self._owned(u)).array_r)
 
     def check(self, step: Step) -> None:
         """Refuse temperatures of bodies that do not expand.
@@ -128,5 +142,5 @@ class Bodies(Term):
         return np.asarray(self.bulk.diagonal.array_r * moved)
 
     def _owned(self, u: Floats) -> Vec:
-        self._u.array[:] = u.reshape(-1)[: self._u.getLocalSize()]
+        self._u.array[:] = self.unknowns.own(u)
         return self._u

@@ -8,7 +8,7 @@ from typing import override
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.fenicsx import Mat, PETSc
+from anisocontact.base.fenicsx import Mat
 from anisocontact.contact import Contact
 from anisocontact.contact.far_nodes import globally
 from anisocontact.contact.quadrature import Couplings
@@ -72,8 +72,8 @@ class Contacts(Term):
     def add_tangent(self, matrix: Mat) -> None:
         for contact in self._smooth:
             for *names, values in contact.answer.couplings():
-                sides = (globally(one, contact.space).astype(PETSc.IntType) for one in names)
-                matrix.setValuesBlockedRCV(*sides, values, PETSc.InsertMode.ADD_VALUES)
+                rows, columns = (globally(one, contact.space) for one in names)
+                contact.unknowns.add_blocks(matrix, rows, columns, values)
 
     @override
     def accept(self, u: Floats) -> float:

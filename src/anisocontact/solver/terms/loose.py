@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import MPI, Mat
+from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.solver.terms.free_modes import named
 
 Floats = npt.NDArray[np.float64]
@@ -26,7 +27,7 @@ class MeshPart:
     Attributes:
         nodes: Local nodes, with ghosts, (n,).
         middle: Mean of its nodes, (3,), length.
-        modes: Rigid motions of the nodes this rank owns, others at rest, (6, unknowns).
+        modes: Rigid motions of the nodes this rank owns, others at rest, (6, nodes, 3).
     """
 
     nodes: Ints
@@ -56,11 +57,13 @@ def parts(space: Any) -> list[MeshPart]:
         for i, e in enumerate(np.eye(3)):
             modes[i, here] = e
             modes[3 + i, here] = np.cross(e, arms / size)
-        found.append(MeshPart(nodes, middle, modes.reshape(6, -1)))
+        found.append(MeshPart(nodes, middle, modes))
     return found
 
 
-def loose_motions(part: MeshPart, stiffness: Mat, scale: float, fixed: Ints, comm: Any) -> str:
+def loose_motions(
+    part: MeshPart, stiffness: Mat, scale: float, fixed: Ints, unknowns: NodeUnknowns
+) -> str:
     """Motions of a part that meet no stiffness and no condition, in words; empty if there is none.
 
     Args:
@@ -68,21 +71,22 @@ def loose_motions(part: MeshPart, stiffness: Mat, scale: float, fixed: Ints, com
         stiffness: Tangent of the form alone, without conditions.
         scale: Force for a unit of length of a single node, force/length.
         fixed: Unknowns with conditions, local numbers.
-        comm: Communicator of the mesh.
+        unknowns: Where the displacement of nodes is among the unknowns.
     """
     x, force = stiffness.createVecs()
-    held = np.unique(fixed[fixed < part.modes.shape[1]])
+    comm, marked = unknowns.comm, np.zeros(unknowns.owned)
+    marked[fixed[fixed < unknowns.owned]] = 1.0
+    held = unknowns.own_nodal(marked, missing=1.0) > 0.0
     rows = []
     for mode in part.modes:
-        x.array[:] = mode
+        x.array[:] = unknowns.own(mode)
         stiffness.mult(x, force)
-        row = force.array_r / scale
-        row[held] = mode[held]
-        rows.append(row)
+        row = unknowns.own_nodal(force.array_r) / scale
+        rows.append(np.where(held, mode, row).reshape(-1))
     x.destroy()
     force.destroy()
     sums = comm.allreduce(np.array(rows) @ np.array(rows).T)
-    count = comm.allreduce(part.modes.shape[1])
+    count = comm.allreduce(part.modes[0].size)
     values, vectors = np.linalg.eigh(sums)
     loose = vectors.T[values <= NOTHING**2 * count]
     return named(loose) if len(loose) else ""

@@ -162,7 +162,7 @@ class RigidBodies(Term):
         Args:
             force: Of the unknowns this rank owns, all but what holds them, force.
         """
-        self._of_faces = self._wrenches([face.take(force.reshape(-1, 3)) for face in self._faces()])
+        self._of_faces = self._wrenches([face.take(force) for face in self._faces()])
 
     def residual(self, unknowns: Floats, support_scale: float) -> Floats:
         """Rows of the free bodies at the trial of the contacts, (size,), force."""
@@ -180,11 +180,10 @@ class RigidBodies(Term):
         """`Contacts.multiplier_residual` of the free bodies as the rows have it, (size,), force.
 
         Args:
-            forces: That of the unknowns of the mesh this rank owns.
+            forces: That of the nodes this rank owns, (nodes, 3).
         """
         rows = np.zeros(self.size)
-        nodal = forces.reshape(-1, 3)
-        on_faces = self._wrenches([face.wrench(nodal[face.nodes]) for face in self._faces()])
+        on_faces = self._wrenches([face.wrench(forces[face.nodes]) for face in self._faces()])
         for i, body in enumerate(self.free):
             local = sum(
                 (c.trials.multiplier_wrench(body.position) for c in self.contacts[body]),

@@ -132,7 +132,7 @@ class Condensed:
             self._condense()
         assert self._system is not None
         problem.stabilise_at(self._reach.nodes)
-        self._trial_load = problem.layout.assembled(problem.loads.force(self._nodal()).reshape(-1))
+        self._trial_load = problem.layout.assembled(problem.loads.force(self._nodal()))
         supports = np.zeros(self._stiffness.shape[0])
         supports[problem.supports.unknowns] = problem.supports.values
         self._system.set_load_factor(supports, self._trial_load)

@@ -16,8 +16,8 @@ from anisocontact.solver.strategies.condensed.patterns import InteriorState, Pat
 from anisocontact.solver.strategies.forcing import Forcing
 from anisocontact.solver.strategies.newton import TOLERANCE
 from anisocontact.solver.system.assembled import AssembledSystem
-from anisocontact.solver.system.assembly import ForceBalance, Magnitudes, closed
 from anisocontact.solver.system.culprit import Culprit
+from anisocontact.solver.system.force_balance import ForceBalance, Magnitudes, closed
 from anisocontact.solver.system.problem import Problem
 
 Floats = npt.NDArray[np.float64]

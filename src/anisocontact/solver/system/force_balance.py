@@ -1,0 +1,146 @@
+"""Balance of forces at a state, and whether it is one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+Floats = npt.NDArray[np.float64]
+
+#: Share of `|diag(K) u|` and of `Term.lever` that is round-off of the forces.
+ROUND_OFF = 16.0 * float(np.finfo(np.float64).eps)
+#: Share of the loads that may be left out of balance as round-off.
+LOAD_SHARE = 1e-6
+
+
+@dataclass(frozen=True)
+class FieldBalance:
+    """How far a field is from its equations, norms over all ranks in units of force.
+
+    Attributes:
+        norm: Of the residual.
+        scale: Of what is at work in it.
+        round_off: Residual that floating point leaves.
+    """
+
+    norm: float
+    scale: float
+    round_off: float
+
+    def relative(self, tolerance: float) -> float:
+        """Residual over what is at work.
+
+        Args:
+            tolerance: Share of that which is small: where next to nothing is at work, what is left
+                is rounding of larger numbers.
+        """
+        rounded = self.round_off / max(tolerance, _EPSILON)
+        return self.norm / max(self.scale, rounded, _TINY)
+
+    def small(self, tolerance: float, absolute: float) -> bool:
+        """Whether no more than a share of what is at work is left, or rounding, or a force."""
+        return self.norm <= max(tolerance * self.scale, self.round_off, absolute)
+
+
+@dataclass(frozen=True)
+class ForceBalance:
+    """Forces at a state, of the unknowns this rank owns.
+
+    Attributes:
+        residual: Residual, with the forces that a correction takes beyond those of the state; NaN
+            everywhere where a law has no answer.
+        norm: Norm of the residual without them over all ranks; 0 where no multipliers follow and
+            there is no other field.
+        force_scale: Norm of the forces at work: of loads, contacts, supports or supports still to
+            be moved, the largest.
+        round_off: Residual that floating point leaves, force; never more than a small share of the
+            loads, which a body that flies off would not balance.
+        outside: All forces but those of contact.
+        load: Of these, the loads.
+        fields: Of a mixed problem the balance of each field, the displacement first.
+    """
+
+    residual: Floats
+    norm: float
+    force_scale: float
+    round_off: float
+    outside: Floats
+    load: Floats
+    fields: tuple[FieldBalance, ...] = ()
+
+    @classmethod
+    def none(cls, owned: int) -> ForceBalance:
+        """No forces at all."""
+        return cls(np.zeros(owned), 0.0, 0.0, 0.0, np.zeros(owned), np.zeros(owned))
+
+    def of_fields(self, norm: float) -> tuple[FieldBalance, ...]:
+        """The balance of each field, where the residual as a whole has a norm."""
+        return self.fields or (FieldBalance(norm, self.force_scale, self.round_off),)
+
+
+@dataclass(frozen=True)
+class Magnitudes:
+    """How large forces are, norms over all ranks.
+
+    Attributes:
+        load: Of the loads.
+        at_work: Of whatever else is at work.
+        stiff: Of the forces that are rounded: of nodes moved alone, and levers of the terms.
+    """
+
+    load: float
+    at_work: Sequence[float]
+    stiff: float
+
+    @property
+    def force_scale(self) -> float:
+        """As of `ForceBalance`."""
+        return max(self.load, *self.at_work)
+
+    @property
+    def round_off(self) -> float:
+        """As of `ForceBalance`."""
+        rounded = ROUND_OFF * self.stiff
+        return min(rounded, LOAD_SHARE * self.load) if self.load > 0.0 else rounded
+
+
+def closed(
+    residual: Floats,
+    sizes: Magnitudes,
+    comm: Any,
+    *,
+    failed: bool,
+    correction: Floats | None,
+    forces: tuple[Floats, Floats] | None = None,
+    fields: tuple[FieldBalance, ...] = (),
+) -> ForceBalance:
+    """A balance of forces from its residual; collective.
+
+    Args:
+        residual: Of the unknowns of this rank, force; overwritten.
+        sizes: How large the forces are.
+        comm: Communicator.
+        failed: Whether there is no answer on this rank.
+        correction: Forces that a correction takes beyond those of the state; None where no
+            multipliers follow.
+        forces: See `ForceBalance.outside` and `ForceBalance.load`; none if left out.
+        fields: See `ForceBalance.fields`.
+    """
+    if comm.allreduce(failed):
+        residual[:] = np.nan
+    norm = 0.0
+    if correction is not None or fields:
+        norm = float(np.sqrt(comm.allreduce(float(residual @ residual))))
+    if correction is not None:
+        residual = residual - correction
+    outside, load = forces or (np.zeros(0), np.zeros(0))
+    return ForceBalance(residual, norm, sizes.force_scale, sizes.round_off, outside, load, fields)
+
+
+# Stands for the forces where there are none, so that zero over zero is zero.
+_TINY = float(np.finfo(np.float64).tiny)
+_EPSILON = float(np.finfo(np.float64).eps)

@@ -1,0 +1,447 @@
+"""Contact on the displacement of a mixed problem: other fields do what they are for, no more.
+
+Requirement: a residual in a mixed space (pressure, temperature, damage) takes contact on its
+displacement as one in displacements alone does, with all ways to the contact forces.
+"""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from tests.conftest import difference_errors
+from tests.verification import mixed_problems as mixed
+from tests.verification.mixed_problems import PRESS_AND_DRAG, WAYS, Held, on_base, on_plate, pad
+
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import MPI, basix, fem, fem_petsc, ufl
+from anisocontact.base.limits import Limits
+from anisocontact.bulk import make_material
+from anisocontact.contact import Contact
+from anisocontact.interface import ContactLaw
+from anisocontact.laws import Adhesion, Friction, NormalLaw
+from anisocontact.mesh import BoxSpec, Model, PlaneStrain, build_box
+from anisocontact.solver import ContactProblem, Problem, Solver, Step
+from anisocontact.surfaces import make_surface
+
+import dolfinx.mesh
+
+ROOT = Path(__file__).parents[2]
+
+
+def off(one: np.ndarray, other: np.ndarray) -> float:
+    """Largest difference over the largest value."""
+    return float(np.abs(one - other).max() / np.abs(other).max())
+
+
+@pytest.mark.parametrize("way", WAYS)
+@pytest.mark.parametrize("met", ["plate", "base"])
+def test_pressures_of_cells_are_those_of_the_displacement(way: str, met: str) -> None:
+    """Linear tetrahedra with a pressure in each cell, `p = K (J - 1)`, give the forces of the
+    displacement alone.
+
+    Source: J is constant in such a cell, so that both are one equation after the elimination of p.
+    Tolerance 1e-7: residuals are solved to 1e-8 of the forces (measured 3e-9, by penalties 1e-12).
+    A pair with multipliers starts by penalties: from a displacement without a pressure its first
+    increment does not converge.
+    """
+    forces = []
+    for pressure in ("cells", "none"):
+        if met == "plate":
+            g = pad(3, pressure, 1, "tetrahedron")
+            contact = on_plate(g, **WAYS[way])
+        else:
+            g = mixed.pair(pressure, 1)
+            contact = on_base(g, **(WAYS[way] if way != "multipliers" else {"reach": 0.3}))
+        forces.append(Held(g, [contact]).go(PRESS_AND_DRAG))
+    assert off(*forces) < 1e-7
+
+
+def _own_body(n: int) -> np.ndarray:
+    """The same pad of our own incompressible rubber, order 2, a linear pressure in each cell."""
+    box = BoxSpec((0.0, 0.0, 0.0), (1.0, 1.0, mixed.HEIGHT), (n, n, n // 2), order=2)
+    model = build_box({"pad": box})
+    rubber = make_material("neo-hookean-incompressible", E=3.0 * mixed.SHEAR, nu=0.5)
+    contact = Contact(model, "pad.bottom", mixed.PLATE, mixed.law())
+    ends = (PRESS_AND_DRAG[3], PRESS_AND_DRAG[-1])
+    steps = [
+        Step(str(i), 4, {"pad.top": dict(zip("xyz", way, strict=True))})
+        for i, way in enumerate(ends)
+    ]
+    forces = []
+    for accepted in Solver(Problem(model, {"pad": rubber}, [contact]), steps).run():
+        if accepted.increment == 4 and accepted.done == 1.0:
+            forces.append(contact.resultant()[0])
+    return np.array(forces)
+
+
+@pytest.mark.slow
+@pytest.mark.ci
+def test_taylor_hood_is_our_own_incompressible_body() -> None:
+    """A pad of Taylor-Hood elements, pressed and dragged, and one with pressures of cells have the
+    same forces but for discretisation.
+
+    Source: both are stable elements of the same body, of the same order. Asserted: the difference
+    falls to less than half at half the size, below 0.5 %.
+    """
+    differences = []
+    for n in (2, 4):
+        g = pad(n, "linear", 2, bulk=np.inf)
+        forces = Held(g, [on_plate(g)]).go(PRESS_AND_DRAG)
+        differences.append(off(forces[[3, -1]], _own_body(n)))
+    assert differences[1] < 0.5 * differences[0]
+    assert differences[1] < 0.005
+
+
+def test_taylor_hood_tends_to_the_incompressible_form() -> None:
+    """Forces with a bulk modulus K go to those of the incompressible form as 1/K.
+
+    Source: perturbed Lagrangian, the energy of a change of volume is `p^2 / 2 K`. Asserted: ten
+    times the modulus leaves a tenth, 9 to 11, at 1e3 and 1e4 of the shear modulus.
+    """
+    forces = []
+    for bulk in (1e3 * mixed.SHEAR, 1e4 * mixed.SHEAR, np.inf):
+        g = pad(2, "linear", 2, bulk=bulk)
+        forces.append(Held(g, [on_plate(g)]).go(PRESS_AND_DRAG[:4]))
+    ratio = off(forces[0], forces[2]) / off(forces[1], forces[2])
+    assert 9.0 < ratio < 11.0
+
+
+@pytest.mark.parametrize(
+    ("way", "met", "mu", "step"),
+    [
+        ("penalty", "plate", 0.3, 1e-2),
+        ("penalty", "base", 0.3, 1e-3),
+        ("penalty", "plate", 30.0, 1e-3),
+        ("mortar", "plate", 0.3, 1e-2),
+        pytest.param("mortar", "base", 0.3, 1e-2, marks=[pytest.mark.slow, pytest.mark.ci]),
+        pytest.param("mortar", "base", 30.0, 1e-3, marks=[pytest.mark.slow, pytest.mark.ci]),
+    ],
+)
+def test_tangent_by_order(way: str, met: str, mu: float, step: float) -> None:
+    """Halving the step quarters the error of central differences (asserted 3.5 to 4.5), in
+    displacements and pressures at once, with points that slide (mu = 0.3) or stick (mu = 30).
+
+    Source: exact tangents. Below 1e-7 the difference is rounding, and the order cannot be seen.
+    With multipliers that follow the tangent is that of a correction, made of the same blocks.
+    """
+    g = pad(2, "linear", 2) if met == "plate" else mixed.pair("linear", 2)
+    contact = (on_plate if met == "plate" else on_base)(g, (mu, 2.0 * mu), **WAYS[way])
+    held = Held(g, [contact])
+    held.go(PRESS_AND_DRAG)
+    problem, rng = held.problem, np.random.default_rng(3)
+    x = problem.new_vector()
+    size = np.full(x.getLocalSize(), 1e4)  # of pressures, and of displacements
+    size[contact.unknowns.own(np.ones((contact.unknowns.node_count, 3))) > 0.0] = 1e-5
+    x.array[:] = g.w.x.array + size * rng.normal(size=len(size))
+    problem.evaluate(x)
+    assert contact.counts()["slip" if mu < 1.0 else "stick"] > 10
+    direction = x.duplicate()
+    direction.array[:] = size * rng.normal(size=len(size))
+    errors = difference_errors(problem, x, direction, (step, step / 2.0))
+    assert 3.5 < errors[0] / errors[1] < 4.5 or errors[0] < 1e-7
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_unit_of_the_pressure_changes_nothing(way: str) -> None:
+    """Pressures in Pa, or in units of 1e9 Pa: the same iterations with the same residuals.
+
+    Source: rows are weighed as forces. Tolerance 1e-6 of each
+    residual above 1e-7 of the largest: rounding.
+    """
+    histories = []
+    for unit in (1.0, 1e9):
+        g = pad(2, "linear", 2, unit=unit)
+        held = Held(g, [on_plate(g, **WAYS[way])])
+        snes = held.problem.newton.snes
+        snes.setConvergenceHistory(1000)
+        held.go(PRESS_AND_DRAG)
+        histories.append(np.array(snes.getConvergenceHistory()[0]))
+    assert histories[0].shape == histories[1].shape
+    clear = histories[0] > 1e-7 * histories[0].max()
+    assert clear.sum() > 20
+    assert histories[1][clear] == pytest.approx(histories[0][clear], rel=1e-6)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_run_that_goes_on_is_the_same_to_the_last_bit(way: str, tmp_path: Path) -> None:
+    """What `save` wrote after five steps is restored by another problem, which goes on alike.
+
+    Source: requirement on checkpoints; all fields and the history of the contact. No tolerance.
+    """
+    ends = []
+    for go_on in (False, True):
+        g = pad(2, "linear", 2)
+        held = Held(g, [on_plate(g, **WAYS[way])])
+        if go_on:
+            held.problem.restore(tmp_path / "state.npz")
+        else:
+            held.go(PRESS_AND_DRAG[:5])
+            held.problem.save(tmp_path / "state.npz")
+        held.go(PRESS_AND_DRAG[5:])
+        ends.append(g.w.x.array.copy())
+    assert np.array_equal(*ends)
+
+
+def test_increments_that_fail_are_cut_and_leave_all_fields() -> None:
+    """With at most five iterations a step of one increment is cut; a solution that fails leaves
+    displacement and pressure as they were, to the last bit.
+
+    Source: requirement on cuts.
+    """
+    g = pad(2, "linear", 2)
+    held = Held(g, [on_plate(g)], snes_max_it=5)
+    held.lead(PRESS_AND_DRAG[3])
+    before = g.w.x.array.copy()
+    with pytest.raises(RuntimeError, match="no convergence in 5 Newton iterations"):
+        held.problem.solve()
+    assert np.array_equal(g.w.x.array, before)
+    shares: list[float] = []
+    end = np.array(PRESS_AND_DRAG[3])
+    held.problem.solve_steps(
+        lambda share: held.lead(share * end), callback=lambda share, _: shares.append(share)
+    )
+    assert len(shares) > 1
+    assert shares[-1] == 1.0
+
+
+ELASTIC, POISSON, ALPHA = 1e6, 0.3, 1e-4
+
+
+def _stress(u: Any, heat: Any, alpha: float) -> Any:
+    strain = ufl.sym(ufl.grad(u)) - alpha * heat * ufl.Identity(3)
+    lame = ELASTIC * POISSON / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON))
+    return lame * ufl.tr(strain) * ufl.Identity(3) + ELASTIC / (1.0 + POISSON) * strain
+
+
+def _thermal(alpha: float, conductivity: Any, n: int = 3) -> tuple[mixed.Given, list[Any], Any]:
+    """A pad with a temperature beside its displacement: 0 at the top, 100 at the bottom."""
+    g = pad(n, "none", 1)
+    mesh = g.space.mesh
+    cell = mesh.basix_cell()
+    vector, scalar = basix.ufl.element("P", cell, 1, shape=(3,)), basix.ufl.element("P", cell, 1)
+    space = fem.functionspace(mesh, basix.ufl.mixed_element([vector, scalar]))
+    w, test = fem.Function(space), ufl.TestFunction(space)
+    (u, heat), (v, q) = ufl.split(w), ufl.split(test)
+    form = ufl.inner(_stress(u, heat, alpha), ufl.sym(ufl.grad(v))) * ufl.dx
+    form += ufl.inner(conductivity(heat) * ufl.grad(heat), ufl.grad(q)) * ufl.dx
+    own = space.sub(1).collapse()[0]
+    bcs = []
+    for group, value in (("pad.top", 0.0), ("pad.bottom", 100.0)):
+        given = fem.Function(own)
+        given.x.array[:] = value
+        dofs = fem.locate_dofs_topological((space.sub(1), own), 2, g.facets[group])
+        bcs.append(fem.dirichletbc(given, dofs, space.sub(1)))
+    model = Model.of(space.sub(0), g.facets)
+    return mixed.Given(model, space, space.sub(0), w, form, g.facets), bcs, own
+
+
+def in_order(held: Held) -> np.ndarray:
+    """Displacement of the nodes in the order of their places."""
+    places = held.given.model.space.tabulate_dof_coordinates().round(9)
+    return held.problem.nodal[np.lexsort(places.T)]
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_thermoelastic(way: str) -> None:
+    """Heated from below and dragged: a temperature that is an unknown, and one that was solved for
+    before, give the same forces and displacements.
+
+    Source: conduction does not know of the displacement. Tolerance 1e-7: residuals are solved to
+    1e-8 (measured 2e-9).
+    """
+    g, bcs, _ = _thermal(ALPHA, lambda _: 1.0)
+    whole = Held(g, [on_plate(g, **WAYS[way])], bcs)
+    forces = whole.go(PRESS_AND_DRAG)
+    alone = pad(3, "none", 1)
+    heats = fem.functionspace(alone.space.mesh, ("P", 1))
+    a, q = ufl.TrialFunction(heats), ufl.TestFunction(heats)
+    ends = []
+    for group, value in (("pad.top", 0.0), ("pad.bottom", 100.0)):
+        dofs = fem.locate_dofs_topological(heats, 2, alone.facets[group])
+        ends.append(fem.dirichletbc(value, dofs, heats))
+    heat = fem_petsc.LinearProblem(
+        ufl.inner(ufl.grad(a), ufl.grad(q)) * ufl.dx,
+        fem.Constant(heats.mesh, 0.0) * q * ufl.dx,
+        bcs=ends,
+        petsc_options_prefix="heat_",
+        petsc_options={"ksp_type": "preonly", "pc_type": "lu"},
+    ).solve()
+    v = ufl.TestFunction(alone.space)
+    form = ufl.inner(_stress(alone.w, heat, ALPHA), ufl.sym(ufl.grad(v))) * ufl.dx
+    one = mixed.Given(alone.model, alone.space, alone.space, alone.w, form, alone.facets)
+    parts = Held(one, [on_plate(one, **WAYS[way])])
+    assert off(forces, parts.go(PRESS_AND_DRAG)) < 1e-7
+    assert off(in_order(whole), in_order(parts)) < 1e-7
+
+
+def test_a_field_that_hardly_acts_on_the_body_is_solved_for_all_the_same() -> None:
+    """A conductivity `1 + (T/40)^3` and next to no expansion: `T + T (T/40)^3/4` is linear along z.
+
+    Source: Kirchhoff's transformation, of which linear elements have the values at the nodes.
+    Tolerance 1e-8: its rows are solved to that by themselves; as forces of expansion they would be
+    nothing beside those of contact.
+    """
+    g, bcs, _ = _thermal(1e-16, lambda heat: 1.0 + (heat / 40.0) ** 3, 6)
+    Held(g, [on_plate(g)], bcs).go([(0.0, 0.0, -1e-4)])
+    heat = g.w.sub(1).collapse()
+    z = heat.function_space.tabulate_dof_coordinates()[:, 2]
+    transformed = heat.x.array * (1.0 + (heat.x.array / 40.0) ** 3 / 4.0)
+    linear = 100.0 * (1.0 + 2.5**3 / 4.0) * (1.0 - z / mixed.HEIGHT)
+    assert transformed == pytest.approx(linear, rel=1e-8, abs=1e-8 * linear.max())
+
+
+def _damaged(toughness: float) -> tuple[mixed.Given, Any]:
+    """A pad with a damage beside its displacement, `(1 - d)^2 W + G_c/2 (d^2/l + l |grad d|^2)`."""
+    g = pad(2, "none", 1)
+    mesh, cell = g.space.mesh, g.space.mesh.basix_cell()
+    vector, scalar = basix.ufl.element("P", cell, 1, shape=(3,)), basix.ufl.element("P", cell, 1)
+    space = fem.functionspace(mesh, basix.ufl.mixed_element([vector, scalar]))
+    w = fem.Function(space)
+    u, d = ufl.split(w)
+    stored = 0.5 * ufl.inner(_stress(u, 0.0, 0.0), ufl.sym(ufl.grad(u)))
+    length = 0.2
+    of_crack = toughness / 2.0 * (d**2 / length + length * ufl.inner(ufl.grad(d), ufl.grad(d)))
+    total = ((1.0 - d) ** 2 * stored + of_crack) * ufl.dx
+    form = ufl.derivative(total, w, ufl.TestFunction(space))
+    model = Model.of(space.sub(0), g.facets)
+    return mixed.Given(model, space, space.sub(0), w, form, g.facets), length
+
+
+def test_damage() -> None:
+    """A pad that is pressed without friction and softens all over: `d = 2 W / (G_c/l + 2 W)`,
+    `W = E e^2 / 2`, and the pressure `(1 - d)^2 E e`.
+
+    Source: a uniform state of the model of damage by a gradient [Bourdin Francfort Marigo 2000].
+    Damage and body know nothing of each other at rest. Tolerance 1e-8: what Newton leaves.
+    """
+    toughness = 400.0
+    g, length = _damaged(toughness)
+    smooth = ContactLaw(NormalLaw(penalty=1e9), Adhesion(stiffness=1.0), Friction(coefficients=0.0))
+    contact = Contact(g.model, "pad.bottom", mixed.PLATE, smooth, current_area=False)
+    space, bcs = g.displacement, []
+    lowered = fem.Constant(g.space.mesh, 0.0)
+    for i in range(3):
+        part = space.sub(i)
+        held = (
+            g.facets["pad.top"]
+            if i == 2
+            else dolfinx.mesh.locate_entities_boundary(
+                g.space.mesh, 2, lambda x, i=i: np.isclose(x[i], 0.0)
+            )
+        )
+        dofs = fem.locate_dofs_topological(part, 2, held)
+        value = lowered if i == 2 else fem.Constant(g.space.mesh, 0.0)
+        bcs.append(fem.dirichletbc(value, dofs, part))
+    problem = ContactProblem(g.form, g.w, bcs=bcs, contacts=[contact])
+    for i in range(1, 5):
+        lowered.value = -0.01 * i
+        problem.solve()
+        pressure = contact.resultant()[0][2]
+        strain = (0.01 * i - pressure / 1e9) / mixed.HEIGHT
+        twice = ELASTIC * strain**2
+        damage = twice / (toughness / length + twice)
+        assert g.w.sub(1).collapse().x.array == pytest.approx(damage, rel=1e-8)
+        assert pressure == pytest.approx((1.0 - damage) ** 2 * ELASTIC * strain, rel=1e-8)
+    assert damage > 0.5
+
+
+@pytest.mark.parametrize("pressure", [False, True])
+def test_two_components_in_the_plane(pressure: bool) -> None:
+    """Plane strain with two components gives the forces of three whose third is held.
+
+    Source: the one across the plane is zero in both. Tolerance 1e-8: what Newton leaves.
+    """
+    forces = [_in_the_plane(components, pressure) for components in (2, 3)]
+    assert off(*forces) < 1e-8
+
+
+def _in_the_plane(components: int, pressure: bool) -> np.ndarray:
+    kind = dolfinx.mesh.CellType.quadrilateral
+    mesh = dolfinx.mesh.create_rectangle(MPI.COMM_WORLD, [[0, 0], [1, 0.5]], [6, 3], kind)
+    cell = mesh.basix_cell()
+    vector = basix.ufl.element("P", cell, 2, shape=(components,))
+    scalar = basix.ufl.element("P", cell, 1)
+    element = basix.ufl.mixed_element([vector, scalar]) if pressure else vector
+    space = fem.functionspace(mesh, element)
+    displacement = space.sub(0) if pressure else space
+    free = displacement.collapse()[0] if pressure else space
+    w = fem.Function(space)
+    u, p = ufl.split(w) if pressure else (w, None)
+    h = ufl.grad(u)
+    across = [h[2, 0], h[2, 1]] if components == 3 else [0.0, 0.0]
+    f = ufl.as_matrix(
+        [[1.0 + h[0, 0], h[0, 1], 0.0], [h[1, 0], 1.0 + h[1, 1], 0.0], [*across, 1.0]]
+    )
+    j = ufl.det(f)
+    density = 0.5 * (j ** (-2.0 / 3.0) * ufl.tr(f.T * f) - 3.0)
+    density += 1.5 * (j - 1.0) ** 2 if p is None else p * (j - 1.0)
+    form = ufl.derivative(density * ufl.dx(metadata={"quadrature_degree": 4}), w)
+    facets = [
+        dolfinx.mesh.locate_entities_boundary(mesh, 1, lambda x, y=y: np.isclose(x[1], y))
+        for y in (0.0, 0.5)
+    ]
+    moved = fem.Function(free)
+    places = (displacement, free) if pressure else space
+    dofs = fem.locate_dofs_topological(places, 1, facets[1])
+    bcs = [fem.dirichletbc(moved, dofs, *([displacement] if pressure else []))]
+    plate = make_surface("plane", point=(0.0, 0.0, 0.0), normal=(0.0, 1.0, 0.0))
+    law = ContactLaw(NormalLaw(penalty=1e3), Adhesion(stiffness=2e2), Friction(coefficients=0.3))
+    model = Model.of(displacement, {"pad.bottom": facets[0]}, PlaneStrain())
+    contact = Contact(model, "pad.bottom", plate, law, **WAYS["multipliers"])
+    problem = ContactProblem(form, w, bcs=bcs, contacts=[contact])
+    forces = []
+    for way in [(0.0, -0.01), (0.0, -0.02), (0.02, -0.02), (0.06, -0.02)]:
+        moved.x.array.reshape(-1, components)[:, :2] = way
+        problem.solve()
+        forces.append(contact.resultant()[0])
+    return np.array(forces)
+
+
+@pytest.mark.slow
+@pytest.mark.ci
+def test_several_processes(tmp_path: Path) -> None:
+    """Two processes give the forces of one, for every way to them.
+
+    Source: requirement. Tolerance 1e-8: what Newton leaves (measured 3e-11).
+    """
+    found = []
+    for ranks in (1, 2):
+        file = tmp_path / f"{ranks}.npz"
+        command = ["mpirun", "-n", str(ranks), sys.executable, "-m"]
+        command = [*command, "tests.verification.mixed_problems", str(file)]
+        done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        with np.load(file) as read:
+            found.append(dict(read))
+    for name, forces in found[0].items():
+        assert off(found[1][name], forces) < 1e-8
+
+
+def test_a_part_that_nothing_holds_is_one_line() -> None:
+    """A pad of Taylor-Hood elements above its plate without conditions: its six motions."""
+    g = pad(2, "linear", 2)
+    above = make_surface("plane", point=(0.0, 0.0, -0.1), normal=(0.0, 0.0, 1.0))
+    contact = Contact(g.model, "pad.bottom", above, mixed.law())
+    problem = ContactProblem(g.form, g.w, contacts=[contact])
+    with pytest.raises(InputError, match=r"nothing holds the body around .*translation along x, y"):
+        problem.solve()
+
+
+def test_limits_of_cuts_hold_for_mixed_problems() -> None:
+    """The smallest part that fails is named, and conditions go back with it."""
+    g = pad(2, "linear", 2)
+    held = Held(g, [on_plate(g)], snes_max_it=1)
+    led: list[float] = []
+    with pytest.raises(RuntimeError, match="no convergence"):
+        held.problem.solve_steps(
+            lambda s: led.append(s) or held.lead((0.0, 0.0, -0.01 * s)), limits=Limits(cuts=2)
+        )
+    assert led[-1] == 0.0
