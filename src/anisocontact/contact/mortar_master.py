@@ -93,8 +93,7 @@ class MortarMaster(MeshedMaster):
         x, tangents = points.positions(now), points.at(now).tangents[:, 0]
         normal = averaged_normal(tangents)
         held = held_directions(self._flags, points.nodes[:, 0], self._below, normal)
-        places = along_normals(sides, x, across(held, normal), self._hint)
-        opposite = tangent_places(sides, places)
+        opposite = tangent_places(sides, along_normals(sides, x, across(held, normal), self._hint))
         if weights is None:
             more = np.concatenate([opposite.named(), self._then.named()], axis=1)
             # the same on all processes, so that a facet counts on any number of them
