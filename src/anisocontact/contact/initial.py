@@ -153,8 +153,8 @@ def _check_sides(contact: Beginning, size: float) -> None:
         contact,
         wrong,
         f"{contact.slave!r} faces the same way as its master: at {{point}} the normals of slave "
-        f"and master are {{outward}} and {{normal}}; turn the surface over, or name the facets on "
-        "the other side",
+        f"and master are {{outward}} and {{normal}}; turn the surface over (a bore: inside = true, "
+        "a plane: its normal the other way), or name the facets on the other side",
         "master",
         seen.normal,
     )
