@@ -92,10 +92,13 @@ def _put(places: Places, rows: Numbers, facet: Ints, xi: Floats, edge: Floats | 
     places.facet[rows], places.xi[rows], places.edge[rows] = facet, xi, edge
 
 
+def _dot(a: Floats, b: Floats) -> Floats:
+    return np.asarray(np.einsum("ni,ni->n", a, b))
+
+
 def _across(v: Floats, normal: Floats) -> Floats:
-    """What of vectors, (n, ..., 3), is across unit normals, (n, 3)."""
-    n = normal.reshape(len(normal), *[1] * (v.ndim - 2), 3)
-    return np.asarray(v - (v * n).sum(axis=-1, keepdims=True) * n)
+    """What of vectors, (n, 3), is across unit normals, (n, 3)."""
+    return np.asarray(v - _dot(v, normal)[:, None] * normal)
 
 
 def _met(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple[Mask, Floats]:
@@ -105,16 +108,20 @@ def _met(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple
     flat = np.zeros(len(xi), dtype=bool)
     for _ in range(MOST):
         jet = sides.surface.jet(at.facet, xi)
-        across, rest = _across(jet.d1, normal), _across(x - jet.position, normal)
-        curved = np.einsum("nkd,nd->nk", jet.d2, rest)[:, [[0, 1], [1, 2]]]
-        metric = across @ across.swapaxes(1, 2)
-        own = np.linalg.det(jet.d1 @ jet.d1.swapaxes(1, 2))
-        flat |= np.linalg.det(metric) <= OPPOSED**2 * own
-        matrix = np.where(flat[:, None, None], np.eye(2), metric - curved)
-        step = np.linalg.solve(matrix, np.einsum("nad,nd->na", across, rest)[..., None])[..., 0]
-        flat |= np.abs(step).max(axis=1, initial=0.0) > 1.0 / ROUNDING
-        xi = np.where(flat[:, None], xi, xi + step)
-        if np.abs(step[~flat]).max(initial=0.0) <= ENOUGH:
+        first, second = _across(jet.d1[:, 0], normal), _across(jet.d1[:, 1], normal)
+        rest = _across(x - jet.position, normal)
+        metric = _dot(first, first), _dot(first, second), _dot(second, second)
+        area = np.cross(jet.d1[:, 0], jet.d1[:, 1])
+        flat |= metric[0] * metric[2] - metric[1] ** 2 <= OPPOSED**2 * _dot(area, area)
+        p, q, r = (one - _dot(jet.d2[:, k], rest) for k, one in enumerate(metric))
+        right = _dot(first, rest), _dot(second, rest)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            step = np.stack([r * right[0] - q * right[1], p * right[1] - q * right[0]], axis=1)
+            step /= (p * r - q * q)[:, None]
+        flat |= ~(np.abs(step).max(axis=1, initial=0.0) < 1.0 / ROUNDING)
+        step[flat] = 0.0
+        xi = xi + step
+        if np.abs(step).max(initial=0.0) <= ENOUGH:
             break
     return ~flat & (_outside(sides, xi) <= ROUNDING), xi
 
@@ -133,9 +140,9 @@ def _ahead(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tup
     plane /= np.linalg.norm(plane, axis=1)[:, None]
     ridge = located(at) & (at.feature != FEATURES.index("interior"))
     plane[ridge] = at.normal[ridge]
-    cosine = np.einsum("ni,ni->n", plane, normal)
+    cosine = _dot(plane, normal)
     opposed = np.abs(cosine) > OPPOSED
-    way = np.einsum("ni,ni->n", jet.position - x, plane) / np.where(opposed, cosine, 1.0)
+    way = _dot(jet.position - x, plane) / np.where(opposed, cosine, 1.0)
     return x + way[:, None] * normal, opposed
 
 
@@ -151,7 +158,7 @@ def _border(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> Pl
         rest = _across(x - jet.position, normal)
         slope = (_across(tangent, normal) ** 2).sum(axis=1)
         slope -= np.einsum("nk,nkd,nd->n", second, jet.d2, rest)
-        step = np.einsum("nd,nd->n", tangent, rest) / np.where(slope > 0.0, slope, np.inf)
+        step = _dot(tangent, rest) / np.where(slope > 0.0, slope, np.inf)
         new = np.clip(along + step, least, most)
         done, along = np.abs(new - along).max(initial=0.0) <= ENOUGH, new
         if done:
