@@ -168,6 +168,9 @@ by = "box"
 low = [0, 0, 0]
 high = [0.5, 0.5, 1]
 
+[join]
+"block.skin" = ["block.seat", "block.left", "block.patch", "block.top"]
+
 [material.block]
 model = "linear-elastic"
 E = 1000
@@ -197,6 +200,10 @@ displacement = { "block.patch" = { x = 0, y = 0, z = -0.01 } }
         ('"nearest"', '"nearst"', "group.\"block.seat\"[0].by: 'nearst' given; did you mean"),
         ("point = [0, 0, 0.5]", "point = [0, 0, 0.4]", "group.patch: no facet at the boundary"),
         ('group."block.seat"', 'group."blok.seat"', "group.blok.seat: no body 'blok'"),
+        ('"block.left"', '"block.lift"', "did you mean 'block.left'?"),
+        ('"block.left"', '"left"', "join.block.skin: no facet group 'left' in the mesh"),
+        ('"block.skin"', '"block.top"', "join.block.top: 'block.top' is a group already"),
+        ('"block.skin"', '"skin"', "join.skin: 'block.seat' given, groups of the body of 'skin'"),
     ],
 )
 def test_groups_of_a_case(tmp_path, capsys, old, new, said):
@@ -210,6 +217,8 @@ def test_groups_of_a_case(tmp_path, capsys, old, new, said):
     else:
         assert "group     block.seat: 16 facets, area 1" in found.out
         assert "group     block.patch: 4 facets, area 0.25" in found.out
+        # the patch is a part of the top: its facets count once
+        assert "group     block.skin: 40 facets, area 2.5" in found.out
 
 
 @pytest.mark.filterwarnings("ignore")

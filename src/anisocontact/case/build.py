@@ -26,6 +26,7 @@ from anisocontact.case.ties import close_gaps_of
 from anisocontact.case.units import doubts
 from anisocontact.mesh import GmshFile, Model
 from anisocontact.mesh.arrays import MeshArrays
+from anisocontact.mesh.joined import with_joined
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.node_groups import node_near, nodes_along
 from anisocontact.mesh.readers import file_arrays, is_mesh
@@ -217,7 +218,9 @@ def _grouped(case: Case, mesh: MeshArrays) -> MeshArrays:
         for name, tables in case.group.items()
     }
     with objects.within("group"):
-        return with_groups(mesh, chosen)
+        mesh = with_groups(mesh, chosen)
+    with objects.within("join"):
+        return with_joined(mesh, case.join)
 
 
 def _attached(case: Case) -> list[ElasticSupport | Spring]:

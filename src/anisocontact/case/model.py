@@ -220,6 +220,10 @@ class Case(Section):
     units: Units = Units()
     mesh: Mesh
     group: dict[str, Any] = Field(default_factory=dict)
+    join: dict[str, list[str]] = Field(
+        default_factory=dict,
+        description='facet groups made of others, "body.group" = ["body.one", "body.other"]',
+    )
     idealisation: Any = None
     material: dict[str, Any]
     surface: dict[str, Any] = Field(default_factory=dict)

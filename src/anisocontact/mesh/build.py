@@ -14,6 +14,7 @@ from anisocontact.mesh.arrays import MeshArrays, face_mesh, rename_bodies
 from anisocontact.mesh.blocks import mesh_blocks
 from anisocontact.mesh.cad import CAD, cad_arrays
 from anisocontact.mesh.idealisation import SOLID, Idealisation
+from anisocontact.mesh.joined import with_joined
 from anisocontact.mesh.merge import merge
 from anisocontact.mesh.model import Model
 from anisocontact.mesh.placement import IN_PLACE, Placement
@@ -103,6 +104,7 @@ def build_mesh(
     sources: Iterable[Source],
     groups: Mapping[str, Sequence[Selector]] = MappingProxyType({}),
     idealisation: Idealisation = SOLID,
+    joined: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> Model:
     """Model of bodies from shapes and files, in one mesh.
 
@@ -111,6 +113,7 @@ def build_mesh(
         groups: Further facet groups, "body.group" -> selectors of their facets, see
             `make_selector`.
         idealisation: What a mesh of two dimensions is taken for.
+        joined: Facet groups made of others, "body.group" -> groups of that body.
 
     Returns:
         The model.
@@ -129,7 +132,8 @@ def build_mesh(
     parts = [source.arrays(MPI.COMM_WORLD) for source in sources]
     if not parts:
         raise InputError("no body given, at least one needed", "mesh")
-    return Model.from_arrays(with_groups(merge(parts), groups), idealisation=idealisation)
+    mesh = with_joined(with_groups(merge(parts), groups), joined)
+    return Model.from_arrays(mesh, idealisation=idealisation)
 
 
 def build_box(boxes: Mapping[str, BoxSpec]) -> Model:
