@@ -229,7 +229,8 @@ MISTAKES = [
     (CUBE.replace("5, 6, 7, 8", "5, 6"), "line 12: *ELEMENT: elements C3D8R need 8 nodes each"),
     (
         CUBE.replace("C3D8R", "S8R"),
-        "no solid element (C3D4, C3D10, C3D8, C3D20, C3D6, C3D15, C3D5, C3D13, CPE, CPS, CAX); there are: 2",
+        "no solid element (C3D4, C3D10, C3D8, C3D20, C3D6, C3D15, C3D5, C3D13, CPE, CPS, CAX); "
+        "there are: 2",
     ),
     (CUBE.replace("2., 0., 2.", "two, 0., 2."), "line 3: *NODE: its data cannot be read"),
     (CUBE.replace("*HEADING", "*NGEN\n1, 2"), "*NGEN: is not read; write nodes and elements out"),

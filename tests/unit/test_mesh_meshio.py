@@ -108,7 +108,7 @@ def test_quadratic_cells_are_in_order(tmp_path, kind, nodes, order):
 
 def test_what_is_wrong_is_one_line(tmp_path, monkeypatch):
     (tmp_path / "broken.vtu").write_text("no mesh")
-    meshio.Mesh(POINTS[:4] + [0, 0, 1], [("quad", LOWER)]).write(tmp_path / "flat.vtu")
+    meshio.Mesh(np.add(POINTS[:4], (0, 0, 1)), [("quad", LOWER)]).write(tmp_path / "flat.vtu")
     for name, said in (
         ("broken.vtu", "meshio cannot read it"),
         (
