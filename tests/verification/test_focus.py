@@ -57,14 +57,19 @@ def test_ring():
     fifth of those at the ends, the others between. Source: definition. Tolerance: 1e-9."""
     from anisocontact.mesh import Body, make_shape
 
-    for given in ({}, {"start": -2.0, "end": -1.0}):
-        shape = make_shape("ring", inner=1, outer=2, length=1, cells=(1, 12, 1), focus=0.2, **given)
+    sector, ring = {"start": -2.0, "end": -1.0}, {"length": 1, "cells": (1, 12, 1)}
+    for name, given in (
+        ("ring", ring),
+        ("ring", ring | sector),
+        ("annulus", {"cells": (1, 12)} | sector),
+    ):
+        shape = make_shape(name, inner=1, outer=2, focus=0.2, **given)
         mesh = Body("b", shape).arrays()
         start = given.get("start", 0.0)
         angles = np.mod(np.arctan2(mesh.points[:, 1], mesh.points[:, 0]) - start, 2 * np.pi)
         planes = np.unique(angles.round(9))
         planes = planes[planes < 2 * np.pi - 1e-6]
-        sizes = np.diff(planes if given else [*planes, 2 * np.pi])
+        sizes = np.diff(planes if "start" in given else [*planes, 2 * np.pi])
         assert len(sizes) == 12
         assert sizes == pytest.approx(sizes[::-1], abs=1e-8)
         assert sizes[:6] / sizes[0] == pytest.approx(0.2 ** (np.arange(6) / 5), abs=1e-7)

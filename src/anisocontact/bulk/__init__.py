@@ -14,6 +14,7 @@ from anisocontact.bulk.hyperelastic import (
 )
 from anisocontact.bulk.library import make_material, materials, register_material
 from anisocontact.bulk.linear import LinearBulk
+from anisocontact.bulk.mandel import from_mandel, slope_from_mandel, to_mandel
 from anisocontact.bulk.materials import (
     LinearElastic,
     LinearElasticIncompressible,
@@ -73,9 +74,12 @@ __all__ = [
     "cauchy_stress",
     "cell_size",
     "deformation_gradient",
+    "from_mandel",
     "make_material",
     "materials",
     "register_material",
+    "slope_from_mandel",
     "small_strain",
+    "to_mandel",
     "user_material",
 ]

@@ -11,7 +11,13 @@ from anisocontact.base.cells import IN_PLANE
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.lattice import Block
 from anisocontact.mesh.shapes.ring import RingSpec
-from anisocontact.mesh.shapes.shape import FACE, cells_parameter, check_shape, ratio_parameter
+from anisocontact.mesh.shapes.shape import (
+    FACE,
+    cells_parameter,
+    check_shape,
+    focus_parameter,
+    ratio_parameter,
+)
 
 _KEPT = ("inner", "outer", "start", "end")
 
@@ -29,6 +35,8 @@ class AnnulusSpec:
         start: Angle at which the sector starts, from x towards y, radian.
         end: Angle at which it ends, > start, at most a full turn further; radian.
         ratio: Size of the last cell over the first, through the wall and around, > 0.
+        focus: Size of the cells in the middle between start and end over that of those farthest
+            from there, <= 1; instead of the second ratio.
 
     Raises:
         InputError: A value is out of range.
@@ -48,6 +56,7 @@ class AnnulusSpec:
     start: float = 0.0
     end: float = 2.0 * math.pi
     ratio: Sequence[float] = (1.0, 1.0)
+    focus: float = 1.0
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
@@ -61,6 +70,7 @@ class AnnulusSpec:
             cells_parameter("through the wall", "around"),
             *(p for p in RingSpec.entry.parameters if p.name in ("start", "end")),
             ratio_parameter("through the wall", "around"),
+            focus_parameter("in the middle between start and end"),
         ),
     )
 
@@ -78,6 +88,7 @@ class AnnulusSpec:
             start=self.start,
             end=self.end,
             ratio=(*self.ratio, 1.0),
+            focus=self.focus,
         )
         return [
             replace(
