@@ -230,3 +230,29 @@ def test_turntable_in_few_increments(fe, increments):
     assert contact.state["turn"].max() < 1.05 * np.radians(15.0)
     # 1e-3 of the way are the points at other radii and the elastic slip at the start
     assert contact.state["slip_accumulated"] == pytest.approx(2.0 * np.pi * arm, rel=1e-3)
+
+
+@pytest.mark.parametrize("degrees", [180.0, 350.0, 360.0])
+def test_half_a_turn_in_one_part_is_refused(fe, degrees):
+    """Where parts may not be cut, friction would be none, or that of a turn the other way.
+
+    Requirement: no force of the wrong sign, and the degrees are named; 170 of them are followed.
+    """
+    from anisocontact.base.limits import Limits
+    from anisocontact.rigid import RigidBody
+    from anisocontact.solver import Solver, Step, StoppedError
+
+    def whole(turned: float) -> float:
+        die = RigidBody("die", np.array([-9.5, 0.5, 0.0]))
+        block = fe.block(
+            fe.interface(coefficients=(0.2, 0.2), stiffness=(4e3, 4e3)), body=die, cells=(2, 2, 1)
+        )
+        held = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
+        steps = [Step("press", 1, held), Step("turn", 1, motion={"die": {"rz_deg": turned}})]
+        for _ in Solver(block.problem, steps, limits=Limits(smallest=1.0)).run():
+            pass
+        return float(block.contact.resultant(die.position)[1][2])
+
+    with pytest.raises(StoppedError, match=f"{degrees:.0f} degrees of rotation are prescribed"):
+        whole(degrees)
+    assert whole(170.0) > 0.0

@@ -21,7 +21,7 @@ from anisocontact.solver.stepping.overload import too_much_load
 from anisocontact.solver.stepping.pace import Pace
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
-from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch
+from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch, half_turns
 from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.strategies.choice import choose
 from anisocontact.solver.strategies.newton import OptionValue
@@ -230,6 +230,8 @@ class Solver:
             place.begun = True
         prescribed = self.problem.rigid.prescribed_turn(step) / step.increments
         largest = PRESCRIBED / max(prescribed, PRESCRIBED)
+        if ambiguous := half_turns(prescribed, self.limits.smallest):
+            raise StoppedError(step.name, pace.increment, ambiguous)
         pace.bound(largest)
         place.events = events = EventWatch(self.problem, step, self.limits.smallest)
         attempts.events = events

@@ -43,6 +43,25 @@ class PathTurn:
         )
 
 
+def half_turns(prescribed: float, smallest: float) -> str:
+    """Why an increment cannot be followed whose parts may not be small enough; empty if it can.
+
+    From half a turn on friction would be that of a turn the other way.
+
+    Args:
+        prescribed: Rotation of a body or facet group that an increment prescribes, radian.
+        smallest: Smallest part, share of an increment.
+    """
+    part = prescribed * smallest
+    if part < math.pi * (1.0 - 1e-9):
+        return ""
+    return (
+        f"{math.degrees(part):.0f} degrees of rotation are prescribed in the smallest part that is "
+        f"allowed, {smallest:g} of the increment: from 180 on nobody can tell which way it turns; "
+        "take more increments, or let parts be smaller (smallest_increment)"
+    )
+
+
 def largest_turn(problem: Problem) -> PathTurn:
     """The largest turn of the trial, over all ranks; collective."""
     found = PathTurn(0.0, "")
