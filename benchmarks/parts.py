@@ -20,6 +20,7 @@ SCRIPTS = {
     "kernel_rates": "points per second and core of laws, projections and interfaces",
     "mortar_rates": "ms of an evaluation of a contact of two meshes, at points and mortar nodes",
     "pair_rates": "million slave points per second and core of two meshed sheets",
+    "plane_rates": "processor time of plane and axisymmetric meshes against slices and sectors",
     "search": "closest points per second and core on a sheet of facets",
 }
 

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.errors import InputError
-from anisocontact.bulk import Expanding, make_material
+from anisocontact.bulk import Expanding, make_material, materials
 from anisocontact.cli import main
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.results import Results
@@ -26,7 +26,22 @@ AXES = {"first": [1, 1, 0], "second": [0, 0, 1]}
 MATERIALS: dict[str, tuple[str, dict[str, Any]]] = {
     "linear": ("linear-elastic", HOOKE),
     "wood": ("orthotropic", {"E": [9, 3, 2], "nu": [0.3, 0.3, 0.3], "G": [2, 1, 1], **AXES}),
+    "nearly incompressible": ("linear-elastic-incompressible", HOOKE | {"nu": 0.4999}),
+    "fibres": (
+        "transversely-isotropic",
+        {
+            "E_along": 9,
+            "E_across": 2,
+            "nu_along": 0.3,
+            "nu_across": 0.4,
+            "G_along": 1,
+            "along": [1, 1, 0],
+        },
+    ),
+    "st. venant": ("st-venant-kirchhoff", HOOKE),
     "neo-hooke": ("neo-hookean", HOOKE),
+    "rubber": ("neo-hookean-incompressible", HOOKE | {"nu": 0.4999}),
+    "mooney": ("mooney-rivlin", {"C10": 0.4, "C01": 0.1, "bulk_modulus": 50.0}),
     "yeoh": ("yeoh", {"C10": 1.0, "C20": -0.1, "C30": 0.1, "bulk_modulus": 50.0}),
     "ogden": ("ogden", {"mu": [1.0], "alpha": [3.0], "bulk_modulus": 50.0}),
     "polymer": ("viscoelastic", {**HOOKE, "g": [0.3], "tau": [0.4]}),
@@ -47,6 +62,11 @@ def _heated(name: str, temperature: float, held: dict[str, Any]) -> Problem:
     for _ in Solver(problem, [step]).run():
         pass
     return problem
+
+
+def test_every_material_expands() -> None:
+    """A registered material is among those that are heated here."""
+    assert {name for name, _ in MATERIALS.values()} == {one.name for one in materials()}
 
 
 @pytest.mark.parametrize("name", MATERIALS)
