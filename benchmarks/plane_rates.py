@@ -5,8 +5,8 @@ Run: python benchmarks/plane_rates.py [cells along the contact]
 A block of rubber is pressed by a rigid roll and dragged in plane strain; a ring of rubber is
 pressed on a plate and turned, axisymmetric with twist. In space the first is a slice, the second a
 sector of 15 degrees with cyclic symmetry, each with one layer of cells or with cells as long across
-as along. Processor time of the steps, of all threads, forms compiled before; the contact's force and,
-of the ring, torque against that in the plane.
+as along. Processor time of the steps, of all threads, forms compiled before; force of the contact,
+and of the ring its torque, against those in the plane.
 """
 
 from __future__ import annotations
