@@ -189,8 +189,8 @@ def free_modes(
     """
     sums = body.count * body.resisted.T @ body.resisted
     for nodes, direction in held:
-        here, _, at = np.intersect1d(nodes, body.nodes, return_indices=True)
-        along = np.broadcast_to(direction, (len(here), 3))
+        _, own, at = np.intersect1d(nodes, body.nodes, return_indices=True)
+        along = np.broadcast_to(direction, (len(nodes), 3))[own]
         rows = np.hstack([along, np.cross(body.arms[at], along)])
         sums += rows.T @ rows
     for frame in frames:
