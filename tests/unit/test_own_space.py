@@ -176,3 +176,20 @@ def test_a_weak_spring_of_the_form_holds_a_body(given):
     problem.solve()
     assert u.x.array.reshape(-1, 3)[:, 2] == pytest.approx(0.1, rel=1e-5)
     problem.close()
+
+
+def test_a_mixed_problem_has_its_contact_on_its_own_displacement(given):
+    """A contact on another mixed space, and none at all that says where the displacement is."""
+    import ufl
+
+    spaces = [SPACES["mixed"][0](given.mesh) for _ in range(2)]
+    w, test = fem.Function(spaces[0]), ufl.TestFunction(spaces[0])
+    form = ufl.inner(w, test) * ufl.dx
+    model = Model.of(spaces[1].sub(0), {"pad.sole": given.bottom})
+    contact = Contact(model, "pad.sole", _interface())
+    with pytest.raises(InputError, match=r"contacts: contact .pad\.sole. lives on another space"):
+        ContactProblem(form, w, contacts=[contact])
+    with pytest.raises(InputError, match=r"space: a mixed element given, .*name its displacement"):
+        ContactProblem(form, w)
+    with pytest.raises(InputError, match="with 1 components given"):
+        Model.of(spaces[0].sub(1), {"pad.sole": given.bottom})
