@@ -282,6 +282,20 @@ def test_a_part_of_the_extra_is_missing(case, command, missing, code, launcher):
     assert "pip install 'anisocontact[fem]'" in line
 
 
+def test_no_memory_for_the_finite_elements(tmp_path, case_text, monkeypatch, capsys):
+    """A library that is there and has no room is no library that is missing."""
+    case = tmp_path / "case.toml"
+    case.write_text(case_text)
+
+    def no_room() -> None:
+        raise ImportError("basix.so: failed to map segment from shared object", name="dolfinx")
+
+    monkeypatch.setattr("anisocontact.mesh.shapes", no_room)
+    assert main(["run", str(case)]) == 3
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("error: out of memory (for a library): take a coarser mesh")
+
+
 def test_no_finite_elements_installed(tmp_path, case_text):
     """Without DOLFINx schema and info still work, and a run says what to install."""
     case = tmp_path / "case.toml"

@@ -6,7 +6,7 @@ import errno
 
 from anisocontact.base.errors import MachineError
 
-__all__ = ["MEMORY", "lack"]
+__all__ = ["MEMORY", "lack", "out_of_memory"]
 
 #: What makes a run need less memory.
 MEMORY = 'take a coarser mesh, strategy = "iterative", or processes on several machines'
@@ -24,6 +24,15 @@ _CURES = {
     errno.EROFS: "take a folder that can be written",
     errno.EACCES: "take a folder that can be written",
 }
+
+
+def out_of_memory(error: BaseException) -> bool:
+    """Whether a library could not be loaded because there is no memory for it.
+
+    Args:
+        error: What an import raised.
+    """
+    return isinstance(error, ImportError) and "failed to map segment" in str(error)
 
 
 def lack(error: BaseException) -> MachineError | None:
@@ -47,7 +56,7 @@ def lack(error: BaseException) -> MachineError | None:
     if isinstance(error, MemoryError) or getattr(error, "ierr", None) == _PETSC_MEMORY:
         said = f" ({error})" if isinstance(error, MemoryError) and str(error) else ""
         return MachineError(f"out of memory{said}", MEMORY)
-    if isinstance(error, ImportError) and "failed to map segment" in str(error):
+    if out_of_memory(error):
         return MachineError("out of memory (for a library)", MEMORY)
     if isinstance(error, ImportError) and (error.name or "").split(".")[0] in _EXTRA:
         text = f"the finite-element level is not installed, or not whole ({error})"

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 from anisocontact.base import registry
 from anisocontact.base.amplitudes import amplitudes
+from anisocontact.base.machine import out_of_memory
 from anisocontact.base.paths import paths
 from anisocontact.base.registry import Entry
 from anisocontact.base.strategies import strategies
@@ -80,6 +81,8 @@ def _of_bodies() -> tuple[tuple[Entry, ...], ...]:
     try:
         from anisocontact.bulk import materials
         from anisocontact.mesh import idealisations, selectors, shapes
-    except ImportError:
+    except ImportError as missing:
+        if out_of_memory(missing):
+            raise  # they are there
         return (), (), (), ()
     return (*materials(), MATERIAL), shapes(), selectors(), idealisations()
