@@ -147,7 +147,7 @@ class ContactTrial:
         before: Frames at the committed coordinates, in the configuration of the trial.
         axes: Axes of adhesion as the frames have them, (n, 2, 3); zero at open points.
         immovable: Points that supports hold along the normal, which no multiplier can bring to no
-            gap, (n,).
+            gap, or of which next to nothing is covered: they keep a penalty, (n,).
         covered: Share of the weight of each point that the master covers, above 0, (n,).
         shared: Points that are slaves of other contacts with multipliers as well, (n,).
     """
@@ -321,6 +321,11 @@ class Multipliers:
             force = np.where(step.remembers, turned, 0.0)
         given = np.hstack([step.start["multiplier"][:, None], old])
         return given, np.hstack([step.answer.pressure[:, None], force])
+
+    def beyond(self, step: ContactTrial) -> npt.NDArray[np.bool_]:
+        """Points whose pressure, as one of a penalty, stands for more than the tolerance, (n,)."""
+        deep = step.covered * step.answer.pressure / (self._penalties[0] * self.factors[0])
+        return np.asarray(deep > self._limit)
 
     def _violation(self, change: Floats, covered: Floats) -> float:
         """Largest penetration or elastic slip over all ranks that a change stands for, length.

@@ -29,8 +29,10 @@ Floats = npt.NDArray[np.float64]
 #: What a trial starts from, and what the next Newton step is linear about.
 type Mark = tuple[State, Linear | None, Base, Floats]
 
-#: Least share of its weight that a point counts with.
-LEAST = 1e-6
+#: Least share of its weight that a point counts with, and the one up to which it may be left to its
+#: penalty: a node of which hardly anything is covered says as little of the gap below it. Times a
+#: gap of a hundredth of a facet that share is the tolerance.
+LEAST, SLIGHT = 1e-6, 1e-4
 
 
 class Trials:
@@ -59,7 +61,7 @@ class Trials:
         self._ways: Mapping[str, Multipliers] = {}
         self._multipliers: Multipliers | None = None
         self._layer: Layer | None = None
-        self._immovable = self._shared = np.zeros(len(state), dtype=bool)
+        self._immovable = self._shared = self._slight = np.zeros(len(state), dtype=bool)
         self._linear: Linear | None = None
         none = np.zeros((0, 3))
         self._base = Base(none, none, none, none)
@@ -116,6 +118,7 @@ class Trials:
         self.start, self._linear = state, None
         self._state, self._now, self._accepted = state, accepted, accepted
         self.master.begin()
+        self._slight = self._points.covered(accepted.areas) < SLIGHT
         if self._multipliers is not None:
             self._start_from(self._multipliers.begin(state, self.master.located(state)))
         if self._layer is not None:
@@ -167,11 +170,25 @@ class Trials:
         """
         if self._multipliers is None:
             return self.master.let_go()
-        better = self._multipliers.improve(self._step(self._now))
+        step = self._step(self._now)
+        better = self._multipliers.improve(step)
+        if better is None:
+            better = self._held_as_well(step)
         if better is None:
             return False
         self._start_from(better)
         return True
+
+    def _held_as_well(self, step: ContactTrial) -> State | None:
+        """Start with multipliers of points that penalties leave too deep; None if none does."""
+        assert self._multipliers is not None
+        deep = self._slight & self._multipliers.beyond(step)
+        if not self._comm.allreduce(int(deep.any())):
+            return None
+        self._slight = self._slight & ~deep
+        start = self.start.copy()
+        start["multiplier"][deep] = step.answer.pressure[deep]
+        return start
 
     def settle(self) -> None:
         """Let points that came to lie in the trial, which is in equilibrium, carry friction."""
@@ -200,6 +217,7 @@ class Trials:
         master = self.master
         self._follow(follower, dt)
         trial = master.answer(self.start, dt, tangent=False, separate=True)
+        self._slight = self._slight & (self._points.covered(trial.snapshot.areas) < SLIGHT)
         step = self._step(trial.snapshot)
         state, self._slip = follower.stiff(step)
         stiff = master.answer(state, dt, derivative=True, separate=True)
@@ -229,7 +247,7 @@ class Trials:
 
     def _let_go_of_immovable(self) -> None:
         if self._multipliers is not None:
-            self.start["multiplier"][self._immovable] = 0.0
+            self.start["multiplier"][self._immovable | self._slight] = 0.0
 
     def take_immovable(self, points: npt.NDArray[np.bool_]) -> None:
         """Leave points to their penalty that supports hold along the normal, (n,)."""
@@ -375,7 +393,7 @@ class Trials:
             self._frames(trial.response.state),
             self._frames(self.start),
             self.master.axes(trial.response),
-            self._immovable,
+            self._immovable | self._slight,
             self._points.covered(trial.areas).clip(LEAST, 1.0),
             self._shared,
         )

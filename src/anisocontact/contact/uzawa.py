@@ -182,6 +182,10 @@ class Penalties(Uzawa):
         """What equilibrium with penalties leaves stays."""
         return None
 
+    def beyond(self, step: ContactTrial) -> npt.NDArray[np.bool_]:
+        """No point has anything else than its penalty."""
+        return np.zeros(len(step.start), dtype=bool)
+
     def soften(self, _: State) -> State | None:
         """Nothing softer stands for a contact that does not penetrate."""
         return None

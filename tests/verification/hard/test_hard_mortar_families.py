@@ -157,6 +157,21 @@ def test_blocks_that_lie_there(to_the_end, seed):
     assert run.accepted[0].iterations <= 8
 
 
+@pytest.mark.parametrize("seed", [68, 135])
+def test_nodes_of_slivers(to_the_end, seed):
+    """A corner that digs in comes over a millionth of a node whose gap, extrapolated, is -0.02.
+
+    Requirement: no cut, at most 12 iterations an increment, and the tolerance of the penetration. A
+    multiplier that closes the gap pushes the sliver away, and without it the gap is open again: 160
+    to 200 iterations and a cut.
+    """
+    text, mu = member(seed)
+    run = to_the_end(text)
+    assert not run.cuts
+    assert max(accepted.iterations for accepted in run.accepted) <= 12
+    _asked(run, mu)
+
+
 def test_springs_follow_where_contact_alone_does_not_hold(to_the_end):
     """A block of which next to all nodes slip in equilibrium: what follows has springs.
 
