@@ -266,3 +266,13 @@ def test_drawings(stiffness: Any) -> None:
     assert {"path of the centre", "path of the point S"} < shown
     forces = draw_force_plane(force_domain((0.3, 0.1), 0.8, 1.0), force=[[0.1, 0.0]], unit="MPa")
     assert forces.get_xlabel() == "T₁ [MPa]"
+
+
+def test_one_number_stands_for_both_axes():
+    """As for the laws: one number is a circle; 0, which has no domain, is one line."""
+    assert force_domain(0.3, 0.0, 2.0) == force_domain((0.3, 0.3), 0.0, 2.0)
+    assert adhesion_domain(5.0, 0.1, 0.3, 0.2, 2.0) == adhesion_domain(
+        (5.0, 5.0), 0.1, (0.3, 0.3), 0.2, 2.0
+    )
+    with pytest.raises(InputError, match=r"coefficients: .*must be > 0"):
+        force_domain(0, 0.0, 2.0)

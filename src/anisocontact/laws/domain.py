@@ -142,11 +142,11 @@ class Strip:
         return np.asarray(np.abs(d) <= self.half_width)
 
 
-def force_domain(coefficients: Pair, beta: float, pressure: float) -> Ellipse:
+def force_domain(coefficients: Pair | float, beta: float, pressure: float) -> Ellipse:
     """Forces of a sticking point, T.FT <= N^2 [Konyukhov Schweizerhof 2006, eq. (115), (119)].
 
     Args:
-        coefficients: mu_1, mu_2 > 0.
+        coefficients: mu_1, mu_2 > 0, or one number for both.
         beta: Angle of the first friction axis [rad].
         pressure: N > 0 [stress].
 
@@ -160,7 +160,7 @@ def force_domain(coefficients: Pair, beta: float, pressure: float) -> Ellipse:
         >>> force_domain((0.5, 0.25), 0.0, 8.0).semi_axes
         (4.0, 2.0)
     """
-    m1, m2 = _positive("coefficients", coefficients)
+    m1, m2 = _positive("coefficients", _pair(coefficients))
     (n,) = _positive("pressure", (pressure,))
     if m1 >= m2:
         return Ellipse((m1 * n, m2 * n), _line_angle(beta))
@@ -168,7 +168,11 @@ def force_domain(coefficients: Pair, beta: float, pressure: float) -> Ellipse:
 
 
 def adhesion_domain(
-    stiffness: Pair, alpha: float, coefficients: Pair, beta: float, pressure: float
+    stiffness: Pair | float,
+    alpha: float,
+    coefficients: Pair | float,
+    beta: float,
+    pressure: float,
 ) -> Ellipse | Strip:
     """Elastic slips of a sticking point on the tangent plane, dxi.BFB dxi <= N^2, in closed form.
 
@@ -183,9 +187,9 @@ def adhesion_domain(
     alpha + atan2(2 a_12, a_11 - a_22)/2.
 
     Args:
-        stiffness: eps_1, eps_2 >= 0, one at least > 0 [stress/length].
+        stiffness: eps_1, eps_2 >= 0, one at least > 0, or one number for both [stress/length].
         alpha: Angle of the first axis of the adhesion [rad].
-        coefficients: mu_1, mu_2 > 0.
+        coefficients: mu_1, mu_2 > 0, or one number for both.
         beta: Angle of the first axis of the friction [rad].
         pressure: N > 0 [stress].
 
@@ -200,8 +204,8 @@ def adhesion_domain(
         >>> [round(a, 9) for a in domain.semi_axes]
         [0.0015, 0.001]
     """
-    e1, e2 = _stiffness(stiffness)
-    m1, m2 = _positive("coefficients", coefficients)
+    e1, e2 = _stiffness(_pair(stiffness))
+    m1, m2 = _positive("coefficients", _pair(coefficients))
     (n,) = _positive("pressure", (pressure,))
     c, s = math.cos(beta - alpha), math.sin(beta - alpha)
     f11, f22 = (c / m1) ** 2 + (s / m2) ** 2, (s / m1) ** 2 + (c / m2) ** 2
@@ -272,6 +276,11 @@ def rotation(angle: float) -> Floats:
 def _line_angle(angle: float) -> float:
     """The angle of a line, which is that of no direction: in [-pi/2, pi/2)."""
     return (angle + 0.5 * math.pi) % math.pi - 0.5 * math.pi
+
+
+def _pair(given: Pair | float) -> Pair:
+    """One number stands for both axes."""
+    return (given, given) if isinstance(given, int | float) else given
 
 
 def _positive(name: str, values: Pair) -> tuple[float, ...]:
