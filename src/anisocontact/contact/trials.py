@@ -30,8 +30,7 @@ Floats = npt.NDArray[np.float64]
 type Mark = tuple[State, Linear | None, Base, Floats]
 
 #: Least share of its weight that a point counts with, and the one up to which it may be left to its
-#: penalty: a node of which hardly anything is covered says as little of the gap below it. Times a
-#: gap of a hundredth of a facet that share is the tolerance.
+#: penalty: times a gap of a hundredth of a facet that is the tolerance.
 LEAST, SLIGHT = 1e-6, 1e-4
 
 
@@ -172,9 +171,7 @@ class Trials:
             return self.master.let_go()
         step = self._step(self._now)
         better = self._multipliers.improve(step)
-        if better is None:
-            better = self._held_as_well(step)
-        if better is None:
+        if better is None and (better := self._held_as_well(step)) is None:
             return False
         self._start_from(better)
         return True
