@@ -193,3 +193,14 @@ def isoparametric(facets: FacetMesh, rule: FacetRule, reference: Floats) -> Face
         tangents=tangents,
         turn=None if facets.sweep is None else np.zeros((3, 3)),  # the images have it
     )
+
+
+def node_coordinates(topology: str, corners: Floats) -> Floats:
+    """Coordinates of the nodes on the reference facet, (k, 2), from those of its corners."""
+    ends = {"tri": ((1, 2), (0, 2), (0, 1)), "quad": ((0, 1), (0, 2), (1, 3), (2, 3))}[
+        topology.rstrip("0123456789")
+    ]
+    if topology in {"tri3", "quad4"}:
+        return corners
+    middles = [corners[list(pair)].mean(axis=0) for pair in ends]
+    return np.array([*corners, *middles, *[corners.mean(axis=0)] * (topology == "quad9")])

@@ -21,6 +21,7 @@ from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.poles import without_poles
 from anisocontact.contact.quadrature import chosen_degree, facet_quadrature, inward
+from anisocontact.contact.sharp_edges import Towards, towards_facets
 from anisocontact.contact.sides import check_sides, make_sides
 from anisocontact.contact.slave_edges import SlaveEdges
 from anisocontact.contact.slave_nodes import (
@@ -174,6 +175,7 @@ def _slave_nodes(
     facets: npt.NDArray[np.int32],
     current_area: bool,
     of_edges: Callable[[SlaveEdges], NodesOfFacets],
+    towards: Towards | None = None,
 ) -> SlaveNodes:
     """Slave nodes of a mortar contact.
 
@@ -187,7 +189,10 @@ def _slave_nodes(
     mesh = facet_mesh(model.space, facets, sweep)
     whole = around_own_nodes(model.space, mesh, facet_keys(model.mesh, np.sort(facets)))
     x = whole.far.everywhere(node_positions(model.space))
-    found = nodes_of_facets(whole, x, comm) if sweep is None else of_edges(SlaveEdges(mesh, x))
+    if sweep is None:
+        found = nodes_of_facets(whole, x, comm, towards)
+    else:
+        found = of_edges(SlaveEdges(mesh, x, towards))
     return SlaveNodes(found, whole, x, current_area=current_area, comm=comm)
 
 
@@ -260,7 +265,8 @@ def _on_facets(
     check_sides(model, slave, master, options.apart)
     current, nodes = options.current_area is not False, None
     if options.mortar:
-        nodes = _slave_nodes(model, model.facets(slave), current, SlaveEdges.in_space)
+        towards = None if options.self_contact else towards_facets(model, master)
+        nodes = _slave_nodes(model, model.facets(slave), current, SlaveEdges.in_space, towards)
     sides = make_sides(
         model,
         (slave, master),

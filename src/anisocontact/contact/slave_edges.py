@@ -15,6 +15,7 @@ import numpy.typing as npt
 from anisocontact.base.fenicsx import basix
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.quadrature import FacetQuadrature
+from anisocontact.contact.sharp_edges import Towards, counting
 from anisocontact.contact.slave_nodes import (
     LINES,
     ROUND,
@@ -61,10 +62,12 @@ class SlaveEdges:
     Args:
         facets: Facets that are swept out of them.
         reference: Positions of the nodes of the mesh in the reference configuration, (nodes, 3).
+        towards: As of `nodal_quadrature`.
     """
 
     facets: FacetMesh
     reference: Floats
+    towards: Towards | None = None
 
     @property
     def sweep(self) -> Sweep:
@@ -152,9 +155,12 @@ class SlaveEdges:
         t = np.einsum("pk,pki->pi", slope, self.reference[edges])
         sign = np.where(self.facets.flip[around.facets], -1.0, 1.0)[:, None]
         normal = sign * np.cross(t, ACROSS) / np.linalg.norm(t, axis=1)[:, None]
-        count = np.diff(around.offsets)
-        total = np.zeros((len(count), 3))
-        np.add.at(total, owner, normal)
+        n = len(around.nodes)
+        counts = counting(owner, normal, self.reference[around.nodes[:, 0]], self.towards)
+        count = np.bincount(owner, counts, minlength=n)
+        total = np.zeros((n, 3))
+        np.add.at(total, owner, counts[:, None] * normal)
         axis = np.cross(ACROSS, total / np.linalg.norm(total, axis=1)[:, None])[owner]
-        factor = np.einsum("pi,pi->p", t, axis) / np.einsum("pi,pi->p", t, t) / count[owner]
+        factor = np.einsum("pi,pi->p", t, axis) / np.einsum("pi,pi->p", t, t)
+        factor *= counts / count[owner]
         return np.asarray(factor[:, None] * slope)

@@ -17,11 +17,13 @@ from anisocontact.contact.facet_mesh import (
     facet_corners,
     facet_rule,
     isoparametric,
+    node_coordinates,
 )
 from anisocontact.contact.far_nodes import NONE, FarNodes, node_count
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import FacetQuadrature
+from anisocontact.contact.sharp_edges import Towards, counting
 from anisocontact.mesh.split import Route, Split
 
 Ints = npt.NDArray[np.int32]
@@ -184,7 +186,9 @@ def transformed(topology: str, shape: Floats) -> Floats:
     return out
 
 
-def nodal_quadrature(around: Patches, reference: Floats) -> FacetQuadrature:
+def nodal_quadrature(
+    around: Patches, reference: Floats, towards: Towards | None = None
+) -> FacetQuadrature:
     """Slave nodes as points of a quadrature, each with the nodes around it.
 
     The weight of a node is the integral of its dual function, that of the shape function. Tangents
@@ -194,6 +198,7 @@ def nodal_quadrature(around: Patches, reference: Floats) -> FacetQuadrature:
     Args:
         around: The facets around each node.
         reference: Positions of the nodes in the reference configuration, (nodes, 3), length.
+        towards: Normals of the master, which tell the faces beside a sharp edge apart.
     """
     mesh, (n, k) = around.mesh, around.nodes.shape
     rule = facet_rule(mesh.topology, 2 * FacetShapes(mesh.topology).order)
@@ -203,7 +208,7 @@ def nodal_quadrature(around: Patches, reference: Floats) -> FacetQuadrature:
     weights = np.bincount(owner, mass[around.facets, around.local], minlength=n)
     basis = np.zeros((n, 1, k))
     basis[:, 0, : around.support.shape[1]] = around.support
-    gradient = _plane_gradients(around, owner, reference)
+    gradient = _plane_gradients(around, owner, reference, towards)
     tangents = gradient.swapaxes(1, 2) @ reference[around.nodes]
     return FacetQuadrature(
         nodes=around.nodes,
@@ -220,28 +225,33 @@ def nodal_quadrature(around: Patches, reference: Floats) -> FacetQuadrature:
 type NodesOfFacets = tuple[Patches, FacetQuadrature, float]
 
 
-def nodes_of_facets(whole: WholeFacets, reference: Floats, comm: Any) -> NodesOfFacets:
+def nodes_of_facets(
+    whole: WholeFacets, reference: Floats, comm: Any, towards: Towards | None = None
+) -> NodesOfFacets:
     """The facets around each node, the nodes as points, and the length of a facet; collective.
 
     Args:
         whole: Facets of the slave.
         reference: Positions of the nodes in the reference configuration, (nodes, 3), length.
         comm: Communicator of the mesh.
+        towards: As of `nodal_quadrature`.
     """
     around = patches(whole.mesh, whole.far.owned if comm.size > 1 else None)
-    points = nodal_quadrature(around, reference)
+    points = nodal_quadrature(around, reference, towards)
     # every facet is around each of its nodes once
     facets = len(around.facets) / whole.mesh.nodes.shape[1]
     area, facets = comm.allreduce(np.array([points.weights.sum(), facets]))
     return around, points, float(np.sqrt(area / max(facets, 1.0)))
 
 
-def _plane_gradients(around: Patches, owner: Numbers, reference: Floats) -> Floats:
+def _plane_gradients(
+    around: Patches, owner: Numbers, reference: Floats, towards: Towards | None
+) -> Floats:
     """Mean gradients along two axes of a plane at each node, (n, k, 2)."""
     mesh, (n, k) = around.mesh, around.nodes.shape
     shapes = FacetShapes(mesh.topology)
     corners = np.asarray(basix.geometry(shapes.cell))
-    local = _node_coordinates(mesh.topology, corners)
+    local = node_coordinates(mesh.topology, corners)
     by_facet = shapes.at(local)[1][around.local]  # (pairs, facet nodes, 2)
     x = reference[mesh.nodes[around.facets]]
     t = by_facet.swapaxes(1, 2) @ x
@@ -249,6 +259,7 @@ def _plane_gradients(around: Patches, owner: Numbers, reference: Floats) -> Floa
     sign = np.where(mesh.flip[around.facets], -1.0, 1.0)[:, None]
     normal = sign * cross / np.linalg.norm(cross, axis=1)[:, None]
     share = _angles(mesh.topology, around.local, t)
+    share *= counting(owner, normal, reference[around.nodes[:, 0]], towards)
     total = np.zeros((n, 3))
     np.add.at(total, owner, share[:, None] * normal)
     axes = _axes(total)
@@ -292,15 +303,6 @@ def _axes(normal: Floats) -> Floats:
     first = np.cross(least, n)
     first /= np.linalg.norm(first, axis=1)[:, None]
     return np.stack([first, np.cross(n, first)], axis=1)
-
-
-def _node_coordinates(topology: str, corners: Floats) -> Floats:
-    """Coordinates of the nodes on the reference facet, (k, 2)."""
-    ends = {"tri": _ENDS, "quad": ((0, 1), (0, 2), (1, 3), (2, 3))}[topology.rstrip("0123456789")]
-    if topology in {"tri3", "quad4"}:
-        return corners
-    middles = [corners[list(pair)].mean(axis=0) for pair in ends]
-    return np.array([*corners, *middles, *[corners.mean(axis=0)] * (topology == "quad9")])
 
 
 def _pieces(mesh: FacetMesh) -> Ints:

@@ -1,0 +1,84 @@
+"""Which facets around a slave node make its averaged normal.
+
+Where a slave goes around a sharp edge, the mean of both faces is the normal of neither, and a node
+that one face presses on the master would be pushed aside as much. Of the facets around a node those
+count that face the master nearest to it in the reference configuration, or else the one that faces
+it most and what goes on smoothly from there. A wedge that stands on its edge has both of its faces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.points import SlavePoints
+from anisocontact.contact.quadrature import facet_quadrature, inward
+from anisocontact.mesh import Model
+
+Ints = npt.NDArray[np.int32]
+Numbers = npt.NDArray[np.int64]
+Floats = npt.NDArray[np.float64]
+Mask = npt.NDArray[np.bool_]
+
+#: Places, (n, 3), to outward unit normals of the master nearest to them, (n, 3).
+type Towards = Callable[[Floats], Floats]
+
+#: Cosine of the angle between normals up to which facets go on smoothly, or face each other.
+SMOOTH = 0.5
+#: That between a facet and the mean of those around a node, below which it has an edge: 30 degrees.
+SHARP = np.sqrt(0.75)
+
+
+def facing_facets(owner: Numbers, normals: Floats, master: Floats) -> Mask:
+    """Facets that make the averaged normals of nodes, (pairs,).
+
+    Args:
+        owner: Node of each pair of a node and a facet, (pairs,).
+        normals: Outward unit normals of the facets there, (pairs, 3).
+        master: Those of the master nearest to the nodes, (n, 3).
+    """
+    opposed = -np.einsum("pi,pi->p", normals, master[owner])
+    first = np.full(len(master), -1)
+    # the last that is written for a node is the most opposed of its facets
+    order = np.argsort(opposed, kind="stable")
+    first[owner[order]] = order
+    along = np.einsum("pi,pi->p", normals, normals[first[owner]])
+    return np.asarray((opposed > SMOOTH) | (along > SMOOTH))
+
+
+def counting(owner: Numbers, normals: Floats, x: Floats, towards: Towards | None) -> Floats:
+    """How facets count for the averaged normals of nodes, 1 or 0, (pairs,).
+
+    Args:
+        owner: Node of each pair of a node and a facet, (pairs,).
+        normals: Outward unit normals of the facets there, (pairs, 3).
+        x: The nodes in the reference configuration, (n, 3), length.
+        towards: Normals of the master; without it all facets count.
+    """
+    total = np.zeros((len(x), 3))
+    np.add.at(total, owner, normals)
+    mean = total / np.linalg.norm(total, axis=1)[:, None]
+    sharp = np.einsum("pi,pi->p", normals, mean[owner]) < SHARP
+    if towards is None or not sharp.any():
+        return np.ones(len(owner))
+    return np.where(facing_facets(owner, normals, towards(x)), 1.0, 0.0)
+
+
+def towards_facets(model: Model, group: str) -> Towards:
+    """Normals of the facets of a group; collective, and it has those of all processes."""
+    facets, comm = model.facets(group), model.mesh.comm
+    quadrature = facet_quadrature(model.space, facets, 1, model.idealisation)
+    flip = inward(model.space, facets, quadrature)
+    points: Any = SlavePoints(quadrature, flip, current_area=False, comm=comm)
+    places = np.concatenate(comm.allgather(quadrature.reference))
+    normals = np.concatenate(comm.allgather(points.outward))
+
+    def towards(x: Floats) -> Floats:
+        from scipy.spatial import cKDTree  # slow to import, and smooth slaves do without
+
+        return np.asarray(normals[cKDTree(places).query(x)[1]])
+
+    return towards
