@@ -8,7 +8,8 @@ Element Contact Benchmarks, NAFEMS 2006, benchmark 1, whose reference is Hertz,
 
 with E* and R' as there. Requirement: the peak within 1 % with facets of a twelfth of the half-width
 for both orders (the block is 32 half-widths wide and no half space), the end of the contact within
-a facet of a, and no increment of the force takes more than twelve iterations.
+a facet of a, and no increment of the force takes more than eight iterations but the first, from no
+contact, which may take twenty.
 """
 
 from __future__ import annotations
@@ -98,7 +99,9 @@ def test_cylinder_roller(order: int, tmp_path: Path, to_the_end: Callable[..., A
     _right_half(tmp_path / "roller.msh", order)
     run = to_the_end(CASE, most=30_000)
     assert not run.cuts
-    assert max(a.iterations for a in run.accepted) <= 12
+    first, *rest = [a.iterations for a in run.accepted]
+    assert first <= 20
+    assert max(rest) <= 8
     (contact,) = run.problem.contacts
     pressure = contact.last.pressure
     assert pressure.max() == pytest.approx(PEAK, rel=0.01)

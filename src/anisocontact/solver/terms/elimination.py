@@ -59,7 +59,7 @@ def eliminated(directions: Floats, held: Flags) -> Elimination:
 
     Example:
         >>> plane = eliminated(np.array([[[0.6, 0.8, 0.0]]]), np.zeros((1, 3), dtype=bool))
-        >>> plane.slave[0].tolist(), plane.follow[0, 1].round(3).tolist()
+        >>> plane.slave[0].tolist(), (plane.follow[0, 1].round(3) + 0.0).tolist()
         ([False, True, False], [-0.75, 0.0, 0.0])
     """
     count, most = directions.shape[:2]
