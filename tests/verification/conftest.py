@@ -18,7 +18,6 @@ Floats = npt.NDArray[np.float64]
 
 #: A script that runs in a process of its own, with a package that need not be there.
 collect_ignore = ["external_operator_assembled.py"]
-
 ORIGIN = np.array([0.3, -0.7, 1.1])
 AXIS = np.array([2.0, -1.0, 2.0]) / 3.0
 START = np.array([1.0, 2.0, 0.0]) / np.sqrt(5.0)

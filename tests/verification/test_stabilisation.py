@@ -377,8 +377,7 @@ def test_a_roll_of_curved_cells_comes_to_its_contact(order: int, gap: float, mos
     thrown into it, across whatever gap; what the springs have done closes the balance of energy.
     Sources: equilibrium, the contact force is the load; the balance. Tolerances: 0.2 % of the load,
     the area of a polygon of 96 sides; corrections of the first increment, of which 13, 19 and 18
-    are needed, and 52 and 54 at order 2 where the roll may fall by a facet at once; 5 % of the
-    work, beyond which a run warns, and by which it was off without the work of loads on the way.
+    are needed (52 and 54 at order 2 where the roll may fall by a facet at once); 5 % of the work.
     """
     disc = make_shape("disc", radius=50.0, cells=(96, 24), part="half", order=order)
     box = {"origin": (0.0, -50.0), "size": (50.0, 50.0), "cells": (24, 12), "order": order}

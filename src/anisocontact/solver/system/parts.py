@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import Vec
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk, small_strain
 from anisocontact.contact import Contact
 from anisocontact.contact.shared_nodes import tell_shared
@@ -88,37 +90,20 @@ def make_parts(
     for name, material in materials.items():
         model.idealisation.check_material(material, f"material.{name}")
     faces = CoupledFaces(coupled, model, materials, middle_nodes(model))
-    soft = {name: law for name, law in materials.items() if name not in faces.whole}
-    if not soft:
-        raise InputError("all bodies follow rigid ones as a whole: nothing deforms", "coupled")
-    linear = all(material.linear for material in soft.values())
-    bulk = LinearBulk(model, soft) if linear else NonlinearBulk(model, soft)
+    bulk = _bulk(model, materials, faces)
     bodies, rigid = Bodies(bulk, model.unknowns), RigidBodies(contacts, model.mesh.comm, faces)
     layout = Layout(model.unknowns, rigid.size)
     attached, supports, loads = Attachments(specs, model), Supports(model), Loads(model, materials)
     like = layout.new_vector()
     tied = TiedFaces(ties, model, like, sectors) if ties or sectors else None
-    planes = SymmetryPlanes(model, symmetry, middle_nodes(model))
-    guides = Guides(model, planes, like, middle_nodes(model), tied)
-    faces.check_planes(
-        np.unique(np.concatenate([np.zeros(0, int), *(n for n, _ in guides.held())]))
-    )
+    guides = _guides(model, symmetry, like, tied, faces)
     constraints = Constraints(like, follow_corners(model, like), tied, guides, faces)
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
     holders = {model.body_of(group) for one in specs for group in one.groups}
     links = faces.links + ([] if tied is None else tied.links)
     aid = Stabilisation(model, contacts, bodies.scale, attached, holders, stabilised, links)
-    assembly = Assembly(
-        layout,
-        bodies,
-        Contacts(contacts),
-        supports,
-        constraints,
-        rigid,
-        holders=[attached],
-        loads=[loads],
-        aids=[aid],
-    )
+    terms: dict[str, Any] = {"holders": [attached], "loads": [loads], "aids": [aid]}
+    assembly = Assembly(layout, bodies, Contacts(contacts), supports, constraints, rigid, **terms)
     return Parts(
         model=model,
         materials=dict(materials),
@@ -134,6 +119,32 @@ def make_parts(
         sides=SidesKept(contacts, all_bodies(model)),
         assembly=assembly,
     )
+
+
+def _bulk(
+    model: Model, materials: Mapping[str, Material], faces: CoupledFaces
+) -> LinearBulk | NonlinearBulk:
+    """The bodies that deform.
+
+    Raises:
+        InputError: There is none.
+    """
+    soft = {name: law for name, law in materials.items() if name not in faces.whole}
+    if not soft:
+        raise InputError("all bodies follow rigid ones as a whole: nothing deforms", "coupled")
+    linear = all(material.linear for material in soft.values())
+    return LinearBulk(model, soft) if linear else NonlinearBulk(model, soft)
+
+
+def _guides(
+    model: Model, symmetry: Sequence[str], like: Vec, tied: TiedFaces | None, faces: CoupledFaces
+) -> Guides:
+    """What holds nodes along directions of their own, which coupled faces have none of."""
+    planes = SymmetryPlanes(model, symmetry, middle_nodes(model))
+    guides = Guides(model, planes, like, middle_nodes(model), tied)
+    on = [np.zeros(0, int), *(nodes for nodes, _ in guides.held())]
+    faces.check_planes(np.unique(np.concatenate(on)))
+    return guides
 
 
 def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) -> None:
