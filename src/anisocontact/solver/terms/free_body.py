@@ -20,6 +20,8 @@ Flags = npt.NDArray[np.bool_]
 TOUCHING = 0.01
 #: Points in contact that can hold all motions of a body.
 ENOUGH = 3
+#: Resistance of pressures to the motion that they hold least, over that to the one they hold most.
+PRESSED = 0.01
 
 
 @dataclass
@@ -74,13 +76,16 @@ class FreeBody:
     def may_hold(self) -> bool:
         """Whether contact is likely to hold it without stabilisation, from where it is now.
 
-        Enough points stick, with a known stiffness; a body on springs may slide as well.
+        Enough points stick, with a known stiffness, or pressures alone hold it; a body on springs
+        may slide as well.
         """
-        return self._count("stick", "slip") >= ENOUGH if self.sprung else self.sticks()
+        if self.sprung:
+            return self._count("stick", "slip") >= ENOUGH
+        return self.sticks() or self._pressed()
 
     def holds(self) -> bool:
         """Whether contact holds it in the trial, and springs where it has some."""
-        return self._stiff() if self.sprung else self.sticks()
+        return self._stiff() if self.sprung else self.sticks() or self._pressed()
 
     @property
     def sprung(self) -> bool:
@@ -90,6 +95,18 @@ class FreeBody:
     def sticks(self) -> bool:
         """Whether enough points stick in the trial, with a known stiffness, to hold it."""
         return self._count("stick") >= ENOUGH
+
+    def _pressed(self) -> bool:
+        """Whether pressures at closed points resist all its motions, of which none is sliding."""
+        matrix = np.zeros((len(self.left), len(self.left)))
+        for contact in self.contacts:
+            closed = contact.trial.status != 0
+            normal = contact.trial.normal[closed]
+            arms = (contact.points[closed] - self.body.centre) / self.body.size
+            along = np.concatenate([normal, np.cross(arms, normal)], axis=1) @ self.left.T
+            matrix += along.T @ along
+        sizes = np.linalg.eigvalsh(self.contacts[0].space.mesh.comm.allreduce(matrix))
+        return bool(sizes[0] > PRESSED * sizes[-1])
 
     def reach(self) -> float:
         """How far stabilisation lets it move at once, length.
