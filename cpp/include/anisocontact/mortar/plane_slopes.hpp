@@ -122,7 +122,7 @@ class TurnedTangents {
   Tangents d_, dual_;
   Vec3<double> n_, m_;
   double share_;
-  std::array<double, 2> fall_;
+  Eigen::Vector2d fall_;
 };
 
 /// How the normal of a plane follows the tangents of the slave, but along held directions.
