@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -9,7 +12,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.contact.sharp_edges import counting
 
-DOWN = np.array([0.0, 0.0, 1.0])
+UP = np.array([0.0, 0.0, 1.0])
 
 
 def _normals(*degrees: float) -> np.ndarray:
@@ -31,8 +34,12 @@ def _normals(*degrees: float) -> np.ndarray:
 )
 def test_facets_that_count(degrees: tuple[float, ...], kept: list[int]) -> None:
     """Facets within 60 degrees of facing the master, or of the one that faces it most."""
-    owner = np.zeros(len(degrees), dtype=np.int64)
+    around: Any = SimpleNamespace(
+        offsets=np.array([0, len(degrees)]),
+        facets=np.arange(len(degrees)),
+        nodes=np.zeros((1, 1), dtype=np.int32),
+    )
     x = np.zeros((1, 3))
-    found = counting(owner, _normals(*degrees), x, lambda x: np.tile(DOWN, (len(x), 1)))
+    found = counting(around, _normals(*degrees), x, lambda x: np.tile(UP, (len(x), 1)))
     assert found.tolist() == kept
-    assert counting(owner, _normals(*degrees), x, None).tolist() == [1] * len(degrees)
+    assert counting(around, _normals(*degrees), x, None).tolist() == [1] * len(degrees)

@@ -114,11 +114,13 @@ def _mortar_matching() -> Made:
     return _dragged(model, [Contact(model, "mat.top", "block.bottom", law=_law(), mortar=True)])
 
 
-def _far(slave: str = "block.bottom", master: str = "mat.top", **options: bool) -> Made:
+def _far(
+    slave: str = "block.bottom", master: str = "mat.top", long: int = 2, **options: bool
+) -> Made:
     """A block that is drawn along a strip: it meets facets that were far away at the start."""
     model = build_box(
         {
-            "block": BoxSpec((-4.9, -1.05, GAP_BELOW), (2, 2, 1), (2, 3, 1)),
+            "block": BoxSpec((-4.9, -1.05, GAP_BELOW), (long, 2, 1), (long, 3, 1)),
             "mat": BoxSpec((-6, -1.5, -1), (12, 3, 1), (12, 3, 1)),
         }
     )
@@ -140,7 +142,7 @@ def _mortar_second_order() -> Made:
 
 
 def _mortar_far() -> Made:
-    return _far("mat.top", "block.bottom", mortar=True)
+    return _far("mat.top", "block.bottom", long=4, mortar=True)
 
 
 def _mortar_symmetric() -> Made:

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.contact.facet_mesh import beyond_sides
 from anisocontact.contact.sides import Sides, located
 from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, FacetProjections
 
@@ -123,14 +124,7 @@ def _met(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple
         xi = xi + step
         if np.abs(step).max(initial=0.0) <= ENOUGH:
             break
-    return ~flat & (_outside(sides, xi) <= ROUNDING), xi
-
-
-def _outside(sides: Sides, xi: Floats) -> Floats:
-    """How far coordinates are beyond the sides of a facet, (n,); negative inside."""
-    triangle = sides.master.topology.startswith("tri")
-    last = xi.sum(axis=1) if triangle else xi.max(axis=1)
-    return np.asarray(np.maximum(-xi.min(axis=1), last - 1.0))
+    return ~flat & (beyond_sides(sides.master.topology, xi) <= ROUNDING), xi
 
 
 def _ahead(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple[Floats, Mask]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact import _core
 from anisocontact.base.fenicsx import basix, facet_sides, scalar_element
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sweep import Sweep
@@ -204,3 +206,21 @@ def node_coordinates(topology: str, corners: Floats) -> Floats:
         return corners
     middles = [corners[list(pair)].mean(axis=0) for pair in ends]
     return np.array([*corners, *middles, *[corners.mean(axis=0)] * (topology == "quad9")])
+
+
+def beyond_sides(topology: str, xi: Floats) -> Floats:
+    """How far coordinates, (n, 2), are beyond the sides of a facet, (n,); negative inside."""
+    last = xi.sum(axis=1) if topology.startswith("tri") else xi.max(axis=1)
+    return np.asarray(np.maximum(-xi.min(axis=1), last - 1.0))
+
+
+def outward_normals(mesh: FacetMesh, now: Floats) -> Floats:
+    """Outward unit normals at the middles of facets, (facets, 3)."""
+    return _core.facet_normals(mesh.nodes, mesh.flip, _middle_gradient(mesh.topology), now)
+
+
+@cache
+def _middle_gradient(topology: str) -> Floats:
+    """Derivatives of the shape functions at the middle of a facet, (k, 2)."""
+    shapes = FacetShapes(topology)
+    return np.ascontiguousarray(shapes.at(shapes.middle[None])[1][0])

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cache
 from typing import Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
-from anisocontact.contact.facet_mesh import FacetMesh, FacetShapes, facet_corners
+from anisocontact.contact.facet_mesh import FacetMesh, facet_corners, outward_normals
+from anisocontact.contact.sharp_edges import SMOOTH
 from anisocontact.surfaces.facets import FacetSets, FacetSurface
 
 Ints = npt.NDArray[np.int64]
@@ -102,7 +102,9 @@ def largest_radius(slave: FacetMesh, now: Floats) -> float:
     return float(_ball(nodes, now)[1].max(initial=0.0))
 
 
-def facing(sides: Facing, slave: FacetMesh, now: Floats, radius: float) -> Pairs:
+def facing(
+    sides: Facing, slave: FacetMesh, now: Floats, radius: float, across: Mask | None = None
+) -> Pairs:
     """Pairs of facets within reach that oppose each other and may overlap along the normal.
 
     Args:
@@ -110,25 +112,32 @@ def facing(sides: Facing, slave: FacetMesh, now: Floats, radius: float) -> Pairs
         slave: Facets of the slave, to which `near` belongs.
         now: Positions of the nodes, (nodes, 3), length.
         radius: As of `largest_radius`, over all processes.
+        across: Facets of the slave that meet what faces them within 60 degrees alone, (m,), see
+            `beside_edges`.
     """
     master, near = sides.master, sides.near
     middle, radii = _ball(slave.nodes, now)
     centre, size = _ball(master.nodes, now)
+    own, other = outward_normals(slave, now), outward_normals(master, now)
     none = FacetSets(np.zeros(0, np.int64), np.zeros(0, np.int32))
     unmet = none if near is None else near.unmet
     found = sides.surface.core.facing(
         middle,
         radii,
-        _outward(slave, now),
+        own,
         centre,
         size,
-        _outward(master, now),
+        other,
         sides.reach + radius,
         unmet.offsets,
         unmet.facets,
         sides.threads,
     )
-    return Pairs(*found)
+    pairs = Pairs(*found)
+    if across is None or not across.any():
+        return pairs
+    opposed = -np.einsum("pi,pi->p", own[pairs.slave], other[pairs.master])
+    return pairs.take(~across[pairs.slave] | (opposed > SMOOTH))
 
 
 def near_facets(
@@ -174,7 +183,7 @@ def _looks(
     mesh: FacetMesh, master: FacetMesh, x: Floats, f: Ints, g: Ints32
 ) -> tuple[Floats, Floats]:
     """How far facets look at each other, behind by `BEHIND`, and how much their normals oppose."""
-    normal, other = _outward(mesh, x), _outward(master, x)
+    normal, other = outward_normals(mesh, x), outward_normals(master, x)
     (middle, radius), (centre, _) = _ball(mesh.nodes, x), _ball(master.nodes, x)
     ahead = 0.5 * np.einsum("pi,pi->p", centre[g] - middle[f], normal[f] - other[g])
     return ahead + BEHIND * radius[f], -np.einsum("pi,pi->p", normal[f], other[g])
@@ -184,15 +193,3 @@ def _ball(nodes: Ints32, x: Floats) -> tuple[Floats, Floats]:
     """Middles of facets and the distance of the farthest node, (facets, 3) and (facets,)."""
     found: tuple[Floats, Floats] = _core.facet_balls(nodes, x)
     return found
-
-
-def _outward(mesh: FacetMesh, now: Floats) -> Floats:
-    """Outward unit normals at the middles of facets, (facets, 3)."""
-    return _core.facet_normals(mesh.nodes, mesh.flip, _middle_gradient(mesh.topology), now)
-
-
-@cache
-def _middle_gradient(topology: str) -> Floats:
-    """Derivatives of the shape functions at the middle of a facet, (k, 2)."""
-    shapes = FacetShapes(topology)
-    return np.ascontiguousarray(shapes.at(shapes.middle[None])[1][0])

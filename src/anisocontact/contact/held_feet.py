@@ -13,6 +13,7 @@ from dataclasses import fields, replace
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.contact.facet_mesh import beyond_sides
 from anisocontact.contact.sides import Sides, located
 from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, FacetProjections, FacetSurface
 
@@ -111,7 +112,7 @@ def on_held_facets(
     x, facets = sides.points.positions(now)[which], on[which]
     start = np.where((hit.facet[which] == facets)[:, None], hit.xi[which], 0.5)
     xi, foot, normal = _feet(sides.surface, x, facets, start)
-    near = _outside(sides.master.topology, xi) <= BEYOND
+    near = beyond_sides(sides.master.topology, xi) <= BEYOND
     which, facets = which[near], facets[near]
     new = {one.name: getattr(hit, one.name).copy() for one in fields(hit)}
     new["facet"][which], new["xi"][which] = facets, xi[near]
@@ -140,9 +141,3 @@ def _feet(
     jet = surface.jet(facets, xi)
     cross = np.cross(jet.d1[:, 0], jet.d1[:, 1])
     return xi, jet.position, cross / np.linalg.norm(cross, axis=1)[:, None]
-
-
-def _outside(topology: str, xi: Floats) -> Floats:
-    """How far coordinates are beyond the sides of a facet, (n,); negative inside."""
-    last = xi.sum(axis=1) if topology.startswith("tri") else xi.max(axis=1)
-    return np.asarray(np.maximum(-xi.min(axis=1), last - 1.0))

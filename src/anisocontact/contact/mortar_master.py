@@ -98,7 +98,7 @@ class MortarMaster(MeshedMaster):
             more = np.concatenate([opposite.named(), self._then.named()], axis=1)
             # the same on all processes, so that a facet counts on any number of them
             radius = max(self._comm.allgather(largest_radius(sides.slave, now)))
-            pairs = facing(sides, sides.searched, now, radius)
+            pairs = facing(sides, sides.searched, now, radius, points.across)
             if self._fold is not None:
                 pairs = self._fold.oriented(pairs, self.numbers)
             area = points.current_area

@@ -4,12 +4,16 @@ Where a slave goes around a sharp edge, the mean of both faces is the normal of 
 that one face presses on the master would be pushed aside as much. Of the facets around a node those
 count that face the master nearest to it in the reference configuration, or else the one that faces
 it most and what goes on smoothly from there. A wedge that stands on its edge has both of its faces.
+
+A facet that does not count stands across what its neighbour meets: beside a block that has sunk
+into its base their projections overlap where nothing touches. It meets what faces it within 60
+degrees.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -25,6 +29,27 @@ Mask = npt.NDArray[np.bool_]
 
 #: Places, (n, 3), to outward unit normals of the master nearest to them, (n, 3).
 type Towards = Callable[[Floats], Floats]
+
+
+class Around(Protocol):
+    """The facets around slave nodes, see `Patches`."""
+
+    @property
+    def offsets(self) -> Numbers:
+        """Where the facets of each node begin, (n + 1,)."""
+
+    @property
+    def facets(self) -> Ints:
+        """Facets around the nodes, one list after the other."""
+
+    @property
+    def nodes(self) -> Ints:
+        """Each node first, then those around it, (n, k)."""
+
+    @property
+    def counts(self) -> Floats:
+        """How each facet counts."""
+
 
 #: Cosine of the angle between normals up to which facets go on smoothly, or face each other.
 SMOOTH = 0.5
@@ -49,22 +74,36 @@ def facing_facets(owner: Numbers, normals: Floats, master: Floats) -> Mask:
     return np.asarray((opposed > SMOOTH) | (along > SMOOTH))
 
 
-def counting(owner: Numbers, normals: Floats, x: Floats, towards: Towards | None) -> Floats:
+def counting(around: Around, normals: Floats, x: Floats, towards: Towards | None) -> Floats:
     """How facets count for the averaged normals of nodes, 1 or 0, (pairs,).
 
     Args:
-        owner: Node of each pair of a node and a facet, (pairs,).
-        normals: Outward unit normals of the facets there, (pairs, 3).
-        x: The nodes in the reference configuration, (n, 3), length.
+        around: The facets around each node.
+        normals: Outward unit normals of all facets, (m, 3).
+        x: Positions of the nodes in the reference configuration, (nodes, 3), length.
         towards: Normals of the master; without it all facets count.
     """
-    total = np.zeros((len(x), 3))
-    np.add.at(total, owner, normals)
+    n, own = len(around.nodes), normals[around.facets]
+    owner = np.repeat(np.arange(n), np.diff(around.offsets))
+    total = np.zeros((n, 3))
+    np.add.at(total, owner, own)
     mean = total / np.linalg.norm(total, axis=1)[:, None]
-    sharp = np.einsum("pi,pi->p", normals, mean[owner]) < SHARP
+    sharp = np.einsum("pi,pi->p", own, mean[owner]) < SHARP
     if towards is None or not sharp.any():
         return np.ones(len(owner))
-    return np.where(facing_facets(owner, normals, towards(x)), 1.0, 0.0)
+    return np.where(facing_facets(owner, own, towards(x[around.nodes[:, 0]])), 1.0, 0.0)
+
+
+def beside_edges(around: Around, keys: Numbers, comm: Any) -> Mask:
+    """Facets that do not count at one of their nodes, on whatever process, (m,); collective.
+
+    Args:
+        around: The facets around each node that this process owns.
+        keys: Numbers of all facets, (m,).
+        comm: Communicator of the mesh.
+    """
+    own = keys[np.unique(around.facets[around.counts == 0.0])]
+    return np.isin(keys, np.concatenate(comm.allgather(own)))
 
 
 def towards_facets(model: Model, group: str) -> Towards:

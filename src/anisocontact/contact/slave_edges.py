@@ -62,7 +62,7 @@ class SlaveEdges:
     Args:
         facets: Facets that are swept out of them.
         reference: Positions of the nodes of the mesh in the reference configuration, (nodes, 3).
-        towards: As of `nodal_quadrature`.
+        towards: As of `nodes_of_facets`.
     """
 
     facets: FacetMesh
@@ -94,6 +94,8 @@ class SlaveEdges:
         """The edges around each node, the nodes as points, and the mean length of an edge."""
         edges = self.nodes
         around = patches(FacetMesh(self._topology, edges, self.facets.flip))
+        counts = counting(around, self._normals, self.reference, self.towards)
+        around = replace(around, counts=counts)
         n, k = around.nodes.shape
         owner = np.repeat(np.arange(n), np.diff(around.offsets))
         place = (around.nodes[owner][:, None] == edges[around.facets][:, :, None]).argmax(axis=2)
@@ -148,15 +150,24 @@ class SlaveEdges:
         dual = shape @ self.transform
         return extent @ dual, np.einsum("mq,qa,qb->mab", extent, dual, shape)
 
+    @property
+    def _normals(self) -> Floats:
+        """Outward normals of the chords of the edges, (m, 3)."""
+        ends = self.reference[self.nodes[:, :2]]
+        return self._outward(ends[:, 1] - ends[:, 0], np.arange(len(ends), dtype=np.int32))
+
+    def _outward(self, t: Floats, edge: Ints) -> Floats:
+        """Outward normals of edges, (n,), from tangents, (n, 3)."""
+        sign = np.where(self.facets.flip[edge], -1.0, 1.0)[:, None]
+        return np.asarray(sign * np.cross(t, ACROSS) / np.linalg.norm(t, axis=1)[:, None])
+
     def _slopes(self, around: Patches, owner: npt.NDArray[np.int64]) -> Floats:
         """Shares of edges in the derivative at each node along its averaged tangent, (pairs, k)."""
         edges = self.nodes[around.facets]
         slope = line_shapes(NODES[around.local], edges.shape[1])[1]
         t = np.einsum("pk,pki->pi", slope, self.reference[edges])
-        sign = np.where(self.facets.flip[around.facets], -1.0, 1.0)[:, None]
-        normal = sign * np.cross(t, ACROSS) / np.linalg.norm(t, axis=1)[:, None]
-        n = len(around.nodes)
-        counts = counting(owner, normal, self.reference[around.nodes[:, 0]], self.towards)
+        normal = self._outward(t, around.facets)
+        n, counts = len(around.nodes), around.counts
         count = np.bincount(owner, counts, minlength=n)
         total = np.zeros((n, 3))
         np.add.at(total, owner, counts[:, None] * normal)

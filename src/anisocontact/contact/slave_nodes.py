@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, override
 
 import numpy as np
@@ -18,12 +18,13 @@ from anisocontact.contact.facet_mesh import (
     facet_rule,
     isoparametric,
     node_coordinates,
+    outward_normals,
 )
 from anisocontact.contact.far_nodes import NONE, FarNodes, node_count
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import FacetQuadrature
-from anisocontact.contact.sharp_edges import Towards, counting
+from anisocontact.contact.sharp_edges import Towards, beside_edges, counting
 from anisocontact.mesh.split import Route, Split
 
 Ints = npt.NDArray[np.int32]
@@ -70,6 +71,7 @@ class Patches:
         nodes: Nodes of the facets around each, (n, k): those of its support first, filled up with
             itself to r, then the others, and itself again to k.
         support: Values at the first nodes whose combination is the slave point, (n, r).
+        counts: Whether a facet counts for the averaged normal of a node, 1 or 0, see `counting`.
         pieces: Pieces of the facets with straight edges, as numbers of slave nodes, after which
             come those of `WholeFacets.others`, (m, corners).
         memory: Of tangents, from one evaluation to the next.
@@ -81,6 +83,7 @@ class Patches:
     local: Ints
     nodes: Ints
     support: Floats
+    counts: Floats
     pieces: Ints
     memory: _core.MortarMemory = field(default_factory=_core.MortarMemory)
 
@@ -162,6 +165,7 @@ def patches(mesh: FacetMesh, owned: int | None = None) -> Patches:
         local.astype(np.int32),
         padded.astype(np.int32).reshape(len(nodes), width),
         values,
+        np.ones(len(facets)),
         _pieces(mesh),
     )
 
@@ -186,9 +190,7 @@ def transformed(topology: str, shape: Floats) -> Floats:
     return out
 
 
-def nodal_quadrature(
-    around: Patches, reference: Floats, towards: Towards | None = None
-) -> FacetQuadrature:
+def nodal_quadrature(around: Patches, reference: Floats) -> FacetQuadrature:
     """Slave nodes as points of a quadrature, each with the nodes around it.
 
     The weight of a node is the integral of its dual function, that of the shape function. Tangents
@@ -198,7 +200,6 @@ def nodal_quadrature(
     Args:
         around: The facets around each node.
         reference: Positions of the nodes in the reference configuration, (nodes, 3), length.
-        towards: Normals of the master, which tell the faces beside a sharp edge apart.
     """
     mesh, (n, k) = around.mesh, around.nodes.shape
     rule = facet_rule(mesh.topology, 2 * FacetShapes(mesh.topology).order)
@@ -208,7 +209,7 @@ def nodal_quadrature(
     weights = np.bincount(owner, mass[around.facets, around.local], minlength=n)
     basis = np.zeros((n, 1, k))
     basis[:, 0, : around.support.shape[1]] = around.support
-    gradient = _plane_gradients(around, owner, reference, towards)
+    gradient = _plane_gradients(around, owner, reference)
     tangents = gradient.swapaxes(1, 2) @ reference[around.nodes]
     return FacetQuadrature(
         nodes=around.nodes,
@@ -234,19 +235,19 @@ def nodes_of_facets(
         whole: Facets of the slave.
         reference: Positions of the nodes in the reference configuration, (nodes, 3), length.
         comm: Communicator of the mesh.
-        towards: As of `nodal_quadrature`.
+        towards: Normals of the master, which tell the faces beside a sharp edge apart.
     """
     around = patches(whole.mesh, whole.far.owned if comm.size > 1 else None)
-    points = nodal_quadrature(around, reference, towards)
+    normals = outward_normals(whole.mesh, reference)
+    around = replace(around, counts=counting(around, normals, reference, towards))
+    points = nodal_quadrature(around, reference)
     # every facet is around each of its nodes once
     facets = len(around.facets) / whole.mesh.nodes.shape[1]
     area, facets = comm.allreduce(np.array([points.weights.sum(), facets]))
     return around, points, float(np.sqrt(area / max(facets, 1.0)))
 
 
-def _plane_gradients(
-    around: Patches, owner: Numbers, reference: Floats, towards: Towards | None
-) -> Floats:
+def _plane_gradients(around: Patches, owner: Numbers, reference: Floats) -> Floats:
     """Mean gradients along two axes of a plane at each node, (n, k, 2)."""
     mesh, (n, k) = around.mesh, around.nodes.shape
     shapes = FacetShapes(mesh.topology)
@@ -258,8 +259,7 @@ def _plane_gradients(
     cross = np.cross(t[:, 0], t[:, 1])
     sign = np.where(mesh.flip[around.facets], -1.0, 1.0)[:, None]
     normal = sign * cross / np.linalg.norm(cross, axis=1)[:, None]
-    share = _angles(mesh.topology, around.local, t)
-    share *= counting(owner, normal, reference[around.nodes[:, 0]], towards)
+    share = around.counts * _angles(mesh.topology, around.local, t)
     total = np.zeros((n, 3))
     np.add.at(total, owner, share[:, None] * normal)
     axes = _axes(total)
@@ -326,6 +326,7 @@ class SlaveNodes(SlavePoints):
         around: The facets around each node.
         far: Nodes of them that are not local.
         keys: Numbers of `facet_keys` of the facets.
+        across: Facets beside a sharp edge that meet what faces them well alone, (m,).
     """
 
     at_nodes = True
@@ -351,6 +352,7 @@ class SlaveNodes(SlavePoints):
         self.spread = float(np.linalg.norm(away, axis=2).max(initial=0.0))
         if (quadrature.rows or 1) > 1:  # nodes of edges of a tri6, see `EDGE_SHARE`
             self.beside = float(np.linalg.norm(away[:, 0], axis=1).max(initial=0.0))
+        self.across = beside_edges(self.around, whole.keys, comm)
         pieces = self.around.pieces
         self.polygons = pieces[(pieces < len(self.facet)).all(axis=1)]
 

@@ -8,8 +8,8 @@ Element Contact Benchmarks, NAFEMS 2006, benchmark 1, whose reference is Hertz,
 
 with E* and R' as there. Requirement: the peak within 1 % with facets of a twelfth of the half-width
 for both orders (the block is 32 half-widths wide and no half space), the end of the contact within
-a facet of a, no cut, and at most twenty iterations for the first increment of the force, twelve for
-each other one.
+a facet of a, the whole force on the block, no cut, and at most 8 iterations for the first increment
+of the force with order 1, 18 with order 2, and 6 for each other one (measured: 6, 16 and 5).
 """
 
 from __future__ import annotations
@@ -100,9 +100,10 @@ def test_cylinder_roller(order: int, tmp_path: Path, to_the_end: Callable[..., A
     run = to_the_end(CASE, most=30_000)
     assert not run.cuts
     first, *rest = [a.iterations for a in run.accepted]
-    assert first <= 20
-    assert max(rest) <= 12
+    assert first <= {1: 8, 2: 18}[order]
+    assert max(rest) <= 6
     (contact,) = run.problem.contacts
+    assert abs(contact.resultant()[0][1]) == pytest.approx(17500.0, rel=1e-6)
     pressure = contact.last.pressure
     assert pressure.max() == pytest.approx(PEAK, rel=0.01)
     assert contact.points[pressure > 0.0, 0].max() == pytest.approx(HALF_WIDTH, abs=FACET)

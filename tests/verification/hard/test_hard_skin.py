@@ -72,7 +72,7 @@ displacement = { "block.top" = { x = 0.2 } }
 
 @pytest.mark.parametrize("case", [SPACE, PLANE], ids=["space", "plane"])
 def test_the_skin_is_as_good_as_the_face_that_touches(case: str, to_the_end) -> None:
-    """A block sinks into its base by a fifth of a facet and slides, slave by one face or by all.
+    """A block sinks into its base and slides, slave by one face or by all.
 
     Requirement: the same forces, 1e-9, and as many iterations. Source: the sides of the block touch
     nothing; averaged normals at its edges are those of the lower face, and what stands across them,
@@ -84,4 +84,4 @@ def test_the_skin_is_as_good_as_the_face_that_touches(case: str, to_the_end) -> 
         np.testing.assert_allclose(other, one, atol=1e-9 * np.linalg.norm(one))
     assert not any(run.cuts for run in runs)
     counts = [[a.iterations for a in run.accepted] for run in runs]
-    assert sum(counts[1]) <= sum(counts[0]) + 2
+    assert counts[1] == counts[0]

@@ -19,10 +19,6 @@ struct FacetBalls {
   }
 };
 
-/// Least cosine between the normal of a facet and the reversed one of what it meets, 60 degrees: those that
-/// stand across each other overlap where nothing touches, as the side of a block that has sunk into its base.
-inline constexpr double opposed = 0.5;
-
 /// Facets of a surface, whose balls are `theirs`, that are within a distance of the middle of facet f,
 /// lie beside each other by no more than both radii, oppose it and are not left out (in ascending order).
 inline void faced(const FacetSurface& surface, const FacetBalls& own, std::size_t f,
@@ -32,7 +28,7 @@ inline void faced(const FacetSurface& surface, const FacetBalls& own, std::size_
                      normal = FacetBalls::row(own.normal, f);
   const auto wanted = [&](std::int32_t facet) {
     const auto g = static_cast<std::size_t>(facet);
-    if (!(normal.dot(FacetBalls::row(theirs.normal, g)) < -opposed)) return false;
+    if (!(normal.dot(FacetBalls::row(theirs.normal, g)) < 0.0)) return false;
     const Vec3<double> apart = FacetBalls::row(theirs.middle, g) - middle;
     const double along = apart.dot(normal), both = own.radius[f] + theirs.radius[g];
     return apart.squaredNorm() - along * along <= both * both &&
