@@ -49,6 +49,39 @@ def test_help_loads_nothing_heavy():
     assert done.stdout.splitlines()[-1] == "[]"
 
 
+#: The plate of the small block as a body of its own.
+BASE = """
+[mesh.box.base]
+origin = [-1, -1, -0.5]
+size = [3, 3, 0.5]
+cells = [5, 5, 1]
+[material.base]
+model = "linear-elastic"
+E = 1000
+nu = 0.3
+"""
+
+
+def test_a_run_imports_only_what_it_uses(unpictured, tmp_path):
+    """What a case of two bodies without pictures does without takes as long to import as it runs.
+
+    NumPy's `f2py` is in the list of imported modules, and is executed when something asks for it.
+    """
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+    case = unpictured.replace('master = "plate"', 'master = "base.top"') + BASE
+    clamped = '"base.bottom" = { x = 0, y = 0, z = 0 }, "block.top" ='
+    (tmp_path / "case.toml").write_text(case.replace('"block.top" =', clamped))
+    code = (
+        "import sys; from anisocontact.cli import main; "
+        f"end = main(['run', {str(tmp_path / 'case.toml')!r}, '-o', {str(tmp_path / 'out')!r}]); "
+        "print(end, sorted({'scipy.spatial', 'matplotlib', 'pyvista', 'gmsh', 'rich', 'pandas', "
+        "'numpy.f2py.crackfortran'} & set(sys.modules))); "
+        "import numpy; print(callable(numpy.f2py.run_main))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-2:] == ["0 []", "True"]
+
+
 @pytest.mark.parametrize("arguments", [[], ["walk"], ["run"], ["run", "a", "b"], ["info", "--jso"]])
 def test_wrong_arguments(capsys, arguments):
     assert main(arguments) == 2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import importlib
+import importlib.util
 import sys
 import warnings
 from collections.abc import Sequence
@@ -11,7 +12,7 @@ from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 
-__all__ = ["install"]
+__all__ = ["install", "when_used"]
 
 #: Modules that have moved into a package: their path of before and that of today. An import by the
 #: path of before works for one more version.
@@ -75,3 +76,19 @@ def install() -> None:
     """Put both in front of Python's own ways to find a module, once."""
     if not any(isinstance(finder, MovedModules) for finder in sys.meta_path):
         sys.meta_path[:0] = [LibrariesOfWheels(), MovedModules()]
+
+
+def when_used(name: str) -> None:
+    """Let a module be executed when something of it is first used, not when it is imported.
+
+    Args:
+        name: The module, in a package that is imported.
+    """
+    package, _, last = name.rpartition(".")
+    spec = importlib.util.find_spec(name)
+    if name in sys.modules or spec is None or spec.loader is None:
+        return
+    spec.loader = importlib.util.LazyLoader(spec.loader)
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    setattr(sys.modules[package], last, module)

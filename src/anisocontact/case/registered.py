@@ -9,7 +9,14 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
-from pydantic import GetCoreSchemaHandler, ValidationError, WithJsonSchema, create_model
+from pydantic import (
+    GetCoreSchemaHandler,
+    GetJsonSchemaHandler,
+    ValidationError,
+    WithJsonSchema,
+    create_model,
+)
+from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, InitErrorDetails, core_schema
 
 from anisocontact.base.registry import Entry, Parameter
@@ -129,13 +136,17 @@ class OneOf:
         bases: Mapping[str, type[Registered]] | None = None,
     ) -> None:
         self.keys = keys
-        self.models: dict[tuple[str, ...], type[Registered]] = {}
-        for entries in itertools.product(*(key.entries for key in keys)):
-            chosen = dict(zip(keys, entries, strict=True))
-            names = tuple(entry.name for entry in chosen.values())
-            title = what + "".join(n.title().replace("-", "") for n in names)
-            of_name = (bases or {}).get(names[0], base)
-            self.models[names] = table(title, chosen, of_name)
+        self._what, self._base, self._bases = what, base, bases or {}
+        self._models: dict[tuple[Entry, ...], type[Registered]] = {}
+
+    def _model(self, entries: tuple[Entry, ...]) -> type[Registered]:
+        """The class of the chosen entries; a case chooses few of many, which take time to make."""
+        if entries not in self._models:
+            names = [entry.name for entry in entries]
+            title = self._what + "".join(name.title().replace("-", "") for name in names)
+            base = self._bases.get(names[0], self._base)
+            self._models[entries] = table(title, dict(zip(self.keys, entries, strict=True)), base)
+        return self._models[entries]
 
     def validate(self, data: object) -> Registered:
         """The table as an object of the class its keys choose."""
@@ -143,13 +154,13 @@ class OneOf:
             return data
         if not isinstance(data, Mapping):
             raise line(f"{shown(data)} given, a table needed")
-        return self.models[tuple(self._chosen(key, data) for key in self.keys)].model_validate(data)
+        return self._model(tuple(self._chosen(key, data) for key in self.keys)).model_validate(data)
 
-    def _chosen(self, key: Key, data: Mapping[str, object]) -> str:
+    def _chosen(self, key: Key, data: Mapping[str, object]) -> Entry:
         known = [entry.name for entry in key.entries]
         name = data.get(key.name, key.default)
         if name in known:
-            return str(name)
+            return key.entries[known.index(str(name))]
         if key.name not in data:
             meant = difflib.get_close_matches(key.name, map(str, data), 1)
             instead = f', "{meant[0]}" given' if meant else ""
@@ -159,14 +170,16 @@ class OneOf:
     def __get_pydantic_core_schema__(
         self, source: object, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        """Pydantic asks: check by hand, describe as a union."""
-        tables: list[CoreSchema | tuple[CoreSchema, str]] = [
-            handler.generate_schema(model) for model in self.models.values()
-        ]
-        inner = core_schema.union_schema(tables) if tables else core_schema.any_schema()
-        return core_schema.no_info_wrap_validator_function(
-            lambda data, _: self.validate(data), inner
-        )
+        """Pydantic asks: check by hand."""
+        return core_schema.no_info_plain_validator_function(self.validate)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        """Pydantic asks: describe as a union of all tables."""
+        chosen = itertools.product(*(key.entries for key in self.keys))
+        tables: list[Any] = [self._model(entries).__pydantic_core_schema__ for entries in chosen]
+        return handler(core_schema.union_schema(tables) if tables else core_schema.any_schema())
 
 
 def _at(key: str, text: str) -> ValidationError:

@@ -15,7 +15,7 @@ from anisocontact.case import objects
 from anisocontact.case.contact_laws import laws
 from anisocontact.case.quantity import AUTO, number
 from anisocontact.case.read import CaseError, as_input, read_table, without_null
-from anisocontact.case.registered import Key, OneOf, Registered
+from anisocontact.case.registered import Key, OneOf
 from anisocontact.case.registries import Registries
 from anisocontact.case.section import Section
 from anisocontact.case.trace_load import LOADS, GroupSection
@@ -166,9 +166,7 @@ class _Loads(OneOf):
 
     def __init__(self) -> None:
         self.keys = (Key("kind", tuple(load.entry() for load in LOADS)),)
-        self.models: dict[tuple[str, ...], type[Registered]] = {
-            (load.entry().name,): load for load in LOADS
-        }
+        self._models = {(load.entry(),): load for load in LOADS}
 
 
 def _checked(kind: type[TraceCase], data: Mapping[str, Any]) -> TraceCase:

@@ -13,6 +13,7 @@ from importlib import import_module
 
 from anisocontact import __version__
 from anisocontact.base.errors import InputError, RunError, one_line
+from anisocontact.base.import_hooks import when_used
 from anisocontact.base.machine import lack
 from anisocontact.base.processes import started_together
 from anisocontact.base.signals import ended_by_signals
@@ -173,6 +174,7 @@ def _run(arguments: argparse.Namespace) -> int:
 def _ended(arguments: argparse.Namespace) -> int:
     """Run a command and say what is wrong; its exit code."""
     try:
+        when_used("numpy.f2py")  # SciPy imports all that NumPy has
         command = import_module(f"anisocontact.cli.{arguments.command}")
         code: int = command.command(arguments)
         return code

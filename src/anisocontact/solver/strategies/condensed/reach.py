@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.base.course import Course
 from anisocontact.contact import Contact
+from anisocontact.contact.far_nodes import node_count
 from anisocontact.mesh import Model
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
@@ -42,12 +43,11 @@ class Reach:
         steps: Sequence[Step],
         others: npt.NDArray[np.int32],
     ) -> None:
-        self._reference = np.asarray(model.space.tabulate_dof_coordinates())
         self._contacts, self._others = contacts, others
         self._ranges = {body: _prescribed_range(steps, body) for body in model.body_names()}
-        self._start: Floats = np.zeros_like(self._reference)
+        self._start: Floats = np.zeros((node_count(model.space), 3))
         self._factor = 1.0
-        self.nodes: Flags = np.zeros(len(self._reference), dtype=np.bool_)
+        self.nodes: Flags = np.zeros(len(self._start), dtype=np.bool_)
 
     def select(self, u: Floats) -> None:
         """Take the nodes in reach of a state of all nodes, (nodes, 3), length."""
@@ -56,7 +56,7 @@ class Reach:
         self.nodes[self._others] = True
         for contact in self._contacts:
             if contact.of_two_groups:
-                self._select_contact(contact, self._reference + u)
+                self._select_contact(contact)
             else:
                 self.nodes[contact.couplable()] = True
 
@@ -105,30 +105,24 @@ class Reach:
         planned = sum(float(np.linalg.norm(extent)) for extent in bodies)
         return float(self._factor * (planned + _SLACK * contact.slave_points.size))
 
-    def _select_contact(self, contact: Contact, x: Floats) -> None:
-        from scipy.spatial import cKDTree  # slow to import, and not needed for analytic masters
-
+    def _select_contact(self, contact: Contact) -> None:
         motion = self._motion(contact)
         master: Any = contact.master
-        facets, points = master.facets, contact.points
-        corners = x[facets]
-        low, high = corners.min(axis=1), corners.max(axis=1)
-        tree = cKDTree(0.5 * (low + high))
-        radius = 0.5 * float(np.linalg.norm(high - low, axis=1).max())
-        nearest, _ = tree.query(points)
-        near = master.located(contact.state)
-        nearest = np.where(near, np.minimum(nearest, np.abs(contact.state["gap"])), nearest)
-        able = np.flatnonzero(nearest <= master.reach + motion + radius)
+        points, surface = contact.points, master.sides.surface
+        nearest = np.linalg.norm(surface.project(points).position - points, axis=1)
+        able = np.flatnonzero(nearest <= master.reach + motion)
         self.nodes[master.local_names(contact.slave_points.nodes[able])] = True
         limit = nearest[able] + 2.0 * motion + contact.slave_points.spread
-        lists = tree.query_ball_point(points[able], limit + radius)
-        facet = np.concatenate([np.zeros(0, dtype=np.int64), *map(np.asarray, lists)]).astype(int)
-        point = np.repeat(np.arange(len(able)), [len(found) for found in lists])
-        at = points[able][point]
-        away = np.maximum(0.0, np.maximum(low[facet] - at, at - high[facet]))
-        kept = facet[np.linalg.norm(away, axis=1) <= limit[point]]
-        self.nodes[facets[kept]] = True
+        for some in _alike(limit):
+            near = surface.within(points[able[some]], float(limit[some].max()))
+            self.nodes[master.facets[near.facets]] = True
         self.nodes[master.below(contact.state)] = True
+
+
+def _alike(limit: Floats) -> list[npt.NDArray[np.int64]]:
+    """Which of some positive lengths differ by less than a quarter."""
+    level = np.floor(np.log(limit) / np.log(1.25))
+    return [np.flatnonzero(level == one) for one in np.unique(level)]
 
 
 def contact_unknowns(problem: Problem, steps: Sequence[Step]) -> int:
