@@ -65,16 +65,25 @@ def facet_mesh(space: Any, facets: Ints, sweep: Sweep | None = None) -> FacetMes
     Returns:
         Nodes and orientation.
     """
-    cells, local = facet_sides(space.mesh, np.sort(facets))
-    element = scalar_element(space)
-    closure = np.array(element.entity_closure_dofs[-2])
-    nodes = space.dofmap.list[cells[:, None], closure[local]].astype(np.int32)
-    x = node_positions(space)
+    nodes, cells = _of_cells(space, facets)
+    element, x = scalar_element(space), node_positions(space)
     middle = x[space.dofmap.list[cells]].mean(axis=1)
     topology = TOPOLOGY[element.cell_type.name, element.degree]
     if sweep is not None:
         x, nodes = sweep.positions(x), sweep.facets(nodes)
     return FacetMesh(topology, nodes, outward_flips(x, nodes, topology, middle), sweep)
+
+
+def facet_nodes(space: Any, facets: Ints) -> Ints:
+    """Local nodes of boundary facets, of edges in the plane, (m, k)."""
+    return _of_cells(space, facets)[0]
+
+
+def _of_cells(space: Any, facets: Ints) -> tuple[Ints, Ints]:
+    """Nodes of facets in increasing order, and the cells that they bound."""
+    cells, local = facet_sides(space.mesh, np.sort(facets))
+    closure = np.array(scalar_element(space).entity_closure_dofs[-2])
+    return space.dofmap.list[cells[:, None], closure[local]].astype(np.int32), cells
 
 
 def node_positions(space: Any) -> Floats:

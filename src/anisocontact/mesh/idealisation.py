@@ -112,6 +112,22 @@ class Idealisation:
         """
         return np.zeros((0, 6))
 
+    @property
+    def of_faces(self) -> tuple[str, ...]:
+        """Components of the motion of a reference point that a face can follow."""
+        return tuple(name for name in self.motions if self.lateral or name not in ("z", "ry"))
+
+    def check_reference(self, point: Floats, field: str) -> None:
+        """Refuse a reference point about which no face can turn.
+
+        Args:
+            point: The point, (3,), length.
+            field: What messages call it.
+
+        Raises:
+            InputError: It is one.
+        """
+
     def check_points(self, x: Floats) -> None:
         """Refuse nodes where no body can be.
 
@@ -299,6 +315,13 @@ class Axisymmetric(_Plane):
         """As of `Idealisation`: all but `t_y` and the turn about the axis, `u_z ~ x`."""
         t_x, _, t_z, w_x, w_y, w_z = np.eye(6)
         return np.array([t_x, w_z, w_x, t_z + centre[0] * w_y])
+
+    def check_reference(self, point: Floats, field: str) -> None:
+        """As of `Idealisation`: it is on the axis."""
+        if point[0] or point[2]:
+            given = ", ".join(f"{v:g}" for v in point)
+            text = f"the reference point ({given}) is beside the axis x = z = 0"
+            raise InputError(text, field)
 
     def check_points(self, x: Floats) -> None:
         """As of `Idealisation`."""

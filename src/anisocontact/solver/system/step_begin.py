@@ -9,7 +9,6 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.contact.far_nodes import with_ghosts
-from anisocontact.mesh.idealisation import Idealisation
 from anisocontact.solver.system.parts import Parts
 from anisocontact.solver.system.swallowed import check_swallowed, not_held
 from anisocontact.solver.terms.free_modes import HeldFrame
@@ -92,7 +91,7 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
     turned = False
     for step, supports, guides, loads in _rehearsed(parts, steps):
         parts.assembly.bodies.check(step)
-        _check_motions(parts.model.idealisation, step)
+        _check_motions(parts, step)
         # Where a turn ends is not known before it has been.
         turned = turned or bool(step.rotation)
         for share in () if turned else supports.places:
@@ -121,16 +120,25 @@ def _on_bodies(parts: Parts) -> npt.NDArray[np.int64]:
     return np.zeros(0, dtype=np.int64) if faces is None else faces.followers
 
 
-def _check_motions(idealisation: Idealisation, step: Step) -> None:
+def _check_motions(parts: Parts, step: Step) -> None:
     """Refuse rigid motions that make a plane, or a body of revolution, something else."""
-    allowed = idealisation.motions
-    said = f"{idealisation.entry.name} has no such motion; allowed: {', '.join(allowed)}"
+    idealisation = parts.model.idealisation
+    with_faces = {body.name for body, faces in parts.rigid.led.items() if faces}
+
+    def known(body: str) -> tuple[tuple[str, ...], str]:
+        allowed = idealisation.of_faces if body in with_faces else idealisation.motions
+        lateral = "" if body not in with_faces or idealisation.lateral else " without lateral"
+        name = f"{idealisation.entry.name}{lateral}"
+        return allowed, f"{name} has no such motion; allowed: {', '.join(allowed)}"
+
     for body, components in step.motion.items():
+        allowed, said = known(body)
         for name, value in components.items():
             if name not in allowed and value != 0.0:
                 field = f"step {step.name!r}.motion.{body}.{name}"
                 raise InputError(f"{value!r} given, {said}", field)
     for name, turn in step.rotation.items():
+        allowed, said = known(name)
         about = [f"r{axis}" for axis, share in zip(AXES, turn.axis, strict=True) if share]
         along = [axis for axis, share in zip(AXES, turn.move, strict=True) if share]
         if any(turn.point[i] for i, axis in enumerate(AXES) if axis not in allowed):

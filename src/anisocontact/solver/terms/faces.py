@@ -12,14 +12,15 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, Vec, fem
 from anisocontact.bulk import Material, small_strain
-from anisocontact.contact.facet_mesh import facet_mesh
+from anisocontact.contact.facet_mesh import facet_nodes
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
-from anisocontact.rigid import RigidBody
+from anisocontact.rigid import COMPONENTS, RigidBody
 from anisocontact.rigid.rotation import skew
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.handed_rows import HandedRows
 
+Flags = npt.NDArray[np.bool_]
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
@@ -66,6 +67,8 @@ class FaceOnBody:
         body: The rigid body.
         nodes: Local numbers of the nodes, (n,).
         arms: Their places in the first configuration from the reference point, (n, 3), length.
+        follows: Which of their components follow; others are held by what the mesh is taken for,
+            (n, 3).
         skin: Nodes of the facets of this rank where the group is the whole boundary of its body,
             which then follows with all of its nodes, (m, k); else None.
     """
@@ -75,14 +78,20 @@ class FaceOnBody:
         facets = model.facets(spec.group, "coupled")
         self.skin: Ints | None = None
         if model.encloses(spec.group):
-            self.skin = facet_mesh(space, facets).nodes.astype(np.int64)
+            self.skin = facet_nodes(space, facets).astype(np.int64)
             nodes = np.unique(space.dofmap.list[model.cells(model.body_of(spec.group))])
         else:
-            nodes = fem.locate_dofs_topological(space, 2, facets)
+            nodes = fem.locate_dofs_topological(space, model.idealisation.dim - 1, facets)
         owned = nodes[nodes < space.dofmap.index_map.size_local].astype(np.int64)
         self.group, self.body, self._linear = spec.group, spec.body, linear
         self.nodes: Ints = np.setdiff1d(owned, tied)
-        self.arms: Floats = space.tabulate_dof_coordinates()[self.nodes] - spec.body.reference
+        x = np.asarray(space.tabulate_dof_coordinates())[self.nodes]
+        self.arms: Floats = x - spec.body.reference
+        self.follows: Flags = np.ones((len(self.nodes), 3), dtype=np.bool_)
+        for held, axis in model.idealisation.held(x):
+            self.follows[held, axis] = False
+        #: Components of force and moment that have a meaning, (6,).
+        self._known = np.isin(COMPONENTS, model.idealisation.motions)
         self._force = np.zeros((len(self.nodes), 3))
         #: The same of all ranks: numbers in the whole mesh, and arms.
         self.everywhere = _of_all_ranks(space, self.nodes, self.arms)
@@ -107,8 +116,8 @@ class FaceOnBody:
 
     @property
     def unknowns(self) -> Ints:
-        """Local numbers of the unknowns of the nodes, (3 n,)."""
-        return (3 * self.nodes[:, None] + np.arange(3)).reshape(-1)
+        """Local numbers of the unknowns that follow."""
+        return np.asarray((3 * self.nodes[:, None] + np.arange(3))[self.follows])
 
     def displacements(self) -> Floats:
         """Where the trial of the body has the nodes, (n, 3), length."""
@@ -118,12 +127,17 @@ class FaceOnBody:
         return np.asarray(pose.translation + self._turned() - self.arms)
 
     def wrench(self, force: Floats) -> Floats:
-        """Force and moment about the reference point of forces on these nodes, (6,)."""
-        return np.concatenate([force.sum(axis=0), np.cross(self._turned(), force).sum(axis=0)])
+        """Force and moment about the reference point of forces on these nodes, (6,).
+
+        In the plane, and of a body of revolution, those that the whole has: others cancel.
+        """
+        force = np.where(self.follows, force, 0.0)
+        moment = np.cross(self._turned(), force).sum(axis=0)
+        return np.where(self._known, np.concatenate([force.sum(axis=0), moment]), 0.0)
 
     def take(self, force: Floats) -> Floats:
         """The same of what the nodes need from outside, which is kept for `stiffness`."""
-        self._force = force[self.nodes]
+        self._force = np.where(self.follows, force[self.nodes], 0.0)
         return self.wrench(self._force)
 
     def gathering(self, arms: Floats | None = None) -> Floats:
@@ -180,7 +194,8 @@ class CoupledFaces:
         faces: The faces.
 
     Raises:
-        InputError: An unknown facet group, two that share nodes, or a mesh of two dimensions.
+        InputError: An unknown facet group, two that share nodes, or a reference point beside the
+            axis of a body of revolution.
     """
 
     def __init__(
@@ -192,9 +207,7 @@ class CoupledFaces:
     ) -> None:
         self._model, self._comm = model, model.mesh.comm
         for one in specs:
-            if model.idealisation.dim < 3:
-                text = f"{model.idealisation.entry.name} has no faces on reference points"
-                raise InputError(text, f"coupled.{one.group}")
+            model.idealisation.check_reference(one.body.reference, f"coupled.{one.group}")
         self.faces = [
             FaceOnBody(one, model, small_strain(materials[model.body_of(one.group)]), tied)
             for one in specs
@@ -242,7 +255,8 @@ class CoupledFaces:
         """
         for face in self.faces:
             text = f"step {step!r}.displacement"
-            self._refuse_shared(prescribed // 3, face, "a prescribed displacement", text)
+            led = np.intersect1d(prescribed, face.unknowns)
+            self._refuse_shared(led // 3, face, "a prescribed displacement", text)
 
     def check_planes(self, on: Ints) -> None:
         """Refuse symmetry planes at nodes that follow a body: nodes on planes, local numbers."""
@@ -258,7 +272,7 @@ class CoupledFaces:
         out = np.zeros_like(u)
         for face in self.faces:
             at = face.unknowns
-            out[at] = u[at] - face.displacements().reshape(-1)
+            out[at] = u[at] - face.displacements()[face.follows]
         return out
 
     def transform(self, matrix: Mat, scale: float, like: Vec) -> None:
@@ -351,9 +365,9 @@ class CoupledFaces:
         for face in self.faces:
             at, scale = self._places[face.body.name]
             rows.append(np.repeat(first + face.unknowns, 6))
-            columns.append(np.tile(at + np.arange(6), 3 * len(face.nodes)))
-            followed.append((face.following() / scale).reshape(-1))
-            handed.append((face.gathering() / scale).reshape(-1))
+            columns.append(np.tile(at + np.arange(6), len(face.unknowns)))
+            followed.append((face.following()[face.follows] / scale).reshape(-1))
+            handed.append((face.gathering()[face.follows] / scale).reshape(-1))
         return Constraint(
             like,
             np.concatenate(rows),
