@@ -74,7 +74,12 @@ def test_run(tmp_path: Path):
     [
         ("sectors = 12", "sectors = 11", "cyclic[0]"),
         ("sectors = 12", "sectors = 1", "cyclic[0].sectors: "),
-        ("sectors = 12", "sectors = 12\naxis = [0, 1, 1]", "must be along x, y or z"),
+        (
+            "sectors = 12",
+            "sectors = 12\naxis = [0, 1, 1]",
+            "about the direction (0, 0.7071, 0.7071)",
+        ),
+        ("sectors = 12", "sectors = 12\naxis = [0, 0, 0]", "cyclic[0].axis: "),
         ("sectors = 12", "n = 12", 'did you mean "sectors"?'),
         ('master = "disc.start"', 'master = "disc.end"', "the slave itself"),
         ('master = "disc.start"', 'master = "disk.start"', 'did you mean "disc"?'),

@@ -23,7 +23,7 @@ class CyclicSection(Section):
     sectors: int = Field(ge=2, description="number of sectors of the whole")
     axis: Annotated[
         tuple[float, float, float],
-        number("vector", "1", "direction of the axis, along x, y or z"),
+        number("vector", "1", "direction of the axis"),
     ] = (0.0, 0.0, 1.0)
     point: Annotated[
         tuple[float, float, float], number("vector", "length", "a point of the axis")

@@ -142,7 +142,7 @@ def _guides(
     """What holds nodes along directions of their own, which coupled faces have none of."""
     planes = SymmetryPlanes(model, symmetry, middle_nodes(model))
     guides = Guides(model, planes, like, middle_nodes(model), tied)
-    on = [np.zeros(0, int), *(nodes for nodes, _ in guides.held())]
+    on = [np.zeros(0, int), *(nodes for nodes, _ in guides.of_planes())]
     faces.check_planes(np.unique(np.concatenate(on)))
     return guides
 

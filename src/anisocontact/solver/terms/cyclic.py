@@ -35,14 +35,13 @@ class CyclicSymmetry:
         master: Facet group "body.group" that they follow; turned about the axis by 360 degrees over
             `sectors`, to either side, it lies on the slave.
         sectors: Number of sectors of the whole, >= 2.
-        axis: Direction of the axis, along x, y or z.
+        axis: Direction of the axis, of any length.
         point: A point of the axis, length.
         tolerance: Largest gap between the faces once turned, length; a tenth of the size of the
             facets of the master if not given.
 
     Raises:
-        InputError: Fewer than two sectors, an axis that is not along x, y or z, or a negative
-            tolerance.
+        InputError: Fewer than two sectors, an axis that is no direction, or a negative tolerance.
 
     Example:
         >>> CyclicSymmetry("disc.start", "disc.end", sectors=12).sectors
@@ -59,8 +58,9 @@ class CyclicSymmetry:
     def __post_init__(self) -> None:
         if not (self.sectors == int(self.sectors) and self.sectors >= 2):
             raise InputError(f"{self.sectors!r} given, a whole number >= 2 needed", "sectors")
-        if len(self.axis) != 3 or np.count_nonzero(self.axis) != 1:
-            text = f"{tuple(self.axis)!r} given, must be along x, y or z: rotate the mesh"
+        size = float(np.linalg.norm(self.axis))
+        if len(self.axis) != 3 or not 0.0 < size < math.inf:
+            text = f"{tuple(self.axis)!r} given, a direction of three numbers needed"
             raise InputError(text, "axis")
         if len(self.point) != 3:
             raise InputError(f"{tuple(self.point)!r} given, three numbers needed", "point")
@@ -69,7 +69,8 @@ class CyclicSymmetry:
 
     def turning(self, groups: WholeGroups) -> Turning:
         """The turn that brings the master to the slave: to which side, the meshes say."""
-        axis, angle = int(np.flatnonzero(self.axis)[0]), 2.0 * math.pi / self.sectors
+        a, b, c = np.asarray(self.axis, dtype=float) / np.linalg.norm(self.axis)
+        axis, angle = (float(a), float(b), float(c)), 2.0 * math.pi / self.sectors
         x, y, z = map(float, self.point)
         count = len(groups.x)
         slave, master = (
@@ -134,22 +135,15 @@ class CutFaces:
             values: Prescribed displacements of all nodes, NaN where there is none, (n, 3), length.
             step: Name of the step, for messages.
         """
-        a, b = self.turning.across
         field = f"step {step!r}.displacement"
-        off_axis = np.setdiff1d(self.slave, self.on_axis)
-        partly = np.isnan(values[off_axis, a]) != np.isnan(values[off_axis, b])
+        off_axis = ~np.isin(self.slave, self.on_axis)
+        free = np.isnan(values[self.slave[off_axis]][:, list(self.turning.mixed)])
+        partly = free.any(axis=1) & ~free.all(axis=1)
         if partly.any():
-            text = (
-                f"of {int(partly.sum())} nodes on the slave of {self.name} only one component "
-                f"across the axis {'xyz'[self.turning.axis]} is held: hold both, none, or the one "
-                "along the axis; what is free follows the master"
-            )
-            raise InputError(text, field)
-        here = values[self.slave[self.master >= 0]]
-        there = values[self.master[self.master >= 0]]
+            raise InputError(self._partly(int(partly.sum())), field)
+        met = off_axis & (self.master >= 0)
+        here, there = values[self.slave[met]], values[self.master[met]]
         turned = np.stack([self._turned(there, i) for i in range(3)], axis=1)
-        on = np.isin(self.slave[self.master >= 0], self.on_axis)
-        here[on], turned[on] = _on_axis(here[on], self.turning.axis)
         scale = np.nanmax(np.abs(values), initial=0.0)
         differ = np.abs(np.nan_to_num(here - turned)) > SAME * scale
         off = ~np.isnan(here) & (np.isnan(turned) | differ)
@@ -161,15 +155,20 @@ class CutFaces:
             )
             raise InputError(text, field)
 
+    def _partly(self, count: int) -> str:
+        start = f"of {count} nodes on the slave of {self.name} only "
+        if len(self.turning.mixed) == 2:
+            return (
+                f"{start}one component across the axis {self.turning.name} is held: hold both, "
+                "none, or the one along the axis; what is free follows the master"
+            )
+        return (
+            f"{start}some components are held, and the axis {self.turning.name} is none of space: "
+            "hold all three or none, or take `cylindrical` with that axis"
+        )
+
     def _turned(self, values: Floats, component: int) -> Floats:
         """A component of prescribed vectors after the turn, NaN where it is not all known."""
         row = self.turning.matrix[component]
         used = np.flatnonzero(row)
         return np.asarray(values[:, used] @ row[used])
-
-
-def _on_axis(values: Floats, axis: int) -> tuple[Floats, Floats]:
-    """Prescribed displacements of nodes on the axis, and what they may be: along it anything."""
-    allowed = np.where(np.isnan(values), np.nan, 0.0)
-    allowed[:, axis] = values[:, axis]
-    return values, allowed

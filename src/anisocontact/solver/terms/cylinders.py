@@ -19,6 +19,10 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 
+#: Component of nodes that stay on the axis of a sector.
+ACROSS = "across"
+
+
 @dataclass(frozen=True)
 class Guide:
     """Nodes of a group whose displacement along directions is known.
@@ -51,6 +55,8 @@ class Guide:
                 f"{self.group!r} and another support prescribe different displacements of shared "
                 f"nodes along {self.component}, by {off:.3g}"
             )
+        if self.component == ACROSS:
+            return f"leads nodes off {self.group}, by {off:.3g}"
         return f"leads nodes out of the symmetry plane {self.group!r}, by {off:.3g}"
 
 
@@ -146,7 +152,10 @@ class Cylinders:
         if self._ties is not None:
             system = self._systems[group]
             with within(field):
-                nodes = np.setdiff1d(nodes, self._ties.repeated(nodes, system.axis, system.point))
+                repeated = self._ties.repeated(nodes, system.axis, system.point)
+            if name == "axial":  # what is on the axis follows nothing along it
+                repeated = np.setdiff1d(repeated, self._ties.axial)
+            nodes = np.setdiff1d(nodes, repeated)
         x = np.asarray(self._model.space.tabulate_dof_coordinates())[nodes]
         directions = self._systems[group].directions(x)[name]
         lost = int(self._model.mesh.comm.allreduce(int(np.isnan(directions[:, 0]).sum())))

@@ -35,18 +35,21 @@ class HeldFrame:
         nodes: Nodes this rank owns.
         point: Reference point of the body, (3,), length.
         held: Components that are held, three translations and three turns, (6,).
+        axes: Axes of these, rows, (3, 3).
     """
 
     nodes: Ints
     point: Floats
     held: npt.NDArray[np.bool_]
+    axes: Floats = field(default_factory=lambda: np.eye(3))
 
     def rows(self, body: ConnectedBody, comm: Any) -> Floats:
         """What is held of the motion of a body, one row of (t, w) each, (k, 6); collective."""
         if not comm.allreduce(len(np.intersect1d(self.nodes, body.nodes))):
             return np.zeros((0, 6))
-        shift = np.hstack([np.eye(3), np.cross((self.point - body.centre) / body.size, np.eye(3))])
-        turn = np.hstack([np.zeros((3, 3)), np.eye(3)])
+        arm = (self.point - body.centre) / body.size
+        shift = np.hstack([self.axes, np.cross(arm, self.axes)])
+        turn = np.hstack([np.zeros((3, 3)), self.axes])
         return np.asarray(np.vstack([shift, turn])[self.held])
 
 

@@ -12,7 +12,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
-from anisocontact.solver.terms.cylinders import Cylinders, Guide
+from anisocontact.solver.terms.cylinders import ACROSS, Cylinders, Guide
 from anisocontact.solver.terms.elimination import Elimination, eliminated
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.symmetry import SymmetryPlanes
@@ -98,10 +98,11 @@ class Guides:
     ) -> None:
         self._model, self._like, self._tied, self._ties = model, like, tied, ties
         self._planes = planes
+        self._still = self._of_run()
         self._cylinders = Cylinders(model, tied, ties)
         self.constraint: Constraint | None = None
         self.slaves: Ints = np.zeros(0, dtype=np.int64)
-        self._take(self._planes.guides())
+        self._take(self._still)
 
     @property
     def groups(self) -> list[str]:
@@ -126,11 +127,13 @@ class Guides:
 
     def of_planes(self) -> list[tuple[Ints, Floats]]:
         """Nodes this rank owns on each symmetry plane, and its normal, (3,)."""
-        return [(guide.nodes, guide.direction) for guide in self._planes.guides()]
+        planes = [guide for guide in self._still if guide.component != ACROSS]
+        return [(guide.nodes, guide.direction) for guide in planes]
 
     def resting(self) -> list[tuple[Ints, Floats]]:
         """Nodes that are held where they are all along the step, and the direction, (3,)."""
-        return self.of_planes() + self._cylinders.resting()
+        still = [(guide.nodes, guide.direction) for guide in self._still]
+        return still + self._cylinders.resting()
 
     def begin(self, step: Step, u: Floats, prescribed: Ints, values: Floats) -> None:
         """Take over a step.
@@ -152,7 +155,7 @@ class Guides:
     def take_over(self, step: Step, u: Floats) -> None:
         """Take over what a step leads, without constraints."""
         self._cylinders.begin(step, u)
-        self._take(self._planes.guides() + self._cylinders.guides())
+        self._take(self._still + self._cylinders.guides())
 
     def stop(self) -> None:
         """The step ends where it is: what it leads stays there."""
@@ -206,12 +209,15 @@ class Guides:
         """
         rest, rows = supporting.copy(), self._rows
         nodal = rest.reshape(-1, 3)
-        names = list(dict.fromkeys(guide.group for guide in self._guides))
+        own = [guide for guide in self._guides if guide.component != ACROSS]
+        names = list(dict.fromkeys(guide.group for guide in own))
         sums = np.zeros((len(names), 3))
         if self.constraint is not None:
             of_rows = self._of_rows(nodal)
             nodal[rows.nodes] -= of_rows.sum(axis=1)
             for i, guide in enumerate(self._guides):
+                if guide.component == ACROSS:  # not of one sector alone
+                    continue
                 sums[names.index(guide.group)] += of_rows[rows.guides == i].sum(axis=0)
         total = self._model.mesh.comm.allreduce(sums)
         return dict(zip(names, total, strict=True)), rest
@@ -237,6 +243,20 @@ class Guides:
         along = np.einsum("mri,mi->mr", self._found.share, nodal[self._rows.nodes])
         return np.asarray(along[..., None] * self._rows.directions)
 
+    def _of_run(self) -> list[Guide]:
+        """Symmetry planes, and what keeps nodes on the axes of sectors."""
+        if self._ties is None:
+            return self._planes.guides()
+        found = []
+        for plane in self._planes.guides():
+            off = self._ties.off_planes(plane.group, plane.nodes, plane.direction)
+            nodes = np.setdiff1d(plane.nodes, off)
+            found.append(_still(plane.group, plane.component, nodes, plane.direction))
+        for name, on_axis, across in self._ties.on_axes():
+            nodes = np.setdiff1d(on_axis, self._tied)
+            found += [_still(f"the axis of {name}", ACROSS, nodes, one) for one in across]
+        return found
+
     def _take(self, guides: Sequence[Guide]) -> None:
         self._guides = list(guides)
         self._rows = _Rows.of(self._guides)
@@ -260,3 +280,9 @@ class Guides:
             first + np.concatenate([masters[kept], alone]),
             np.concatenate([factors[kept], np.zeros(len(alone))]),
         )
+
+
+def _still(group: str, component: str, nodes: Ints, direction: Floats) -> Guide:
+    """Nodes that stay where they are along a direction."""
+    count = len(nodes)
+    return Guide(group, component, "displacement", nodes, direction, lambda share: np.zeros(count))

@@ -111,11 +111,44 @@ class TiedFaces:
         """Cut faces as nodes that move along and about the axis alone where nothing is strained."""
         found = []
         for cut in self._cuts.values():
-            held = np.ones(6, dtype=bool)
-            held[[cut.turning.axis, 3 + cut.turning.axis]] = False
+            held = np.array([True, True, False] * 2)
             nodes = self._own(np.union1d(*cut.sides))
-            found.append(HeldFrame(nodes, np.array(cut.turning.point), held))
+            found.append(HeldFrame(nodes, np.array(cut.turning.point), held, cut.turning.frame))
         return found
+
+    def on_axes(self) -> list[tuple[str, Ints, Floats]]:
+        """Name of each sector, nodes this rank owns on its axis, two directions across it."""
+        cuts = self._cuts.items()
+        return [(name, self._own(cut.on_axis), cut.turning.frame[:2]) for name, cut in cuts]
+
+    def off_planes(self, group: str, nodes: Ints, normal: Floats) -> Ints:
+        """Those of nodes on a symmetry plane that are not held there by themselves; collective.
+
+        Slave nodes of a sector whose axis is normal to the plane are held as the master is.
+
+        Args:
+            group: Name of the plane.
+            nodes: Nodes this rank owns.
+            normal: Normal of the plane, (3,).
+
+        Raises:
+            InputError: The plane meets a slave at an angle, so that it would be another one there.
+        """
+        found = [np.zeros(0, dtype=np.int64)]
+        for name, cut in self._cuts.items():
+            slave = np.setdiff1d(np.intersect1d(self._own(cut.sides[0]), nodes), self.axial)
+            if cut.turning.along(normal):
+                found.append(slave)
+            elif np.abs(normal).max() < ALONG and self._model.mesh.comm.allreduce(len(slave)):
+                text = f"{group!r} has nodes on the slave of {name}, whose axis is not its normal"
+                raise InputError(text, "symmetry")
+        return np.unique(np.concatenate(found))
+
+    @property
+    def axial(self) -> Ints:
+        """Nodes this rank owns on the axes of sectors."""
+        none = np.zeros(0, dtype=np.int64)
+        return np.unique(np.concatenate([none, *(nodes for _, nodes, _ in self.on_axes())]))
 
     def repeated(self, nodes: Ints, axis: Sequence[float], point: Sequence[float]) -> Ints:
         """Those of nodes whose motion in cylinder coordinates a sector gives them; collective.
@@ -316,23 +349,13 @@ class TiedFaces:
         return np.asarray(every[owner, np.arange(len(owner))])
 
     def _constraint(self, found: Sparse) -> Constraint:
-        """The constraint of what each unknown follows; what is on an axis stays on it."""
+        """The constraint of what each unknown follows."""
         nodes, owned, count = self._groups.nodes, self._groups.owned(), len(self._groups.nodes)
         entries = found.tocoo()
         row, column = entries.coords
         kept = owned[row % count]
         to, of = (3 * nodes[at[kept] % count] + at[kept] // count for at in (row, column))
-        alone = [np.zeros(0, dtype=np.int64)]
-        for cut in self._cuts.values():
-            on = nodes[cut.on_axis[owned[cut.on_axis]]]
-            alone += [3 * on + component for component in cut.turning.across]
-        still = np.unique(np.concatenate(alone))
-        return Constraint(
-            self._like,
-            np.concatenate([to, still]),
-            np.concatenate([of, still]),
-            np.concatenate([entries.data[kept], np.zeros(len(still))]),
-        )
+        return Constraint(self._like, to, of, entries.data[kept])
 
 
 def _by_nodes(found: Sparse) -> Sparse:
