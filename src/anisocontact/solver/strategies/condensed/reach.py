@@ -125,11 +125,11 @@ def _alike(limit: Floats) -> list[npt.NDArray[np.int64]]:
     return [np.flatnonzero(level == one) for one in np.unique(level)]
 
 
-def contact_unknowns(problem: Problem, steps: Sequence[Step]) -> int:
-    """Number of unknowns that the steps of a problem can bring into contact."""
+def touched_nodes(problem: Problem, steps: Sequence[Step]) -> Flags:
+    """Whether the steps of a problem can bring a node into contact, (nodes,)."""
     reach = Reach(problem.model, problem.contacts, steps, problem.attached.nodes)
     reach.select(problem.u.x.array.reshape(-1, 3))
-    return 3 * int(reach.nodes.sum())
+    return reach.nodes
 
 
 def _prescribed_range(steps: Sequence[Step], body: str) -> Floats:

@@ -5,17 +5,23 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
+import numpy.typing as npt
 
 from anisocontact.base.strategies import CONDENSED, strategy_entry
+from anisocontact.bulk.linear import LinearBulk
 from anisocontact.solver.strategies.condensed import bordered
 from anisocontact.solver.strategies.condensed.condensed import Condensed
 from anisocontact.solver.strategies.condensed.lagged_newton import LaggedNewton
 from anisocontact.solver.strategies.condensed.newton import CondensedNewton
-from anisocontact.solver.strategies.condensed.reach import contact_unknowns
-from anisocontact.solver.strategies.costs import memory_needed, too_large
+from anisocontact.solver.strategies.condensed.reach import touched_nodes
+from anisocontact.solver.strategies.costs import Condensable, condensing_bytes, too_large
+from anisocontact.solver.strategies.direct import SPACE
 from anisocontact.solver.strategies.strategy import Task
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.supports import Supports
+
+Flags = npt.NDArray[np.bool_]
 
 #: Contact unknowns beyond which their dense matrix costs more than it saves.
 MOST_CONTACT = 8000
@@ -23,6 +29,8 @@ MOST_CONTACT = 8000
 LEAST_LAGGED = 2000
 #: Gap over the facet size up to which a contact holds what it is about to hold.
 CLOSED = 0.1
+#: Entries in a row of the stiffness of bodies whose stiffness is not assembled yet.
+_ROW = 70.0
 
 
 class CondensedStrategy:
@@ -58,13 +66,14 @@ class CondensedStrategy:
             yield f"{problem.unknowns} unknowns: a factorisation costs no more than iterations"
         if problem.linear and problem.check_held(task.steps) and not _touches(problem):
             yield "contact alone will hold a body, and does not touch it yet"
-        count = contact_unknowns(problem, task.steps)
+        touched = touched_nodes(problem, task.steps)
+        count = 3 * int(touched.sum())
         if count > MOST_CONTACT:
             yield (
                 f"{count} contact unknowns, more than {MOST_CONTACT}: their dense matrix does not "
                 "pay"
             )
-        needed = memory_needed(problem.unknowns, count)
+        needed = condensing_bytes(_condensable(task, touched))
         yield from too_large(f"condensing on {count} contact unknowns", needed)
         if 2 * count > problem.unknowns:
             yield f"{count} of {problem.unknowns} unknowns are contact unknowns"
@@ -82,6 +91,23 @@ class CondensedStrategy:
             return LaggedNewton(task.problem, task.prefix, task.options, on_iteration, note, kept)
         condensed = Condensed(task.problem, task.steps, note, kept)
         return CondensedNewton(condensed, task.prefix, task.options, on_iteration)
+
+
+def _condensable(task: Task, touched: Flags) -> Condensable:
+    """The bodies of a task, with what its first step prescribes."""
+    problem, model = task.problem, task.problem.model
+    free = np.ones((len(touched), 3), dtype=np.bool_)
+    supports = Supports(model)
+    for step in task.steps[:1]:
+        supports.begin(step, np.zeros(free.size))
+    free.reshape(-1)[supports.unknowns] = False
+    parts = []
+    for name in model.body_names():
+        nodes = np.unique(model.space.dofmap.list[model.cells(name)])
+        parts.append((int(free[nodes].sum()), int(free[nodes[touched[nodes]]].sum())))
+    linear = isinstance(problem.bulk, LinearBulk)
+    stored = problem.bulk.stiffness.getInfo()["nz_used"] if linear else _ROW * problem.unknowns
+    return Condensable(parts, stored, model.idealisation.dim < SPACE, changing=not linear)
 
 
 def _touches(problem: Problem) -> bool:
