@@ -41,6 +41,7 @@ from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, ElasticSupport, Problem, Solver, Spring, Step, Turn
 from anisocontact.solver.stepping import attempts
 from anisocontact.solver.strategies.condensed import reach
+from anisocontact.solver.strategies.condensed.condensed import Condensed
 from anisocontact.surfaces import make_surface
 
 #: At slave nodes.
@@ -384,3 +385,15 @@ def test_group_that_turns_in_the_plane() -> None:
     press = {"base.bottom": {"x": 0.0, "y": 0.0}, "block.top": {"x": 0.0, "y": -0.01}}
     turn = Turn((0, 0, 1), -0.01, point=(0.7, 0.5, 0.0))
     _same(make, [Step("press", 2, press), Step("turn", 2, rotation={"block.top": turn})])
+
+
+def test_residual_asked_twice() -> None:
+    """A line search that goes nowhere asks for a state again: it has the same residual."""
+    problem = _pair(_model(n=2))
+    problem.begin(PRESS)
+    problem.set_load_factor(1.0, 1.0)
+    system = Condensed(problem, [PRESS], print).prepare()
+    own = system.new_vector()
+    first = system.evaluate(own)
+    assert first.any()
+    np.testing.assert_array_equal(system.evaluate(own), first)

@@ -113,7 +113,9 @@ class Attempts:
         self._failed: FailedPoint | None = None
         self._continuation = Continuation(problem, newton)
 
-    def solve(self, first: Vec, last: Vec, ratio: float, pace: Pace) -> Outcome:
+    def solve(
+        self, first: Vec, last: Vec, ratio: float, pace: Pace, overloaded: bool = False
+    ) -> Outcome:
         """Solve and commit, or roll back.
 
         Args:
@@ -122,6 +124,8 @@ class Attempts:
             ratio: Size of this part over that of the last one, 0 where nothing is extrapolated.
             pace: How large the part is: in a small one, that is not likely to get smaller, more is
                 tried, in a tiny one everything, whatever failed.
+            overloaded: Whether friction cannot hold the loads at the end of the part: everything is
+                tried, and what fails is final.
 
         Returns:
             Whether one converged, and what kept the others from it.
@@ -148,11 +152,11 @@ class Attempts:
             found = _graver(found, culprits)
             seen |= {culprit.kind for culprit in culprits}
             alternates = "flipping" in seen and not seen & PLAIN
-            if way is ways[-1] and not self._final and (alternates or pace.tiny):
-                ways += self._last_resorts(way, pace)
+            if way is ways[-1] and not self._final and (alternates or pace.tiny or overloaded):
+                ways += self._last_resorts(way, pace.small or overloaded)
         result = replace(result, iterations=spent, reason=_reason(result.reason, found))
         hint = self._continuation.hint()
-        return Outcome(result, tuple(found), self._final, hint, self._failed)
+        return Outcome(result, tuple(found), self._final or overloaded, hint, self._failed)
 
     def _ways(self, searching: _Way, full: _Way) -> list[_Way]:
         trusts = self._problem.stabilisation.trusts
@@ -164,11 +168,11 @@ class Attempts:
             ways.insert(2 if trusts else 1, replace(full, layered=True))
         return ways
 
-    def _last_resorts(self, failed: _Way, pace: Pace) -> list[_Way]:
+    def _last_resorts(self, failed: _Way, flows: bool) -> list[_Way]:
         """What is left to be tried where the status of points alternates, or parts are tiny."""
         if not failed.damped and not failed.flowing:
             return [replace(failed, damped=True)]
-        if pace.small and self._problem.stabilisation.enabled and not failed.flowing:
+        if flows and self._problem.stabilisation.enabled and not failed.flowing:
             relaxed = failed.multipliers == PENALTIES
             return [_Way(failed.start, flowing=True, multipliers=PENALTIES if relaxed else USUAL)]
         return []

@@ -272,7 +272,9 @@ class Solver:
             ratio = pace.part / pace.last
             first = (1.0 + ratio) * last - ratio * before
         self._turns.permitted = pace.cuttable
-        return attempts.solve(first, last, ratio, pace)
+        # where friction cannot hold the loads no smaller part leads to the end of the increment
+        overloaded = pace.cuts > 0 and too_much_load(self.problem, whole / step.increments) != ""
+        return attempts.solve(first, last, ratio, pace, overloaded)
 
     def _cut(self, step: Step, outcome: Outcome) -> None:
         """Make the next part smaller, or give up."""

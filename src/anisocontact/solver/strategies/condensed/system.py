@@ -87,7 +87,6 @@ class ContactSystem(AssembledSystem):
         self._load_norm = 0.0
         self._a, self._b, self._g = np.zeros(0), np.zeros(0), np.zeros(len(bulk.contact))
         self._evaluated: Floats | None = None
-        self._residual: Floats = np.zeros(0)
         self.raw_forces = self.forces = np.zeros(nodal.size)
 
     def _new_tangent(self) -> ContactTangent:
@@ -154,7 +153,7 @@ class ContactSystem(AssembledSystem):
         """Residual; NaN where a law has no answer or a slave point has left the reach."""
         u = np.array(x.array_r)
         if self._evaluated is not None and np.array_equal(self._evaluated, u):
-            return self._residual.copy()
+            return self.balance.residual.copy()
         self._evaluated = u
         self._respond(u)
         own = u[: len(self.bulk.contact)]
