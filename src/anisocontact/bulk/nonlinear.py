@@ -51,24 +51,13 @@ class NonlinearBulk:
         # full integration of the stiffness at rest; UFL's own estimate grows with every power of J
         full = 2 * model.order
         given: Mapping[str, Any] = {name: bare(law) for name, law in materials.items()}
-        self.heated = {
-            name: Heated(law, model)
-            for name, law in materials.items()
-            if isinstance(law, Expanding)
-        }
+        heating = {name: law for name, law in materials.items() if isinstance(law, Expanding)}
+        self.heated = {name: Heated(law, model) for name, law in heating.items()}
         dx = body_measure(model)
         self._pressures = Pressures(model, given, self._u, dx, self.heated)
         #: As of `Pressures`.
         self.pressures = self._pressures.of
-        self.histories: dict[str, BodyHistory | BodyPoints] = {}
-        for name, law in given.items():
-            if hasattr(law, "history"):
-                bound = (law, model, name, self._u, self._dt, full, self.heated.get(name))
-                self.histories[name] = (
-                    BodyPoints(*bound, self.pressures.get(name))
-                    if hasattr(law, "update")
-                    else BodyHistory(*bound)
-                )
+        self.histories = self._histories(model, given, full)
         self._points = [b for b in self.histories.values() if isinstance(b, BodyPoints)]
         laws = {**given, **self.histories}
         forms = _Forms(model, laws, self.heated, self._u, v, du, dx, full)
@@ -92,6 +81,21 @@ class NonlinearBulk:
         self.diagonal = self.stiffness.getDiagonal()
         #: The same for surfaces that give way by shear, as of `Pressures`.
         self.yielding = self._pressures.yielding(self.diagonal)
+
+    def _histories(
+        self, model: Model, given: Mapping[str, Any], degree: int
+    ) -> dict[str, BodyHistory | BodyPoints]:
+        """What bodies go through whose material has a history, as laws of points or by UFL."""
+        found: dict[str, BodyHistory | BodyPoints] = {}
+        for name, law in given.items():
+            if hasattr(law, "history"):
+                bound = (law, model, name, self._u, self._dt, degree, self.heated.get(name))
+                found[name] = (
+                    BodyPoints(*bound, self.pressures.get(name))
+                    if hasattr(law, "update")
+                    else BodyHistory(*bound)
+                )
+        return found
 
     def force(self, u: Vec) -> Vec:
         """Internal force.

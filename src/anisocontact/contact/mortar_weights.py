@@ -111,11 +111,8 @@ def mortar_weights(
         )
         return MortarWeights(found.masters, found.area, found.weight, found)
     slave, master = around.mesh, sides.master
-    f, g = pairs.slave, pairs.master
-    order = np.argsort(f * len(master.nodes) + g, kind="stable")
-    offsets = np.searchsorted(f[order], np.arange(len(slave.nodes) + 1)).astype(np.int64)
+    offsets, opposite = _by_slave(pairs, len(slave.nodes), len(master.nodes))
     there = more >= 0
-    starts = np.append(0, np.cumsum(there.sum(axis=1))).astype(np.int64)
     straight, skew = _rules(slave, master)
     core = _core.MortarWeights(
         slave_topology=slave.topology,
@@ -125,13 +122,13 @@ def mortar_weights(
         now=now,
         reference=sides.reference,
         pair_offsets=offsets,
-        pair_facets=g[order].astype(np.int32),
+        pair_facets=opposite,
         patch=around.nodes,
         around_offsets=around.offsets,
         around_facets=around.facets,
         around_local=around.local,
         support=around.support,
-        more_offsets=starts,
+        more_offsets=np.append(0, np.cumsum(there.sum(axis=1))).astype(np.int64),
         more_nodes=np.ascontiguousarray(more[there]),
         straight_points=straight[0],
         straight_weights=straight[1],
@@ -143,6 +140,13 @@ def mortar_weights(
         threads=sides.threads,
     )
     return MortarWeights(core.masters, core.area, core.weight, core)
+
+
+def _by_slave(pairs: Pairs, slaves: int, masters: int) -> tuple[npt.NDArray[np.int64], Ints]:
+    """Where the facets opposite to each of the slave begin, and these, ascending."""
+    order = np.argsort(pairs.slave * masters + pairs.master, kind="stable")
+    offsets = np.searchsorted(pairs.slave[order], np.arange(slaves + 1))
+    return offsets.astype(np.int64), pairs.master[order].astype(np.int32)
 
 
 def _rules(slave: FacetMesh, master: FacetMesh) -> list[tuple[Floats, Floats]]:

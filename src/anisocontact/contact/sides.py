@@ -277,11 +277,9 @@ def make_sides(
         nodes: Slave nodes, where the law is not evaluated at points of the facets.
     """
     slave, master = (model.facets(group) for group in groups)
-    comm = model.mesh.comm
-    sweep = Sweep.of(model)
-    gathered = MasterSurface(
-        model.space, master, sweep, NONE if nodes is None else nodes.far.numbers
-    )
+    comm, sweep = model.mesh.comm, Sweep.of(model)
+    beside = NONE if nodes is None else nodes.far.numbers
+    gathered = MasterSurface(model.space, master, sweep, beside)
     reference = gathered.start
     own = facet_mesh(model.space, slave, sweep)
     rule = facet_rule(own.topology, degree, None if sweep is None else sweep.share)
@@ -294,13 +292,11 @@ def make_sides(
     reach = reach if reach is not None else 2.0 * points.size
     _collect(gathered, own, points, reference, max(reach, apart or 0.0) + reach, NONE)
     surface = _surface(gathered, reference)
-    named = near = None
+    near = None
     if apart is not None:
         keys = facet_keys(model.mesh, np.sort(slave)) if nodes is None else nodes.keys
-        numbers = gathered.number(keys)
-        met = _searched(own, points)
+        numbers, met = gathered.number(keys), _searched(own, points)
         near = near_facets(met, numbers, surface, gathered.facets, gathered.reference, apart)
-        named = near.by(lambda sets: FacetSets(sets.offsets, gathered.globally(sets.facets)))
     return Sides(
         slave=own,
         rule=rule,
@@ -308,7 +304,7 @@ def make_sides(
         gathered=gathered,
         surface=surface,
         reach=reach,
-        apart=named,
+        apart=near and near.by(lambda s: FacetSets(s.offsets, gathered.globally(s.facets))),
         near=near,
         kinds=_kinds(gathered.facets),
         at=reference,

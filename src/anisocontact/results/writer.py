@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
@@ -18,6 +18,7 @@ from anisocontact.base.errors import InputError, printable
 from anisocontact.contact import facet_size
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.results.checkpoint import keep_checkpoint
+from anisocontact.results.dataset import DataSet
 from anisocontact.results.fields import FieldFiles
 from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
@@ -97,22 +98,13 @@ class Writer:
         self._disk = Disk(problem.model.mesh.comm)
         self.folder = Path(folder)
         self._disk.write(lambda: self._open(case, resumed is not None))
-        names = masters or [contact.name for contact in problem.contacts]
         self._observer = Observer(problem, self._steps, resultants)
-        self._constants = _constants(problem, names)
+        self._constants = _constants(problem, masters or [c.name for c in problem.contacts])
         self._history = History(self.folder / "history.csv")
         comm = problem.model.mesh.comm
-        self._bodies = bodies = Bodies(problem, quantities)
-        self._probes = {
-            name: ProbeTable(self.folder / "probes" / f"{name}.csv", probe, bodies, name)
-            for name, probe in probes.items()
-        }
-        surfaces = Surfaces(problem.contacts, comm, quantities)
-        now = {
-            "fields": bodies.grid,
-            "contact": lambda: slave_points(problem.contacts, quantities),
-            "surfaces": surfaces.mesh,
-        }
+        self._bodies = Bodies(problem, quantities)
+        self._probes = self._probe_tables(probes)
+        now = self._now(quantities)
         self._fields = FieldFiles(
             self.folder, self._disk, comm, self._steps, now, every=every, only=only, times=times
         )
@@ -134,6 +126,23 @@ class Writer:
             write_text(self.folder / "run.log", f"anisocontact {__version__}\n")
         if case:
             write_text(self.folder / "case.toml", case)
+
+    def _probe_tables(self, probes: Mapping[str, Probe]) -> dict[str, ProbeTable]:
+        folder = self.folder / "probes"
+        return {
+            name: ProbeTable(folder / f"{name}.csv", probe, self._bodies, name)
+            for name, probe in probes.items()
+        }
+
+    def _now(self, quantities: Sequence[str]) -> dict[str, Callable[[], DataSet | None]]:
+        """What the files for ParaView have of the state of now, by sort of fields."""
+        contacts = self._problem.contacts
+        surfaces = Surfaces(contacts, self._problem.model.mesh.comm, quantities)
+        return {
+            "fields": self._bodies.grid,
+            "contact": lambda: slave_points(contacts, quantities),
+            "surfaces": surfaces.mesh,
+        }
 
     def _begin(self) -> None:
         """Write the state before the first increment, and what is to be said of it."""

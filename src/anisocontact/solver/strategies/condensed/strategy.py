@@ -8,7 +8,6 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.strategies import CONDENSED, strategy_entry
-from anisocontact.bulk.linear import LinearBulk
 from anisocontact.solver.strategies.condensed import bordered
 from anisocontact.solver.strategies.condensed.condensed import Condensed
 from anisocontact.solver.strategies.condensed.lagged_newton import LaggedNewton
@@ -29,8 +28,6 @@ MOST_CONTACT = 8000
 LEAST_LAGGED = 2000
 #: Gap over the facet size up to which a contact holds what it is about to hold.
 CLOSED = 0.1
-#: Entries in a row of the stiffness of bodies whose stiffness is not assembled yet.
-_ROW = 70.0
 
 
 class CondensedStrategy:
@@ -105,9 +102,9 @@ def _condensable(task: Task, touched: Flags) -> Condensable:
     for name in model.body_names():
         nodes = np.unique(model.space.dofmap.list[model.cells(name)])
         parts.append((int(free[nodes].sum()), int(free[nodes[touched[nodes]]].sum())))
-    linear = isinstance(problem.bulk, LinearBulk)
-    stored = problem.bulk.stiffness.getInfo()["nz_used"] if linear else _ROW * problem.unknowns
-    return Condensable(parts, stored, model.idealisation.dim < SPACE, changing=not linear)
+    stored = problem.bulk.stiffness.getInfo()["nz_used"]
+    flat = model.idealisation.dim < SPACE
+    return Condensable(parts, stored, flat, changing=not problem.linear)
 
 
 def _touches(problem: Problem) -> bool:
