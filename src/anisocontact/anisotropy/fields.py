@@ -176,6 +176,16 @@ def from_reparametrisation(
 
     Raises:
         InputError: As `from_callable`, or the map is singular at a node.
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> skew = np.array([[1.0, -1.0], [0.0, 1.0]])  # alpha^1 = xi^1 - xi^2, alpha^2 = xi^2
+        >>> lines = from_reparametrisation(
+        ...     plane, lambda xi: np.tile(skew, (len(xi), 1, 1)), lower=(-1, -1), upper=(1, 1)
+        ... )
+        >>> lines.axes(plane, [[0.2, 0.3]])[0][0, 1].round(6).tolist()  # along xi^1 = xi^2
+        [0.707107, 0.707107, 0.0]
     """
     grid = _Grid(surface, counts, lower, upper)
     j = np.asarray(jacobian(grid.xi), dtype=np.float64)

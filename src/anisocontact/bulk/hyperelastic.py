@@ -25,6 +25,13 @@ def deformation_gradient(u: Any) -> Any:
 
     Returns:
         F, (3, 3), UFL.
+
+    Example:
+        >>> from anisocontact.base.fenicsx import fem
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+        >>> deformation_gradient(fem.Function(model.space)).ufl_shape
+        (3, 3)
     """
     return ufl.Identity(3) + ufl.grad(u)
 
@@ -40,6 +47,13 @@ def cauchy_stress(material: Any, u: Any, pressure: Any = None) -> Any:
 
     Returns:
         Stress tensor, (3, 3), stress.
+
+    Example:
+        >>> from anisocontact.base.fenicsx import fem
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+        >>> cauchy_stress(NeoHookean(E=3.0, nu=0.25), fem.Function(model.space)).ufl_shape
+        (3, 3)
     """
     stress = material.stress(u) if material.linear else material.piola(u)
     if pressure is not None:
@@ -84,6 +98,10 @@ class StVenantKirchhoff(Isotropic, Hyperelastic):
 
     Raises:
         InputError: A value is out of range.
+
+    Example:
+        >>> StVenantKirchhoff(E=200.0, nu=0.25).shear
+        80.0
     """
 
     entry = Entry(
@@ -111,6 +129,11 @@ class NeoHookean(Isotropic, Hyperelastic):
 
     Raises:
         InputError: A value is out of range.
+
+    Example:
+        >>> rubber = NeoHookean(E=3.0, nu=0.25)
+        >>> rubber.shear, rubber.lame
+        (1.2, 1.2)
     """
 
     entry = Entry("neo-hookean", "material", "compressible neo-Hookean rubber", _MODULI)
@@ -132,6 +155,10 @@ class NeoHookeanIncompressible(Isotropic, Hyperelastic):
 
     Raises:
         InputError: A value is out of range.
+
+    Example:
+        >>> round(NeoHookeanIncompressible(E=3.0, nu=0.5).shear, 5)
+        1.0
     """
 
     entry = Entry(
@@ -178,6 +205,11 @@ class UserStress:
     Args:
         piola: Takes the UFL deformation gradient, returns the first Piola-Kirchhoff stress.
         young: Young's modulus at rest, the scale of the default penalty, stress.
+
+    Example:
+        >>> spring = UserStress(lambda F: 2.0 * (F - ufl.Identity(3)), young=2.0)
+        >>> spring.linear
+        False
     """
 
     linear = False

@@ -189,6 +189,13 @@ class TransverselyIsotropic(_Directed):
 
     Raises:
         InputError: A value is out of range, or no such material can be stable.
+
+    Example:
+        >>> fibres = TransverselyIsotropic(
+        ...     E_along=10.0, E_across=1.0, nu_along=0.3, nu_across=0.3, G_along=0.5
+        ... )
+        >>> fibres.young
+        10.0
     """
 
     entry = Entry(

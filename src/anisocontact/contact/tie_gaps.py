@@ -42,6 +42,15 @@ def close_gaps(
 
     Raises:
         InputError: A cell would be squeezed flat.
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> lower = BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))
+        >>> upper = BoxSpec((0, 0, 1.01), (1, 1, 1), (3, 3, 3))
+        >>> model = build_box({"lower": lower, "upper": upper})
+        >>> moved, most = close_gaps(model, "upper.bottom", "lower.top")
+        >>> moved, round(most, 12)
+        (16, 0.01)
     """
     reach = TOLERANCE * facet_size(model, master) if tolerance is None else tolerance
     groups = WholeGroups(model, {slave, master})

@@ -42,6 +42,11 @@ class LawState:
         traction: Elastic force, (n, 2) [stress].
         elastic: Elastic slip, (n, 2) [length].
         internal: The law's own variables, (n, k).
+
+    Example:
+        >>> start = LawState(np.zeros((3, 2)), np.zeros((3, 2)), np.zeros((3, 1)))
+        >>> start.internal.shape  # one variable of the law at three points
+        (3, 1)
     """
 
     traction: Floats
@@ -59,6 +64,11 @@ class LawKinematics:
         gap: xi^3 at the end of the step, (n,) [length].
         xi: Coordinates of the projection, (n, 2); on a meshed master those of a facet.
         dt: Time step [time].
+
+    Example:
+        >>> still, pressed = np.zeros((1, 2)), np.ones(1)
+        >>> LawKinematics(still, pressed, -0.01 * pressed, still, dt=0.1).gap.tolist()
+        [-0.01]
     """
 
     increment: Floats

@@ -78,6 +78,18 @@ class Response:
         failure: Why a point could not be updated, a code of `FAILURE`, (n,).
         tangent_slave: Change of t with the two tangents of the slave, (n, 2, 3, 3) [stress/length];
             empty where no surface of the slave was given.
+
+    Example:
+        >>> from anisocontact.interface import Interface
+        >>> from anisocontact.laws import Adhesion, Friction, NormalLaw
+        >>> from anisocontact.surfaces import make_surface
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> stick, slip = Adhesion(stiffness=(10, 10)), Friction(coefficients=(1, 1))
+        >>> interface = Interface(plane, NormalLaw(penalty=1e3), stick, slip)
+        >>> start = interface.initial_state([[0.0, 0.0, 0.0]])
+        >>> response = interface.update(start, [[0.1, 0.0, -0.01]])
+        >>> response.traction.round(9).tolist()  # T = -stiffness times slip: it sticks
+        [[-1.0, 0.0, 10.0]]
     """
 
     traction: Floats

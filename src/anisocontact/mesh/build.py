@@ -41,6 +41,12 @@ class Body:
         name: Name of the body.
         shape: Its shape.
         placement: Where it stands.
+
+    Example:
+        >>> from anisocontact.mesh import make_shape
+        >>> pin = Body("pin", make_shape("cylinder", radius=1.0, length=2.0, cells=(8, 1, 2)))
+        >>> build_mesh([pin]).body_names()
+        ['pin']
     """
 
     name: str
@@ -75,6 +81,11 @@ class MeshFile:
         placement: Where they stand.
         field: Where the path was written, for messages.
         cell_size: Of CAD, the size of the cells, length.
+
+    Example:
+        >>> press = MeshFile("press.inp", rename={"PART-1": "punch"})  # read by `build_mesh`
+        >>> press.rename["PART-1"]
+        'punch'
     """
 
     path: str | Path

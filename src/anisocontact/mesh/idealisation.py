@@ -237,6 +237,10 @@ class PlaneStress(_Sheet):
 
     Args:
         thickness: Thickness of the sheet, > 0, length.
+
+    Example:
+        >>> PlaneStress(thickness=2.0).lateral
+        False
     """
 
     entry: ClassVar[Entry] = Entry(

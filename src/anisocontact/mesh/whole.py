@@ -50,6 +50,12 @@ class WholeMesh:
         surfaces: Name -> corners of facets, an array for each number of corners.
         left_out: Elements that are no solids -> how many there are.
         notes: What was made of the mesh, a line each.
+
+    Example:
+        >>> mesh = WholeMesh(np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]))
+        >>> mesh.add_cells("tetrahedron", np.array([[0, 1, 2, 3]]), ["body"])
+        >>> mesh.bodies
+        [['body']]
     """
 
     points: Floats

@@ -88,6 +88,18 @@ class History:
         areas: Area of each point, (n,).
         turn: Largest angle by which normal or axes of adhesion turned at a point in contact along
             one step, radian.
+
+    Example:
+        >>> from anisocontact.interface import Interface
+        >>> from anisocontact.laws import Adhesion, Friction, NormalLaw
+        >>> from anisocontact.point import PrescribedPath, drive
+        >>> from anisocontact.surfaces import make_surface
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> stick, slip = Adhesion(stiffness=(10, 10)), Friction(coefficients=(1, 1))
+        >>> interface = Interface(plane, NormalLaw(penalty=1e3), stick, slip)
+        >>> history = drive(interface, PrescribedPath([(0, 0, -0.01), (0.1, 0, -0.01)]))
+        >>> history.traction_t[-1, 0].round(9).tolist()
+        [-1.0, 0.0, 0.0]
     """
 
     def __init__(

@@ -30,6 +30,10 @@ class Pose:
             turned about one axis only it is the rotation vector.
         rotation: Orientation, (3, 3).
         spin: Small rotation in space per change of the turn, (3, 3).
+
+    Example:
+        >>> at_rest().values.tolist()
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     """
 
     translation: Floats

@@ -22,6 +22,12 @@ class MovingSurface:
     Args:
         surface: The surface where it was drawn, or one with its laws.
         body: The body; the surface rests if there is none.
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> die = make_surface("plane", point=(0, 0, 1), normal=(0, 0, -1))
+        >>> MovingSurface(die, RigidBody("die", (0, 0, 1))).body.name
+        'die'
     """
 
     surface: Surface | Interface

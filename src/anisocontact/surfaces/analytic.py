@@ -60,6 +60,12 @@ class Projection:
             are NaN.
         dxi_dx: d xi^i/dx, (n, 2, 3); empty where derivatives were not asked for.
         dgap_dx: d xi^3/dx, (n, 3).
+
+    Example:
+        >>> floor = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> found = floor.project([[0.3, 0.1, -0.2]])
+        >>> found.gap.tolist(), PROJECTION_STATUS[found.status[0]]
+        ([-0.2], 'interior')
     """
 
     xi: Floats

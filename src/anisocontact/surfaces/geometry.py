@@ -55,6 +55,13 @@ class Geometry(PointGeometry):
     Args:
         core: The surface of the core.
         xi: Coordinates of the points, (n, 2).
+
+    Example:
+        >>> from anisocontact.surfaces import make_surface
+        >>> ball = make_surface("sphere", centre=(0, 0, 0), radius=2.0)
+        >>> at = ball.geometry([[0.0, 0.0]])
+        >>> at.normal.tolist(), at.h_mixed[0].diagonal().tolist()  # curvatures -1/R
+        ([[1.0, 0.0, 0.0]], [-0.5, -0.5])
     """
 
     core: _core.Surface = field(repr=False)

@@ -70,6 +70,23 @@ class ContactProblem(AssembledSystem):
         InputError: A contact lives on another space than `u`, or its rigid body is free.
 
     See `examples/dolfinx_script/rubber_pad.py` for a whole script.
+
+    Example:
+        >>> from anisocontact import Adhesion, Friction, Interface, NormalLaw, make_surface
+        >>> from anisocontact.base.fenicsx import fem, ufl
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+        >>> u, v = fem.Function(model.space), ufl.TestFunction(model.space)
+        >>> hooke = ufl.inner(ufl.sym(ufl.grad(u)), ufl.grad(v)) * ufl.dx  # E = 1, nu = 0
+        >>> down = fem.Constant(model.mesh, (0.0, 0.0, -0.01))
+        >>> top = fem.dirichletbc(down, model.nodes("bar.top"), model.space)
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> stick, slip = Adhesion(stiffness=(1, 1)), Friction(coefficients=(1, 1))
+        >>> floor = Interface(plane, NormalLaw(penalty=99.0), stick, slip)
+        >>> contact = Contact(model, "bar.bottom", floor)
+        >>> _ = ContactProblem(hooke, u, bcs=[top], contacts=[contact]).solve()
+        >>> round(float(contact.resultant()[0][2]), 9)  # two springs in series: 0.01 / (1 + 1/99)
+        0.0099
     """
 
     def __init__(
