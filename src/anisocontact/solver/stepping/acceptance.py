@@ -55,6 +55,12 @@ def contact_lets_go(problem: Problem, x: Vec) -> Refusal | None:
     return Refusal(reason) if reason else None
 
 
+def rigid_body_whirls(problem: Problem, _: Vec) -> Refusal | None:
+    """Refuse states in which a free rigid body turns by half a turn or more."""
+    reason = problem.rigid.whirling()
+    return Refusal(reason) if reason else None
+
+
 def held_points_stray(problem: Problem, _: Vec) -> Refusal | None:
     """Refuse states in which points are held on a facet that is not the one below them."""
     found = strayed(problem, STRAYED)
@@ -85,6 +91,7 @@ def behind_a_master(problem: Problem, x: Vec) -> Refusal | None:
 #: All checks, in the order in which they are asked.
 CHECKS: tuple[Check, ...] = (
     cells_inside_out,
+    rigid_body_whirls,
     held_points_stray,
     behind_a_master,
     contact_lets_go,

@@ -38,6 +38,7 @@ class Outcome:
         hint: What may be behind the failure, and what to do about it.
         failed: A point at which the laws failed, on the first rank that has one.
         relaxed: Whether penalties hold where no multipliers were found.
+        softer: Whether smaller penalties in the projections led to the multipliers.
     """
 
     result: NewtonResult
@@ -46,6 +47,7 @@ class Outcome:
     hint: str = ""
     failed: FailedPoint | None = None
     relaxed: bool = False
+    softer: bool = False
 
     @property
     def iterations(self) -> int:
@@ -137,7 +139,7 @@ class Attempts:
         relaxed = [replace(way, multipliers=PENALTIES) for way in (searching, full)]
         if not (pace.may_relax and PENALTIES in self._problem.contact_term.ways):
             relaxed = []
-        ways = self._ways(searching, full)
+        ways = self._ways(searching, full, pace.softer)
         if relaxed:
             ways = [*(ways[:1] if pace.relaxed else ways), *relaxed]
         for way in ways:
@@ -145,7 +147,8 @@ class Attempts:
             spent += result.iterations
             if not result.reason:
                 result = replace(result, iterations=spent)
-                return Outcome(result, relaxed=way.multipliers == PENALTIES)
+                by = way.multipliers
+                return Outcome(result, relaxed=by == PENALTIES, softer=by == SOFTER)
             # nothing but a smaller part can help
             if self._turns.objects or (self.events is not None and self.events.objects):
                 return Outcome(replace(result, iterations=spent))
@@ -158,10 +161,11 @@ class Attempts:
         hint = self._continuation.hint()
         return Outcome(result, tuple(found), self._final or overloaded, hint, self._failed)
 
-    def _ways(self, searching: _Way, full: _Way) -> list[_Way]:
+    def _ways(self, searching: _Way, full: _Way, softer: bool) -> list[_Way]:
         trusts = self._problem.stabilisation.trusts
         if self._problem.contact_term.follows:
-            ways = _following(searching, full, IN_CYCLES in self._problem.contact_term.ways, trusts)
+            cycles = IN_CYCLES in self._problem.contact_term.ways
+            ways = _following(searching, full, cycles, trusts, softer)
         else:
             ways = [searching, searching, full] if trusts else [searching, full]
         if self._continuation.stiff():
@@ -226,26 +230,30 @@ class Attempts:
         return self._share
 
 
-def _following(first: _Way, last: _Way, cycles: bool, trusts: bool) -> list[_Way]:
+def _following(first: _Way, last: _Way, cycles: bool, trusts: bool, softer: bool) -> list[_Way]:
     """Ways where multipliers follow every correction, each from the accepted history.
 
-    Corrections as long as the balance of forces allows, see `Backtracking`, then cycles that begin
-    with penalties, where there are any, then shares of corrections with smaller penalties.
+    Corrections as long as the balance of forces allows, see `Backtracking`, the same with smaller
+    penalties, then cycles that begin with penalties, where there are any, then shares of
+    corrections with smaller penalties.
 
     Args:
         first: From the extrapolated state.
         last: From the accepted state.
         cycles: Whether multipliers can be found in cycles instead.
+        softer: Whether smaller penalties come first: they led to the last accepted part.
         trusts: Whether the first attempt has no springs where contact may hold free bodies.
     """
     usual = replace(first, spare=cycles)
+    smaller = replace(usual, multipliers=SOFTER)
     again = replace(first, multipliers=IN_CYCLES) if cycles else first
     ways = [again] if trusts or cycles else []
     if trusts and cycles:
         ways.append(again)
     if first.start is not last.start:
         ways.append(replace(last, multipliers=again.multipliers))
-    return [usual, *ways, replace(last, multipliers=SOFTER, damped=True)]
+    begun = [smaller, usual] if softer else [usual, smaller]
+    return [*begun, *ways, replace(last, multipliers=SOFTER, damped=True)]
 
 
 def _graver(before: list[Culprit], now: list[Culprit]) -> list[Culprit]:

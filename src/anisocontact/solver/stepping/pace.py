@@ -34,6 +34,7 @@ class Pace:
         streak: Parts in a row that converged.
         cuts: Number of cuts within this increment.
         relaxed: Whether penalties held in the last part, as no multipliers were found.
+        softer: Whether smaller penalties led to the multipliers of the last part.
         goal: Share of the increment at which the next part ends, if it is that large; 0 for none.
 
     Example:
@@ -54,6 +55,7 @@ class Pace:
     streak: int = 0
     cuts: int = 0
     relaxed: bool = False
+    softer: bool = False
     goal: float = 0.0
 
     @property
@@ -94,15 +96,16 @@ class Pace:
         """Make the next parts no larger than a size, as far as the limits allow."""
         self.size = min(self.size, max(size, self.limits.smallest))
 
-    def advance(self, iterations: int, relaxed: bool = False) -> None:
+    def advance(self, iterations: int, relaxed: bool = False, softer: bool = False) -> None:
         """Go on behind a part that has converged.
 
         Args:
             iterations: Newton iterations that it took.
             relaxed: Whether penalties held in it.
+            softer: Whether smaller penalties led to its multipliers.
         """
         end, self.last = self.end, self.part
-        self.relaxed = relaxed
+        self.relaxed, self.softer = relaxed, softer
         self.done, self.goal = end, 0.0
         self.streak += 1
         if self.streak >= STREAK and iterations <= HARD:

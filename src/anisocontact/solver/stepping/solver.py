@@ -250,7 +250,7 @@ class Solver:
             increment, done, part = pace.increment, pace.end, pace.part
             events.accept(done == 1.0)
             accepted = self._accepted(step, increment, done, outcome, events)
-            pace.advance(outcome.iterations, outcome.relaxed)
+            pace.advance(outcome.iterations, outcome.relaxed, outcome.softer)
             if events.happened:
                 place.stopped[place.step] = _whole(increment, done) / step.increments
                 pace.increment = step.increments + 1

@@ -363,7 +363,26 @@ class RigidBodies(Term):
         reach = max(self._comm.allgather(max(local)))
         return np.repeat([1.0, reach or 1.0], 3)
 
+    def whirling(self) -> str:
+        """Which free body turns by half a turn or more in this part, in a line; empty if none does.
+
+        Next to nothing holds it then. Friction would be that of a turn the other way, or of none.
+        """
+        return next((told for told in map(self._whirls, self.free) if told), "")
+
+    def _whirls(self, body: RigidBody) -> str:
+        turn = np.abs(body.trial.turn - body.accepted.turn)
+        if not float(np.linalg.norm(turn)) >= np.pi:
+            return ""
+        return self._unheld(body, [_NAMES[3 + int(np.argmax(turn))]])
+
+    def _unheld(self, body: RigidBody, named: Sequence[str]) -> str:
+        why = _SLIDES if self._touched(body) else _APART
+        return f"nothing holds the rigid body {body.name!r} {', '.join(named)}: {why}"
+
     def _check_support(self, body: RigidBody, stiff: Floats) -> None:
+        if told := self._whirls(body):
+            raise SingularError(told)
         free = ~self._drives[body].held
         triangles = self._comm.allgather(np.linalg.qr(stiff, mode="r"))
         everything = np.concatenate(triangles)
@@ -373,10 +392,7 @@ class RigidBodies(Term):
         if len(loose):
             part = (loose**2).sum(axis=0)
             named = [_NAMES[i] for i, p in zip(np.flatnonzero(free), part, strict=True) if p > 0.01]
-            raise SingularError(
-                f"nothing holds the rigid body {body.name!r} {', '.join(named)}: "
-                + (_SLIDES if self._touched(body) else _APART)
-            )
+            raise SingularError(self._unheld(body, named))
 
     def _touched(self, body: RigidBody) -> bool:
         local = sum(int(np.count_nonzero(c.current.response.status)) for c in self.contacts[body])
