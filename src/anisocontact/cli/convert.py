@@ -12,7 +12,12 @@ __all__ = ["command"]
 
 
 def command(arguments: argparse.Namespace) -> int:
-    """Read a mesh, that of a case, or a results folder, and write it in another format."""
+    """Read a mesh, that of a case, or a results folder, and write it in another format.
+
+    Of a deck of Abaqus or CalculiX also a case file.
+    """
+    if Path(arguments.target).suffix.lower() == ".toml":
+        return _case(Path(arguments.source), Path(arguments.target))
     if Path(arguments.source).is_dir():
         from anisocontact.results import Results
         from anisocontact.results.vtkhdf import write_vtkhdf
@@ -35,4 +40,23 @@ def command(arguments: argparse.Namespace) -> int:
     for line in described(mesh):
         say(line)
     say(f"written   {arguments.target}")
+    return 0
+
+
+def _case(source: Path, target: Path) -> int:
+    """Write what a deck says as a case file."""
+    from anisocontact.base.whole_files import replacing
+    from anisocontact.case.from_deck import case_of_deck
+
+    if source.suffix.lower() != ".inp":
+        raise InputError(f"'{source}' given; a case file is written of a deck .inp")
+    if target.exists():
+        raise InputError(f"'{target}' exists already; give another name")
+    text, left_out = case_of_deck(source, target)
+    with replacing(target) as draft:
+        draft.write_text(text, encoding="utf-8")
+    for line in left_out:
+        say(f"left out  {line}")
+    say(f"written   {target}")
+    say(f"next      anisocontact check {target}")
     return 0

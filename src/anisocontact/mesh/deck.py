@@ -61,9 +61,23 @@ class Card:
         try:
             return np.array(words, dtype=np.float64)
         except ValueError:
+            pass
+        try:
+            return np.array([real(word) for word in words])
+        except ValueError:
             raise InputError(
                 f"line {self.line}: the data of *{self.name} are not all numbers"
             ) from None
+
+
+def real(text: str) -> float:
+    """A number as Fortran reads it too.
+
+    Example:
+        >>> real("1.5d-3")
+        0.0015
+    """
+    return float(text.replace("d", "e").replace("D", "e"))
 
 
 def read_cards(path: Path, depth: int = 0) -> list[Card]:

@@ -14,9 +14,9 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.mesh.deck import Card
+from anisocontact.mesh.deck import Card, real
 
-__all__ = ["Transform", "support_lines", "transform_of"]
+__all__ = ["Support", "Transform", "Unread", "support_lines", "supports_of", "transform_of"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -99,42 +99,109 @@ def transform_of(kind: str, numbers: Sequence[float]) -> Transform:
     return Transform(False, rows / np.linalg.norm(rows, axis=1)[:, None], np.zeros(3))
 
 
+@dataclass(frozen=True)
+class Support:
+    """What a `*BOUNDARY` holds or leads of a set, or of a node by its number.
+
+    Attributes:
+        step: Number of the step, 0 in front of the first.
+        entry: The set or node.
+        groups: Groups "body.set" of the set.
+        kind: Key of a step, "displacement" or "cylindrical".
+        given: Components and directions.
+        amplitude: Name of the amplitude that they follow; empty for none.
+    """
+
+    step: int
+    entry: str
+    groups: tuple[str, ...]
+    kind: str
+    given: Mapping[str, object]
+    amplitude: str = ""
+
+    @property
+    def table(self) -> str:
+        """Its components as a table of a case file."""
+        return written({key: led(v, self.amplitude) for key, v in self.given.items()})
+
+
+@dataclass(frozen=True)
+class Unread:
+    """What a step of a deck has that could not be taken over, in words."""
+
+    step: int
+    text: str
+
+
 def support_lines(
     cards: Sequence[tuple[int, Card]],
     members: Callable[[str], list[int]],
     named: Callable[[str], list[str]],
 ) -> Iterator[str]:
-    """What a step of a case file needs for the supports of a deck.
+    """What a step of a case file needs for the supports of a deck, see `supports_of`.
+
+    Yields:
+        A line for each key of a step, to be copied as it is, and for what cannot be read.
+    """
+    lines: dict[tuple[int, str], dict[str, Mapping[str, object]]] = {}
+    for one in supports_of(cards, members, named):
+        if isinstance(one, Unread):
+            lines[one.step, one.text] = {}
+        elif one.entry.isdigit():
+            key = f"{one.kind} {one.table}"
+            lines.setdefault((one.step, key), {})[one.entry] = {}
+        else:
+            groups = lines.setdefault((one.step, one.kind), {})
+            for group in one.groups:
+                led_so = {key: led(v, one.amplitude) for key, v in one.given.items()}
+                groups[group] = {**groups.get(group, {}), **led_so}
+    for (step, text), found in lines.items():
+        if not found:
+            yield f"{_where(step)}: {text}"
+        elif all(group.isdigit() for group in found):
+            yield f"{_where(step)}: {_nodes(list(found))}, which [nodes] can name: {text}"
+        else:
+            yield f"{_where(step)}: {text} = {written(found)}"
+
+
+def supports_of(
+    cards: Sequence[tuple[int, Card]],
+    members: Callable[[str], list[int]],
+    named: Callable[[str], list[str]],
+) -> Iterator[Support | Unread]:
+    """The supports of a deck.
 
     Args:
-        cards: `*TRANSFORM` and `*BOUNDARY` with the number of the step in which each stands, 0 in
-            front of the first.
+        cards: Its cards with the number of the step in which each stands, 0 in front of the first.
         members: Name of a node set, or number of a node -> numbers of its nodes.
         named: Name of a node set -> groups "body.set".
 
     Yields:
-        A line for each set of nodes and step, and for what cannot be read.
+        What each set of nodes or node of a `*BOUNDARY` needs, and what cannot be read.
     """
     of_node: dict[int, Transform] = {}
     for step, card in cards:
         try:
+            if card.name not in ("TRANSFORM", "BOUNDARY"):
+                continue
             if card.name == "TRANSFORM":
-                numbers = [float(v) for line in card.fields() for v in line]
+                numbers = [real(v) for line in card.fields() for v in line]
                 found = transform_of(card.options.get("TYPE", "R").upper(), numbers)
                 of_node |= dict.fromkeys(members(card.option("NSET")), found)
             else:
-                single: dict[str, list[str]] = {}
+                amplitude = card.options.get("AMPLITUDE", "").lower()
                 for entry, values in _values(card).items():
-                    text = _written(entry, values, of_node, members, named)
-                    if entry.isdigit():
-                        single.setdefault(text, []).append(entry)
+                    directed = _directed(entry, values, of_node, members)
+                    groups = tuple(named(entry))
+                    if isinstance(directed, str):
+                        yield Unread(step, directed)
+                    elif groups or entry.isdigit():
+                        yield Support(step, entry, groups, *directed, amplitude)
                     else:
-                        yield f"{_where(step)}: {text}"
-                for text, nodes in single.items():
-                    yield f"{_where(step)}: {_nodes(nodes)}, which [nodes] can name: {text}"
+                        yield Unread(step, f"{entry.lower()} is on no body")
         except (InputError, ValueError, IndexError) as error:
             said = error if isinstance(error, InputError) else "its data are of another kind"
-            yield f"{_where(step)}: *{card.name} of line {card.line} is not read: {said}"
+            yield Unread(step, f"*{card.name} of line {card.line} is not read: {said}")
 
 
 def _nodes(numbers: Sequence[str]) -> str:
@@ -155,21 +222,20 @@ def _values(card: Card) -> dict[str, dict[int, float]]:
             found.setdefault(entry, {}).update(dict.fromkeys(NAMED[first.upper()], 0.0))
             continue
         last = int(rest[0]) if rest else int(first)
-        value = float(rest[1]) if len(rest) > 1 else 0.0
+        value = real(rest[1]) if len(rest) > 1 else 0.0
         led = {k: value for k in range(int(first), last + 1) if k <= 3}
         if led:
             found.setdefault(entry, {}).update(led)
     return found
 
 
-def _written(
+def _directed(
     entry: str,
     values: Mapping[int, float],
     of_node: Mapping[int, Transform],
     members: Callable[[str], list[int]],
-    named: Callable[[str], list[str]],
-) -> str:
-    """One support as it is in a step of a case file, or why it is none."""
+) -> tuple[str, dict[str, object]] | str:
+    """Key and components of one support, or why it is none."""
     nodes = members(entry)
     space = Transform(False, np.eye(3), np.zeros(3))
     systems = {id(one): one for one in (of_node.get(node, space) for node in nodes or [0])}
@@ -180,17 +246,27 @@ def _written(
         return (
             f"{entry.lower()} has directions that are no axes of space: symmetry, or turn the mesh"
         )
-    kind, given = found
-    table = ", ".join(f"{key} = {_number(value)}" for key, value in given.items())
-    if entry.isdigit():
-        return f"{kind} {{ {table} }}"
-    groups = named(entry)
-    if not groups:
-        return f"{entry.lower()} is on no body"
-    return f"{kind} = {{ {', '.join(f'"{group}" = {{ {table} }}' for group in groups)} }}"
+    return found
 
 
-def _number(value: object) -> str:
+def led(value: object, amplitude: str) -> object:
+    """A number as a step has it that follows an amplitude, if there is one."""
+    follows = amplitude and isinstance(value, float) and value != 0.0
+    return {"amplitude": amplitude, "value": value} if follows else value
+
+
+def written(value: object) -> str:
+    """A value as a case file has it, tables in one line.
+
+    Example:
+        >>> written({"b.top": {"x": 0.5, "axis": [0.0, 0.0, 1.0]}})
+        '{ "b.top" = { x = 0.5, axis = [0, 0, 1] } }'
+    """
+    if isinstance(value, Mapping):
+        keys = {k: k if k.replace("_", "").isalnum() else f'"{k}"' for k in value}
+        return f"{{ {', '.join(f'{keys[k]} = {written(v)}' for k, v in value.items())} }}"
     if isinstance(value, list):
-        return f"[{', '.join(map(_number, value))}]"
-    return f"{value:g}"
+        return f"[{', '.join(map(written, value))}]"
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f'"{value}"' if isinstance(value, str) else f"{value:.10g}"

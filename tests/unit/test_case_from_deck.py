@@ -1,0 +1,227 @@
+"""Decks of Abaqus and CalculiX as case files: what is taken over, what is left, a run."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.cli import main
+from anisocontact.results import Results
+
+DECK = """*HEADING
+A cube on a cube
+*NODE
+ 1, 0, 0, 0
+ 2, 10, 0, 0
+ 3, 10, 10, 0
+ 4, 0, 10, 0
+ 5, 0, 0, 1d1
+ 6, 10, 0, 10
+ 7, 10, 10, 10
+ 8, 0, 10, 10
+ 9, 0, 0, 10
+ 10, 10, 0, 10
+ 11, 10, 10, 10
+ 12, 0, 10, 10
+ 13, 0, 0, 20
+ 14, 10, 0, 20
+ 15, 10, 10, 20
+ 16, 0, 10, 20
+*ELEMENT, TYPE=C3D8, ELSET=LOWER
+ 1, 1, 2, 3, 4, 5, 6, 7, 8
+*ELEMENT, TYPE=C3D8, ELSET=UPPER
+ 2, 9, 10, 11, 12, 13, 14, 15, 16
+*NSET, NSET=FOOT
+ 1, 2, 3, 4
+*NSET, NSET=HEAD
+ 13, 14, 15, 16
+*SURFACE, NAME=DECK
+ LOWER, S2
+*SURFACE, NAME=SOLE
+ UPPER, S1
+*MATERIAL, NAME=STEEL
+*ELASTIC
+ 210000., 0.
+*DENSITY
+ 7.8e-9
+*SOLID SECTION, ELSET=LOWER, MATERIAL=STEEL
+*SOLID SECTION, ELSET=UPPER, MATERIAL=STEEL
+*SURFACE INTERACTION, NAME=DRY
+*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR
+ 1e6
+*FRICTION
+ 0.3
+*CONTACT PAIR, INTERACTION=DRY, ADJUST=0.1
+ SOLE, DECK
+*AMPLITUDE, NAME=RAMP
+ 0., 0., 0.5, 0.75
+ 1., 1.
+*BOUNDARY
+ FOOT, PINNED
+*STEP
+Press
+*STATIC
+ 0.25, 1.
+*BOUNDARY
+ HEAD, 1, 2
+*DLOAD, AMPLITUDE=RAMP
+ UPPER, P2, 20.
+*NODE PRINT, NSET=FOOT
+RF
+*END STEP
+*STEP
+Pull
+*STATIC
+ 0.5, 2.
+*BOUNDARY, OP=NEW
+ FOOT, 1, 3
+ HEAD, 1, 1, 0.001
+*CLOAD
+ HEAD, 3, -25.
+*DLOAD
+ LOWER, GRAV, 9810., 0., 0., -1.
+*VIEWFACTOR
+*END STEP
+"""
+WANTED = {
+    "title": "A cube on a cube",
+    "mesh": {"file": "deck.inp"},
+    "material": {
+        name: {"model": "linear-elastic", "E": 210000, "nu": 0, "density": 7.8e-9}
+        for name in ("lower", "upper")
+    },
+    "amplitude": {"ramp": {"kind": "table", "time": [0, 0.5, 1], "value": [0, 0.75, 1]}},
+    "contact": [
+        {
+            "slave": "upper.sole",
+            "master": "lower.deck",
+            "adjust": True,
+            "friction": {"coefficients": 0.3},
+        }
+    ],
+    "step": [
+        {
+            "name": "press",
+            "increments": 4,
+            "displacement": {
+                "lower.foot": {"x": 0, "y": 0, "z": 0},
+                "upper.head": {"x": 0, "y": 0},
+            },
+            "pressure": {"upper.upper_p2": {"amplitude": "ramp", "value": 20}},
+        },
+        {
+            "name": "pull",
+            "increments": 4,
+            "duration": 2,
+            "displacement": {
+                "lower.foot": {"x": 0, "y": 0, "z": 0},
+                "upper.head": {"x": 0.001, "y": "free"},
+            },
+            "force": {"upper.head": {"z": -100}},
+            "gravity": {"z": -9810},
+        },
+    ],
+}
+
+
+@pytest.fixture
+def deck(tmp_path: Path) -> Path:
+    """The deck in a folder of its own."""
+    path = tmp_path / "deck.inp"
+    path.write_text(DECK)
+    return path
+
+
+def converted(deck: Path, capsys: pytest.CaptureFixture[str]) -> tuple[dict, list[str]]:
+    """The case of a deck, and the lines that are said."""
+    target = deck.with_suffix(".toml")
+    target.unlink(missing_ok=True)
+    assert main(["convert", str(deck), str(target)]) == 0
+    return tomllib.loads(target.read_text()), capsys.readouterr().out.splitlines()
+
+
+def test_what_is_taken_over(deck: Path, capsys: pytest.CaptureFixture[str]):
+    """Requirement: mesh, materials, contact, amplitude, steps, supports and loads as the manuals
+    have them; a force on nodes is that of all, OP=NEW releases; what is not known is said."""
+    case, lines = converted(deck, capsys)
+    assert case == WANTED
+    assert lines[0] == "left out  *VIEWFACTOR of line 73"
+    assert lines[1].startswith("written ")
+    assert 'method = "penalty"' in deck.with_suffix(".toml").read_text()
+
+
+def test_the_case_runs(deck: Path, capsys: pytest.CaptureFixture[str]):
+    """Requirement: foot and contact carry the pressure on the head, then the force and the weight
+    besides, to 1e-6. Source: balance. Tolerance: Newton's."""
+    converted(deck, capsys)
+    assert main(["check", str(deck.with_suffix(".toml"))]) == 0
+    out = deck.parent / "out"
+    assert main(["run", str(deck.with_suffix(".toml")), "-o", str(out)]) == 0
+    history = Results(out).history
+    found = history["contacts.0.force.z"]
+    assert found[1] == pytest.approx(0.75 * 2000.0, rel=1e-6)
+    assert found[3] == pytest.approx(2000.0, rel=1e-6)
+    weight = 9810.0 * 7.8e-9 * 1000.0
+    assert found[-1] == pytest.approx(2100.0 + weight, rel=1e-6)
+    assert history["reactions.lower.foot.z"][-1] == pytest.approx(2100.0 + 2 * weight, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        (" SOLE, DECK", " SOLE, BASE", "*CONTACTPAIR of line 44: base is no facet group"),
+        (" SOLE, DECK", " SOLE", "a surface with itself; see self_contact"),
+        (" 210000., 0.\n", " 1.\n", "*ELASTIC of line 33: its data are of another kind"),
+        ("*ELASTIC\n", "*ELASTIC, TYPE=ORTHO\n", "see orthotropic"),
+        ("*FRICTION", "*FRICTION, ANISOTROPIC", "one coefficient is taken over"),
+        ("NAME=RAMP", "NAME=RAMP, DEFINITION=SMOOTH STEP", "DEFINITION=SMOOTH STEP is not read"),
+        (" HEAD, 3, -25.", " 13, 3, -25.", "a force on node 13 alone"),
+        (" HEAD, 3, -25.", " HEAD, 5, -25.", "a moment on head; faces on a reference point"),
+        ("*STATIC\n 0.5, 2.", "*DYNAMIC\n 0.5, 2.", "step 'pull' is not *STATIC: taken as one"),
+        ("UPPER, P2", "UPPER, BX", "BX on upper; P1, P2 ... on a set of elements is read"),
+    ],
+)
+def test_what_is_left_out_is_said(
+    deck: Path, capsys: pytest.CaptureFixture[str], old: str, new: str, line: str
+):
+    """Requirement: a line with keyword, place and reason; the rest is written all the same."""
+    assert old in DECK
+    deck.write_text(DECK.replace(old, new))
+    case, lines = converted(deck, capsys)
+    assert any(said.startswith("left out  ") and line in said for said in lines), lines
+    assert len(case["step"]) == 2
+
+
+def test_finite_strain_the_plane_and_nodes(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    """Requirement: NLGEOM asks for a material at finite strain, CPE4 for plane strain with its
+    thickness; a node that is held by its number gets a name."""
+    deck = tmp_path / "plane.inp"
+    deck.write_text(
+        "*NODE\n1, 0, 0\n2, 1, 0\n3, 1, 1\n4, 0, 1\n*ELEMENT, TYPE=CPE4, ELSET=A\n1, 1, 2, 3, 4\n"
+        "*MATERIAL, NAME=M\n*ELASTIC\n10, 0.3\n*SOLID SECTION, ELSET=A, MATERIAL=M\n0.5\n"
+        "*BOUNDARY\n1, 1, 2\n2, 2\n*STEP, NLGEOM\n*STATIC\n*DLOAD\nA, P3, 0.1\n*END STEP\n"
+    )
+    case, lines = converted(deck, capsys)
+    assert case["idealisation"] == {"kind": "plane-strain", "thickness": 0.5}
+    assert case["material"]["a"] == {"model": "st-venant-kirchhoff", "E": 10, "nu": 0.3}
+    assert case["nodes"] == {"a.node1": {"near": [0, 0, 0]}, "a.node2": {"near": [1, 0, 0]}}
+    assert case["step"][0]["displacement"] == {"a.node1": {"x": 0, "y": 0}, "a.node2": {"y": 0}}
+    assert not [line for line in lines if line.startswith("left out")]
+    assert main(["run", str(tmp_path / "plane.toml"), "-o", str(tmp_path / "out")]) == 0
+
+
+def test_what_cannot_be_written(deck: Path, capsys: pytest.CaptureFixture[str]):
+    """Requirement: one line; a case file is never written over."""
+    deck.with_suffix(".toml").write_text("mine")
+    assert main(["convert", str(deck), str(deck.with_suffix(".toml"))]) == 2
+    assert "exists already" in capsys.readouterr().err
+    assert deck.with_suffix(".toml").read_text() == "mine"
+    other = deck.with_suffix(".msh")
+    assert main(["convert", str(other), str(deck.with_name("b.toml"))]) == 2
+    assert "a case file is written of a deck .inp" in capsys.readouterr().err
+    assert main(["convert", str(deck.with_name("none.inp")), str(deck.with_name("b.toml"))]) == 1
+    assert len(capsys.readouterr().err.splitlines()) == 1
