@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
+from tests.verification.slid_blocks import force_of, linear_force
 
 from anisocontact.anisotropy import make_directions
 from anisocontact.base.errors import InputError
@@ -290,24 +291,6 @@ def _moved(contact: Contact, model: Model, shift: Floats) -> tuple[Floats, Float
     return u, u + 0.05 * shift + 0.001 * rng.normal(size=u.shape)
 
 
-def _force(contact: Contact, u: Floats) -> Floats:
-    contact.update(u, 1.0)
-    out = np.zeros_like(u)
-    contact.add_force(out)
-    return out
-
-
-def _linear(contact: Contact, way: Floats) -> Floats:
-    """What the tangent makes of a displacement, (nodes, 3)."""
-    out = np.zeros_like(way)
-    for rows, columns, blocks in contact.answer.couplings():
-        square = blocks.reshape(len(rows), rows.shape[1], 3, columns.shape[1], 3)
-        there = np.where(columns[..., None] >= 0, way[columns], 0.0)
-        found = -np.einsum("pricj,pcj->pri", square, there)
-        np.add.at(out, rows[rows >= 0], found[rows >= 0])
-    return out
-
-
 def _turning() -> ContactLaw:
     rays = make_directions("polar", axis=((5.0, 3.0, 0.0), (0, 0, 1.0)))
     adhesion = Adhesion(stiffness=(60.0, 90.0), directions=rays)
@@ -347,12 +330,12 @@ def test_tangent(cell: str, order: int) -> None:
     contact = _lips(model, _turning())
     _, u = _moved(contact, model, shift)
     way = np.random.default_rng(5).normal(size=u.shape)
-    force = _force(contact, u)
+    force = force_of(contact, u)
     assert contact.counts()["slip"] + contact.counts()["stick"] > 4
     assert np.abs(force.sum(axis=0)).max() < 1e-12 * np.abs(force).sum()
-    exact, errors = _linear(contact, way), []
+    exact, errors = linear_force(contact, way), []
     for h in (1e-5, 1e-6):
-        found = (_force(contact, u + h * way) - _force(contact, u - h * way)) / (2.0 * h)
+        found = (force_of(contact, u + h * way) - force_of(contact, u - h * way)) / (2.0 * h)
         errors.append(np.abs(found - exact).max() / np.abs(exact).max())
     assert errors[1] < max(errors[0] / 50.0, 2e-8)
 
@@ -363,7 +346,7 @@ def test_goes_on_from_what_it_kept() -> None:
     first, second = (_lips(model, _turning()) for _ in range(2))
     kept, u = _moved(first, model, shift)
     second.restore(first.persistent(), kept)
-    assert np.array_equal(_force(first, u), _force(second, u))
+    assert np.array_equal(force_of(first, u), force_of(second, u))
 
 
 def test_what_is_given_is_checked() -> None:

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 from matplotlib.colors import ListedColormap
-from scipy.spatial import KDTree
 
 from anisocontact.base.figure_style import STATUS_COLOURS
 from anisocontact.base.peaks import PEAK
@@ -171,6 +170,8 @@ class ContactView:
     @cached_property
     def _nearest(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
         """The point nearest to each pixel and whether it is too far to speak for the pixel."""
+        from scipy.spatial import KDTree  # slow to import, and points with facets do without
+
         size = self.box[1] - self.box[0]
         counts = np.maximum((PIXELS * size / size.max()).astype(int), 2)
         sides = [np.linspace(self.box[0, i], self.box[1, i], int(counts[i])) for i in (0, 1)]
