@@ -173,7 +173,11 @@ def test_laws_of_before_are_those_of_today() -> None:
 #: Take longer to be imported than a small case to be solved: imported where they are used.
 SLOW = ("scipy.", "pyvista", "vtk", "vtkmodules", "rich", "meshio", "h5py", "gmsh", "pandas")
 #: Programs and pictures, which are imported late themselves.
-LATE = ("anisocontact.results.report", "anisocontact.point.pictures")
+LATE = (
+    "anisocontact.results.report",
+    "anisocontact.results.scene",
+    "anisocontact.point.pictures",
+)
 
 
 def test_slow_packages_are_imported_where_they_are_used() -> None:

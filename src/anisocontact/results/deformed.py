@@ -19,7 +19,18 @@ from anisocontact.base.figure_style import GREY
 if TYPE_CHECKING:
     import pyvista
 
-__all__ = ["SHOWN", "Shown", "caption", "in_plane", "magnification", "round_box", "surfaces"]
+    from anisocontact.results.scene import Scene
+
+__all__ = [
+    "SHOWN",
+    "Shown",
+    "caption",
+    "colours_of",
+    "in_plane",
+    "magnification",
+    "round_box",
+    "surfaces",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -74,19 +85,6 @@ SHOWN = {
 }
 #: Size of the bodies in the picture, over all of it: labels of axes have the rest.
 ROOM = 0.86
-#: The scale of colours.
-_BAR = {
-    "color": "black",
-    "fmt": "%.3g",
-    "n_labels": 5,
-    "vertical": True,
-    "position_x": 0.86,
-    "position_y": 0.2,
-    "width": 0.06,
-    "height": 0.6,
-    "title_font_size": 20,
-    "label_font_size": 20,
-}
 
 
 def magnification(grid: pyvista.UnstructuredGrid) -> float:
@@ -149,55 +147,53 @@ def round_box(*meshes: pyvista.PolyData) -> tuple[Any, Any, Any]:
     return low, high, np.rint((high - low) / step).astype(int) + 1
 
 
+def colours_of(name: str) -> str:
+    """A scale of colours by its name, in hexadecimal: Matplotlib is slow to import for that."""
+    from matplotlib import colormaps
+
+    found = colormaps[name](np.linspace(0.0, 1.0, 256), bytes=True)
+    return np.asarray(found, dtype=np.uint8).tobytes().hex()
+
+
 def _main(source: str, *pictures: str) -> None:
-    """Draw a grid: names of pictures, each followed by its file, the unit and that of lengths."""
+    """Draw a grid: names of pictures, each with its file, two units and its colours."""
     import pyvista
+
+    from anisocontact.results.scene import Scene
 
     grid: Any = pyvista.read(source)
-    for i in range(0, len(pictures), 4):
-        name, picture, unit, length = pictures[i : i + 4]
-        _draw(grid, SHOWN[name], picture, unit, length)
+    scene = Scene(1200, 800)
+    for i in range(0, len(pictures), 5):
+        name, picture, unit, length, colours = pictures[i : i + 5]
+        scene.clear()
+        _add(scene, grid, SHOWN[name], unit, length, bytes.fromhex(colours))
+        scene.write(picture)
 
 
-def _draw(grid: Any, shown: Shown, picture: str, unit: str, length: str) -> None:
-    import pyvista
-
+def _add(scene: Scene, grid: Any, shown: Shown, unit: str, length: str, colours: bytes) -> None:
+    """Add what is shown on a grid to a scene."""
     scale = magnification(grid)
     skin, before = surfaces(grid, scale, shown)
-    plotter: Any = pyvista.Plotter(off_screen=True, window_size=[1200, 800])
-    plotter.set_background("white")
-    plotter.add_mesh(
+    bar = scene.add_coloured(
         skin,
-        scalars="value",
-        cmap=shown.colours,
-        clim=shown.limits(skin.point_data["value"]),
-        scalar_bar_args=_BAR | {"title": shown.label.format(unit)},
-        smooth_shading=True,
-        split_sharp_edges=True,
+        "value",
+        np.frombuffer(colours, dtype=np.uint8).reshape(-1, 4),
+        shown.limits(skin.point_data["value"]),
         ambient=0.6 if shown.cut else 0.25,
     )
+    red, green, blue = (int(GREY[i : i + 2], 16) / 255.0 for i in (1, 3, 5))
+    grey = (red, green, blue)
     if not shown.cut:  # colours that are read as numbers stay what they are
-        plotter.add_mesh(before, color=GREY, opacity=0.12)
-    plotter.add_silhouette(before, color=GREY, line_width=2)
+        scene.add_plain(before, grey, opacity=0.12)
+    scene.add_outline(before, grey, width=2.0)
     low, high, labels = round_box(skin, before)
-    plotter.show_bounds(
-        bounds=np.column_stack([low, high]).reshape(-1).tolist(),
-        color="black",
-        location="outer",
-        font_size=13,
-        fmt="%.6g",
-        **{f"{axis}title": f"{axis} [{length}]" for axis in "xyz"},
-        **{f"n_{axis}labels": int(n) for axis, n in zip("xyz", labels, strict=True)},
-    )
-    plotter.add_text(caption(scale), position="upper_edge", font_size=11, color="black")
+    scene.add_axes(low, high, labels, length)
+    scene.add_bar(bar, shown.label.format(unit))
+    scene.add_heading(caption(scale))
     if in_plane(before):
-        plotter.view_xy()
+        scene.look(low, high, (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), ROOM)
     else:
-        plotter.view_vector((-0.55, -1.0, 0.6), viewup=(0.0, 0.0, 1.0))
-    plotter.reset_camera(bounds=np.column_stack([low, high]).reshape(-1).tolist())
-    plotter.camera.zoom(ROOM)
-    plotter.screenshot(picture)
-    plotter.close()
+        scene.look(low, high, (-0.55, -1.0, 0.6), (0.0, 0.0, 1.0), ROOM)
 
 
 if __name__ == "__main__":

@@ -19,6 +19,7 @@ from anisocontact.results.deformed import (
     SHOWN,
     Shown,
     caption,
+    colours_of,
     in_plane,
     magnification,
     round_box,
@@ -54,7 +55,13 @@ class Drawings:
         wanted = [
             text
             for name, draft in self._drafts.items()
-            for text in (name, str(draft), self._units[name], self._length)
+            for text in (
+                name,
+                str(draft),
+                self._units[name],
+                self._length,
+                colours_of(SHOWN[name].colours),
+            )
         ]
         self._process = _start_vtk([str(source), *wanted])
         self._whole: bool | None = None
