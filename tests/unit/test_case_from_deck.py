@@ -182,7 +182,7 @@ def test_the_case_runs(deck: Path, capsys: pytest.CaptureFixture[str]):
         (" HEAD, 3, -25.", " 13, 3, -25.", "a force on node 13 alone"),
         (" HEAD, 3, -25.", " HEAD, 5, -25.", "a moment on head; faces on a reference point"),
         ("*STATIC\n 0.5, 2.", "*DYNAMIC\n 0.5, 2.", "step 'pull' is not *STATIC: taken as one"),
-        ("UPPER, P2", "UPPER, BX", "BX on upper; P1, P2 ... on a set of elements is read"),
+        ("UPPER, P2", "UPPER, BX", "BX on upper; P1, P2 ... and GRAV are read"),
     ],
 )
 def test_what_is_left_out_is_said(
@@ -212,6 +212,24 @@ def test_finite_strain_the_plane_and_nodes(tmp_path: Path, capsys: pytest.Captur
     assert case["step"][0]["displacement"] == {"a.node1": {"x": 0, "y": 0}, "a.node2": {"y": 0}}
     assert not [line for line in lines if line.startswith("left out")]
     assert main(["run", str(tmp_path / "plane.toml"), "-o", str(tmp_path / "out")]) == 0
+
+
+def test_pressures_on_single_elements(deck: Path, capsys: pytest.CaptureFixture[str]):
+    """Requirement: faces of elements by their numbers are a group for each pressure, named by the
+    line of the keyword; a run carries them to 1e-6. Source: balance. Tolerance: Newton's."""
+    given = DECK.replace(" UPPER, P2, 20.", " 2, P2, 20.\n 1, P3, 1.\n 1, P5, 1.")
+    deck.write_text(given)
+    case, _ = converted(deck, capsys)
+    line = 1 + given.splitlines().index("*DLOAD, AMPLITUDE=RAMP")
+    pressure = case["step"][0]["pressure"]
+    assert pressure == {
+        f"upper.pressed_{line}": {"amplitude": "ramp", "value": 20},
+        f"lower.pressed_{line}_2": {"amplitude": "ramp", "value": 1},
+    }
+    out = deck.parent / "out"
+    assert main(["run", str(deck.with_suffix(".toml")), "-o", str(out)]) == 0
+    force = Results(out).history["contacts.0.force.z"]
+    assert force[3] == pytest.approx(2000.0, rel=1e-6)
 
 
 def test_what_cannot_be_written(deck: Path, capsys: pytest.CaptureFixture[str]):

@@ -12,7 +12,7 @@ import numpy as np
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
-from anisocontact.mesh.deck_contents import Deck, pressed_face, pressed_name
+from anisocontact.mesh.deck_contents import Deck, pressed_face, pressures
 from anisocontact.mesh.deck_supports import Support, Unread, led, supports_of
 from anisocontact.mesh.inp import bodies_of
 
@@ -23,6 +23,8 @@ MOST = 1000
 
 #: Group, or component of gravity -> what it is given, a number or components.
 type _Given = dict[str, Any]
+#: Key of a step, group or component, what it is given.
+type _Load = tuple[str, str, Any]
 
 
 @dataclass
@@ -88,8 +90,7 @@ class Steps:
         if card.name not in _LOADS or not step:
             return False
         amplitude = card.options.get("AMPLITUDE", "").lower()
-        for row in card.fields():
-            key, group, given = _LOADS[card.name](self, row)
+        for key, group, given in _LOADS[card.name](self, card):
             groups = self._steps[-1].keys.setdefault(key, {})
             if isinstance(given, dict):
                 components = {name: led(value, amplitude) for name, value in given.items()}
@@ -152,36 +153,36 @@ class Steps:
             raise InputError(f"{name.lower()} has {found}, one facet group is needed")
         return groups[0]
 
-    def _cload(self, row: list[str]) -> tuple[str, str, Any]:
-        entry, direction, value = row[0], int(row[1]), real(row[2])
-        if direction > 3:
-            raise InputError(f"a moment on {entry.lower()}; faces on a reference point take them")
-        if entry.isdigit():
-            raise InputError(f"a force on node {entry} alone; a group of facets takes one")
-        total = value * len(np.unique(self._deck.nodes_of(entry)))
-        return "force", self._facets(entry), {"xyz"[direction - 1]: total}
+    def cloads(self, card: Card) -> Iterator[_Load]:
+        """Forces of `*CLOAD`, summed over the nodes of a set."""
+        for entry, direction, value, *_ in card.fields():
+            if int(direction) > 3:
+                text = f"a moment on {entry.lower()}; faces on a reference point take them"
+                raise InputError(text)
+            if entry.isdigit():
+                raise InputError(f"a force on node {entry} alone; a group of facets takes one")
+            total = real(value) * len(np.unique(self._deck.nodes_of(entry)))
+            yield "force", self._facets(entry), {"xyz"[int(direction) - 1]: total}
 
-    def _dload(self, row: list[str]) -> tuple[str, str, Any]:
-        entry, label, *numbers = row
-        if label.upper() == "GRAV":
-            size, *direction = (real(v) for v in numbers[:4])
-            along = [float(v) for v in np.multiply(size, direction)]
-            return self._gravity(dict(zip("xyz", along, strict=False)))
-        if not pressed_face(label) or entry.isdigit():
-            raise InputError(f"{label} on {entry.lower()}; P1, P2 ... on a set of elements is read")
-        return "pressure", self._facets(pressed_name(entry, label)), real(numbers[0])
+    def dloads(self, card: Card) -> Iterator[_Load]:
+        """Pressures and gravity of `*DLOAD`."""
+        for name, (value, _) in pressures(card).items():
+            yield "pressure", self._facets(name), real(value)
+        for entry, label, *numbers in card.fields():
+            if label.upper() == "GRAV":
+                size, *direction = (real(v) for v in numbers[:4])
+                for name, share in zip("xyz", direction, strict=False):
+                    if share:
+                        yield "gravity", name, size * share
+            elif not pressed_face(label):
+                raise InputError(f"{label} on {entry.lower()}; P1, P2 ... and GRAV are read")
 
-    def _gravity(self, along: dict[str, float]) -> tuple[str, str, Any]:
-        (name, value), *others = [(k, v) for k, v in along.items() if v] or [("z", 0.0)]
-        here = self._steps[-1].keys.setdefault("gravity", {})
-        here |= dict(others)
-        return "gravity", name, value
-
-    def _dsload(self, row: list[str]) -> tuple[str, str, Any]:
-        name, label, value, *_ = row
-        if label.upper() != "P":
-            raise InputError(f"{label} on {name.lower()}; P is read, see traction")
-        return "pressure", self._facets(name), real(value)
+    def dsloads(self, card: Card) -> Iterator[_Load]:
+        """Pressures of `*DSLOAD`."""
+        for name, label, value, *_ in card.fields():
+            if label.upper() != "P":
+                raise InputError(f"{label} on {name.lower()}; P is read, see traction")
+            yield "pressure", self._facets(name), real(value)
 
     def _renew(self) -> None:
         """Release and take away what a step with OP=NEW does not name."""
@@ -207,10 +208,10 @@ def _gone(key: str, before: Any, now: Any) -> Any:
     return {name: v if name in still else gone for name, v in before.items()} | now
 
 
-_LOADS: dict[str, Callable[[Steps, list[str]], tuple[str, str, Any]]] = {
-    "CLOAD": Steps._cload,
-    "DLOAD": Steps._dload,
-    "DSLOAD": Steps._dsload,
+_LOADS: dict[str, Callable[[Steps, Card], Iterator[_Load]]] = {
+    "CLOAD": Steps.cloads,
+    "DLOAD": Steps.dloads,
+    "DSLOAD": Steps.dsloads,
 }
 #: Keys of a step that a keyword with OP=NEW begins anew.
 _RENEWED = {

@@ -185,9 +185,12 @@ class Deck:
     def add_card(self, step: int, card: Card) -> None:
         """Keep what is not of the mesh; faces under a pressure of `*DLOAD` become a surface."""
         self.cards.append((step, card))
-        for entry, label, *_ in card.fields() if card.name == "DLOAD" else ():
-            if (face := pressed_face(label)) and entry.upper() in self.element_sets:
-                self.surfaces[pressed_name(entry, label)] = [(entry.upper(), face)]
+        for name, (_, faces) in pressures(card).items() if card.name == "DLOAD" else ():
+            self.surfaces[name] = [
+                (entry, face)
+                for entry, face in faces
+                if entry.isdigit() or entry in self.element_sets
+            ]
 
     def add_instance(self, card: Card, parts: Mapping[str, Deck]) -> None:
         """Put a part where an instance of it is; its sets are named `INSTANCE.SET` and `SET`."""
@@ -285,6 +288,26 @@ def pressed_face(label: str) -> str:
     return f"S{label[1:]}" if label[:1].upper() == "P" and label[1:].isdigit() else ""
 
 
-def pressed_name(entry: str, label: str) -> str:
-    """Name of the surface of a set of elements under a pressure."""
-    return f"{entry}_{label}".upper()
+def pressures(card: Card) -> dict[str, tuple[str, list[tuple[str, str]]]]:
+    """Faces under the pressures of a `*DLOAD`, as surfaces.
+
+    Args:
+        card: The card.
+
+    Returns:
+        Name of a surface -> pressure as written, (element or set, face). A set with its face is
+        one; faces of single elements under one pressure are one, named by the line of the card.
+    """
+    found: dict[str, tuple[str, list[tuple[str, str]]]] = {}
+    values: list[str] = []
+    for entry, label, *numbers in card.fields():
+        face, value = pressed_face(label), (*numbers, "0")[0]
+        if not face:
+            continue
+        name = f"{entry}_{label}".upper()
+        if entry.isdigit():
+            values += [value] if value not in values else []
+            place = values.index(value)
+            name = f"PRESSED_{card.line}" + (f"_{place + 1}" if place else "")
+        found.setdefault(name, (value, []))[1].append((entry.upper(), face))
+    return found
