@@ -232,6 +232,15 @@ def test_pressures_on_single_elements(deck: Path, capsys: pytest.CaptureFixture[
     assert force[3] == pytest.approx(2000.0, rel=1e-6)
 
 
+def test_a_constant_amplitude_is_a_factor(deck: Path, capsys: pytest.CaptureFixture[str]):
+    """Requirement: values times the number, reached along the step, and a line that says so."""
+    deck.write_text(DECK.replace(" 0., 0., 0.5, 0.75\n 1., 1.", " 0., 0.5, 1., 0.5"))
+    case, lines = converted(deck, capsys)
+    assert case["step"][0]["pressure"] == {"upper.upper_p2": 10}
+    assert "amplitude" not in case
+    assert any("it is constant, values are reached at the end" in line for line in lines)
+
+
 def test_what_cannot_be_written(deck: Path, capsys: pytest.CaptureFixture[str]):
     """Requirement: one line; a case file is never written over."""
     deck.with_suffix(".toml").write_text("mine")

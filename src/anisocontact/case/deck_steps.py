@@ -57,6 +57,7 @@ class Steps:
     Attributes:
         finite: Whether a step asks for finite strain.
         nodes: Name of a node that is held by its number -> its place.
+        constant: Amplitude that is a number -> the number.
     """
 
     def __init__(self, deck: Deck, mesh: MeshArrays, named: Callable[[str], list[str]]) -> None:
@@ -64,6 +65,7 @@ class Steps:
         self._steps: list[_Step] = []
         self.finite = False
         self.nodes: dict[str, list[float]] = {}
+        self.constant: dict[str, float] = {}
 
     def take(self, step: int, card: Card) -> bool:
         """Take a card over; whether it is one of a step.
@@ -93,10 +95,10 @@ class Steps:
         for key, group, given in _LOADS[card.name](self, card):
             groups = self._steps[-1].keys.setdefault(key, {})
             if isinstance(given, dict):
-                components = {name: led(value, amplitude) for name, value in given.items()}
+                components = {name: self._led(value, amplitude) for name, value in given.items()}
                 groups[group] = {**groups.get(group, {}), **components}
             else:
-                groups[group] = led(given, amplitude)
+                groups[group] = self._led(given, amplitude)
         return True
 
     def finish(self) -> list[str]:
@@ -127,7 +129,7 @@ class Steps:
         if not groups:
             yield f"support of node {one.entry}: it is on no body"
         for group in groups:
-            given = {name: led(value, one.amplitude) for name, value in one.given.items()}
+            given = {name: self._led(value, one.amplitude) for name, value in one.given.items()}
             keys[group] = {**keys.get(group, {}), **given}
 
     def _node(self, number: int) -> tuple[str, ...]:
@@ -140,6 +142,12 @@ class Steps:
                 self.nodes[name] = self._deck.nodes[number]
                 return (name,)
         return ()
+
+    def _led(self, value: object, amplitude: str) -> object:
+        """A value that follows an amplitude, if there is one."""
+        if amplitude in self.constant and isinstance(value, float):
+            return self.constant[amplitude] * value
+        return led(value, amplitude)
 
     def _facets(self, name: str) -> str:
         """The facet group of a set or surface.

@@ -150,8 +150,14 @@ class _Case:
             self._penalty[self._interaction] = float(card.numbers()[0])
 
     def read_amplitude(self, card: Card) -> None:
-        """Take `*AMPLITUDE`."""
-        self._amplitudes[card.option("NAME").lower()] = _amplitude(card)
+        """Take `*AMPLITUDE`; what jumps to its value at the start goes there along the step."""
+        name, table = card.option("NAME").lower(), _amplitude(card)
+        values = set(card.numbers()[1::2].tolist())
+        if len(values) == 1:
+            self._steps.constant[name] = values.pop()
+            self._leave(card, ": it is constant, values are reached at the end of the step")
+        else:
+            self._amplitudes[name] = table
 
     def read_pair(self, card: Card) -> None:
         """Take `*CONTACT PAIR`."""
