@@ -232,6 +232,24 @@ def test_pressures_on_single_elements(deck: Path, capsys: pytest.CaptureFixture[
     assert force[3] == pytest.approx(2000.0, rel=1e-6)
 
 
+def test_a_flow_curve(deck: Path, capsys: pytest.CaptureFixture[str]):
+    """Requirement: yield stress over plastic strain, at finite strain where NLGEOM asks for it; the
+    contact carries the pressure, which is beyond the first yield stress. Source: balance, the area
+    of the head is held. Tolerance: Newton's."""
+    rows = "*PLASTIC\n 15., 0.\n 30., 0.02\n"
+    deck.write_text(DECK.replace("*DENSITY", f"{rows}*DENSITY"))
+    case, _ = converted(deck, capsys)
+    steel = case["material"]["lower"]
+    assert steel["model"] == "plastic"
+    assert steel["flow_curve"] == [0, 15, 0.02, 30]
+    deck.write_text(DECK.replace("*DENSITY", f"{rows}*DENSITY").replace("*STEP", "*STEP, NLGEOM"))
+    case, _ = converted(deck, capsys)
+    assert case["material"]["upper"]["strain"] == "logarithmic"
+    out = deck.parent / "out"
+    assert main(["run", str(deck.with_suffix(".toml")), "-o", str(out)]) == 0
+    assert Results(out).history["contacts.0.force.z"][3] == pytest.approx(2000.0, rel=1e-6)
+
+
 def test_a_constant_amplitude_is_a_factor(deck: Path, capsys: pytest.CaptureFixture[str]):
     """Requirement: values times the number, reached along the step, and a line that says so."""
     deck.write_text(DECK.replace(" 0., 0., 0.5, 0.75\n 1., 1.", " 0., 0.5, 1., 0.5"))

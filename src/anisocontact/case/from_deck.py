@@ -134,6 +134,15 @@ class _Case:
         """Take `*DENSITY`."""
         self._material["density"] = float(card.numbers()[0])
 
+    def read_plastic(self, card: Card) -> None:
+        """Take `*PLASTIC`: yield stress over plastic strain, hardening that is isotropic."""
+        kind = card.options.get("HARDENING", "ISOTROPIC")
+        rows = list(card.fields())
+        if kind.upper() != "ISOTROPIC" or any(len(row) > 2 for row in rows):
+            raise InputError("one curve of isotropic hardening is taken over; see plastic")
+        pairs = [(real((*row, "0")[1]), real(row[0])) for row in rows]
+        self._material["flow_curve"] = [value for pair in pairs for value in pair]
+
     def read_interaction(self, card: Card) -> None:
         """Take `*SURFACE INTERACTION`; what follows is of it."""
         self._interaction = card.option("NAME").upper()
@@ -190,8 +199,10 @@ class _Case:
             return known
         sheet = {"plane-stress"} == ideals(kind for kind, _ in self.deck.elements.values())
         finite = self._steps.finite and not sheet  # sheets are at small strain alone
-        model = "st-venant-kirchhoff" if finite else "linear-elastic"
-        return {"model": model} | known
+        if "flow_curve" in known:
+            strain = {"strain": "logarithmic"} if finite else {}
+            return {"model": "plastic"} | known | strain
+        return {"model": "st-venant-kirchhoff" if finite else "linear-elastic"} | known
 
     def _contact(self, card: Card) -> Iterator[str]:
         name = card.options.get("INTERACTION", "").upper()
@@ -230,6 +241,7 @@ _READERS: dict[str, Callable[[_Case, Card], None]] = {
     "MATERIAL": _Case.read_material,
     "ELASTIC": _Case.read_elastic,
     "DENSITY": _Case.read_density,
+    "PLASTIC": _Case.read_plastic,
     "SURFACEINTERACTION": _Case.read_interaction,
     "FRICTION": _Case.read_friction,
     "SURFACEBEHAVIOR": _Case.read_behaviour,
