@@ -115,13 +115,17 @@ def _mortar_matching() -> Made:
 
 
 def _far(
-    slave: str = "block.bottom", master: str = "mat.top", long: int = 2, **options: bool
+    slave: str = "block.bottom",
+    master: str = "mat.top",
+    lengths: tuple[int, int] = (2, 16),
+    **options: bool,
 ) -> Made:
     """A block that is drawn along a strip: it meets facets that were far away at the start."""
+    block, strip = lengths
     model = build_box(
         {
-            "block": BoxSpec((-4.9, -1.05, GAP_BELOW), (long, 2, 1), (long, 3, 1)),
-            "mat": BoxSpec((-6, -1.5, -1), (12, 3, 1), (12, 3, 1)),
+            "block": BoxSpec((-4.9, -1.05, GAP_BELOW), (block, 2, 1), (block, 3, 1)),
+            "mat": BoxSpec((-6, -1.5, -1), (strip, 3, 1), (strip, 3, 1)),
         }
     )
     pair = Contact(model, slave, master, law=_law(), reach=0.4, **options)
@@ -142,7 +146,7 @@ def _mortar_second_order() -> Made:
 
 
 def _mortar_far() -> Made:
-    return _far("mat.top", "block.bottom", long=4, mortar=True)
+    return _far("mat.top", "block.bottom", lengths=(4, 12), mortar=True)
 
 
 def _mortar_symmetric() -> Made:
