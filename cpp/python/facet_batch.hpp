@@ -67,7 +67,7 @@ struct Slave {
 /// Where the search has put each point.
 struct Hits {
   const std::int32_t* facet;
-  const double *xi, *edge;
+  const double *xi, *edge, *held;  ///< held: projections, (n, 3, 3), see kernel::PairPoint; or none
   const std::int8_t* feature;
 };
 
@@ -104,6 +104,7 @@ struct Batch {
     s.point.facet = hits.facet[p];
     s.point.master.xi = {hits.xi[2 * p], hits.xi[2 * p + 1]};
     s.point.edge = {hits.edge[2 * p], hits.edge[2 * p + 1]};
+    s.point.held = hits.held == nullptr ? nullptr : hits.held + 9 * p;
     const auto kind = mesh.kind(f);
     auto& shape = s.shapes.master;
     put_shape(kind, s.point.master.xi, shape);

@@ -48,6 +48,8 @@ struct Input {
   }
 };
 
+using Squares = nb::ndarray<const double, nb::shape<-1, 3, 3>, nb::c_contig, nb::device::cpu>;
+
 /// A method with the arguments of a batch, which calls `run<tangent>(interface, input)`.
 template <class Run>
 void def_batch(nb::class_<FacetInterface>& c, const char* name, const Run& run) {
@@ -58,8 +60,8 @@ void def_batch(nb::class_<FacetInterface>& c, const char* name, const Run& run) 
             bool current_area, const Points& now, const Points& reference,
             const Nodes& connectivity, const Codes& topology, const Flags& flip,
             const Indices& facet, const Coordinates& xi, const Codes& feature,
-            const Coordinates& edge, const Flags& near, bool with_tangent, std::size_t threads,
-            const std::optional<Table>& outputs) -> nb::dict {
+            const Coordinates& edge, const Squares& held, const Flags& near, bool with_tangent,
+            std::size_t threads, const std::optional<Table>& outputs) -> nb::dict {
         const std::size_t n = facet.shape(0), ks = slave_nodes.shape(1), km = connectivity.shape(1);
         if (ks > kernel::most_nodes || km > kernel::most_nodes)
           throw std::invalid_argument("a facet has at most 9 nodes");
@@ -67,7 +69,8 @@ void def_batch(nb::class_<FacetInterface>& c, const char* name, const Run& run) 
             {now.data(), reference.data(), connectivity.data(), km, topology.data(), flip.data()},
             {slave_nodes.data(), slave_shape.data(), slave_gradient.data(), weight.data(), ks,
              current_area},
-            {facet.data(), xi.data(), edge.data(), feature.data()},
+            {facet.data(), xi.data(), edge.data(), held.shape(0) == n ? held.data() : nullptr,
+             feature.data()},
             h.on(kernel::Side::master),
             h.on(kernel::Side::slave)};
         const Input q{b,
@@ -84,8 +87,9 @@ void def_batch(nb::class_<FacetInterface>& c, const char* name, const Run& run) 
       nb::arg("state"), nb::arg("dt"), nb::arg("slave_nodes"), nb::arg("slave_shape"),
       nb::arg("slave_gradient"), nb::arg("weight"), nb::arg("current_area"), nb::arg("now"),
       nb::arg("reference"), nb::arg("connectivity"), nb::arg("topology"), nb::arg("flip"),
-      nb::arg("facet"), nb::arg("xi"), nb::arg("feature"), nb::arg("edge"), nb::arg("near"),
-      nb::arg("tangent"), nb::arg("threads"), nb::arg("outputs").none() = nb::none());
+      nb::arg("facet"), nb::arg("xi"), nb::arg("feature"), nb::arg("edge"), nb::arg("held"),
+      nb::arg("near"), nb::arg("tangent"), nb::arg("threads"),
+      nb::arg("outputs").none() = nb::none());
 }
 
 /// What a law that is not in the core sees at the points.

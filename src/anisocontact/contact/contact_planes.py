@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
-from anisocontact.contact.plane_axes import Carried, Turned
+from anisocontact.contact.plane_axes import Carried, Turned, in_tangents, unit_normal
 
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]
@@ -31,6 +31,9 @@ Floats = npt.NDArray[np.float64]
 #: Nodes that stand for a slave node and its planes: the slave with two tangents, the plane of now
 #: and that of the accepted increment.
 NODES = 9
+#: Lean to held directions, and distance along them over the size of the facets, that are none: what
+#: is rounding stays, so that a run that goes on within a step keeps its bits.
+ROUNDING = 1e-12
 #: Share of a direction along the normal, or along others, up to which it counts as across them.
 ACROSS = 0.3
 
@@ -211,6 +214,35 @@ class ContactPlanes:
         axes = self.now.axes
         right = np.einsum("nai,ni->na", axes, self.slave - self.mean)
         return np.asarray(np.linalg.solve(axes @ axes.swapaxes(1, 2), right[..., None])[..., 0])
+
+    def upright(self, xi: Floats, size: float) -> tuple[Floats, Floats] | None:
+        """The planes of then as supports hold the nodes now.
+
+        The accepted increment may have known other supports: its planes lean to the directions
+        that are held now, along which nothing turns or slips.
+
+        Args:
+            xi: Coordinates in their axes, (n, 2).
+            size: Of the facets, length.
+
+        Returns:
+            Coordinates in planes that contain held directions, of what is across these, and the
+            axes of these planes as `Carried.by_master`; None where all is as it should be.
+        """
+        axes = self.then.axes
+        normal, away = unit_normal(axes), np.einsum("na,nai->ni", xi, axes)
+        upright, along = across(self.held, normal), (self.held @ away[..., None])[..., 0]
+        far = np.linalg.norm(along, axis=1) > ROUNDING * size
+        new = far | (np.linalg.norm(upright - normal, axis=1) > ROUNDING)
+        if not new.any():
+            return None
+        axes = Turned(axes, upright).axes
+        right = axes @ (away - along)[..., None]
+        coordinates = np.linalg.solve(axes @ axes.swapaxes(1, 2), right)[..., 0]
+        by_master = np.where(
+            new[:, None, None], in_tangents(self.then.tangents, axes), self.then.by_master
+        )
+        return np.where(new[:, None], coordinates, xi), by_master
 
     def nodes(self) -> Floats:
         """The nodes that stand for all this, (9 n, 3), length.

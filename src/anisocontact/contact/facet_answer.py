@@ -21,6 +21,8 @@ from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
 
 #: Code of the kernel for a point without a facet below it.
 OFF = 3
+#: No directions along which supports hold points and master.
+NOTHING = np.zeros((0, 3, 3))
 #: Gap up to which a point may be in contact, as a share of the size of the facets: rounding.
 NEAR = 1e-6
 
@@ -202,6 +204,7 @@ class Evaluation:
             "xi": np.nan_to_num(hit.xi),
             "feature": np.where(located(hit), hit.feature, np.int8(OFF)),
             "edge": hit.edge,
+            "held": NOTHING,
             "near": touches | (state["multiplier"] > 0.0),
             "tangent": tangent,
             "threads": self.sides.threads,

@@ -178,6 +178,14 @@ class Master(Protocol):
         """
         return
 
+    @property
+    def held(self) -> Floats | None:
+        """Projection on directions along which supports hold points and master, (n, 3, 3), if any.
+
+        Tractions of the trial have nothing along them.
+        """
+        return None
+
     def immovable(self, fixed: Mask) -> bool:
         """Whether it cannot give way where local nodes are fixed, (nodes, 3); collective."""
         return self.body is None or not self.body.free

@@ -15,7 +15,11 @@ from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.mortar_weights import MortarWeights
 from anisocontact.contact.quadrature import Couplings, FacetQuadrature
+from anisocontact.interface import STATUS
 from anisocontact.surfaces import default_threads
+
+#: Status of a node that slides.
+SLIP = STATUS.index("slip")
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
@@ -130,6 +134,7 @@ class MortarAnswer:
         stiffness: Size of the derivative of the force of each, (n,), force/length.
         which: Slave nodes in contact, (p,).
         by_nodes: Derivative of their tractions, by the nodes of the planes, (p, 3, 27).
+        answered: That of what laws answer, with what supports carry of it.
     """
 
     at: MortarState
@@ -137,6 +142,7 @@ class MortarAnswer:
     stiffness: Floats
     which: Ints
     by_nodes: Floats
+    answered: Floats
 
     @cached_property
     def _tangent(self) -> tuple[Floats, Ints, Ints, Floats]:
@@ -165,7 +171,7 @@ class MortarAnswer:
 
     def by_derivative(self, other: MortarAnswer, stiffness: Floats) -> MortarAnswer:
         """As of `Answer`."""
-        return replace(self, which=other.which, by_nodes=other.by_nodes, stiffness=stiffness)
+        return replace(other, at=self.at, snapshot=self.snapshot, stiffness=stiffness)
 
 
 class MortarLinear:
@@ -173,11 +179,18 @@ class MortarLinear:
 
     Args:
         moved: Gives the displacements of the nodes now, (nodes, 3), length.
+        planes: Gives the contact planes now.
         answer: The answer, given there.
     """
 
-    def __init__(self, moved: Callable[[], Floats], answer: MortarAnswer) -> None:
-        self._moved, self._answer, self._then = moved, answer, moved()
+    def __init__(
+        self,
+        moved: Callable[[], Floats],
+        planes: Callable[[], ContactPlanes],
+        answer: MortarAnswer,
+    ) -> None:
+        self._moved, self._planes = moved, planes
+        self._answer, self._then = answer, moved()
 
     def change(self) -> Floats | None:
         """As of `Linear`."""
@@ -188,7 +201,8 @@ class MortarLinear:
         # the tangent is so stiff that the rounding of positions would be felt in the difference
         way = (now - self._then)[np.maximum(columns, 0)]
         way[columns < 0] = 0.0
-        return self._everywhere(np.einsum("pcij,pcj->pi", answer.by_columns, way))
+        change = np.einsum("pcij,pcj->pi", answer.by_columns, way)
+        return self._everywhere(change + self._supported())
 
     def slipped(self, slip: Floats) -> Floats:
         """As of `Linear`."""
@@ -196,11 +210,29 @@ class MortarLinear:
 
     def add_force(self, slip: Floats, out: Floats) -> None:
         """As of `Linear`."""
-        self._answer.add_traction(self._answer.which, self._of(slip), out)
+        which, carried = self._answer.which, self._of(slip)[..., None]
+        held = self._answer.at.planes.held[which]
+        self._answer.add_traction(which, (carried - held @ carried)[..., 0], out)
 
     def _of(self, slip: Floats) -> Floats:
-        by_point = self._answer.by_nodes[:, :, :9].reshape(-1, 3, 3, 3).sum(axis=2)
+        by_point = self._answer.answered[:, :, :9].reshape(-1, 3, 3, 3).sum(axis=2)
         return np.asarray(np.einsum("pij,pj->pi", by_point, slip[self._answer.which]))
+
+    def _supported(self) -> Floats:
+        """Change of what supports carry of the tractions answered where nodes slide, (p, 3).
+
+        Where they stick supports carry what they do: nothing slips there, and what is of second
+        order in the way would be felt in a tangent that stiff.
+        """
+        answer, held = self._answer, self._answer.at.planes.held
+        out = np.zeros((len(answer.which), 3))
+        sliding = answer.snapshot.response.status[answer.which] == SLIP
+        rows = np.flatnonzero(sliding & held[answer.which].any(axis=(1, 2)))
+        if rows.size:
+            nodes = answer.which[rows]
+            way = (self._planes().nodes() - answer.at.planes.nodes()).reshape(-1, 27)[nodes]
+            out[rows] = (held[nodes] @ answer.answered[rows] @ way[..., None])[..., 0]
+        return out
 
     def _everywhere(self, found: Floats) -> Floats:
         out = np.zeros((len(self._answer.at.quadrature.nodes), 3))

@@ -48,8 +48,6 @@ Floats = npt.NDArray[np.float64]
 NEAR = 1e-6
 #: Share of its weight that has to be covered for a node to carry traction.
 COVERED = 1e-8
-#: Distance along held directions, as a share of the size of the facets, that is none.
-ROUNDING = 1e-12
 #: Of `Opposite` what a checkpoint has.
 OPPOSITE = tuple(f.name for f in fields(Opposite) if f.name != "nodes")
 
@@ -206,8 +204,7 @@ class MortarMaster(MeshedMaster):
         derivative: bool = False,
         separate: bool = False,
     ) -> Any:
-        law = self._derivative if derivative else self._law
-        return self._answer(law, state, dt, tangent)
+        return self._answer(self._derivative if derivative else self._law, state, dt, tangent)
 
     def _answer(self, law: FacetLaw, state: State, dt: float, tangent: bool) -> MortarAnswer:
         at = self._at
@@ -222,9 +219,9 @@ class MortarMaster(MeshedMaster):
         snapshot = Snapshot(at.planes.slave, at.weights.area, response)
         by_nodes = np.zeros((len(which), 3, 27))
         if tangent:
-            by_nodes = -free[which] @ found["tangent"][which, :3]
+            by_nodes = -found["tangent"][which, :3]
         stiffness = found["stiffness"] * at.weights.area
-        return MortarAnswer(at, snapshot, stiffness, which, by_nodes)
+        return MortarAnswer(at, snapshot, stiffness, which, free[which] @ by_nodes, by_nodes)
 
     def _batch(self, state: State, tangent: bool = True) -> FacetBatch:
         """Slave nodes and planes as the core takes them."""
@@ -238,13 +235,16 @@ class MortarMaster(MeshedMaster):
         self._resting = resting
         self._spread_flags()
         self._at = self._placed(self._at.weights)
-        axes, held = self._at.planes.then.axes, self._at.planes.held
-        away = np.einsum("na,nai->ni", state["xi"], axes)
-        along = held @ away[..., None]
-        # what is rounding stays, so that a run that goes on within a step keeps its bits
-        along[np.linalg.norm(along[..., 0], axis=1) <= ROUNDING * self._points.size] = 0.0
-        along = axes @ along
-        state["xi"] -= np.linalg.solve(axes @ axes.swapaxes(1, 2), along)[..., 0]
+        then = self._at.planes.upright(state["xi"], self._points.size)
+        if then is not None:
+            state["xi"], carried = then
+            self._then = replace(self._then, carried=carried)
+            self._at = self._placed(self._at.weights)
+
+    @property
+    @override
+    def held(self) -> Floats:
+        return self._at.planes.held
 
     @override
     def failed_point(self, i: int, state: State, dt: float, **of_point: Any) -> OnFacets:
@@ -260,7 +260,7 @@ class MortarMaster(MeshedMaster):
 
     @override
     def linear(self, answer: Any) -> Any:
-        return MortarLinear(lambda: self._nodes.moved, answer)
+        return MortarLinear(lambda: self._nodes.moved, lambda: self._at.planes, answer)
 
     @override
     def here(self, state: State, dt: float) -> State:

@@ -150,6 +150,8 @@ class ContactTrial:
             gap, or of which next to nothing is covered: they keep a penalty, (n,).
         covered: Share of the weight of each point that the master covers, above 0, (n,).
         shared: Points that are slaves of other contacts with multipliers as well, (n,).
+        held: Projection on directions along which supports hold points and what they meet,
+            (n, 3, 3), or none: tractions have nothing along them, multipliers have.
     """
 
     start: State
@@ -161,6 +163,15 @@ class ContactTrial:
     immovable: npt.NDArray[np.bool_]
     covered: Floats
     shared: npt.NDArray[np.bool_]
+    held: Floats | None
+
+    @property
+    def supported(self) -> Floats:
+        """What of the tangential multipliers answered supports carry, (n, 3), stress."""
+        if self.held is None:
+            return np.zeros((len(self.start), 3))
+        tangential = self.now.vector(self.answer.state["stored"])
+        return np.asarray((self.held @ tangential[..., None])[..., 0])
 
     @property
     def kept(self) -> Floats:

@@ -45,9 +45,7 @@ class Turned:
     @property
     def carried(self) -> Floats:
         """The axes in both tangents and their normal, (n, 2, 3): what `Carried` takes."""
-        d, e = self.tangents, self.axes
-        along = np.linalg.solve(d @ d.swapaxes(1, 2), d @ e.swapaxes(1, 2)).swapaxes(1, 2)
-        return np.concatenate([along, e @ self.own_normal[..., None]], axis=2)
+        return in_tangents(self.tangents, self.axes)
 
     @cached_property
     def _fall(self) -> Floats:
@@ -99,6 +97,13 @@ class Carried:
         by[:, :, 6] += (by_axes - by_d).sum(axis=2)
         by[:, :, 7:] = by_d
         return by.reshape(by_nodes.shape)
+
+
+def in_tangents(tangents: Floats, axes: Floats) -> Floats:
+    """Vectors e, (n, 2, 3), in two tangents d and their normal, (n, 2, 3), see `Carried`."""
+    d, e = tangents, axes
+    along = np.linalg.solve(d @ d.swapaxes(1, 2), d @ e.swapaxes(1, 2)).swapaxes(1, 2)
+    return np.concatenate([along, e @ unit_normal(d)[..., None]], axis=2)
 
 
 def unit_normal(tangents: Floats) -> Floats:

@@ -49,6 +49,7 @@ def plane_batch(
         "xi": np.where(located[:, None], at.planes.xi, 0.0),
         "feature": np.where(located, np.int8(0), np.int8(OFF)),
         "edge": np.zeros((n, 2)),
+        "held": at.planes.held,
         "near": near,
         "tangent": tangent,
         "threads": threads,

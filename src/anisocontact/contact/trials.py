@@ -225,6 +225,8 @@ class Trials:
         answer: Answer = trial.by_derivative(stiff, stiffness)
         self._linear = master.linear(answer)
         traction = master.into_frame(trial.snapshot.response.traction)
+        if follower.tangential:
+            traction = traction + step.supported
         slipped = self._linear.slipped(self._slip)
         self._base = Base(follower.vector(step), traction, slipped, step.kept)
         return answer
@@ -393,6 +395,7 @@ class Trials:
             self._immovable | self._slight,
             self._points.covered(trial.areas).clip(LEAST, 1.0),
             self._shared,
+            self.master.held,
         )
 
     def _frames(self, state: State) -> Frames:

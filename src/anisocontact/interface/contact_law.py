@@ -228,6 +228,7 @@ class FacetBatch(TypedDict):
     xi: npt.NDArray[np.float64]
     feature: npt.NDArray[np.int8]
     edge: npt.NDArray[np.float64]
+    held: npt.NDArray[np.float64]
     near: npt.NDArray[np.bool_]
     tangent: bool
     threads: int

@@ -228,5 +228,5 @@ def one_point(batch: Mapping[str, Any], i: int, state: State) -> tuple[FacetBatc
 #: What of a batch belongs to points.
 _OF_POINTS = (
     *("slave_nodes", "slave_shape", "slave_gradient", "weight"),
-    *("facet", "xi", "feature", "edge", "near"),
+    *("facet", "xi", "feature", "edge", "held", "near"),
 )

@@ -56,6 +56,34 @@ class PairAxes {
   std::optional<ReferencePlane<double>> own_;
 };
 
+/// Supports hold slave and master along directions h of the contact plane: nothing slips along them,
+///   (u - h (h . u))_a = (delta_ab - h_a h_b) u_b ,
+/// and the directions are fixed, so that derivatives are projected alike.
+class HeldDirections {
+ public:
+  HeldDirections(const double* held, const ContactPlane& plane) noexcept {
+    for (std::size_t b = 0; held != nullptr && b < 2; ++b) {
+      const Vec3<double>& t = plane.t[b];
+      const Flat along = plane.along({t.dot(Vec3<double>(held)), t.dot(Vec3<double>(held + 3)),
+                                      t.dot(Vec3<double>(held + 6))});
+      for (std::size_t a = 0; a < 2; ++a) free_[a][b] -= along[a];
+    }
+  }
+  Flat rest(const Flat& u) const noexcept {
+    return {free_[0][0] * u[0] + free_[0][1] * u[1], free_[1][0] * u[0] + free_[1][1] * u[1]};
+  }
+  /// Slopes by the increment, from those by what is left of it.
+  void pull_back(Reaction& r) const noexcept {
+    const Flat first = r.slope(Slope::increment, 0), second = r.slope(Slope::increment, 1);
+    for (std::size_t k = 0; k < 2; ++k)
+      for (std::size_t a = 0; a < 2; ++a)
+        r.slope(Slope::increment, k)[a] = first[a] * free_[0][k] + second[a] * free_[1][k];
+  }
+
+ private:
+  std::array<Flat, 2> free_{Flat{1.0, 0.0}, Flat{0.0, 1.0}};
+};
+
 /// Writes all derivatives of a point that touches: of what `frame` and `committed` say of the
 /// geometry and `r` of the law.
 inline void put_slopes(const InterfaceLaw& law, FacetFrame& frame, const PairPoint& p,
@@ -111,9 +139,12 @@ PairResult update_pair(const InterfaceLaw& law, const Law& reacts, const PointSt
     history.emplace(plane, surface::tangent_plane(p.before), p.master.now.position, state, &p.own,
                     looks_back(law.evolution));
   const CommittedPoint* committed = history ? &*history : nullptr;
-  const ContactFrame in = contact_frame(law, gap, dt, pressure, committed, axes, plane);
-  const Reaction r = reacts.evaluate(state, in, tangent);
+  ContactFrame in = contact_frame(law, gap, dt, pressure, committed, axes, plane);
+  const detail::HeldDirections held(p.held, plane);
+  in.increment = held.rest(in.increment);
+  Reaction r = reacts.evaluate(state, in, tangent);
   if (r.failure != Failure::none) return fail(r.failure);
+  if (tangent) held.pull_back(r);
   advance(law, state, in, r, {plane, frame.facet(), committed, &p.own, moving_axes(law, axes)},
           out.state);
   const Vec3<double> friction = plane.spatial(r.traction);
