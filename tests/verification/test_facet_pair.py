@@ -121,6 +121,7 @@ class Setting:
             np.tile(xi, (repeat, 1)),
             np.zeros(repeat, dtype=np.int8),
             np.zeros((repeat, 2)),
+            np.zeros((0, 3, 3)),
             np.ones(repeat, dtype=np.bool_),
             tangent,
             threads,

@@ -28,7 +28,7 @@ STRATEGIES = ["direct", "condensed", "iterative"]
 def _always_flows(monkeypatch: pytest.MonkeyPatch) -> None:
     """Every attempt starts from the accepted state and flows."""
 
-    def ways(self: Attempts, searching: Any, full: Any) -> list[Any]:
+    def ways(self: Attempts, searching: Any, full: Any, softer: bool) -> list[Any]:
         return [replace(full, flowing=True)]
 
     monkeypatch.setattr(Attempts, "_ways", ways)

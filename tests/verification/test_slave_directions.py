@@ -107,6 +107,7 @@ def test_between_facets(on: str, angle: float) -> None:
             np.ascontiguousarray(xi),
             np.zeros(n, dtype=np.int8),
             np.zeros((n, 2)),
+            np.zeros((0, 3, 3)),
             np.ones(n, dtype=np.bool_),
             False,
             1,

@@ -18,8 +18,7 @@ struct PairPoint {
   std::int64_t facet{-1};
   Feature feature{Feature::off};
   std::array<double, 2> edge{};  ///< direction of the edge in coordinates
-  const double* held{
-      nullptr};  ///< projection on directions along which nothing slips, (3, 3); or none
+  const double* held{nullptr};   ///< onto directions across n along which nothing slips, (3, 3)
 };
 
 /// The facet under a point: contact plane, and how the coordinates of the projection and the normal
