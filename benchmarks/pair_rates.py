@@ -115,6 +115,7 @@ class Sheets:
             np.nan_to_num(hit.xi),
             np.where(hit.status == 0, hit.feature, np.int8(3)),
             hit.edge,
+            np.zeros((0, 3, 3)),
             hit.gap <= 1e-6 * self.size,
             tangent,
             1,

@@ -136,3 +136,31 @@ def test_tangent_where_the_master_ends(cell: str, order: int) -> None:
         found = (force_of(contact, u + h * way) - force_of(contact, u - h * way)) / (2.0 * h)
         errors.append(np.abs(found - exact).max() / np.abs(exact).max())
     assert errors[1] < max(errors[0] / 50.0, 2e-8)
+
+
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_hollow_borders_keep_their_nodes(side: float) -> None:
+    """A node in front of a notch of the border stays on its edge until another is clearly nearer.
+
+    Source: both edges of a notch are equally near from its middle, where rounding would choose.
+    """
+    x, y, z = 0.1, 1.0, 0.0
+    nodes = np.array([[-1, -y, z], [-1, 0, z], [-1, y, z], [x, -y, z], [0, 0, z], [x, y, z]])
+    quads = np.array([[0, 3, 1, 4], [1, 4, 2, 5]], dtype=np.int32)
+    surface = FacetSurface(nodes, quads, "quad4")
+    sides: Any = SimpleNamespace(
+        surface=surface, master=SimpleNamespace(topology="quad4"), excluded=None, reach=np.inf
+    )
+    normal = np.array([[0.0, 0.0, 1.0]])
+
+    def place(shift: float, before: Places | None) -> Places:
+        at = np.array([[1.0, shift, 0.1]])
+        return along_normals(sides, at, normal, surface.project(at), before)
+
+    first = place(0.01 * side, None)
+    there = place(-1e-9 * side, None)
+    assert first.facet[0] != there.facet[0]
+    kept = place(-1e-9 * side, first)
+    assert kept.facet[0] == first.facet[0]
+    assert np.abs(surface.jet(kept.facet, kept.xi).position[0, 1] * side - 0.0990) < 1e-3
+    assert place(-0.3 * side, first).facet[0] == there.facet[0]

@@ -34,6 +34,8 @@ TRIED = 8
 OPPOSED = 0.1
 #: How far coordinates may be beyond the sides of a facet: rounding.
 ROUNDING = 1e-10
+#: Share by which another place on the border has to be nearer than that on the edge of before.
+NEARER = 1e-3
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,9 @@ class Places:
     edge: Floats
 
 
-def along_normals(sides: Sides, x: Floats, normal: Floats, hit: FacetProjections) -> Places:
+def along_normals(
+    sides: Sides, x: Floats, normal: Floats, hit: FacetProjections, before: Places | None = None
+) -> Places:
     """Where normals of slave nodes meet the master.
 
     Args:
@@ -61,6 +65,7 @@ def along_normals(sides: Sides, x: Floats, normal: Floats, hit: FacetProjections
         normal: Unit normals there, (n, 3).
         hit: Closest points of the slave nodes. Nodes whose normal meets nothing that is near to
             these keep them.
+        before: Places at the accepted increment, if there are any.
 
     Returns:
         The places.
@@ -86,7 +91,30 @@ def along_normals(sides: Sides, x: Floats, normal: Floats, hit: FacetProjections
         at = sides.surface.project(ahead, None, sides.reach, excluded)
         near = np.flatnonzero(at.status <= FACET_STATUS.index("off"))
         rest, at = rest[near], at.take(near)
+    if before is not None:
+        _stay(sides, x, normal, places, before)
     return places
+
+
+def _stay(sides: Sides, x: Floats, normal: Floats, places: Places, before: Places) -> None:
+    """Leave places on the edges of the border where they were, unless others are nearer.
+
+    A border that is hollow as seen from a node has two closest points, between which it would hop.
+    """
+    on_border = [one.edge.any(axis=1) & ~np.isnan(one.edge[:, 0]) for one in (places, before)]
+    moved = (places.facet >= 0) & (before.facet >= 0) & (places.facet != before.facet)
+    rows = np.flatnonzero(moved & on_border[0] & on_border[1])
+    if not rows.size:
+        return
+    x, normal = x[rows], normal[rows]
+    now, then = (Places(p.facet[rows], p.xi[rows], p.edge[rows]) for p in (places, before))
+    then = _border(sides, x, normal, then)
+    away, stayed = (
+        np.linalg.norm(_across(x - sides.surface.jet(p.facet, p.xi).position, normal), axis=1)
+        for p in (now, then)
+    )
+    kept = stayed <= (1.0 + NEARER) * away
+    _put(places, rows[kept], then.facet[kept], then.xi[kept], then.edge[kept])
 
 
 def _put(places: Places, rows: Numbers, facet: Ints, xi: Floats, edge: Floats | float) -> None:
@@ -140,7 +168,7 @@ def _ahead(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tup
     return x + way[:, None] * normal, opposed
 
 
-def _border(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> Places:
+def _border(sides: Sides, x: Floats, normal: Floats, at: FacetProjections | Places) -> Places:
     """Places on the edges of the border that are closest as seen along normals."""
     edge, xi = at.edge.copy(), at.xi.copy()
     least, most = _ends(xi, edge)

@@ -9,7 +9,7 @@ from typing import Any, override
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.along_normals import OPPOSED, along_normals
+from anisocontact.contact.along_normals import OPPOSED
 from anisocontact.contact.contact_planes import (
     ContactPlanes,
     Opposite,
@@ -32,7 +32,7 @@ from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.slave_nodes import SlaveNodes
-from anisocontact.contact.tangent_places import tangent_places
+from anisocontact.contact.tangent_places import met_along
 from anisocontact.contact.whereabouts import Whereabouts
 from anisocontact.interface import ContactLaw, State
 from anisocontact.interface.contact_law import FacetBatch, FacetLaw
@@ -91,7 +91,7 @@ class MortarMaster(MeshedMaster):
         x, tangents = points.positions(now), points.at(now).tangents[:, 0]
         normal = averaged_normal(tangents)
         held = held_directions(self._flags, points.nodes[:, 0], self._below, normal)
-        opposite = tangent_places(sides, along_normals(sides, x, across(held, normal), self._hint))
+        opposite = met_along(sides, x, across(held, normal), self._hint, self._then)
         if weights is None:
             more = np.concatenate([opposite.named(), self._then.named()], axis=1)
             # the same on all processes, so that a facet counts on any number of them

@@ -5,12 +5,50 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.contact.along_normals import Places
+from anisocontact.contact.along_normals import Places, along_normals
 from anisocontact.contact.contact_planes import Opposite
+from anisocontact.contact.facet_mesh import node_coordinates
 from anisocontact.contact.sides import Sides
+from anisocontact.surfaces.facets import FacetProjections
 
 Ints = npt.NDArray[np.int32]
 Floats = npt.NDArray[np.float64]
+
+
+#: Coordinates of the corners of facets.
+CORNERS = {
+    "tri": np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]),
+    "quad": np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]),
+}
+
+
+def met_along(
+    sides: Sides, x: Floats, normal: Floats, hit: FacetProjections, then: Opposite
+) -> Opposite:
+    """Where the tangents of the master are taken along normals of slave nodes.
+
+    Args:
+        sides: Slave nodes and facets.
+        x: Slave nodes, (n, 3), length.
+        normal: Unit normals there, (n, 3).
+        hit: Closest points of the slave nodes.
+        then: What was opposite at the accepted increment.
+
+    Returns:
+        As of `tangent_places`.
+    """
+    return tangent_places(sides, along_normals(sides, x, normal, hit, places_of(sides, then)))
+
+
+def places_of(sides: Sides, then: Opposite) -> Places:
+    """Places that tangents were taken at, see `tangent_places`."""
+    topology = sides.master.topology
+    coordinates = node_coordinates(topology, CORNERS[topology.rstrip("0123456789")])
+    if not len(sides.master.nodes):
+        return Places(then.facet, np.zeros((len(then.facet), 2)), then.edge)
+    xi = then.shape @ coordinates
+    flipped = sides.master.flip[np.maximum(then.facet, 0)]  # whose coordinates change places
+    return Places(then.facet, np.where(flipped[:, None], xi[:, ::-1], xi), then.edge)
 
 
 def tangent_places(sides: Sides, places: Places) -> Opposite:
