@@ -51,9 +51,10 @@ def _run(sides: int, slave: str, master: str, exact: bool) -> tuple[np.ndarray, 
     }
     plane = {"block.front": {"y": 0.0}, "base.front": {"y": 0.0}} if sides == 1 else {}
     held = {"base.bottom": dict.fromkeys("xyz", 0.0)} | plane
-    steps = [Step("press", 2, held | {"block.top": {"x": 0.0, "y": 0.0, "z": -0.06}})]
-    if slave == "block.bottom":
-        steps.append(Step("drag", 3, held | {"block.top": {"x": 0.2, "y": 0.0, "z": -0.06}}))
+    steps = [
+        Step("press", 2, held | {"block.top": {"x": 0.0, "y": 0.0, "z": -0.06}}),
+        Step("drag", 3, held | {"block.top": {"x": 0.2, "y": 0.0, "z": -0.06}}),
+    ]
     forces, iterations = [], []
     for done in Solver(Problem(model, materials, [pair]), steps).run():
         forces.append(pair.resultant()[0])

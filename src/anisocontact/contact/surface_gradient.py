@@ -51,9 +51,10 @@ class SurfaceGradient:
             mesh: The facets.
             reference: Positions of the nodes in the reference configuration, (nodes, 3), length.
         """
-        corners = 3 if mesh.topology.startswith("tri") else 4
-        slots = _Slots.of(mesh, reference, corners)
-        group = _smooth(mesh, slots.normals, corners)
+        vertices = _vertices(mesh)
+        corners = vertices.shape[1]
+        slots = _Slots.of(mesh, reference, vertices)
+        group = _smooth(mesh.topology, slots.normals, vertices)
         count = int(group.max(initial=-1)) + 1
         total = np.bincount(group, slots.angles, minlength=count)
         weight = slots.angles / total[group]
@@ -134,8 +135,8 @@ class _Slots:
     angles: Floats
 
     @classmethod
-    def of(cls, mesh: FacetMesh, reference: Floats, corners: int) -> _Slots:
-        m, k = mesh.nodes.shape
+    def of(cls, mesh: FacetMesh, reference: Floats, vertices: Ints) -> _Slots:
+        (m, k), corners = mesh.nodes.shape, vertices.shape[1]
         surface = FacetSurface(reference, mesh.nodes, mesh.topology, mesh.flip)
         facet = np.repeat(np.arange(m, dtype=np.int32), corners)
         slope = surface.shapes(facet, np.tile(VERTICES[corners], (m, 1)))[1][:, :k]
@@ -143,9 +144,8 @@ class _Slots:
         metric = tangents @ tangents.swapaxes(1, 2)
         gradients = slope @ np.linalg.solve(metric, tangents)
         cross = np.cross(tangents[:, 0], tangents[:, 1])
-        cross[mesh.flip[facet]] *= -1.0
         size = np.linalg.norm(cross, axis=1)
-        ends = _sides(reference[mesh.nodes[:, :corners]], mesh.topology).reshape(-1, 2, 3)
+        ends = _sides(reference[vertices], mesh.topology).reshape(-1, 2, 3)
         cosine = np.einsum("si,si->s", ends[:, 0], ends[:, 1])
         return cls(gradients, cross / size[:, None], np.arccos(np.clip(cosine, -1.0, 1.0)))
 
@@ -172,16 +172,23 @@ def _sides(x: Floats, topology: str) -> Floats:
     return np.asarray(out / np.linalg.norm(out, axis=3, keepdims=True))
 
 
-def _smooth(mesh: FacetMesh, normals: Floats, corners: int) -> Numbers:
+def _vertices(mesh: FacetMesh) -> Ints:
+    """Nodes at `VERTICES`, (m, c): coordinates of facets that are flipped change places."""
+    corners = 3 if mesh.topology.startswith("tri") else 4
+    nodes = mesh.nodes[:, :corners]
+    return np.where(mesh.flip[:, None], nodes[:, [0, 2, 1, 3][:corners]], nodes)
+
+
+def _smooth(topology: str, normals: Floats, nodes: Ints) -> Numbers:
     """Groups of facets at a vertex between which the surface is smooth, (s,)."""
     # SciPy takes a while to be imported
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
 
-    once = facet_corners(mesh.topology)
+    once = facet_corners(topology)
     first, second = once, once[1:] + once[:1]
-    vertices = mesh.nodes[:, :corners].astype(np.int64)
-    slot = corners * np.arange(len(vertices))[:, None]
+    vertices = nodes.astype(np.int64)
+    slot = vertices.shape[1] * np.arange(len(vertices))[:, None]
     edge = np.stack([vertices[:, first], vertices[:, second]], axis=2).reshape(-1, 2)
     place = np.stack([slot + first, slot + second], axis=2).reshape(-1, 2)
     back = edge[:, 0] > edge[:, 1]
