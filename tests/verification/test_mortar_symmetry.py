@@ -7,6 +7,8 @@ import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from tests.conftest import difference_errors
+
 from anisocontact.anisotropy import make_directions
 from anisocontact.bulk import make_material
 from anisocontact.contact import Contact
@@ -23,8 +25,8 @@ LAW = ContactLaw(
 )
 
 
-def _run(sides: int, slave: str, master: str, exact: bool) -> tuple[np.ndarray, list[int]]:
-    """Forces after every increment, and iterations, of a half (1 side) or the whole (2).
+def _made(sides: int, slave: str, master: str, exact: bool) -> tuple[Problem, list[Step]]:
+    """A half (1 side) or the whole (2).
 
     A block whose lower face is curved about both axes is pressed on a softer one, whose upper face
     is too, and dragged along the plane y = 0.
@@ -55,8 +57,15 @@ def _run(sides: int, slave: str, master: str, exact: bool) -> tuple[np.ndarray, 
         Step("press", 2, held | {"block.top": {"x": 0.0, "y": 0.0, "z": -0.06}}),
         Step("drag", 3, held | {"block.top": {"x": 0.2, "y": 0.0, "z": -0.06}}),
     ]
+    return Problem(model, materials, [pair]), steps
+
+
+def _run(sides: int, slave: str, master: str, exact: bool) -> tuple[np.ndarray, list[int]]:
+    """Forces after every increment, and iterations."""
+    problem, steps = _made(sides, slave, master, exact)
+    (pair,) = problem.contacts
     forces, iterations = [], []
-    for done in Solver(Problem(model, materials, [pair]), steps).run():
+    for done in Solver(problem, steps).run():
         forces.append(pair.resultant()[0])
         iterations.append(done.iterations)
     return np.array(forces), iterations
@@ -79,3 +88,25 @@ def test_halves_are_as_good_as_the_whole(slave: str, master: str, exact: bool) -
     wanted, scale = whole[:, [0, 2]], np.abs(whole).max()
     np.testing.assert_allclose(2.0 * half[:, [0, 2]], wanted, atol=3e-4 * scale, rtol=0.0)
     assert max(*few, *many) <= 12
+
+
+def test_tangent_by_order() -> None:
+    """Halving the step quarters the error of central differences, nodes of the plane moving in it.
+
+    Requirement: 3.5 to 4.5. Source: the tangent is exact where nothing slips along held directions.
+    """
+    problem, steps = _made(1, "block.bottom", "base.top", False)
+    for _ in Solver(problem, steps).run():
+        pass
+    rng = np.random.default_rng(2)
+    off = np.abs(problem.model.space.tabulate_dof_coordinates()[:, 1]) > 1e-9
+    free = np.stack([np.ones_like(off), off, np.ones_like(off)], axis=1).reshape(-1)
+    x = problem.accepted()
+    x.array[:] += free * rng.normal(0.0, 2e-5, len(free))
+    problem.set_load_factor(1.0, 1.0)
+    problem.evaluate(x)
+    assert problem.contacts[0].counts()["slip"] > 5
+    direction = x.duplicate()
+    direction.array[:] = free * rng.normal(size=len(free))
+    errors = difference_errors(problem, x, direction, (4e-7, 2e-7))
+    assert 3.5 < errors[0] / errors[1] < 4.5
