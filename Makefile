@@ -60,7 +60,8 @@ clang: setup ## the core and the programs of tests/cpp by clang++, where that is
 mutants: setup ## change the core in one place at a time; some test has to notice each
 	@$(IN_VENV) python tools/mutants.py
 
-format: setup ## format Python and C++
+format: setup ## format Python and C++, and write the types of the core anew
+	@.venv/bin/python tools/stubs.py
 	@$(IN_VENV) ruff check --fix --select I --quiet .
 	@$(IN_VENV) ruff format --quiet .
 	@[ -z "$(CPP)" ] || $(IN_VENV) clang-format -i $(CPP)
