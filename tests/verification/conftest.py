@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 import pytest
-from scipy.interpolate import NdBSpline
+from scipy.interpolate import CubicSpline, NdBSpline
 
 from anisocontact.base import registry
 from anisocontact.surfaces import PROJECTION_STATUS, Surface, make_surface
@@ -94,7 +94,7 @@ class SurfaceSample:
             self,
             name=f"{self.name}-bore",
             parameters=self.parameters | {"inside": True},
-            curvature=turned,
+            curvature=turned if curvature else None,
             mirrored=True,
         )
 
@@ -106,7 +106,8 @@ def moved(parameters: dict[str, Any], shape: str, q: Floats, t: Floats, scale: f
     result = {}
     for name, value in parameters.items():
         kind, unit = units[name]
-        if name == "semi_axes" or (kind == "scalar" and unit == "length"):
+        lengths = name in ("semi_axes", "profile", "rounding") or kind == "scalar"
+        if lengths and unit == "length":
             result[name] = scale * np.asarray(value)
         elif unit == "length":
             result[name] = (t + scale * np.reshape(value, (-1, 3)) @ q.T).ravel()
@@ -351,6 +352,107 @@ def _patches() -> list[SurfaceSample]:
     ]
 
 
+def _revolution(name: str, profile: Any, radius: Any, breaks: Any, **more: Any) -> SurfaceSample:
+    """A profile turned about the axis; `radius` gives r, z of its share."""
+    closed, ends = more.pop("closed", False), more.pop("ends", ())
+    low, high = more.pop("window", (0.02, 0.98))
+
+    def local(u: Floats, v: Floats) -> tuple[Floats, ...]:
+        r, z = radius(v - np.floor(v) if closed else v)
+        return r * np.cos(u), r * np.sin(u), z
+
+    return SurfaceSample(
+        name=name,
+        shape="revolution",
+        parameters={"point": ORIGIN, "profile": profile} | PLACED | more,
+        size=1.0,
+        centre=ORIGIN,
+        window=((-PI, PI), (low, high)),
+        whole=((-PI, PI), (0.0, 1.0)),
+        local=local,
+        closed=(True, closed),
+        breaks=((), (*breaks, *((0.0, 1.0) if closed else ends))),
+    )
+
+
+def _pieces(*pieces: Any) -> Any:
+    """r, z over the share of chords, and where pieces meet.
+
+    A line is (start, end), an arc (centre, radius, first angle, last angle). The tangent of half
+    the angle from the middle of an arc is linear in its share.
+    """
+
+    def ends(piece: Any) -> Floats:
+        if len(piece) == 2:
+            return np.array(piece, float)
+        centre, radius, *angles = piece
+        return centre + radius * np.stack([np.cos(angles), np.sin(angles)], axis=1)
+
+    chords = [np.linalg.norm(np.diff(ends(p), axis=0)) for p in pieces]
+    knots = np.concatenate([[0.0], np.cumsum(chords)]) / np.sum(chords)
+
+    def at(v: Floats) -> tuple[Floats, ...]:
+        v = np.asarray(v)
+        found = np.zeros((*v.shape, 2))
+        for k, piece in enumerate(pieces):
+            here = (v >= knots[k]) & (v <= knots[k + 1])
+            share = ((v[here] - knots[k]) / (knots[k + 1] - knots[k]))[:, None]
+            if len(piece) == 2:
+                found[here] = (1 - share) * piece[0] + share * np.array(piece[1])
+            else:
+                centre, radius, first, last = piece
+                half = (last - first) / 2
+                angle = first + half + 2 * np.arctan((2 * share - 1) * np.tan(half / 2))
+                found[here] = centre + radius * np.hstack([np.cos(angle), np.sin(angle)])
+        return found[..., 0], found[..., 1]
+
+    return at, tuple(knots[1:-1].tolist())
+
+
+def revolutions() -> list[SurfaceSample]:
+    """A die with a rounding, a ring with the profile of a stadium, a nose with a tip and a corner,
+    and a vase whose profile is a spline that begins on the axis."""
+    die = _pieces(((2, 0), (1.4, 0)), ((1.4, -0.4), 0.4, PI / 2, PI), ((1, -0.4), (1, -2)))
+    quarter = PI / 2
+    ring = _pieces(
+        ((1, -0.5), (2, -0.5)),
+        *(((2, 0), 0.5, k * quarter, (k + 1) * quarter) for k in (-1, 0)),
+        ((2, 0.5), (1, 0.5)),
+        *(((1, 0), 0.5, k * quarter, (k + 1) * quarter) for k in (1, 2)),
+    )
+    nose = _pieces(((0, 0), (1, 0.5)), ((1, 0.5), (1.2, 1.6)))
+    points = np.array([[0, 0], [0.5, 0.05], [0.9, 0.4], [0.8, 1.0], [0.5, 1.4], [0.9, 2.0]])
+    chords = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    share = np.concatenate([[0.0], np.cumsum(chords)]) / chords.sum()
+    vase = CubicSpline(share, points)
+    return [
+        _revolution("revolution-die", [2, 0, 1, 0, 1, -2], *die, rounding=[0.4]),
+        _revolution(
+            "revolution-ring",
+            [(1, -0.5), (2, -0.5), (2, 0.5), (1, 0.5), (1, -0.5)],
+            *ring,
+            arcs=(0, PI, 0, PI),
+            closed=True,
+        ),
+        _revolution(
+            "revolution-nose",
+            [(0, 0), (1, 0.5), (1.2, 1.6)],
+            *nose,
+            ends=(0.0,),
+            window=(0.06, 0.98),
+        ),
+        _revolution(
+            "revolution-vase",
+            points,
+            lambda v: tuple(np.moveaxis(vase(v), -1, 0)),
+            share[2:-2],
+            spline=True,
+            ends=(0.0,),
+            window=(0.06, 0.98),
+        ),
+    ]
+
+
 def surface_samples() -> list[SurfaceSample]:
     """All samples; every registered surface has one."""
     revolved = [
@@ -362,7 +464,9 @@ def surface_samples() -> list[SurfaceSample]:
     ]
     spheroids = [_ellipsoid("oblate", 1.5, 1.5, 0.6), _ellipsoid("prolate", 0.8, 0.8, 2.4)]
     splines = [nurbs_cylinder(), nurbs_sphere(), *_patches()]
-    return [_plane(), *revolved, *(s.bore() for s in revolved), *spheroids, *splines]
+    turned = revolutions()
+    bores = [s.bore() for s in (*revolved, turned[0])]
+    return [_plane(), *revolved, *bores, *spheroids, *splines, *turned]
 
 
 def one_sheet(surface: Surface, x: Floats, step: Floats, size: float) -> npt.NDArray[np.bool_]:

@@ -258,7 +258,7 @@ def test_rays_and_rings_on_surfaces_of_revolution(sample: Any) -> None:
     Source: docs/theory/direction-fields.md. The equator of a sphere and a cylinder, where a ray is
     along the normal, are regular.
     """
-    if sample.shape not in ("plane", "cylinder", "cone", "sphere", "torus"):
+    if sample.shape not in ("plane", "cylinder", "cone", "sphere", "torus", "revolution"):
         pytest.skip("no surface of revolution")
     surface, xi = sample.make(), sample.coordinates(400)
     axis = np.asarray(sample.axis, dtype=float)

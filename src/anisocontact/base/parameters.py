@@ -206,9 +206,11 @@ def in_radian(
             text = f"given with {p.name}_deg, one of the two is allowed"
             raise InputError(text, field=f"{path}{p.name}")
         if degrees is not None:
-            result[p.name] = math.radians(check(p, degrees, f"{path}{p.name}_deg")[0])
+            turned = [math.radians(v) for v in check(p, degrees, f"{path}{p.name}_deg")]
+            result[p.name] = turned if p.kind == "array" else turned[0]
         elif radian is not None:
-            check_radian(check(p, radian, f"{path}{p.name}")[0], f"{path}{p.name}")
+            for angle in check(p, radian, f"{path}{p.name}"):
+                check_radian(angle, f"{path}{p.name}")
     return result
 
 

@@ -6,6 +6,7 @@
 
 #include "anisocontact/projection/ellipsoid.hpp"
 #include "anisocontact/projection/nurbs.hpp"
+#include "anisocontact/projection/revolution.hpp"
 #include "anisocontact/surface/foot.hpp"
 #include "anisocontact/surface/registry.hpp"
 

@@ -7,12 +7,13 @@
 #include "anisocontact/surface/analytic/ellipsoid.hpp"
 #include "anisocontact/surface/analytic/nurbs_pieces.hpp"
 #include "anisocontact/surface/analytic/plane.hpp"
+#include "anisocontact/surface/analytic/revolution.hpp"
 #include "anisocontact/surface/analytic/sphere.hpp"
 #include "anisocontact/surface/analytic/torus.hpp"
 
 namespace anisocontact::surface {
 
-using Surfaces = Registry<Plane, Cylinder, Sphere, Cone, Torus, Ellipsoid, Nurbs>;
+using Surfaces = Registry<Plane, Cylinder, Sphere, Cone, Torus, Ellipsoid, Nurbs, Revolution>;
 using AnySurface = Surfaces::Any;
 
 inline Domain domain(const AnySurface& s) {
