@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,8 @@ def solved() -> Callable[[Path, Path], Any]:
 
     def solve(case: Path, folder: Path) -> Results:
         with pytest.MonkeyPatch.context() as patch:
-            patch.setattr("anisocontact.results.report.write_report", lambda folder: [])
+            none = nullcontext(lambda folder: [])
+            patch.setattr("anisocontact.results.beside.report_beside", lambda wanted: none)
             assert main(["run", str(case), "-o", str(folder)]) == 0
         return Results(folder)
 

@@ -41,7 +41,7 @@ def quick_pictures(monkeypatch):
     """Pictures in space by matplotlib, which is quicker for a body of a few cells."""
     from anisocontact.results.report import shape
 
-    monkeypatch.setattr(shape, "_start_vtk", lambda *_: None)
+    monkeypatch.setattr(shape, "start_vtk", lambda *_: None)
 
 
 def test_report_while_the_run_goes_on(quick_pictures, capsys, case, monkeypatch):

@@ -20,9 +20,10 @@ from anisocontact.results.read import Results
 SCRIPT = """
 import os, signal, sys
 from anisocontact.cli import main
-from anisocontact.results import checkpoint, report
+from contextlib import nullcontext
+from anisocontact.results import beside, checkpoint
 when, name, where, left = sys.argv.pop(1), sys.argv.pop(1), sys.argv.pop(1), [int(sys.argv.pop(1))]
-report.write_report = lambda folder: []
+beside.report_beside = lambda wanted: nullcontext(lambda folder: [])
 real = getattr(checkpoint, name)
 
 def dying(*arguments):

@@ -23,10 +23,11 @@ from anisocontact.cli import main
 where, what = sys.argv.pop(1), sys.argv.pop(1)
 
 def prepared():
-    from anisocontact.results import report
+    from contextlib import nullcontext
+    from anisocontact.results import beside
     from anisocontact.solver.system.problem import Problem
 
-    report.write_report = lambda folder: []
+    beside.report_beside = lambda wanted: nullcontext(lambda folder: [])
     evaluate, count = Problem.evaluate, [0]
 
     def failing(self, x):

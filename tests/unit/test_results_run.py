@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import os
 import re
+import shutil
 import tomllib
 from types import SimpleNamespace
 
@@ -20,11 +22,14 @@ from anisocontact.base.figure_style import new_figure, save
 from anisocontact.case import load
 from anisocontact.case.build import build
 from anisocontact.results import Results
+from anisocontact.results.beside import report_beside
 from anisocontact.results.deformed import SHOWN, magnification
 from anisocontact.results.paraview import Bodies
 from anisocontact.results.quantities import von_mises
 from anisocontact.results.report import maps, shape, write_report
+from anisocontact.results.report.halves import attempts
 from anisocontact.results.report.run_data import RunData
+from anisocontact.results.solids import Solid
 from anisocontact.results.writer import Writer
 
 # Sums of a few dozen numbers of the size of the result: round-off, no more.
@@ -247,7 +252,7 @@ def test_report_is_one_file_with_all_pictures(run):
 @pytest.fixture
 def quick(monkeypatch):
     """Pictures in space by matplotlib, which is quicker for a body of a few cells."""
-    monkeypatch.setattr(shape, "_start_vtk", lambda *_: None)
+    monkeypatch.setattr(shape, "start_vtk", lambda *_: None)
 
 
 def test_report_can_be_made_again_from_the_folder(quick, run):
@@ -304,13 +309,46 @@ def test_without_graphics_matplotlib_draws(run, monkeypatch, tmp_path):
             assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")
     assert sorted(entry.stem for entry in tmp_path.iterdir()) == names
     # The largest movement is 0.025 of a body whose diagonal is 1.5: a round magnification of 5.
-    assert magnification(run.results.fields()) == 5.0
+    assert magnification(Solid(run.results.fields())) == 5.0
+
+
+def test_a_report_is_drawn_beside_the_run(run, tmp_path):
+    """By a process that waits; where it has ended by this one. Both give the same."""
+    names = [f"{name}.png" for name in ("pressure", "status", "force", "deformed")]
+    folder = tmp_path / "out"
+    shutil.copytree(run.folder, folder)
+
+    def pictures():
+        found = [(folder / "pictures" / name).read_bytes() for name in names]
+        shutil.rmtree(folder / "pictures")
+        (folder / "report.html").unlink()
+        return found
+
+    with report_beside() as reporter:
+        assert reporter(folder) == []
+        first = pictures()
+        assert reporter(folder) == []  # it has ended: this process draws
+    assert pictures() == first
+
+
+def test_half_of_the_work_is_done_by_a_copy():
+    """Every second one; by this process where a copy dies."""
+    here, whose = os.getpid(), lambda: str(os.getpid() == here)
+    assert attempts([whose] * 4, forks=True) == ["True", "False"] * 2
+    assert attempts([whose] * 3, forks=False) == ["True"] * 3
+
+    def dying():
+        if os.getpid() != here:
+            os._exit(1)
+        return "here"
+
+    assert attempts([dying] * 3, forks=True) == ["here"] * 3
 
 
 def test_bodies_that_move_far_are_true_to_scale(run):
     grid = run.results.fields()
     grid.point_data["displacement"] = np.full((grid.n_points, 3), 10.0 * grid.length)
-    assert magnification(grid) == 1.0
+    assert magnification(Solid(grid)) == 1.0
 
 
 def test_maps_of_a_slave_that_moves_far(run):

@@ -13,6 +13,7 @@ from anisocontact.base.figure_style import new_figure
 from anisocontact.results.dataset import DataSet, polygons, vertices
 from anisocontact.results.deformed import SHOWN, surfaces
 from anisocontact.results.report.frame import ContactView
+from anisocontact.results.solids import Solid
 
 
 def test_stress_is_shown_where_it_is_largest():
@@ -24,8 +25,8 @@ def test_stress_is_shown_where_it_is_largest():
     grid.point_data["von_mises"] = np.where(inside, 8.0, 1.0)
     grid.point_data["principal_stress"] = np.where(inside[:, None], [1.0, 0.0, -8.0], [3.0, 2, 1])
     for name, most in (("von_mises", 8.0), ("principal_stress", -8.0)):
-        skin, before = surfaces(grid, 1.0, SHOWN[name])
-        value = skin.point_data["value"]
+        skin, before = surfaces(Solid(grid), 1.0, SHOWN[name])
+        value = skin.values("value")
         assert value[np.argmax(abs(value))] == most
         assert skin.bounds[2] == 2.0
         assert before.bounds[2] == 0.0

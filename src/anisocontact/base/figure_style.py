@@ -13,7 +13,7 @@ from anisocontact.base.whole_files import replacing
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["ACCENT", "GREY", "STATUS_COLOURS", "STEP_COLOURS", "new_figure", "plain", "save"]
+__all__ = ["ACCENT", "GREY", "STATUS_COLOURS", "STEP_COLOURS", "new_figure", "plain", "png", "save"]
 
 GREY = "#6b7280"
 ACCENT = "#b91c1c"
@@ -55,12 +55,14 @@ def plain(text: str) -> str:
     return printable(text).replace("$", r"\$")
 
 
-def save(figure: Figure, path: Path) -> None:
-    """Write a picture as PNG, without the date so that equal runs give equal files.
+def png(figure: Figure) -> bytes:
+    """A picture as PNG, without the date so that equal runs give equal files.
 
     Args:
         figure: The picture.
-        path: The file; it is written whole or not at all.
+
+    Returns:
+        What a file has.
     """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.image import imsave
@@ -72,6 +74,25 @@ def save(figure: Figure, path: Path) -> None:
         # letters of a name that the font has not are drawn as boxes
         warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from font", UserWarning)
         canvas.draw()  # `savefig` draws twice: once for the layout, once for the picture
-    imsave(out, canvas.buffer_rgba(), format="png", dpi=figure.dpi, metadata=told)
+    quick: Any = {"compress_level": 3}
+    imsave(
+        out,
+        canvas.buffer_rgba(),
+        format="png",
+        dpi=figure.dpi,
+        metadata=told,
+        pil_kwargs=quick,
+    )
+    return out.getvalue()
+
+
+def save(figure: Figure, path: Path) -> None:
+    """Write a picture as PNG.
+
+    Args:
+        figure: The picture.
+        path: The file; it is written whole or not at all.
+    """
+    drawn = png(figure)
     with replacing(path) as draft:
-        draft.write_bytes(out.getvalue())
+        draft.write_bytes(drawn)

@@ -13,6 +13,7 @@ from anisocontact.base.machine import lack
 from anisocontact.base.signals import interrupt, on_signals
 from anisocontact.case.build import Built
 from anisocontact.case.named_files import fingerprints
+from anisocontact.results.beside import Reporter, report_here
 from anisocontact.results.checkpoint import NAME, Stored, distribute
 from anisocontact.results.files import WriteError
 from anisocontact.results.writer import Writer
@@ -63,7 +64,11 @@ class Outcome:
 
 
 def run(
-    built: Built, folder: str | Path, listener: Listener, checkpoint: Stored | None = None
+    built: Built,
+    folder: str | Path,
+    listener: Listener,
+    checkpoint: Stored | None = None,
+    reporter: Reporter = report_here,
 ) -> Outcome:
     """Solve the steps of a case and write its results.
 
@@ -76,6 +81,7 @@ def run(
         folder: Results folder; an earlier run in it is replaced, or goes on.
         listener: Is told of iterations and increments.
         checkpoint: Where to go on; from the beginning if not given.
+        reporter: Writes the report.
 
     Returns:
         Done, or stopped and why; what converged is in the folder.
@@ -90,7 +96,7 @@ def run(
         solver = built.solver
         solver.restore(distribute(checkpoint, built.problem.model, solver.persistent()))
     try:
-        writer = _writer(built, folder, text, checkpoint)
+        writer = _writer(built, folder, text, checkpoint, reporter)
     except WriteError as error:
         return Outcome("stopped", str(error), Path(folder), goes_on=checkpoint is not None)
     writer.strategy(built.solver.choice.name, built.solver.choice.reason)
@@ -154,7 +160,9 @@ def _details(writer: Writer) -> str:
     return f"details in {writer.folder / 'run.log'}"
 
 
-def _writer(built: Built, folder: str | Path, text: str, checkpoint: Stored | None) -> Writer:
+def _writer(
+    built: Built, folder: str | Path, text: str, checkpoint: Stored | None, reporter: Reporter
+) -> Writer:
     case = built.file.case
     return Writer(
         folder,
@@ -169,6 +177,7 @@ def _writer(built: Built, folder: str | Path, text: str, checkpoint: Stored | No
         probes={name: one.probe() for name, one in case.output.probe.items()},
         resultants={name: one.resultant() for name, one in case.output.resultant.items()},
         pictures=case.output.pictures,
+        reporter=reporter,
         vtkhdf=case.output.vtkhdf,
         units=case.units.labels(),
         case=text,

@@ -12,12 +12,14 @@ from anisocontact.case import load
 from anisocontact.case.restart import checkpoint_of
 from anisocontact.cli.main import DONE, STOPPED
 from anisocontact.cli.output import Output, say
+from anisocontact.results import beside
 from anisocontact.results.files import check_folder
 from anisocontact.results.lock import locked
 
 if TYPE_CHECKING:
     from anisocontact.case.read import CaseFile
     from anisocontact.case.run import Outcome
+    from anisocontact.results.beside import Reporter
     from anisocontact.results.checkpoint import Stored
 
 __all__ = ["command"]
@@ -40,11 +42,17 @@ def command(arguments: argparse.Namespace) -> int:
             checkpoint = checkpoint_of(folder, file)
         else:  # once more: another run may just have ended
             check_folder(folder, arguments.overwrite)
-        return _run(arguments, file, folder, checkpoint)
+        drawn = file.case.output.pictures and MPI.COMM_WORLD.rank == 0
+        with beside.report_beside(drawn) as reporter:
+            return _run(arguments, file, folder, checkpoint, reporter)
 
 
 def _run(
-    arguments: argparse.Namespace, file: CaseFile, folder: Path, checkpoint: Stored | None
+    arguments: argparse.Namespace,
+    file: CaseFile,
+    folder: Path,
+    checkpoint: Stored | None,
+    reporter: Reporter,
 ) -> int:
     """Solve a case into a folder that is ours alone."""
     from anisocontact.case.build import build
@@ -59,7 +67,7 @@ def _run(
         say(_beginning(checkpoint))
     shown = Output.of(sys.stdout)
     with progress_on(shown, built.steps) as listener:
-        outcome = run(built, folder, listener, checkpoint)
+        outcome = run(built, folder, listener, checkpoint, reporter)
     for warning in outcome.warnings:
         say(f"warning: {warning}", sys.stderr)
     if outcome.status == "done":

@@ -5,10 +5,12 @@ A program of its own that imports what it draws with and nothing else.
 
 from __future__ import annotations
 
+import json
 import math
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,9 +19,8 @@ import numpy.typing as npt
 from anisocontact.base.figure_style import GREY
 
 if TYPE_CHECKING:
-    import pyvista
-
     from anisocontact.results.scene import Scene
+    from anisocontact.results.solids import Solid
 
 __all__ = [
     "SHOWN",
@@ -87,44 +88,35 @@ SHOWN = {
 ROOM = 0.86
 
 
-def magnification(grid: pyvista.UnstructuredGrid) -> float:
+def magnification(grid: Solid) -> float:
     """A round number >= 1 that makes the displacement visible; 1 if it is so as it is."""
-    largest = float(np.linalg.norm(grid.point_data["displacement"], axis=1).max())
+    largest = float(np.linalg.norm(grid.values("displacement"), axis=1).max())
     if largest == 0.0:
         return 1.0
-    wanted = VISIBLE * float(grid.length) / largest
+    wanted = VISIBLE * grid.length / largest
     if wanted < 3.0:
         return 1.0
     power = 10.0 ** math.floor(math.log10(wanted))
     return next(f * power for f in (5.0, 2.0, 1.0) if f * power <= wanted * (1.0 + 1e-12))
 
 
-def surfaces(
-    grid: pyvista.UnstructuredGrid, scale: float, shown: Shown
-) -> tuple[pyvista.PolyData, pyvista.PolyData]:
+def surfaces(grid: Solid, scale: float, shown: Shown) -> tuple[Solid, Solid]:
     """Surface of the bodies as triangles: deformed, with the `value` that is shown, and not."""
-    grid = grid.copy()
-    values = shown.value(np.asarray(grid.point_data[shown.array], dtype=float))
-    grid.point_data["value"] = values
-    before = _skin(grid)
+    values = shown.value(grid.values(shown.array))
+    grid = grid.with_values("value", values)
+    before = grid.skin()
     cut = shown.cut and not in_plane(before)
-    skin = _skin(_opened(grid, values)) if cut else before
-    return skin.warp_by_vector("displacement", factor=scale), before
+    skin = _opened(grid, values).skin() if cut else before
+    return skin.moved("displacement", scale), before
 
 
-def _skin(grid: pyvista.DataSet) -> pyvista.PolyData:
-    skin: pyvista.PolyData = grid.extract_surface(algorithm="dataset_surface").triangulate()
-    return skin
-
-
-def _opened(grid: pyvista.UnstructuredGrid, values: Floats) -> pyvista.DataSet:
+def _opened(grid: Solid, values: Floats) -> Solid:
     """Bodies without what is in front of the largest value, along y."""
-    place = grid.points[int(np.nanargmax(abs(values)))]
-    behind: pyvista.DataSet = grid.clip(normal="y", origin=place, invert=False)
-    return behind if behind.n_cells else grid
+    behind = grid.behind(grid.points[int(np.nanargmax(abs(values)))])
+    return grid if behind.empty else behind
 
 
-def in_plane(before: pyvista.PolyData) -> bool:
+def in_plane(before: Solid) -> bool:
     """Whether the bodies are meshed in the plane z = 0, which is then seen from the front."""
     return bool(before.bounds[4] == before.bounds[5])
 
@@ -135,7 +127,7 @@ def caption(scale: float) -> str:
     return f"{times}; grey: before"
 
 
-def round_box(*meshes: pyvista.PolyData) -> tuple[Any, Any, Any]:
+def round_box(*meshes: Solid) -> tuple[Any, Any, Any]:
     """Box of round numbers around meshes: low and high corner, number of labels along each axis."""
     corners = np.concatenate([np.reshape(mesh.bounds, (3, 2)).T for mesh in meshes])
     low, high = corners.min(axis=0), corners.max(axis=0)
@@ -155,37 +147,50 @@ def colours_of(name: str) -> str:
     return np.asarray(found, dtype=np.uint8).tobytes().hex()
 
 
-def _main(source: str, *pictures: str) -> None:
-    """Draw a grid: names of pictures, each with its file, two units and its colours."""
-    import pyvista
-
+def _main() -> None:
+    """Draw the pictures of a grid that are asked for: names, files, two units and colours."""
     from anisocontact.results.scene import Scene
+    from anisocontact.results.solids import read_solid
 
-    grid: Any = pyvista.read(source)
     scene = Scene(1200, 800)
-    for i in range(0, len(pictures), 5):
-        name, picture, unit, length, colours = pictures[i : i + 5]
+    _get_ready(scene)
+    asked = sys.stdin.read()
+    if not asked:
+        return
+    source, pictures = json.loads(asked)
+    grid = read_solid(Path(source))
+    for name, picture, unit, length, colours in pictures:
         scene.clear()
         _add(scene, grid, SHOWN[name], unit, length, bytes.fromhex(colours))
         scene.write(picture)
 
 
-def _add(scene: Scene, grid: Any, shown: Shown, unit: str, length: str, colours: bytes) -> None:
+def _get_ready(scene: Scene) -> None:
+    """Draw a cell, for which VTK compiles what pictures need."""
+    from anisocontact.results.solids import one_cell
+
+    shown = SHOWN["deformed"]
+    grid = one_cell().with_values(shown.array, np.eye(8, 3))
+    _add(scene, grid, shown, "", "", bytes(range(256)) * 4)
+    scene.render()
+
+
+def _add(scene: Scene, grid: Solid, shown: Shown, unit: str, length: str, colours: bytes) -> None:
     """Add what is shown on a grid to a scene."""
     scale = magnification(grid)
     skin, before = surfaces(grid, scale, shown)
     bar = scene.add_coloured(
-        skin,
+        skin.data,
         "value",
         np.frombuffer(colours, dtype=np.uint8).reshape(-1, 4),
-        shown.limits(skin.point_data["value"]),
+        shown.limits(skin.values("value")),
         ambient=0.6 if shown.cut else 0.25,
     )
     red, green, blue = (int(GREY[i : i + 2], 16) / 255.0 for i in (1, 3, 5))
     grey = (red, green, blue)
     if not shown.cut:  # colours that are read as numbers stay what they are
-        scene.add_plain(before, grey, opacity=0.12)
-    scene.add_outline(before, grey, width=2.0)
+        scene.add_plain(before.data, grey, opacity=0.12)
+    scene.add_outline(before.data, grey, width=2.0)
     low, high, labels = round_box(skin, before)
     scene.add_axes(low, high, labels, length)
     scene.add_bar(bar, shown.label.format(unit))
@@ -197,4 +202,4 @@ def _add(scene: Scene, grid: Any, shown: Shown, unit: str, length: str, colours:
 
 
 if __name__ == "__main__":
-    _main(*sys.argv[1:])
+    _main()

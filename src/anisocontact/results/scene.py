@@ -192,12 +192,17 @@ class Scene:
         self._renderer.ResetCamera(np.column_stack([low, high]).reshape(-1).tolist())
         camera.Zoom(room)
 
+    def render(self) -> None:
+        """Draw what was added."""
+        self._window.Render()
+
     def write(self, path: str) -> None:
         """Draw what was added into a PNG."""
-        self._window.Render()
+        self.render()
         image: Any = vtkWindowToImageFilter()
         image.SetInput(self._window)
         image.ReadFrontBufferOff()
+        image.ShouldRerenderOff()
         writer: Any = vtkPNGWriter()
         writer.SetInputConnection(image.GetOutputPort())
         writer.SetFileName(path)

@@ -17,6 +17,7 @@ from anisocontact import __version__
 from anisocontact.base.errors import InputError, printable
 from anisocontact.contact import facet_size
 from anisocontact.interface.failed_point import FailedPoint
+from anisocontact.results.beside import Reporter, report_here
 from anisocontact.results.checkpoint import keep_checkpoint
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.fields import FieldFiles
@@ -57,6 +58,7 @@ class Writer:
         probes: Places at which values are written after each increment, by name.
         resultants: Further forces and moments, by name.
         pictures: Whether the report with its pictures is made at the end.
+        reporter: Makes it.
         vtkhdf: Whether all states are also written as one file of each sort at the end.
         units: What numbers are in, by dimension: labels of the report.
         case: Text of the case file, kept beside the results.
@@ -85,6 +87,7 @@ class Writer:
         probes: Mapping[str, Probe] = MappingProxyType({}),
         resultants: Mapping[str, Resultant] = MappingProxyType({}),
         pictures: bool = True,
+        reporter: Reporter = report_here,
         vtkhdf: bool = False,
         units: Mapping[str, str] = MappingProxyType({}),
         case: str = "",
@@ -93,7 +96,7 @@ class Writer:
         self._began = time.perf_counter()
         self._problem = problem
         self._steps = list(steps)
-        self._pictures, self._vtkhdf = pictures, vtkhdf
+        self._pictures, self._reporter, self._vtkhdf = pictures, reporter, vtkhdf
         self._kept = 0
         self._disk = Disk(problem.model.mesh.comm)
         self.folder = Path(folder)
@@ -312,10 +315,7 @@ class Writer:
             write_vtkhdf(results, self.folder / f"{kind}.vtkhdf", kind)
 
     def _report(self) -> None:
-        # Matplotlib takes half a second to be imported, and only pictures need it
-        from anisocontact.results.report import write_report
-
-        for line in write_report(self.folder):
+        for line in self._reporter(self.folder):
             self._append(line)
 
     def _head(self, title: str) -> dict[str, Any]:

@@ -8,7 +8,7 @@ import random
 import signal
 import tomllib
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -386,4 +386,6 @@ def mutated(tmp_path_factory: pytest.TempPathFactory, capsys: Any) -> Mutated:
 @pytest.fixture(autouse=True)
 def no_report(monkeypatch: pytest.MonkeyPatch) -> None:
     """The pictures take longer than the run."""
-    monkeypatch.setattr("anisocontact.results.report.write_report", lambda folder: [])
+    monkeypatch.setattr(
+        "anisocontact.results.beside.report_beside", lambda wanted: nullcontext(lambda folder: [])
+    )

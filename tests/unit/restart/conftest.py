@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from contextlib import nullcontext
 
 import pytest
 
@@ -12,7 +13,9 @@ from anisocontact.cli import main
 @pytest.fixture(autouse=True)
 def no_report(monkeypatch):
     """The pictures take longer than the run."""
-    monkeypatch.setattr("anisocontact.results.report.write_report", lambda folder: [])
+    monkeypatch.setattr(
+        "anisocontact.results.beside.report_beside", lambda wanted: nullcontext(lambda folder: [])
+    )
 
 
 @pytest.fixture

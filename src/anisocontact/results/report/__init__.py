@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,11 +13,14 @@ from anisocontact.results.deformed import SHOWN
 from anisocontact.results.files import write_text
 from anisocontact.results.no_energy import told
 from anisocontact.results.report import curves, maps, shape
+from anisocontact.results.report.halves import attempts
 from anisocontact.results.report.labels import labelled
 from anisocontact.results.report.page import Picture, page
 from anisocontact.results.report.run_data import RunData
 
 if TYPE_CHECKING:
+    import subprocess
+
     from matplotlib.figure import Figure
 
 __all__ = ["page", "step_rows", "write_report"]
@@ -70,21 +74,44 @@ _OF_BODIES = {
 }
 
 
-def write_report(folder: str | Path) -> list[str]:
+def write_report(
+    folder: str | Path, *, vtk: subprocess.Popen[bytes] | None = None, forks: bool = False
+) -> list[str]:
     """Draw the pictures and write the report from what is in a results folder.
 
     Args:
         folder: Results folder of a run that has ended.
+        vtk: What `shape.start_vtk` gave; started now if not given.
+        forks: Whether this process may be doubled to draw: it has neither MPI nor threads.
 
     Returns:
         What could not be drawn and why, a line each; the report is written all the same.
     """
     folder = Path(folder)
     run = RunData(folder)
-    failed: list[str] = []
-    pictures = _pictures(run, folder / "pictures", failed) if run.moments else []
-    write_text(folder / "report.html", page(run.summary, step_rows(run), pictures))
-    return failed
+    album = _Album(folder / "pictures")
+    if run.moments:
+        _draw(run, album, vtk, forks)
+    write_text(folder / "report.html", page(run.summary, step_rows(run), album.pictures))
+    return album.failed
+
+
+@dataclass(frozen=True)
+class _Wanted:
+    """A picture of a report."""
+
+    path: Path
+    title: str
+    caption: str
+    draw: Callable[[Path], object]
+
+    def attempt(self) -> str:
+        """Draw it; why it could not be drawn: a picture is no reason to lose a run."""
+        try:
+            self.draw(self.path)
+        except Exception as error:
+            return f"picture {self.path.stem}: {type(error).__name__}: {error}"
+        return ""
 
 
 class _Album:
@@ -99,32 +126,40 @@ class _Album:
         self.pictures: list[Picture] = []
         self.failed: list[str] = []
 
-    def attempt(self, name: str, title: str, caption: str, draw: Callable[[Path], object]) -> None:
-        """Draw one; a picture is no reason to lose a run."""
-        path = self.folder / f"{name}.png"
-        try:
-            draw(path)
-        except Exception as error:
-            self.failed.append(f"picture {name}: {type(error).__name__}: {error}")
-            return
-        self.pictures.append(Picture(path, title, caption))
+    def wanted(
+        self, name: str, title: str, caption: str, draw: Callable[[Path], object]
+    ) -> _Wanted:
+        """A picture that goes there."""
+        return _Wanted(self.folder / f"{name}.png", title, caption, draw)
+
+    def take(self, wanted: Sequence[_Wanted], failed: Sequence[str]) -> None:
+        """Take pictures, each with why it could not be drawn, which is empty if it was."""
+        for one, why in zip(wanted, failed, strict=True):
+            if why:
+                self.failed.append(why)
+            else:
+                self.pictures.append(Picture(one.path, one.title, one.caption))
 
 
-def _pictures(run: RunData, folder: Path, failed: list[str]) -> list[Picture]:
-    folder.mkdir(exist_ok=True)
-    first, others = _Album(folder), _Album(folder)
+def _draw(run: RunData, album: _Album, vtk: subprocess.Popen[bytes] | None, forks: bool) -> None:
+    album.folder.mkdir(exist_ok=True)
     there = _arrays(run)
     names = [name for name in _OF_BODIES if SHOWN[name].array in there]
-    with shape.Drawings(run.results.fields_file(), folder, names, run.units) as bodies:
-        for number in range(len(run.summary["contacts"])):
-            _of_contact(run, number, others)
+    source = run.results.fields_file()
+    with shape.Drawings(source, album.folder, names, run.units, vtk) as bodies:
+        count = len(run.summary["contacts"])
+        contacts = [one for number in range(count) for one in _of_contact(run, number, album)]
+        drawn = attempts([one.attempt for one in contacts], forks=forks)
         # drawn meanwhile by another process, shown first
-        for name in names:
-            title, caption = _OF_BODIES[name]
-            caption += f" State: {run.moments[-1].title}."
-            first.attempt(name, title, caption, lambda path: bodies.finish(path.stem))
-    failed += first.failed + others.failed
-    return first.pictures + others.pictures
+        first = [_of_bodies(run, name, album, bodies) for name in names]
+        album.take(first, [one.attempt() for one in first])
+    album.take(contacts, drawn)
+
+
+def _of_bodies(run: RunData, name: str, album: _Album, bodies: shape.Drawings) -> _Wanted:
+    title, caption = _OF_BODIES[name]
+    state = f" State: {run.moments[-1].title}."
+    return album.wanted(name, title, caption + state, lambda path: bodies.finish(path.stem))
 
 
 def _arrays(run: RunData) -> Collection[str]:
@@ -135,10 +170,11 @@ def _arrays(run: RunData) -> Collection[str]:
         return ("displacement",)
 
 
-def _of_contact(run: RunData, number: int, album: _Album) -> None:
+def _of_contact(run: RunData, number: int, album: _Album) -> list[_Wanted]:
     contacts = run.summary["contacts"]
     many, contact = len(contacts) > 1, contacts[number]
     pair = f": {contact['slave']} on {contact['master']}" if many else ""
+    found = []
     for name, draw, title, caption in _OF_CONTACT:
 
         def drawn(path: Path, draw: Callable[[RunData, int], Figure] = draw) -> None:
@@ -146,7 +182,9 @@ def _of_contact(run: RunData, number: int, album: _Album) -> None:
 
         # the resultants in one tangent plane mean nothing all around a master
         if name != "domain" or not _closed(run, number):
-            album.attempt(f"{name}-{number}" if many else name, f"{title}{pair}", caption, drawn)
+            of_pair = f"{name}-{number}" if many else name
+            found.append(album.wanted(of_pair, f"{title}{pair}", caption, drawn))
+    return found
 
 
 def _closed(run: RunData, number: int) -> bool:

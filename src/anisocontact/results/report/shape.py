@@ -6,12 +6,14 @@ asks for them; where that fails, matplotlib draws the same.
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from anisocontact.base.figure_style import new_figure, save
 from anisocontact.base.whole_files import draft_of
@@ -26,7 +28,10 @@ from anisocontact.results.deformed import (
     surfaces,
 )
 
-__all__ = ["Drawings"]
+if TYPE_CHECKING:
+    from anisocontact.results.solids import Solid
+
+__all__ = ["Drawings", "end", "start_vtk"]
 
 #: Seconds that VTK may take for all of them.
 PATIENCE = 120.0
@@ -41,10 +46,16 @@ class Drawings:
         folder: Where the pictures go.
         names: Which of `SHOWN`.
         units: Unit by dimension; the dimension itself if there is none.
+        process: What `start_vtk` gave; started now if not given.
     """
 
     def __init__(
-        self, source: Path, folder: Path, names: Sequence[str], units: Mapping[str, str]
+        self,
+        source: Path,
+        folder: Path,
+        names: Sequence[str],
+        units: Mapping[str, str],
+        process: subprocess.Popen[bytes] | None = None,
     ) -> None:
         self._source, self._length = source, units.get("length", "length")
         self._pictures = {name: folder / f"{name}.png" for name in names}
@@ -53,26 +64,18 @@ class Drawings:
         }
         self._drafts = {name: draft_of(picture) for name, picture in self._pictures.items()}
         wanted = [
-            text
+            [name, str(draft), self._units[name], self._length, colours_of(SHOWN[name].colours)]
             for name, draft in self._drafts.items()
-            for text in (
-                name,
-                str(draft),
-                self._units[name],
-                self._length,
-                colours_of(SHOWN[name].colours),
-            )
         ]
-        self._process = _start_vtk([str(source), *wanted])
+        self._process = process or start_vtk()
+        _ask(self._process, [str(source), wanted])
         self._whole: bool | None = None
 
     def __enter__(self) -> Drawings:
         return self
 
     def __exit__(self, *_: object) -> None:
-        if self._process is not None and self._process.poll() is None:
-            self._process.kill()
-            self._process.wait()
+        end(self._process)
         for draft in self._drafts.values():
             draft.unlink(missing_ok=True)
 
@@ -84,23 +87,39 @@ class Drawings:
         if self._whole and draft.is_file():
             draft.replace(picture)
             return
-        import pyvista
+        from anisocontact.results.solids import read_solid
 
         picture.unlink(missing_ok=True)
-        grid = pyvista.read(self._source)
+        grid = read_solid(self._source)
         _by_matplotlib(grid, SHOWN[name], picture, self._units[name], self._length)
 
 
-def _start_vtk(arguments: Sequence[str]) -> subprocess.Popen[bytes] | None:
+def start_vtk() -> subprocess.Popen[bytes] | None:
+    """Start what draws; it gets ready and waits for `Drawings`."""
     environment = dict(os.environ)
     if sys.platform == "linux" and not environment.get("DISPLAY"):
         environment.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-    command = [sys.executable, "-m", _RENDERER, *arguments]
-    silent = subprocess.DEVNULL
+    command, silent = [sys.executable, "-m", _RENDERER], subprocess.DEVNULL
     try:
-        return subprocess.Popen(command, env=environment, stdout=silent, stderr=silent)
+        return subprocess.Popen(
+            command, env=environment, stdin=subprocess.PIPE, stdout=silent, stderr=silent
+        )
     except OSError:
         return None
+
+
+def end(process: subprocess.Popen[bytes] | None) -> None:
+    """End what `start_vtk` gave, if it has not ended."""
+    if process is not None and process.poll() is None:
+        process.kill()
+        process.wait()
+
+
+def _ask(process: subprocess.Popen[bytes] | None, wanted: Any) -> None:
+    """Ask for pictures; a process that has ended is met where its pictures are missed."""
+    if process is not None and process.stdin is not None:
+        with suppress(OSError), process.stdin as asked:
+            asked.write(json.dumps(wanted).encode())
 
 
 def _ended(process: subprocess.Popen[bytes] | None) -> bool:
@@ -115,19 +134,20 @@ def _ended(process: subprocess.Popen[bytes] | None) -> bool:
         return False
 
 
-def _by_matplotlib(grid: Any, shown: Shown, picture: Path, unit: str, length: str) -> None:
+def _by_matplotlib(grid: Solid, shown: Shown, picture: Path, unit: str, length: str) -> None:
     from mpl_toolkits.mplot3d.art3d import (  # type: ignore[import-untyped]
         Poly3DCollection,
     )
 
     scale = magnification(grid)
     skin, before = surfaces(grid, scale, shown)
+    values = skin.values("value")
     figure = new_figure(9.0, 6.0)
     axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
-    outline = Poly3DCollection(before.points[before.regular_faces], facecolor=(0, 0, 0, 0.04))
-    faces = Poly3DCollection(skin.points[skin.regular_faces], cmap=shown.colours)
-    faces.set_array(skin.point_data["value"][skin.regular_faces].mean(axis=1))
-    faces.set_clim(*shown.limits(skin.point_data["value"]))
+    outline = Poly3DCollection(before.points[before.triangles()], facecolor=(0, 0, 0, 0.04))
+    faces = Poly3DCollection(skin.points[skin.triangles()], cmap=shown.colours)
+    faces.set_array(values[skin.triangles()].mean(axis=1))
+    faces.set_clim(*shown.limits(values))
     axes.add_collection3d(outline)
     axes.add_collection3d(faces)
     low, high, _ = round_box(skin, before)

@@ -1,0 +1,127 @@
+"""Grids of bodies and their surfaces in VTK itself: pyvista takes longer to import than to draw."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import (
+    VTK_VOXEL,
+    vtkPlane,
+    vtkPointSet,
+    vtkUnstructuredGrid,
+)
+from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+from vtkmodules.vtkFiltersGeneral import vtkTableBasedClipDataSet, vtkWarpVector
+from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
+from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
+
+__all__ = ["Solid", "one_cell", "read_solid"]
+
+Floats = npt.NDArray[np.float64]
+
+
+class Solid:
+    """Cells, or facets, with arrays at their nodes.
+
+    Args:
+        data: What VTK has.
+    """
+
+    def __init__(self, data: vtkPointSet) -> None:
+        self.data: Any = data
+
+    @property
+    def points(self) -> Floats:
+        """Positions, (n, 3), length."""
+        return _floats(self.data.GetPoints().GetData())
+
+    @property
+    def bounds(self) -> tuple[float, ...]:
+        """Least and largest coordinates: x, x, y, y, z, z."""
+        return tuple(self.data.GetBounds())
+
+    @property
+    def length(self) -> float:
+        """Diagonal of the box around it, length."""
+        return float(self.data.GetLength())
+
+    @property
+    def empty(self) -> bool:
+        """Whether there are no cells."""
+        return int(self.data.GetNumberOfCells()) == 0
+
+    def values(self, name: str) -> Floats:
+        """An array at the nodes, (n,) or (n, components)."""
+        return _floats(self.data.GetPointData().GetArray(name))
+
+    def triangles(self) -> npt.NDArray[np.int64]:
+        """Nodes of the facets of a skin, (m, 3)."""
+        to_numpy: Any = vtk_to_numpy
+        found = to_numpy(self.data.GetPolys().GetConnectivityArray())
+        return np.asarray(found, dtype=np.int64).reshape(-1, 3)
+
+    def with_values(self, name: str, values: Floats) -> Solid:
+        """The same with one more array at the nodes."""
+        data = self.data.NewInstance()
+        data.ShallowCopy(self.data)
+        to_vtk: Any = numpy_to_vtk
+        array = to_vtk(np.ascontiguousarray(values), deep=True)
+        array.SetName(name)
+        data.GetPointData().AddArray(array)
+        return Solid(data)
+
+    def skin(self) -> Solid:
+        """The surface as triangles."""
+        return _through(vtkTriangleFilter(), _through(vtkDataSetSurfaceFilter(), self))
+
+    def behind(self, place: Floats) -> Solid:
+        """What is not in front of a place, along y."""
+        plane, cut = vtkPlane(), vtkTableBasedClipDataSet()
+        plane.SetOrigin(*(float(x) for x in place))
+        plane.SetNormal(0.0, 1.0, 0.0)
+        cut.SetClipFunction(plane)
+        return _through(cut, self)
+
+    def moved(self, name: str, scale: float) -> Solid:
+        """The same with nodes moved by an array."""
+        warp: Any = vtkWarpVector()
+        warp.SetInputArrayToProcess(0, 0, 0, 0, name)
+        warp.SetScaleFactor(scale)
+        return _through(warp, self)
+
+
+def read_solid(path: Path) -> Solid:
+    """Read what a run has written of its bodies."""
+    parallel = path.suffix == ".pvtu"
+    reader: Any = vtkXMLPUnstructuredGridReader() if parallel else vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    return Solid(reader.GetOutput())
+
+
+def one_cell() -> Solid:
+    """The unit cube."""
+    grid: Any = vtkUnstructuredGrid()
+    points = vtkPoints()
+    for corner in itertools.product((0.0, 1.0), repeat=3):
+        points.InsertNextPoint(*corner)
+    grid.SetPoints(points)
+    grid.InsertNextCell(VTK_VOXEL, 8, range(8))
+    return Solid(grid)
+
+
+def _floats(array: Any) -> Floats:
+    to_numpy: Any = vtk_to_numpy
+    return np.asarray(to_numpy(array), dtype=np.float64)
+
+
+def _through(step: Any, given: Solid) -> Solid:
+    step.SetInputData(given.data)
+    step.Update()
+    return Solid(step.GetOutput())
