@@ -48,8 +48,8 @@ from anisocontact.solver import (
 
 __all__ = ["Built", "build", "mesh_of"]
 
-#: What leads points and edges as well as facet groups.
-LEADS = ("displacement", "cylindrical", "rotation")
+#: What points and edges are led or loaded by as well as facet groups.
+ON_NODES = ("displacement", "cylindrical", "rotation", "force")
 
 
 @dataclass(frozen=True)
@@ -316,7 +316,7 @@ def _steps(case: Case, model: Model, schedule: Schedule) -> list[Step]:
     for i, section in enumerate(case.step):
         place = f"step[{i}]"
         for what, group in section.groups():
-            known = model.nodes if what in LEADS else model.facets
+            known = model.nodes if what in ON_NODES else model.facets
             known(group, f"{place}.{what}")
         with objects.within(place):
             until = None if section.until is None else section.until.made(case.output.probe)

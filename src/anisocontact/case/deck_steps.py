@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.errors import InputError
+from anisocontact.case.deck_materials import Temperatures
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck, pressed_face, pressures
@@ -53,6 +55,7 @@ class Steps:
         deck: The deck.
         mesh: Its mesh.
         named: Name of a set or surface -> groups "body.name".
+        temperatures: Makes what knows the temperatures of bodies; asked once, with the first.
 
     Attributes:
         finite: Whether a step asks for finite strain.
@@ -60,8 +63,15 @@ class Steps:
         constant: Amplitude that is a number -> the number.
     """
 
-    def __init__(self, deck: Deck, mesh: MeshArrays, named: Callable[[str], list[str]]) -> None:
+    def __init__(
+        self,
+        deck: Deck,
+        mesh: MeshArrays,
+        named: Callable[[str], list[str]],
+        temperatures: Callable[[], Temperatures],
+    ) -> None:
         self._deck, self._mesh, self._named = deck, mesh, named
+        self._temperatures = cache(temperatures)
         self._steps: list[_Step] = []
         self.finite = False
         self.nodes: dict[str, list[float]] = {}
@@ -161,16 +171,31 @@ class Steps:
             raise InputError(f"{name.lower()} has {found}, one facet group is needed")
         return groups[0]
 
+    def _loaded(self, entry: str) -> str:
+        """Where a force on each node of a set, or on one by its number, is put.
+
+        Raises:
+            InputError: It is on no body, or on several.
+        """
+        groups = self._node(int(entry)) if entry.isdigit() else tuple(self._named(entry))
+        if len(groups) != 1:
+            where = f"on {' and '.join(groups)}" if groups else "on no body"
+            raise InputError(f"{entry.lower()} is {where}, a force is on one")
+        return groups[0]
+
     def cloads(self, card: Card) -> Iterator[_Load]:
-        """Forces of `*CLOAD`, summed over the nodes of a set."""
+        """Forces of `*CLOAD` on a node, or summed over a set, which spreads them over itself."""
         for entry, direction, value, *_ in card.fields():
             if int(direction) > 3:
                 text = f"a moment on {entry.lower()}; faces on a reference point take them"
                 raise InputError(text)
-            if entry.isdigit():
-                raise InputError(f"a force on node {entry} alone; a group of facets takes one")
             total = real(value) * len(np.unique(self._deck.nodes_of(entry)))
-            yield "force", self._facets(entry), {"xyz"[int(direction) - 1]: total}
+            yield "force", self._loaded(entry), {"xyz"[int(direction) - 1]: total}
+
+    def temperatures(self, card: Card) -> Iterator[_Load]:
+        """Temperatures of bodies of `*TEMPERATURE`."""
+        for body, rise in self._temperatures().lead(card):
+            yield "temperature", body, rise
 
     def dloads(self, card: Card) -> Iterator[_Load]:
         """Pressures and gravity of `*DLOAD`."""
@@ -220,6 +245,7 @@ _LOADS: dict[str, Callable[[Steps, Card], Iterator[_Load]]] = {
     "CLOAD": Steps.cloads,
     "DLOAD": Steps.dloads,
     "DSLOAD": Steps.dsloads,
+    "TEMPERATURE": Steps.temperatures,
 }
 #: Keys of a step that a keyword with OP=NEW begins anew.
 _RENEWED = {

@@ -7,12 +7,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from anisocontact.base.errors import InputError
+from anisocontact.case.deck_cyclic import Sectors
+from anisocontact.case.deck_materials import Materials, Temperatures
 from anisocontact.case.deck_steps import Steps
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import PLANE, Deck, read_deck
-from anisocontact.mesh.deck_supports import written
-from anisocontact.mesh.inp import ideals, named_in, plain
+from anisocontact.mesh.deck_supports import key_of, written
+from anisocontact.mesh.inp import ideals, named_in
 from anisocontact.mesh.readers import file_arrays
 
 __all__ = ["case_of_deck"]
@@ -22,6 +24,8 @@ SILENT = {"HEADING", "PREPRINT", "OUTPUT", "RESTART", "ENDSTEP", "ASSEMBLY", "EN
 SILENT |= {"ENDINSTANCE", "MONITOR", "NODEOUTPUT", "ELEMENTOUTPUT", "CONTACTOUTPUT"}
 SILENT |= {f"{what}{how}" for what in ("NODE", "EL", "CONTACT") for how in ("PRINT", "FILE")}
 SILENT |= {"SECTIONPRINT", "TRANSFORM", "BOUNDARY"}
+#: Keyword that has no words in a case -> what to look at instead.
+INSTEAD = {"EQUATION": ": components of single nodes are not tied; see faces, symmetry, tie"}
 
 
 def case_of_deck(path: Path, target: Path) -> tuple[str, list[str]]:
@@ -59,16 +63,17 @@ class _Case:
     left_out: list[str] = field(default_factory=list)
 
     def __post_init__(self) -> None:
-        self._materials: dict[str, dict[str, object]] = {}
+        self._materials = Materials(self.deck, self._leave)
         self._friction: dict[str, float] = {}
         self._penalty: dict[str, float] = {}
         self._amplitudes: dict[str, dict[str, object]] = {}
         self._pairs: list[Card] = []
         self._ties: list[Card] = []
         self._title, self._interaction = "", ""
-        self._material: dict[str, object] = {}
+        self._warm: list[Card] = []
         self._named = named_in([*self.mesh.facets, *self.mesh.nodes])
-        self._steps = Steps(self.deck, self.mesh, self._named)
+        self._sectors = Sectors(self.mesh, self._named)
+        self._steps = Steps(self.deck, self.mesh, self._named, self._temperatures)
         for step, card in self.deck.cards:
             try:
                 self._take(step, card)
@@ -91,13 +96,15 @@ class _Case:
         if kinds <= set(PLANE):
             yield from _table("[idealisation]", self._ideal(kinds))
         for body in self.mesh.bodies:
-            yield from _table(f"[material.{_key(body)}]", self._of_body(body))
+            yield from _table(f"[material.{key_of(body)}]", self._of_body(body))
         for name, amplitude in self._amplitudes.items():
-            yield from _table(f"[amplitude.{_key(name)}]", amplitude)
+            yield from _table(f"[amplitude.{key_of(name)}]", amplitude)
         for place, node in self._steps.nodes.items():
-            yield from _table(f"[nodes.{_key(place)}]", {"near": node})
+            yield from _table(f"[nodes.{key_of(place)}]", {"near": node})
         for card in self._pairs:
             yield from self._contact(card)
+        for table in self._sectors.tables():
+            yield from _table("[[cyclic]]", table)
         for card in self._ties:
             for slave, master, *_ in card.fields():
                 sides = self._sides(card, slave, master)
@@ -109,39 +116,28 @@ class _Case:
     def _take(self, step: int, card: Card) -> None:
         if card.name in _READERS and not step:
             _READERS[card.name](self, card)
+        elif not step and (self._materials.take(card) or self._sectors.take(card)):
+            return
         elif not self._steps.take(step, card) and card.name not in SILENT:
-            self._leave(card)
+            self._leave(card, INSTEAD.get(card.name, ""))
 
     def read_heading(self, card: Card) -> None:
         """Take `*HEADING`."""
         self._title = card.data[0].replace('"', "'") if card.data else ""
 
-    def read_material(self, card: Card) -> None:
-        """Take `*MATERIAL`; what follows is of it."""
-        self._material = self._materials.setdefault(card.option("NAME").upper(), {})
+    def read_start(self, card: Card) -> None:
+        """Take `*INITIAL CONDITIONS` of temperatures.
 
-    def read_elastic(self, card: Card) -> None:
-        """Take `*ELASTIC` where it is isotropic."""
-        if not card.options.get("TYPE", "ISOTROPIC").upper().startswith("ISO"):
-            raise InputError(f"TYPE={card.options['TYPE']} is not taken over; see orthotropic")
-        first, *others = card.fields()
-        young, nu = (real(v) for v in first[:2])
-        self._material |= {"E": young, "nu": nu}
-        if others:
-            self._leave(card, ": its values at other temperatures")
+        Raises:
+            InputError: They are others.
+        """
+        if card.option("TYPE").upper() != "TEMPERATURE":
+            raise InputError(f"TYPE={card.options['TYPE']} is not taken over")
+        self._warm.append(card)
 
-    def read_density(self, card: Card) -> None:
-        """Take `*DENSITY`."""
-        self._material["density"] = float(card.numbers()[0])
-
-    def read_plastic(self, card: Card) -> None:
-        """Take `*PLASTIC`: yield stress over plastic strain, hardening that is isotropic."""
-        kind = card.options.get("HARDENING", "ISOTROPIC")
-        rows = list(card.fields())
-        if kind.upper() != "ISOTROPIC" or any(len(row) > 2 for row in rows):
-            raise InputError("one curve of isotropic hardening is taken over; see plastic")
-        pairs = [(real((*row, "0")[1]), real(row[0])) for row in rows]
-        self._material["flow_curve"] = [value for pair in pairs for value in pair]
+    def _temperatures(self) -> Temperatures:
+        bodies = [body for body in self.mesh.bodies if self._materials.expands(body)]
+        return Temperatures(self.deck, bodies, self._warm)
 
     def read_interaction(self, card: Card) -> None:
         """Take `*SURFACE INTERACTION`; what follows is of it."""
@@ -173,14 +169,9 @@ class _Case:
         self._pairs.append(card)
 
     def read_tie(self, card: Card) -> None:
-        """Take `*TIE`.
-
-        Raises:
-            InputError: It ties the cut faces of a sector.
-        """
-        if "CYCLICSYMMETRY" in card.options:
-            raise InputError("cut faces of a sector are not taken over; see cyclic")
-        self._ties.append(card)
+        """Take `*TIE`; those of sectors are taken with them."""
+        if not self._sectors.take(card):
+            self._ties.append(card)
 
     def _leave(self, card: Card, why: str = "") -> None:
         self.left_out.append(f"*{card.name} of line {card.line}{why}")
@@ -192,17 +183,11 @@ class _Case:
 
     def _of_body(self, body: str) -> dict[str, object]:
         """Table of the material of a body; without a model where the deck has none that is read."""
-        made_of = {plain(b): one.material.upper() for b, one in self.deck.sections.items()}
-        known = self._materials.get(made_of.get(body, ""), {})
-        if "E" not in known:
-            self.left_out.append(f"material of {body}: [material.{_key(body)}] has to be written")
-            return known
         sheet = {"plane-stress"} == ideals(kind for kind, _ in self.deck.elements.values())
         finite = self._steps.finite and not sheet  # sheets are at small strain alone
-        if "flow_curve" in known:
-            strain = {"strain": "logarithmic"} if finite else {}
-            return {"model": "plastic"} | known | strain
-        return {"model": "st-venant-kirchhoff" if finite else "linear-elastic"} | known
+        table, left = self._materials.table(body, finite)
+        self.left_out += left
+        return table
 
     def _contact(self, card: Card) -> Iterator[str]:
         name = card.options.get("INTERACTION", "").upper()
@@ -238,10 +223,7 @@ class _Case:
 #: Keyword in front of the first step -> what takes it.
 _READERS: dict[str, Callable[[_Case, Card], None]] = {
     "HEADING": _Case.read_heading,
-    "MATERIAL": _Case.read_material,
-    "ELASTIC": _Case.read_elastic,
-    "DENSITY": _Case.read_density,
-    "PLASTIC": _Case.read_plastic,
+    "INITIALCONDITIONS": _Case.read_start,
     "SURFACEINTERACTION": _Case.read_interaction,
     "FRICTION": _Case.read_friction,
     "SURFACEBEHAVIOR": _Case.read_behaviour,
@@ -260,11 +242,6 @@ def _amplitude(card: Card) -> dict[str, object]:
     table: dict[str, object] = {"kind": "table", "time": numbers[::2], "value": numbers[1::2]}
     total = card.options.get("TIME", "").upper().startswith("TOTAL")
     return table | ({"time_of": "total"} if total else {})
-
-
-def _key(name: str) -> str:
-    """A name as a key of TOML."""
-    return name if name.replace("_", "").isalnum() else f'"{name}"'
 
 
 def _table(head: str, values: dict[str, object]) -> Iterator[str]:

@@ -80,7 +80,7 @@ class Traction(Components):
 
 
 class Force(Components):
-    """Force on a whole facet group at the end of the step, as a uniform traction."""
+    """Force on a whole facet group, as a uniform traction, or on nodes, in equal shares."""
 
     x: Annotated[float | Scheduled | None, led("force", "along x")] = None
     y: Annotated[float | Scheduled | None, led("force", "along y")] = None
@@ -181,7 +181,8 @@ class Loading(Section):
         default_factory=dict, description='forces per reference area by "body.group"'
     )
     force: dict[str, Force] = Field(
-        default_factory=dict, description='forces on whole facet groups by "body.group"'
+        default_factory=dict,
+        description='forces on whole facet groups, points or edges by "body.group"',
     )
     pressure: dict[str, Annotated[float | Scheduled, led("stress", "pressure")]] = Field(
         default_factory=dict,

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, read_cards, real
+from anisocontact.mesh.deck_supports import held_nodes
 from anisocontact.mesh.placement import Rotation
 
 Floats = npt.NDArray[np.float64]
@@ -97,11 +98,13 @@ class Section:
         elements: Name of the set of elements, in capitals.
         material: Name of the material.
         thickness: Thickness in the plane as written; empty if there is none.
+        orientation: Name of its `*ORIENTATION`; empty if there is none.
     """
 
     elements: str
     material: str = ""
     thickness: str = ""
+    orientation: str = ""
 
 
 @dataclass
@@ -180,11 +183,17 @@ class Deck:
         name = card.option("ELSET")
         first = next(card.fields(), [])
         thickness = first[0] if first else ""
-        self.sections[name] = Section(name.upper(), card.options.get("MATERIAL", ""), thickness)
+        material, turn = (card.options.get(key, "") for key in ("MATERIAL", "ORIENTATION"))
+        self.sections[name] = Section(name.upper(), material, thickness, turn)
 
     def add_card(self, step: int, card: Card) -> None:
-        """Keep what is not of the mesh; faces under a pressure of `*DLOAD` become a surface."""
+        """Keep what is not of the mesh.
+
+        Faces under a pressure of `*DLOAD` become a surface, nodes that are held alike a set.
+        """
         self.cards.append((step, card))
+        if card.name == "BOUNDARY":
+            self.node_sets |= held_nodes(card)
         for name, (_, faces) in pressures(card).items() if card.name == "DLOAD" else ():
             self.surfaces[name] = [
                 (entry, face)

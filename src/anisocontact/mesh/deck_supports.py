@@ -190,7 +190,7 @@ def supports_of(
                 of_node |= dict.fromkeys(members(card.option("NSET")), found)
             else:
                 amplitude = card.options.get("AMPLITUDE", "").lower()
-                for entry, values in _values(card).items():
+                for entry, values in _entries(card, of_node):
                     directed = _directed(entry, values, of_node, members)
                     groups = tuple(named(entry))
                     if isinstance(directed, str):
@@ -229,6 +229,41 @@ def _values(card: Card) -> dict[str, dict[int, float]]:
     return found
 
 
+def held_nodes(card: Card) -> dict[str, list[int]]:
+    """Nodes by their numbers that a `*BOUNDARY` holds or leads alike, two or more, as node sets.
+
+    Returns:
+        Name of a set, by the line of the card -> numbers; none where the data cannot be read.
+
+    Example:
+        >>> held_nodes(Card("BOUNDARY", {}, ("1, 1, 3", "2, 1, 3", "4, 2"), 12))
+        {'HELD_12': [1, 2]}
+    """
+    alike: dict[tuple[tuple[int, float], ...], list[int]] = {}
+    try:
+        found = _values(card)
+    except (ValueError, IndexError):
+        return {}
+    for entry, values in found.items():
+        if entry.isdigit():
+            alike.setdefault(tuple(sorted(values.items())), []).append(int(entry))
+    several = [nodes for nodes in alike.values() if len(nodes) > 1]
+    ends = ["", *(f"_{k + 2}" for k in range(len(several)))]
+    return {f"HELD_{card.line}{end}": nodes for end, nodes in zip(ends, several, strict=False)}
+
+
+def _entries(
+    card: Card, of_node: Mapping[int, Transform]
+) -> Iterator[tuple[str, dict[int, float]]]:
+    """What a `*BOUNDARY` says of sets and nodes; nodes that are led alike are one set."""
+    values = _values(card)
+    for name, nodes in held_nodes(card).items():
+        if len({id(of_node.get(node)) for node in nodes}) == 1:
+            alike = [values.pop(str(node)) for node in nodes]
+            yield name, alike[0]
+    yield from values.items()
+
+
 def _directed(
     entry: str,
     values: Mapping[int, float],
@@ -255,6 +290,16 @@ def led(value: object, amplitude: str) -> object:
     return {"amplitude": amplitude, "value": value} if follows else value
 
 
+def key_of(name: str) -> str:
+    """A name as a key of TOML.
+
+    Example:
+        >>> key_of("top"), key_of("b.top")
+        ('top', '"b.top"')
+    """
+    return name if name.replace("_", "").isalnum() else f'"{name}"'
+
+
 def written(value: object) -> str:
     """A value as a case file has it, tables in one line.
 
@@ -263,8 +308,7 @@ def written(value: object) -> str:
         '{ "b.top" = { x = 0.5, axis = [0, 0, 1] } }'
     """
     if isinstance(value, Mapping):
-        keys = {k: k if k.replace("_", "").isalnum() else f'"{k}"' for k in value}
-        return f"{{ {', '.join(f'{keys[k]} = {written(v)}' for k, v in value.items())} }}"
+        return f"{{ {', '.join(f'{key_of(k)} = {written(v)}' for k, v in value.items())} }}"
     if isinstance(value, list):
         return f"[{', '.join(map(written, value))}]"
     if isinstance(value, bool):

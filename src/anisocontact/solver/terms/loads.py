@@ -24,7 +24,8 @@ class DeadLoads(Term):
     """Forces that do not depend on the displacement, and what released supports still carry.
 
     A load of a kind on a group or body is `share_a f` at node a: the integrals of the basis
-    functions over it, which a force on the whole group is divided by the area of.
+    functions over it, which a force on the whole group is divided by the area of; a force on points
+    and edges is shared equally by their nodes.
     """
 
     def __init__(self, model: Model) -> None:
@@ -117,7 +118,7 @@ def _volume_shares(model: Model, body: str, field: str) -> Floats:
 # Kind of a dead load, a field of `Step` -> shares of the nodes.
 _SHARES: dict[str, Callable[[Model, str, str], Floats]] = {
     "traction": area_shares,
-    "force": mean_shares,
+    "force": node_shares,
     "body_force": _volume_shares,
 }
 

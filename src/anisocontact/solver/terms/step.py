@@ -45,7 +45,8 @@ class Step:
             -> value at the end. None frees the component of a free body.
         load: Rigid body -> freed component -> force, or moment about the reference point, at the
             end. Moments do not turn with the body.
-        force: Facet group -> axis -> force on the whole group at the end, as a uniform traction.
+        force: Group -> axis -> force on all of it at the end: a uniform traction on facets, equal
+            shares on the nodes of points and edges.
         pressure: Facet group -> pressure at the end, stress, positive into the body; at finite
             strain on the area and against the normal of now, else of the reference.
         body_force: Body -> axis -> force per reference volume at the end, stress/length.
