@@ -133,6 +133,34 @@ def test_orthotropic(
     np.testing.assert_allclose(u, x * strain, atol=1e-9 * 2.0 * np.abs(strain).max())
 
 
+@pytest.mark.parametrize(
+    ("given", "wanted"),
+    [
+        ("NEO HOOKE\n2., 0.01", {"model": "mooney-rivlin", "C10": 2, "C01": 0}),
+        ("MOONEY-RIVLIN\n2., 0.5, 0.01", {"model": "mooney-rivlin", "C10": 2, "C01": 0.5}),
+        ("YEOH\n2., .1, .02, 0.01", {"model": "yeoh", "C10": 2, "C20": 0.1, "C30": 0.02}),
+        (
+            "OGDEN, N=2\n3., 2., 1., -4., 0.01, 0.",
+            {"model": "ogden", "mu": [3, -0.5], "alpha": [2, -4]},
+        ),
+    ],
+    ids=["neo-hooke", "mooney-rivlin", "yeoh", "ogden"],
+)
+def test_rubber(tmp_path: Path, given: str, wanted: dict) -> None:
+    """Requirement: the constants are those of the same energy, K = 2/D1, in Ogden's mu/alpha for
+    2 mu/alpha^2; at rest it is Hooke's law with the shear modulus 2 (C10 + C01) or the sum of mu.
+    Source: the keyword reference. Tolerance: 2e-3, the strain under a small force."""
+    loads = "*CLOAD\n5, 3, 1e-3\n7, 3, 1e-3\nCORNERS, 3, 1e-3"
+    deck = CUBE.format(material=f"*HYPERELASTIC, {given}", orientation="", loads=loads)
+    case, x, u = solved(tmp_path, deck)
+    found = case["material"]["cube"]
+    assert found == wanted | {"bulk_modulus": 200}
+    shear = 2.0 * (found["C10"] + found.get("C01", 0.0)) if "C10" in found else 3.0 + 1.0
+    young = 9.0 * 200.0 * shear / (600.0 + shear)
+    top = x[:, 2] > 1.0
+    np.testing.assert_allclose(u[top, 2], 2.0 * 1e-3 / young, rtol=2e-3)
+
+
 def test_cylindrical_axes(tmp_path: Path) -> None:
     """Requirement: *ORIENTATION, SYSTEM=CYLINDRICAL is `around`: a point and the direction of the
     axis. Source: the keyword reference, outwards, around, along. Tolerance: none."""

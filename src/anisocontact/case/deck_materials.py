@@ -17,6 +17,8 @@ __all__ = ["Materials", "Temperatures"]
 
 #: Kind of `*ELASTIC` -> how many of its numbers are at one temperature.
 _SIZES = {"ISOTROPIC": 2, "ISO": 2, "ORTHO": 9, "ORTHOTROPIC": 9, "ENGINEERINGCONSTANTS": 9}
+#: Kind of `*HYPERELASTIC` -> how many constants it has; none where N says it.
+_RUBBERS = {"NEOHOOKE": 1, "MOONEY-RIVLIN": 2, "YEOH": 3, "OGDEN": 0}
 #: Share of the range of temperatures that a body may differ by and count as uniform.
 UNIFORM = 1e-9
 
@@ -58,6 +60,8 @@ class Materials:
             finite: Whether strain is finite.
         """
         known = self._of(body)
+        if "model" in known:
+            return known, []
         if "E" not in known:
             return known, [f"material of {body}: [material.{key_of(body)}] has to be written"]
         if "G" in known:
@@ -100,6 +104,28 @@ class Materials:
         if others:
             self._leave(card, ": its values at other temperatures")
 
+    def read_rubber(self, card: Card) -> None:
+        """Take `*HYPERELASTIC`: constants, and D1 of the energy `(J - 1)^2 / D1`."""
+        kind = next((k for k in _RUBBERS if k in card.options), "")
+        if not kind:
+            raise InputError(f"{', '.join(_RUBBERS)} are taken over")
+        numbers, terms = card.numbers().tolist(), int(card.options.get("N", "1"))
+        constants = numbers[: _RUBBERS[kind] or 2 * terms]
+        volume = numbers[len(constants) :]
+        if not volume or not volume[0] > 0.0 or any(volume[1 : 3 if kind == "YEOH" else terms]):
+            raise InputError("D1 > 0 alone is taken over; see bulk_modulus")
+        found: dict[str, object] = {"model": kind.lower()}
+        if kind == "OGDEN":  # 2 mu / alpha^2 there, mu / alpha here
+            exponents = constants[1::2]
+            pairs = zip(constants[::2], exponents, strict=True)
+            found |= {"mu": [2.0 * mu / alpha for mu, alpha in pairs], "alpha": exponents}
+        elif kind == "YEOH":
+            found |= dict(zip(("C10", "C20", "C30"), constants, strict=True))
+        else:
+            found["model"] = "mooney-rivlin"
+            found |= dict(zip(("C10", "C01"), (*constants, 0.0), strict=False))
+        self._model |= found | {"bulk_modulus": 2.0 / volume[0]}
+
     def read_density(self, card: Card) -> None:
         """Take `*DENSITY`."""
         self._model["density"] = float(card.numbers()[0])
@@ -108,7 +134,8 @@ class Materials:
         """Take `*EXPANSION`, one coefficient at its first temperature."""
         if not card.options.get("TYPE", "ISO").upper().startswith("ISO"):
             raise InputError("one coefficient is taken over")
-        self._model["expansion"] = float(card.numbers()[0])
+        if coefficient := float(card.numbers()[0]):
+            self._model["expansion"] = coefficient
         if len(list(card.fields())) > 1:
             self._leave(card, ": its values at other temperatures")
 
@@ -149,6 +176,7 @@ def _engineering(d: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
 _READERS: dict[str, Callable[[Materials, Card], None]] = {
     "MATERIAL": Materials.read_material,
     "ELASTIC": Materials.read_elastic,
+    "HYPERELASTIC": Materials.read_rubber,
     "DENSITY": Materials.read_density,
     "EXPANSION": Materials.read_expansion,
     "PLASTIC": Materials.read_plastic,
