@@ -67,6 +67,8 @@ _SAME = {
     "iterative": "gmres cg fgmres krylov",
 }
 
+#: Likeness (of difflib) from which a name counts as a slip of another; "bodies" is not "disc".
+NEAR = 0.61
 _STIFFNESS = "the run chooses it (auto), or contact.normal.penalty says it"
 _STRAIN = (
     'the material says it: "linear-elastic" is small strain, "st-venant-kirchhoff" and '
@@ -121,18 +123,22 @@ def meant(word: str, known: Iterable[str]) -> str | None:
         known: The names there are.
 
     Returns:
-        What another code calls so, else the name that is spelt most like it; None if none is near.
+        What another code calls so, else the only one that goes on from it, else the one that is
+        spelt most like it; None if none is near.
 
     Example:
         >>> meant("youngs_modulus", ["model", "E", "nu"]), meant("ordr", ["cell", "order"])
         ('E', 'order')
+        >>> meant("yield", ["E", "yield_stress"]), meant("bodies", ["box", "disc"])
+        ('yield_stress', None)
     """
     names = list(known)
     plain = _plain(word)
     for name in names:
         if plain in _SAME.get(name, "").split() or plain == _plain(name):
             return name
-    close = difflib.get_close_matches(word, names, 1)
+    longer = [name for name in names if name.startswith(f"{plain}_")]
+    close = longer if len(longer) == 1 else difflib.get_close_matches(word, names, 1, NEAR)
     return close[0] if close else None
 
 

@@ -188,6 +188,8 @@ def supports_of(
                 numbers = [real(v) for line in card.fields() for v in line]
                 found = transform_of(card.options.get("TYPE", "R").upper(), numbers)
                 of_node |= dict.fromkeys(members(card.option("NSET")), found)
+            elif "FIXED" in card.options and step > 1:
+                raise InputError("FIXED holds nodes where they are; give their displacements")
             else:
                 amplitude = card.options.get("AMPLITUDE", "").lower()
                 for entry, values in _entries(card, of_node):
