@@ -22,6 +22,7 @@ class System:
         self._residual = residual
         self.contact_term = self
         self.retraceable = self.touching = True
+        self.settled = False
         self.visited: list[float] = []
         self.shares: list[float] = []
         self.balance: Any = None
@@ -36,6 +37,14 @@ class System:
     def touch(self) -> bool:
         """As of the contacts."""
         return self.touching
+
+    def statuses(self) -> int:
+        """As of the contacts."""
+        return 0
+
+    def same(self, _: int) -> bool:
+        """Whether no point has changed its status."""
+        return self.settled
 
     def damp_correction(self, share: float) -> None:
         """As of the contacts."""
@@ -105,6 +114,15 @@ def test_any_balance_will_do(whole: bool) -> None:
     search, system = begun(lambda x: np.nan if x > 0.6 else 1.0 + x)
     system.touching, search.whole = whole, whole
     assert search.share(vector(0.0), vector(-1.0), 1.0) == 0.5
+
+
+@pytest.mark.parametrize(("until", "share"), [(0.2, 1.0), (0.3, 1.0), (0.6, 0.5)])
+def test_whole_where_points_keep_their_status(until: float, share: float) -> None:
+    """Then less than half of a correction is none: the balance may rise by what it wants."""
+    search, system = begun(lambda x: 1.0 - x if x < until else 50.0)
+    system.settled = True
+    assert search.share(vector(0.0), vector(-1.0), 1.0) == share
+    assert system.visited == [0.0, share]
 
 
 def test_goes_back_where_another_state_is_asked_for() -> None:

@@ -30,7 +30,8 @@ def command(arguments: argparse.Namespace) -> int:
     from anisocontact.case.build import build, mesh_of
     from anisocontact.mesh.described import described
 
-    for line in contents(build(file, python=not arguments.no_python)):
+    built = build(file, python=not arguments.no_python)
+    for line in (*contents(built), *_overlaps(built)):
         say(line)
     for line in described(mesh_of(path)):
         say(line)
@@ -103,6 +104,17 @@ def contents(built: Built) -> list[str]:
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
     lines += [f"warning   {text}" for text in (*built.doubts(), *built.solver.cautions)]
     return [*lines, *(f"warning   {line}" for line in doubtful_sides(problem.contacts))]
+
+
+def _overlaps(built: Built) -> list[str]:
+    """What a run says of bodies that overlap at its start."""
+    from anisocontact.contact.hints import overlapping
+
+    pairs = (
+        (contact, f"contact of {section.slave} with {section.master}", contact.facet_size)
+        for section, contact in zip(built.file.case.contact, built.problem.contacts, strict=True)
+    )
+    return [f"warning   {line}" for line in overlapping(pairs, "adjust = true")]
 
 
 def _pass(contact: Contact) -> str:

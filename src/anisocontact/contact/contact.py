@@ -10,6 +10,7 @@ import numpy.typing as npt
 from anisocontact.contact.making import Before, Options, SurfaceMaster, before_this, parts_of
 from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.quadrature import FacetQuadrature
+from anisocontact.contact.sagitta import sagitta
 from anisocontact.interface import STATUS, ContactLaw, Response
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model
@@ -63,6 +64,7 @@ class Contact(Pass):
         space: Vector space of the displacement of nodes.
         master: What the slave points meet.
         slave_points: Where the laws are evaluated.
+        sagitta: Height of the arcs over flat facets of slave and master, length.
         nodes_of_groups: Local nodes, with ghosts, of each of `groups`.
         physical_adhesion: Whether the stiffness of adhesion is physical, so that elastic slip is
             none of its faults.
@@ -127,6 +129,7 @@ class Contact(Pass):
         )
         parts = parts_of(model, slave, master, law, options)
         super().__init__(model.unknowns, slave, name or slave, *parts, **options.of_pass)
+        self.sagitta = sum(sagitta(model, group) for group in self.groups)
         self.nodes_of_groups = tuple(model.facet_nodes(group) for group in self.groups)
         self.physical_adhesion = True
         self.facet_of_point = self.slave_points.facet

@@ -177,8 +177,10 @@ class Attempts:
         if not failed.damped and not failed.flowing:
             return [replace(failed, damped=True)]
         if flows and self._problem.stabilisation.enabled and not failed.flowing:
-            relaxed = failed.multipliers == PENALTIES
-            return [_Way(failed.start, flowing=True, multipliers=PENALTIES if relaxed else USUAL)]
+            # bodies that flow from one contact to another find multipliers with smaller penalties
+            follows = SOFTER in self._problem.contact_term.ways
+            by = SOFTER if follows else failed.multipliers
+            return [_Way(failed.start, flowing=True, multipliers=by)]
         return []
 
     def _attempt(self, way: _Way) -> tuple[NewtonResult, list[Culprit]]:

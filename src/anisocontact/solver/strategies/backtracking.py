@@ -18,6 +18,8 @@ Floats = npt.NDArray[np.float64]
 MEMORY = 3
 #: Least share of a correction that is tried.
 LEAST = 1.0 / 32.0
+#: Share from which on a shorter correction is worth it while points keep their status.
+HALF = 0.5
 
 
 class Backtracking:
@@ -26,8 +28,10 @@ class Backtracking:
     Displacements and multipliers take the same share of a correction. The first share is taken of
     1, 1/2, 1/4 ... of it with which the forces balance no worse than in one of the last states; a
     state without an answer never is. Where nothing touches yet any balance will do: bodies that
-    bend far come to their contact through it. Where no share will do it is taken whole, if there is
-    an answer: the active set may have to change at once.
+    bend far come to their contact through it. Neither does the balance count where less than half
+    would be taken though the whole correction changes the status of no point: slender bodies, whose
+    membrane forces rise for one correction, would creep. Where no share will do it is taken whole,
+    if there is an answer: the active set may have to change at once.
 
     Args:
         system: What is solved, a `newton.System`.
@@ -66,14 +70,19 @@ class Backtracking:
         free = self.whole or not contacts.touch()
         self._known.append(self._system.balance.norm)
         bound = np.inf if free else max(self._known)
-        marks, answers = contacts.marks(), True
+        marks, before = contacts.marks(), contacts.statuses()
+        answers, settled = True, False
         while share >= LEAST * largest:
             # a number that is none compares as false
             if self._norm_at(share, x, correction) <= bound:
                 return share
-            answers &= share < largest or bool(np.isfinite(self._system.balance.norm))
+            if share == largest:
+                answers = bool(np.isfinite(self._system.balance.norm))
+                settled = answers and contacts.same(before)
             contacts.go_back(marks)
             share *= 0.5
+            if settled and share < HALF * largest:
+                break
         share = largest if answers else share
         self._norm_at(share, x, correction)
         return share

@@ -41,7 +41,8 @@ DIVERGED = 1e8
 #: stands in front of a jump of the law, and would stay there.
 STUCK, STUCK_OVER = 0.5, 8
 #: With multipliers that follow a residual rises and falls while points find their status; it goes
-#: round in circles where the least of so many is more than this share of the least before.
+#: round in circles where the least of so many is more than this share of the least before, while
+#: no more and no fewer points touch than before. Where none does bodies bend far.
 IDLE, IDLE_OVER = 0.5, 5
 #: Residuals that repeat every second time, to this share of them, are those of a cycle.
 CYCLE, SAME = 5, 1e-3
@@ -146,6 +147,7 @@ class Newton:
         self._problem = problem
         self._on_iteration = on_iteration
         self._residuals: list[float] = []
+        self._touching: list[int] = []
         self._damping: Callable[[], float] | None = None
         self._search = Backtracking(problem)
         self.snes = PETSc.SNES().create(problem.comm)
@@ -221,7 +223,7 @@ class Newton:
 
     def _equilibrium(self, x: Vec) -> NewtonResult:
         """Newton's method with the multipliers as they are."""
-        self._residuals = []
+        self._residuals, self._touching = [], []
         self._search.begin()
         # PETSc leaves the iterate locked where a callback raises: that is not to be the caller's.
         iterate = x.copy()
@@ -297,10 +299,15 @@ class Newton:
 
     def _idles(self) -> bool:
         """Whether the last corrections, with multipliers that follow, have gained too little."""
-        known = self._residuals
-        if not self._problem.contact_term.follows or len(known) < IDLE_OVER + 3:
+        if not self._problem.contact_term.follows:
             return False
-        return min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
+        self._touching.append(self._problem.contact_term.touching())
+        known, touching = self._residuals, self._touching
+        if len(known) < IDLE_OVER + 3:
+            return False
+        before, lately = set(touching[1:-IDLE_OVER]), set(touching[-IDLE_OVER:])
+        searches = max(lately) == 0 or min(lately) < min(before) or max(lately) > max(before)
+        return not searches and min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
 
     def _cycles(self) -> bool:
         """Whether full steps go to and fro between two states: nothing will end that."""

@@ -146,8 +146,21 @@ class Contacts(Term):
 
     def touch(self) -> bool:
         """Whether a point touched in the last evaluation; collective."""
+        return self.touching() > 0
+
+    def touching(self) -> int:
+        """Points that touched in the last evaluation; collective."""
         counts = [one.counts() for one in self._all]
-        return any(sum(each.values()) > each["open"] for each in counts)
+        return sum(sum(each.values()) - each["open"] for each in counts)
+
+    def statuses(self) -> Ints:
+        """Status of the slave points of this rank in the last evaluation."""
+        return np.concatenate([one.trial.status for one in self._all]).astype(np.int32)
+
+    def same(self, before: Ints) -> bool:
+        """Whether all points have the status that they had before; collective."""
+        changed = int((self.statuses() != before).sum())
+        return bool(self._all[0].space.mesh.comm.allreduce(changed) == 0)
 
     @property
     def retraceable(self) -> bool:

@@ -38,7 +38,7 @@ PATIENCE = 3
 #: Viscous force over the forces at work below which the flow may be near its end.
 SLOW = 0.1
 #: Steps after which the flow is given up.
-MOST_STEPS = 60
+MOST_STEPS = 200
 
 
 class Flow(Term):

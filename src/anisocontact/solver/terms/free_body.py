@@ -124,6 +124,19 @@ class FreeBody:
         least = min(self.contacts[0].space.mesh.comm.allgather(float(min(near))))
         return float(min(max(2.0 * least, TOUCHING * self.size), self.size))
 
+    def carried_by(self, force: Floats, stiffness: float) -> float:
+        """How far forces on its nodes carry it along its free motions, length.
+
+        Args:
+            force: Of the springs of stabilisation, (nodes, 3).
+            stiffness: Of each of these springs, force/length.
+        """
+        nodes, arms = self.body.nodes, self.body.arms
+        own = force[nodes]
+        work = np.concatenate([own.sum(axis=0), np.cross(arms, own).sum(axis=0)])
+        work = self.contacts[0].space.mesh.comm.allreduce(work)
+        return float(np.linalg.norm(self.left @ work) / (self.count * stiffness))
+
     def touched(self) -> bool:
         """Whether one of its contacts is closed in the trial."""
         return any(c.counts()["stick"] + c.counts()["slip"] > 0 for c in self.contacts)

@@ -240,8 +240,12 @@ class Stabilisation(Term):
             )
         self._anchor, self._carried = u.copy(), force
         for free in self._free:
-            if free.touched() and not free.trusted:
-                fades = min(FADE * free.stiffness, free.load / (free.count * free.reach()))
+            fades = FADE * free.stiffness
+            if free.touched():
+                fades = min(fades, free.load / (free.count * free.reach()))
+            elif free.carried_by(force, fades) > free.reach():
+                continue
+            if not free.trusted:
                 free.stiffness = max(fades, LEAST * self._scale)
         return True
 

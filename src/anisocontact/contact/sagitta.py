@@ -1,0 +1,71 @@
+"""How far flat facets are beside the curved surface that they stand for."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.contact.facet_mesh import (
+    FacetMesh,
+    FacetShapes,
+    facet_corners,
+    facet_mesh,
+    node_positions,
+)
+from anisocontact.contact.sweep import Sweep
+from anisocontact.mesh import Model
+
+__all__ = ["sagitta"]
+
+Floats = npt.NDArray[np.float64]
+
+#: Cosine of the angle of a facet and the mean at its vertex below which that is an edge: one of
+#: the body, not of a mesh that stands for something round.
+EDGE = 0.9
+#: Corners of reference facets.
+CORNERS = {3: np.array([[0.0, 0], [1, 0], [0, 1]]), 4: np.array([[0.0, 0], [1, 0], [0, 1], [1, 1]])}
+
+
+def sagitta(model: Model, group: str) -> float:
+    """Height of the arcs over the facets of a group, of which facets of round cells have none.
+
+    An arc through the vertices of a facet of normal n, with the normal m at a vertex, is
+    `(m - n) . (c - v) / 2` above its middle c, v the vertex; m is the mean over the facets there.
+
+    Args:
+        model: Mesh with the group.
+        group: Its name, "body.group".
+
+    Returns:
+        Median over the facets, 0 where the group is flat [length].
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"a": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+        >>> sagitta(model, "a.top")
+        0.0
+    """
+    sweep = Sweep.of(model)
+    mesh = facet_mesh(model.space, model.facets(group), sweep)
+    x = node_positions(model.space)
+    heights = _heights(mesh, x if sweep is None else sweep.positions(x))
+    everywhere = np.concatenate(model.mesh.comm.allgather(heights))
+    return float(np.median(everywhere)) if len(everywhere) else 0.0
+
+
+def _heights(mesh: FacetMesh, x: Floats) -> Floats:
+    """Height of the arc over each facet, (m,), length."""
+    count = len(facet_corners(mesh.topology))
+    shapes = FacetShapes(mesh.topology)
+    nodes = mesh.nodes[:, :count]
+    tangents = np.einsum("ckd,mkx->mcdx", shapes.at(CORNERS[count])[1], x[mesh.nodes])
+    normals = np.cross(tangents[:, :, 0], tangents[:, :, 1])
+    normals /= np.linalg.norm(normals, axis=2)[:, :, None]
+    total = np.zeros_like(x)
+    np.add.at(total, nodes, normals * np.where(mesh.flip, -1.0, 1.0)[:, None, None])
+    mean = total[nodes] * np.where(mesh.flip, -1.0, 1.0)[:, None, None]
+    mean /= np.linalg.norm(mean, axis=2)[:, :, None]
+    smooth = (mean * normals).sum(axis=2) > EDGE
+    arms = x[nodes].mean(axis=1)[:, None] - x[nodes]
+    heights = 0.5 * np.abs(((mean - normals) * arms).sum(axis=2))
+    return np.asarray(np.where(smooth, heights, 0.0).mean(axis=1))
