@@ -135,6 +135,8 @@ class MortarAnswer:
         which: Slave nodes in contact, (p,).
         by_nodes: Derivative of their tractions, by the nodes of the planes, (p, 3, 27).
         answered: That of what laws answer, with what supports carry of it.
+        by_held: That of what laws would answer to slip along held directions where nodes slide,
+            (p, 3, 3).
     """
 
     at: MortarState
@@ -143,6 +145,7 @@ class MortarAnswer:
     which: Ints
     by_nodes: Floats
     answered: Floats
+    by_held: Floats
 
     @cached_property
     def _tangent(self) -> tuple[Floats, Ints, Ints, Floats]:
@@ -216,6 +219,7 @@ class MortarLinear:
 
     def _of(self, slip: Floats) -> Floats:
         by_point = self._answer.answered[:, :, :9].reshape(-1, 3, 3, 3).sum(axis=2)
+        by_point += self._answer.by_held
         return np.asarray(np.einsum("pij,pj->pi", by_point, slip[self._answer.which]))
 
     def _supported(self) -> Floats:

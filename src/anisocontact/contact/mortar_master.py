@@ -23,7 +23,7 @@ from anisocontact.contact.fold import Fold
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Resting
 from anisocontact.contact.meshed_master import MeshedMaster
-from anisocontact.contact.mortar_answer import MortarAnswer, MortarLinear, MortarState
+from anisocontact.contact.mortar_answer import SLIP, MortarAnswer, MortarLinear, MortarState
 from anisocontact.contact.mortar_reach import mortar_reachable
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
 from anisocontact.contact.opposite_names import names_of, numbers_of
@@ -217,11 +217,15 @@ class MortarMaster(MeshedMaster):
         response = response_of(found | {"traction": traction}, failed)
         which = np.flatnonzero(response.status != 0).astype(np.int32)
         snapshot = Snapshot(at.planes.slave, at.weights.area, response)
-        by_nodes = np.zeros((len(which), 3, 27))
+        by_nodes, by_held = np.zeros((len(which), 3, 27)), np.zeros((len(which), 3, 3))
         if tangent:
             by_nodes = -found["tangent"][which, :3]
+            sliding = response.status[which] == SLIP
+            by_held[sliding] = found["by_held"][which[sliding]]
         stiffness = found["stiffness"] * at.weights.area
-        return MortarAnswer(at, snapshot, stiffness, which, free[which] @ by_nodes, by_nodes)
+        return MortarAnswer(
+            at, snapshot, stiffness, which, free[which] @ by_nodes, by_nodes, by_held
+        )
 
     def _batch(self, state: State, tangent: bool = True) -> FacetBatch:
         """Slave nodes and planes as the core takes them."""

@@ -236,13 +236,32 @@ class Trials:
         change = None if self._linear is None else self._linear.change()
         if change is None:
             return
-        self.start = follower.advance(
-            self.start,
-            self._base.after(change, follower.share),
-            self._frames(self.master.here(self.start, dt)),
-            self._frames(self.start),
-        )
+        now = self._frames(self.master.here(self.start, dt))
+        before = self._frames(self.start)
+        traction = self._base.after(change, follower.share)
+        if follower.tangential:
+            traction = self._as_supported(traction, now, before)
+        self.start = follower.advance(self.start, traction, now, before)
         self._let_go_of_immovable()
+
+    def _as_supported(self, traction: Floats, now: Frames, before: Frames) -> Floats:
+        """Multipliers, (n, 3), with what supports can carry of them.
+
+        Along directions that supports hold nothing says what a point carries that does not slide:
+        it keeps what it did. One that slides carries no more than friction.
+        """
+        held = self.master.held
+        if held is None:
+            return traction
+        along = (held @ traction[..., None])[..., 0]
+        before_slip = before.turned_to(now, before.vector(self._state["stored"]))
+        kept = (held @ before_slip[..., None])[..., 0]
+        normal = np.einsum("nd,nd->n", self._base.traction, now.normal)
+        most = np.linalg.norm(self._base.traction - normal[:, None] * now.normal, axis=1)
+        size = np.linalg.norm(along, axis=1)
+        less = along * np.divide(most, size, out=np.ones_like(size), where=size > most)[:, None]
+        stick = self._now.response.status[:, None] == STICK
+        return np.asarray(traction - along + np.where(stick, kept, less))
 
     def _let_go_of_immovable(self) -> None:
         if self._multipliers is not None:
