@@ -33,7 +33,7 @@ struct Vertex {
 
 /// Distance over the length of an edge within which a corner lies on it: where edges lie on each
 /// other rounding would say where they cross.
-inline constexpr double on_edge = 1e-10;
+inline constexpr double on_edge = 1e-8;
 
 /// A polygon; four corners clipped by four edges have eight at most.
 struct Polygon {
