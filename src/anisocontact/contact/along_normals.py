@@ -34,6 +34,16 @@ TRIED = 8
 OPPOSED = 0.1
 #: How far coordinates may be beyond the sides of a facet: rounding.
 ROUNDING = 1e-10
+#: Sides of facets: where they start, and their directions.
+_BORDERS = {
+    "tri": (((0.0, 0.0), (1.0, 0.0)), ((0.0, 0.0), (0.0, 1.0)), ((1.0, 0.0), (-1.0, 1.0))),
+    "quad": (
+        ((0.0, 0.0), (1.0, 0.0)),
+        ((0.0, 1.0), (1.0, 0.0)),
+        ((0.0, 0.0), (0.0, 1.0)),
+        ((1.0, 0.0), (0.0, 1.0)),
+    ),
+}
 #: Share by which another place on the border has to be nearer than that on the edge of before.
 NEARER = 1e-3
 
@@ -100,21 +110,42 @@ def _stay(sides: Sides, x: Floats, normal: Floats, places: Places, before: Place
     """Leave places on the edges of the border where they were, unless others are nearer.
 
     A border that is hollow as seen from a node has two closest points, between which it would hop.
+    One that was not on an edge stays on one of the facet where it was.
     """
-    on_border = [one.edge.any(axis=1) & ~np.isnan(one.edge[:, 0]) for one in (places, before)]
-    moved = (places.facet >= 0) & (before.facet >= 0) & (places.facet != before.facet)
-    rows = np.flatnonzero(moved & on_border[0] & on_border[1])
+    on_edge, was_on_edge = (
+        one.edge.any(axis=1) & ~np.isnan(one.edge[:, 0]) for one in (places, before)
+    )
+    moved = (places.facet >= 0) & (before.facet >= 0) & (places.facet != before.facet) & on_edge
+    stayed = _kept(sides, x, normal, places, before, np.flatnonzero(moved & was_on_edge))
+    for start, along in _BORDERS[sides.master.topology.rstrip("0123456789")]:
+        n = len(before.facet)
+        side = Places(before.facet, np.tile(start, (n, 1)), np.tile(along, (n, 1)))
+        rest = np.flatnonzero(moved & ~was_on_edge & ~stayed)
+        stayed |= _kept(sides, x, normal, places, side, rest)
+
+
+def _kept(
+    sides: Sides, x: Floats, normal: Floats, places: Places, other: Places, rows: Numbers
+) -> Mask:
+    """Take the places on other edges that next to none of some places, (m,), are nearer than.
+
+    Returns:
+        Which places have been taken, (n,).
+    """
+    taken = np.zeros(len(places.facet), dtype=bool)
     if not rows.size:
-        return
+        return taken
     x, normal = x[rows], normal[rows]
-    now, then = (Places(p.facet[rows], p.xi[rows], p.edge[rows]) for p in (places, before))
+    now, then = (Places(p.facet[rows], p.xi[rows], p.edge[rows]) for p in (places, other))
     then = _border(sides, x, normal, then)
     away, stayed = (
         np.linalg.norm(_across(x - sides.surface.jet(p.facet, p.xi).position, normal), axis=1)
         for p in (now, then)
     )
-    kept = stayed <= (1.0 + NEARER) * away
+    kept = (stayed <= (1.0 + NEARER) * away) & then.edge.any(axis=1)
     _put(places, rows[kept], then.facet[kept], then.xi[kept], then.edge[kept])
+    taken[rows[kept]] = True
+    return taken
 
 
 def _put(places: Places, rows: Numbers, facet: Ints, xi: Floats, edge: Floats | float) -> None:
