@@ -79,7 +79,8 @@ class HeldDirections {
     d.by_held.fill(Vec3<double>::Zero());
     for (std::size_t k = 0; k < 2; ++k) {
       const Vec3<double> by = plane.spatial(r.slope(Slope::increment, k));
-      for (std::size_t i = 0; i < 3; ++i) d.by_held[i] += by[static_cast<Eigen::Index>(i)] * held_[k];
+      for (std::size_t i = 0; i < 3; ++i)
+        d.by_held[i] += by[static_cast<Eigen::Index>(i)] * held_[k];
     }
   }
   /// Slopes by the increment, from those by what is left of it.
