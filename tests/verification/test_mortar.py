@@ -241,7 +241,8 @@ def test_stick_on_a_plane_of_symmetry() -> None:
         assert shear.max() < 0.05 * 0.3 * PRESSURE
 
 
-def test_a_stiff_and_fine_slave_is_told() -> None:
+@pytest.mark.parametrize("mortar", [True, False])
+def test_a_stiff_and_fine_slave_is_told(mortar: bool) -> None:
     """A slave ten times as stiff and finer than the master is a warning that names what to do.
 
     The other way round, and with equal bodies, nothing is said.
@@ -253,7 +254,7 @@ def test_a_stiff_and_fine_slave_is_told() -> None:
         (stiff, ("lower.top", "upper.bottom"), False),
         (soft, ("upper.bottom", "lower.top"), False),
     ):
-        contact = Contact(model, *sides, _law(), mortar=True)
+        contact = Contact(model, *sides, _law(), mortar=mortar)
         Problem(model, {"upper": upper, "lower": soft}, [contact])
         lines = doubtful_sides([contact])
         assert bool(lines) == said

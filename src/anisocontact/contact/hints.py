@@ -60,10 +60,11 @@ _AT_NODES = "and pressures are as coarse as these; swap slave and master"
 
 
 def stiff_slaves(contacts: Sequence[Contact]) -> list[str]:
-    """Mortar contacts whose slave is stiffer and finer than the master.
+    """Contacts whose slave is stiffer and finer than the master.
 
     Every slave node demands that its gap closes, and a master of fewer nodes that gives way cannot
-    do so for all of them: pressures alternate.
+    do so for all of them: pressures alternate. Points of a single pass ask for less, by their
+    penalties.
 
     Args:
         contacts: The contacts.
@@ -74,12 +75,20 @@ def stiff_slaves(contacts: Sequence[Contact]) -> list[str]:
     return [
         f"contact of {' with '.join(one.groups)}: the slave is {one.master_yields:.2g} times as "
         f"stiff as the master and its facets are smaller ({one.facet_size:.3g} and "
-        f"{one.master_size:.3g}): pressures at its nodes alternate; swap slave and master"
+        f"{one.master_size:.3g}): {_ALTERNATE if one.slave_points.at_nodes else _SCATTER}"
         for one in contacts
-        if one.slave_points.at_nodes
+        if one.of_two_groups
         and one.master_yields > STIFF
         and one.facet_size < FINER * one.master_size
     ]
+
+
+#: What a stiff and fine slave does to a contact: a die on a slab, docs/howto/passes.md.
+_ALTERNATE = "pressures at its nodes alternate; swap slave and master"
+_SCATTER = (
+    "pressures at its points scatter by a fifth, friction that sticks is off by as much and "
+    'increments are hard; swap slave and master, and with pass = "mortar" nodes hold exactly'
+)
 
 
 def doubtful_sides(contacts: Sequence[Contact]) -> list[str]:
