@@ -52,14 +52,20 @@ class Front:
         self._matrix: Singles | None = None
         if r:
             self._eliminate()
+        elif shares.nnz:
+            self._matrix = self._moved()
 
-    def _eliminate(self) -> None:
-        whole, rest, own = self._summed(), self._rest, self.unknowns
-        back = self.shares.T.tocsr()
+    def _moved(self) -> Singles:
+        """T^T S T."""
+        whole, back = self._summed(), self.shares.T.tocsr()
         for part in _parts(len(whole)):  # all at once needs twice the memory
             whole[part] += (back @ whole[part].T).T
         for part in _parts(len(whole)):
             whole[:, part] += back @ whole[:, part]
+        return whole
+
+    def _eliminate(self) -> None:
+        whole, rest, own = self._moved(), self._rest, self.unknowns
         self._across, front = _taken(whole, own, rest), _taken(whole, own, own)
         follows, left = _taken(whole, rest, own), _taken(whole, rest, rest)
         del whole
@@ -94,7 +100,7 @@ class Front:
             ZeroDivisionError: The matrix is singular.
         """
         own = self.unknowns
-        whole = self._matrix is None
+        whole = not len(self._rest)
         matrix = self._summed() if self._matrix is None else self._matrix.copy(order="F")
         entries = (held if whole else held[own][:, own]).tocoo()
         matrix[entries.row, entries.col] += entries.data.astype(np.float32)
