@@ -15,6 +15,7 @@ from anisocontact.solver.strategies.condensed.bordered import reachable as borde
 from anisocontact.solver.strategies.condensed.dense import ContactTangent
 from anisocontact.solver.strategies.condensed.eliminate import WAYS
 from anisocontact.solver.strategies.condensed.factor import aij
+from anisocontact.solver.strategies.condensed.front import Front
 from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.parts import Condensation
@@ -222,6 +223,30 @@ def test_masters_are_eliminated_once() -> None:
     again.restore(kept.persistent())
     b = rng.random(210)
     np.testing.assert_array_equal(again.solve(b, 1e-9), kept.solve(b, 1e-9))
+
+
+@pytest.mark.parametrize("springs", [False, True])
+def test_front_with_and_without_what_is_eliminated(springs: bool) -> None:
+    """Springs on all masters leave nothing to eliminate: slave nodes move against them as before.
+
+    Requirement: the front solves the whole matrix in u = T v, to single precision. Before, the
+    matrix stayed in u where nothing was eliminated, and what contacts do was in v.
+    """
+    rng = np.random.default_rng(4)
+    half = rng.random((9, 9)) / 9.0
+    matrix = half @ half.T + np.eye(9)
+    shares = np.zeros((9, 9))
+    shares[:3, 3:] = rng.dirichlet(np.ones(6), 3)
+    gaps = np.eye(3, 9) - shares[:3]
+    contact = 1e2 * gaps.T @ gaps + np.diag([0.0] * 3 + [5.0 * springs] * 6)
+    given = scipy.sparse.csr_array(shares.astype(np.float32))
+    stays = np.arange(9) < (9 if springs else 3)
+    front = Front(lambda: np.array(matrix, dtype=np.float32, order="F"), given, stays)
+    turned = np.eye(9) + shares
+    held = front.held(scipy.sparse.csr_array(contact), given)
+    b = rng.random(9)
+    v = front.factor(held)((turned.T @ b).astype(np.float32))
+    np.testing.assert_allclose(turned @ v, np.linalg.solve(matrix + contact, b), atol=1e-5)
 
 
 @pytest.mark.skipif(not borders(), reason="PETSc without MUMPS")

@@ -210,6 +210,23 @@ def test_a_factor_in_single_precision_that_is_not_enough(monkeypatch: pytest.Mon
     factor.close()
 
 
+def test_where_no_kept_factor_serves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A correction to which none leads comes from a factorisation of all unknowns."""
+    make = bordered.BorderedLU
+
+    def made(*given: Any) -> Any:
+        factor = make(*given)
+        monkeypatch.setattr(factor, "solve", lambda b, x: x.set(0.0))  # of no use
+        return factor
+
+    monkeypatch.setattr(lagged, "BorderedLU", made)
+    problem = _on_plane()
+    problem.set_load_factor(1.0, 1.0)
+    factor = LaggedFactor(problem, lambda _: None)
+    assert _corrected(problem, factor, 1e-3) < 1e-12
+    factor.close()
+
+
 def test_auto_takes_it_beyond_a_number_of_unknowns() -> None:
     """More than 2000 unknowns; below that a factorisation is as cheap."""
     top = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}

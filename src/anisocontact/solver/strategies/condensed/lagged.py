@@ -8,7 +8,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-from anisocontact.base.fenicsx import Mat
+from anisocontact.base.fenicsx import Mat, PETSc
+from anisocontact.base.petsc_calls import check_memory
 from anisocontact.solver.strategies.condensed.bordered import PARTS, BorderedLU
 from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.krylov import gmres
@@ -27,8 +28,6 @@ _MATRIX, _BORDER = "lagged.matrix", "lagged.border."
 _PATIENCE = 20
 #: See `Wear`: the cost of a correction alone depends on how many points change.
 _LAST, _MARGIN = 10, 1.15
-#: Residual of a correction over its right-hand side that is still a direction for a line search.
-_USEFUL = 0.5
 
 
 class LaggedFactor:
@@ -38,7 +37,8 @@ class LaggedFactor:
     `P = J_old + C - C_old` with C what acts on the unknowns that contact can couple. All that
     changes at once is in it, and what it lacks is the change of the bodies since.
 
-    A factor is made anew where it is worn, see `Wear`.
+    A factor is made anew where it is worn, see `Wear`. Where a new one in double precision does not
+    lead to the correction either, all unknowns are factorised for this correction alone.
 
     Args:
         problem: The problem, on one process.
@@ -111,13 +111,32 @@ class LaggedFactor:
             found, left = self._corrected(tangent, b, rtol, True)
         if not left <= rtol and self._single and self._doubled(tangent):
             found, left = self._corrected(tangent, b, rtol, True)
-        return found if left < _USEFUL else None
+        # the border, in single precision, cannot tell stiff contacts from the bodies
+        return found if left <= rtol else self._whole(tangent, b)
 
     def close(self) -> None:
         """Give back the memory."""
         if self._factor is not None:
             self._factor.close()
         self._factor = None
+
+    def _whole(self, tangent: Mat, b: Floats) -> Floats | None:
+        """The correction by a factorisation of all unknowns; None where the tangent is singular."""
+        given, found = tangent.createVecs()
+        given.array[:] = b
+        factor = PETSc.KSP().create(tangent.getComm())
+        factor.setOperators(tangent)
+        factor.setType(PETSc.KSP.Type.PREONLY)
+        factor.getPC().setType(PETSc.PC.Type.LU)
+        factor.getPC().setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
+        factor.solve(given, found)
+        failed = factor.getConvergedReason() < 0
+        if failed:
+            check_memory(factor.getPC())
+        factor.destroy()
+        self.factors += 1
+        solution = np.array(found.array_r)
+        return None if failed or not np.isfinite(solution).all() else solution
 
     def _corrected(self, tangent: Mat, b: Floats, rtol: float, fresh: bool) -> tuple[Floats, float]:
         """What Krylov iterations find, and the norm of its residual over that of `b`."""
