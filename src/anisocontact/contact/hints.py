@@ -19,7 +19,7 @@ COARSE, MISSED = 3.0, 1.5
 #: 2.6 % of the peak for 2, 13 % for 10, docs/verification/mortar.md.
 STIFF, FINER = 3.0, 0.95
 #: Height of arcs over flat facets over an overlap at the start that is worth a word: a press fit of
-#: two rings whose arcs are 1.8 times as high as the overlap carries 15 to 19 % too much.
+#: two rings whose arcs are 1.3 times as high as the overlap carries 15 to 19 % too much.
 FLAT = 0.1
 
 
