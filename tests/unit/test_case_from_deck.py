@@ -181,6 +181,11 @@ def test_the_case_runs(deck: Path, capsys: pytest.CaptureFixture[str]):
         ("*DENSITY", "*EXPANSION, TYPE=ORTHO\n 1.\n*DENSITY", "one coefficient is taken over"),
         ("*DENSITY", "*EXPANSION\n 1., 20.\n 2., 90.\n*DENSITY", "values at other temperatures"),
         ("*BOUNDARY, OP=NEW", "*BOUNDARY, FIXED", "FIXED holds nodes where they are"),
+        (
+            "*STEP\nPress",
+            "*TRANSFORM, NSET=HEAD\n0, 1, 0, -1, 0, 0\n*STEP\nPress",
+            "head has a *TR",
+        ),
         ("*VIEWFACTOR", "*EQUATION", "components of single nodes are not tied; see faces"),
         ("*VIEWFACTOR", "*TEMPERATURE, FILE=hot\n", "temperatures of a file"),
         ("*STEP\nPress", "*INITIAL CONDITIONS, TYPE=STRESS\n*STEP\nPress", "TYPE=STRESS is not"),

@@ -73,6 +73,7 @@ class Steps:
         self._deck, self._mesh, self._named = deck, mesh, named
         self._temperatures = cache(temperatures)
         self._steps: list[_Step] = []
+        self._turned: set[int] = set()
         self.finite = False
         self.nodes: dict[str, list[float]] = {}
         self.constant: dict[str, float] = {}
@@ -83,6 +84,8 @@ class Steps:
         Raises:
             InputError: It cannot be taken over.
         """
+        if card.name == "TRANSFORM":
+            self._turned.update(self._deck.nodes_of(card.option("NSET")))
         if card.name == "STEP":
             title = card.options.get("NAME") or (card.data[0] if card.data else "")
             names = [one.name for one in self._steps]
@@ -189,7 +192,10 @@ class Steps:
             if int(direction) > 3:
                 text = f"a moment on {entry.lower()}; faces on a reference point take them"
                 raise InputError(text)
-            total = real(value) * len(np.unique(self._deck.nodes_of(entry)))
+            nodes = np.unique(self._deck.nodes_of(entry))
+            if not self._turned.isdisjoint(nodes.tolist()):
+                raise InputError(f"{entry.lower()} has a *TRANSFORM; forces along x, y, z are read")
+            total = real(value) * len(nodes)
             yield "force", self._loaded(entry), {"xyz"[int(direction) - 1]: total}
 
     def temperatures(self, card: Card) -> Iterator[_Load]:
