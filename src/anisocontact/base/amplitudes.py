@@ -25,8 +25,16 @@ __all__ = [
     "register_amplitude",
 ]
 
-#: A number at a time.
+#: A number at a time, such as `lambda t: 1.0 - math.exp(-t)`, or one of `amplitudes`.
 Amplitude = Callable[[float], float]
+"""A number at a time: any function of one, or what `make_amplitude` gives.
+
+Example:
+    >>> from anisocontact.solver import make_amplitude
+    >>> ramp = make_amplitude("ramp", duration=2.0)
+    >>> ramp(1.0), (lambda t: t**2)(0.5)
+    (0.5, 0.25)
+"""
 
 _KIND = "amplitude"
 

@@ -22,7 +22,15 @@ _NOTHING = 1e-12
 
 
 class Path(Protocol):
-    """A curve over time; what is led along it begins where it is."""
+    """A curve over time; what is led along it begins where it is.
+
+    Example:
+        >>> class Helix:
+        ...     def components(self):
+        ...         return {"x": math.cos, "y": math.sin, "z": lambda t: 0.1 * t}
+        >>> [round(at(math.pi), 3) for at in Helix().components().values()]
+        [-1.0, 0.0, 0.314]
+    """
 
     def components(self) -> dict[str, Amplitude]:
         """Position over time by axis; axes that are left out are not led."""

@@ -68,6 +68,20 @@ class PointLaw(Protocol):
     Attributes:
         strain: Word for its strain, "small" or "logarithmic".
         history: Internal variables by name with their shape, () of a number; zero at the start.
+
+    Example:
+        `sigma = 2 G eps`, which remembers nothing:
+
+        >>> class Shear:
+        ...     linear, young, strain, history = False, 3.0, "small", {}
+        ...     def update(self, state):
+        ...         one = np.eye(9).reshape(3, 3, 3, 3)
+        ...         tangent = np.stack([one + one.swapaxes(2, 3)] * len(state.strain))
+        ...         return PointResult(stress=2.0 * state.strain, tangent=tangent)
+        >>> sheared = np.zeros((1, 3, 3))
+        >>> sheared[0, 0, 1] = sheared[0, 1, 0] = 0.01
+        >>> Shear().update(PointState(sheared, {}, 1.0, np.zeros((1, 3)))).stress[0, 0].tolist()
+        [0.0, 0.02, 0.0]
     """
 
     strain: str

@@ -165,7 +165,9 @@ class MortarAnswer:
         """Add the forces of tractions on the slave, (p, 3), of some slave nodes, (p,)."""
         rows, weights = self.at.rows[which], self.at.row_weights[which]
         there, forces = rows >= 0, self.at.gathered.zeros(out)
-        np.add.at(forces, rows[there], (weights[:, :, None] * traction[:, None])[there])
+        found = (weights[:, :, None] * traction[:, None])[there]
+        for i in range(3):
+            forces[:, i] += np.bincount(rows[there], found[:, i], len(forces))
         self.at.gathered.hand_back(forces, out)
 
     def couplings(self) -> list[Couplings]:

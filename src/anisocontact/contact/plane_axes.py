@@ -92,7 +92,7 @@ class Carried:
         """
         by = by_nodes.reshape(*by_nodes.shape[:2], 9, 3).copy()
         tangents, by_axes = self.tangents[which], by[:, :, 7:]
-        found = np.einsum("nab,nrai->nrbi", self.by_master[which], by_axes)
+        found = self.by_master[which].swapaxes(1, 2)[:, None] @ by_axes
         by_d = found[:, :, :2] + by_tangents(tangents, found[:, :, 2])
         by[:, :, 6] += (by_axes - by_d).sum(axis=2)
         by[:, :, 7:] = by_d

@@ -37,6 +37,18 @@ class SlavePoints:
         at_nodes: Whether points are nodes of the mesh.
         polygons: Points around the pieces of facets on which fields go on between nodes, seen from
             outside, (m, corners); none of integration points.
+
+    Example:
+        >>> from anisocontact import Adhesion, Contact, ContactLaw, Friction, NormalLaw
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> from anisocontact.surfaces import make_surface
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 1))})
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> adhesion, friction = Adhesion(stiffness=(1, 1)), Friction(coefficients=(0.3, 0.3))
+        >>> law = ContactLaw(NormalLaw(penalty=100.0), adhesion, friction)
+        >>> points = Contact(model, "block.bottom", plane, law).slave_points
+        >>> len(points.facet), round(points.size, 12), points.at_nodes
+        (16, 0.5, False)
     """
 
     spread = beside = 0.0

@@ -111,12 +111,14 @@ class SurfaceGradient:
         rise = np.einsum("nabi,ni->nab", bend, unit) + np.einsum("nai,nbi->nab", own, turn)
         d_flat = bend - rise[..., None] * unit[:, None, None]
         d_flat -= along[:, :, None, None] * turn[:, None]
+        # the gradient and its rates, (n, 3, j, 3), as products of matrices, which are quick
+        functions = np.concatenate([share[:, None], slope.swapaxes(1, 2)], axis=1)
         at = self.at_vertices[facet]
-        gradient = np.einsum("nc,ncji->nji", share, at)
-        rate = np.einsum("ncb,ncji->nbji", slope, at)
-        values = np.einsum("nai,nji->naj", flat, gradient)
-        rates = np.einsum("nabi,nji->nabj", d_flat, gradient)
-        rates += np.einsum("nai,nbji->nabj", flat, rate)
+        found = (functions @ at.reshape(*at.shape[:2], -1)).reshape(-1, 3, *at.shape[2:])
+        gradient, rate = found[:, 0].swapaxes(1, 2), found[:, 1:].swapaxes(2, 3)
+        values = flat @ gradient
+        rates = (d_flat.reshape(-1, 4, 3) @ gradient).reshape(-1, 2, 2, gradient.shape[2])
+        rates += (flat[:, None] @ rate).swapaxes(1, 2)
         return values, rates
 
 

@@ -93,6 +93,18 @@ class LawResult:
         dissipation: Frictional dissipation of the step, (n,) [energy/area].
         energy: Elastic energy at the end of the step, (n,) [energy/area].
         stored: Elastic force that the next step starts from, (n, 2); T if left out.
+
+    Example:
+        A spring, `T = - k dxi` at two points, of which nothing slides:
+
+        >>> k, moved, none = 10.0, np.array([[0.1, 0.0], [0.0, 0.2]]), np.zeros((2, 2, 2))
+        >>> found = LawResult(
+        ...     traction=-k * moved, slip=0.0 * moved, d_increment=none - k * np.eye(2),
+        ...     d_pressure=0.0 * moved, d_traction=none, d_elastic=none,
+        ...     internal=np.zeros((2, 0)), dissipation=np.zeros(2),
+        ...     energy=k * (moved**2).sum(axis=1) / 2.0)
+        >>> found.traction.tolist(), found.energy.round(12).tolist()
+        ([[-1.0, -0.0], [-0.0, -2.0]], [0.05, 0.2])
     """
 
     traction: Floats
@@ -356,6 +368,27 @@ class LawInSeries:
     Args:
         law: The law.
         compliance: c, length/stress.
+
+    Example:
+        A viscous law, `T = - 3 dxi / dt`, in front of a layer of the compliance 1: a quarter of the
+        way is left to the law.
+
+        >>> class Viscous:
+        ...     internal = 0
+        ...     def update(self, state, kinematics):
+        ...         n, slip = len(kinematics.pressure), kinematics.increment
+        ...         none, rate = np.zeros((n, 2, 2)), 3.0 / kinematics.dt
+        ...         return LawResult(
+        ...             traction=-rate * slip, slip=slip, d_increment=none - rate * np.eye(2),
+        ...             d_pressure=0.0 * slip, d_traction=none, d_elastic=none,
+        ...             internal=state.internal, dissipation=rate * (slip**2).sum(axis=1),
+        ...             energy=np.zeros(n))
+        >>> rest, moved = np.zeros((1, 2)), np.array([[0.4, 0.0]])
+        >>> start = LawState(rest, rest, np.zeros((1, 0)))
+        >>> found = LawInSeries(Viscous(), 1.0).update(
+        ...     start, LawKinematics(moved, np.ones(1), np.zeros(1), rest, dt=1.0))
+        >>> found.traction.round(12).tolist(), found.slip.round(12).tolist()
+        ([[-0.3, -0.0]], [[0.1, 0.0]])
     """
 
     def __init__(self, law: TangentialLaw, compliance: float) -> None:

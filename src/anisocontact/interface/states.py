@@ -37,6 +37,16 @@ def _state_dtype() -> np.dtype[np.void]:
 STATE = _state_dtype()
 
 State = npt.NDArray[np.void]
+"""States of points, (n,) of the type `STATE`, of which every variable is a column.
+
+Example:
+    >>> from anisocontact import ContactLaw, Interface, NormalLaw
+    >>> from anisocontact.surfaces import make_surface
+    >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    >>> state = Interface(plane, ContactLaw(NormalLaw(penalty=1e3))).initial_state([[0, 0, 0.1]])
+    >>> state["gap"].tolist(), state["status"].tolist()
+    ([0.1], [0])
+"""
 
 
 @dataclass(frozen=True)

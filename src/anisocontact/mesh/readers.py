@@ -57,6 +57,16 @@ def whole_reader(read: Callable[[Path], WholeMesh]) -> Reader:
 
     Returns:
         The reader.
+
+    Example:
+        >>> @whole_reader
+        ... def read_gone(path):
+        ...     raise FileNotFoundError(2, "No such file or directory")
+        >>> read_gone(Path("part.mesh"), None, "mesh.file", None)
+        Traceback (most recent call last):
+        ...
+        anisocontact.base.errors.InputError: mesh.file: mesh file 'part.mesh' cannot be read: \
+No such file or directory
     """
 
     def arrays(path: Path, bodies: Sequence[str] | None, field: str, comm: Any) -> MeshArrays:

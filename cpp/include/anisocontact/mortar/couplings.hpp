@@ -77,6 +77,31 @@ ANISOCONTACT_INLINE void add_outer(const double* v, const double* row, std::size
     for (std::size_t c = 0; c < width; ++c) to[x * width + c] += v[x] * row[c];
 }
 
+/// A vector times a row.
+struct Outer {
+  const double *v, *row;
+};
+
+/// Writes a sum of vectors times rows, (width,), to three rows, four at a time: what is written to is
+/// read once for four.
+template <class Of>
+ANISOCONTACT_INLINE void sum_outers(std::size_t count, const Of& of, std::size_t width,
+                                    double* to) {
+  static constexpr std::array<double, 3> none{};
+  for (std::size_t first = 0; first < count; first += 4) {
+    std::array<Outer, 4> o;
+    for (std::size_t e = 0; e < 4; ++e)
+      o[e] = first + e < count ? of(first + e) : Outer{none.data(), o[0].row};
+    for (std::size_t x = 0; x < 3; ++x) {
+      double* const out = to + x * width;
+      const double a = o[0].v[x], b = o[1].v[x], c = o[2].v[x], d = o[3].v[x];
+      if (first == 0) std::fill_n(out, width, 0.0);
+      for (std::size_t j = 0; j < width; ++j)
+        out[j] = out[j] + a * o[0].row[j] + b * o[1].row[j] + c * o[2].row[j] + d * o[3].row[j];
+    }
+  }
+}
+
 /// Adds column c of three rows, (3, width), to a block.
 ANISOCONTACT_INLINE void add_column(const double* rows, std::size_t width, std::size_t c,
                                     double* to) {
@@ -97,12 +122,20 @@ inline FacetBlocks facet_blocks(const Nodes& n, const Chosen& chosen, std::size_
   for (std::size_t a = 0; a < slaves; ++a) out.nodes.push_back(n.in.slave.node(f, a));
   out.nodes.insert(out.nodes.end(), own.masters.begin(), own.masters.end());
   out.acting.assign(count, false);
-  std::fill_n(memory, FacetBlocks::size(slaves, masters), 0.0);
   out.lift = memory;
   out.force = memory + slaves * 3 * width;
-  const auto node = [&](std::size_t s, std::size_t q, std::size_t i) ANISOCONTACT_INLINE_LAMBDA {
-    const double* const t = chosen.traction + 3 * q;
-    const double* const grown = own.d_area.data() + s * width;
+  std::fill_n(memory, 2 * slaves * 3 * width, 0.0);  // without the rows of masters
+  std::array<std::size_t, most> there{};             // nodes that are chosen
+  std::size_t some = 0;
+  for (std::size_t s = 0; s < slaves; ++s)
+    if (place[s] >= 0) there[some++] = s;
+  const auto q = [&](std::size_t s) { return static_cast<std::size_t>(place[s]); };
+  const auto slopes = [&](std::size_t s, std::size_t k) {
+    return own.d_weight.data() + (s * masters + k) * width;
+  };
+  const auto node = [&](std::size_t s) ANISOCONTACT_INLINE_LAMBDA {
+    const auto i = static_cast<std::size_t>(chosen.which[q(s)]);
+    const double* const t = chosen.traction + 3 * q(s);
     for (std::size_t r = 0; r < n.rows; ++r) {
       const double share = -n.support[i * n.rows + r];
       if (share == 0.0) continue;
@@ -110,21 +143,26 @@ inline FacetBlocks facet_blocks(const Nodes& n, const Chosen& chosen, std::size_
           std::find(out.nodes.begin(), out.nodes.end(), n.patch(i)[r]) - out.nodes.begin());
       out.acting[a] = true;
       const std::array<double, 3> v{share * t[0], share * t[1], share * t[2]};
-      detail::add_outer(v.data(), grown, width, out.force + a * 3 * width);
+      detail::add_outer(v.data(), own.d_area.data() + s * width, width, out.force + a * 3 * width);
     }
-    for (std::size_t k = 0; k < masters; ++k) {
-      out.acting[slaves + k] = true;
-      const double* const dw = own.d_weight.data() + (s * masters + k) * width;
-      detail::add_outer(t, dw, width, out.force + (slaves + k) * 3 * width);
-      detail::add_outer(chosen.lift + 3 * (q * n.weights.most + n.place(i, own.masters[k])), dw,
-                        width, out.lift + s * 3 * width);
-    }
+    const double* const lift = chosen.lift + 3 * q(s) * n.weights.most;
+    detail::sum_outers(
+        masters,
+        [&](std::size_t k) {
+          return detail::Outer{lift + 3 * n.place(i, own.masters[k]), slopes(s, k)};
+        },
+        width, out.lift + s * 3 * width);
   };
   with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
-    for (std::size_t s = 0; s < slaves; ++s) {
-      if (place[s] < 0) continue;
-      const auto q = static_cast<std::size_t>(place[s]);
-      node(s, q, static_cast<std::size_t>(chosen.which[q]));
+    for (std::size_t e = 0; e < some; ++e) node(there[e]);
+    for (std::size_t k = 0; k < masters; ++k) {
+      out.acting[slaves + k] = true;
+      detail::sum_outers(
+          some,
+          [&](std::size_t e) {
+            return detail::Outer{chosen.traction + 3 * q(there[e]), slopes(there[e], k)};
+          },
+          width, out.force + (slaves + k) * 3 * width);
     }
   });
   return out;
@@ -137,29 +175,32 @@ inline void traction_slopes(const Nodes& n, const std::vector<FacetBlocks>& bloc
   const auto i = static_cast<std::size_t>(chosen.which[q]);
   const std::size_t width = n.patches.width;
   std::fill_n(out, n.columns() * block_size, 0.0);
-  for (const MovingPart& part : parts)
-    for (std::size_t a = 0; a < part.width; ++a) {
-      const std::int32_t node = part.nodes == nullptr ? 0 : part.nodes[i * part.width + a];
-      if (node < 0) continue;
-      const std::size_t c = part.nodes == nullptr ? a : width + n.place(i, node);
-      for (std::size_t v = 0; v < part.count; ++v)
-        detail::add_block(part.values[(i * part.count + v) * part.width + a],
-                          chosen.by + (q * moving_parts + part.first + v) * block_size,
-                          out + c * block_size);
+  with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
+    for (const MovingPart& part : parts)
+      for (std::size_t a = 0; a < part.width; ++a) {
+        const std::int32_t node = part.nodes == nullptr ? 0 : part.nodes[i * part.width + a];
+        if (node < 0) continue;
+        const std::size_t c = part.nodes == nullptr ? a : width + n.place(i, node);
+        for (std::size_t v = 0; v < part.count; ++v)
+          detail::add_block(part.values[(i * part.count + v) * part.width + a],
+                            chosen.by + (q * moving_parts + part.first + v) * block_size,
+                            out + c * block_size);
+      }
+    for (std::size_t e = 0; e < n.patches.facet.size(i); ++e) {
+      const FacetBlocks& b = blocks[static_cast<std::size_t>(n.patches.facet.begin(i)[e])];
+      const std::size_t count = b.nodes.size(), slaves = n.in.slave.width();
+      const double* const from =
+          b.lift + static_cast<std::size_t>(n.patches.local.begin(i)[e]) * block_size * count;
+      for (std::size_t c = 0; c < count; ++c) {
+        const auto patch = n.patch(i);
+        const std::size_t to =
+            c < slaves
+                ? static_cast<std::size_t>(std::find(patch, patch + width, b.nodes[c]) - patch)
+                : width + n.place(i, b.nodes[c]);
+        detail::add_column(from, 3 * count, c, out + to * block_size);
+      }
     }
-  for (std::size_t e = 0; e < n.patches.facet.size(i); ++e) {
-    const FacetBlocks& b = blocks[static_cast<std::size_t>(n.patches.facet.begin(i)[e])];
-    const std::size_t count = b.nodes.size(), slaves = n.in.slave.width();
-    const double* const from =
-        b.lift + static_cast<std::size_t>(n.patches.local.begin(i)[e]) * block_size * count;
-    for (std::size_t c = 0; c < count; ++c) {
-      const auto patch = n.patch(i);
-      const std::size_t to =
-          c < slaves ? static_cast<std::size_t>(std::find(patch, patch + width, b.nodes[c]) - patch)
-                     : width + n.place(i, b.nodes[c]);
-      detail::add_column(from, 3 * count, c, out + to * block_size);
-    }
-  }
+  });
 }
 
 /// Rows of the tangent of the forces, each with the slave nodes and facets that add to it.

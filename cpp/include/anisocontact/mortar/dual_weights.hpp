@@ -103,9 +103,9 @@ ANISOCONTACT_INLINE bool put_weights(const Integrals<L>& in, std::size_t n,
       // dz = m^-1 (dc - dm z)
       Lanes<L> right = in.slope[(n + k) * columns + c];
       for (std::size_t j = 0; j < n; ++j) right.add(-z[k][j], in.slope[j * columns + c]);
-      const Lanes<L> dz = times(right);
+      const Lanes<L> slope = z[k] * grown + area * times(right);
       for (std::size_t i = 0; i < n; ++i)
-        out.d_weight.data()[(i * count + k) * columns + c] = z[k][i] * grown[i] + area[i] * dz[i];
+        out.d_weight.data()[(i * count + k) * columns + c] = slope[i];
     }
   }
   return true;
@@ -116,56 +116,65 @@ ANISOCONTACT_INLINE bool put_weights(const Integrals<L>& in, std::size_t n,
 /// extrapolate from a strip to where nothing is covered.
 inline constexpr double given = 0.15, kept = 0.25;
 
-/// What nodes of a facet give away and what they get of it, with derivatives.
+/// What nodes of a facet give away and what they get of it.
 struct HandOver {
-  Eigen::VectorXd gives, gets;          ///< shares, of the node's own and of what all give
-  DualWeights::Matrix d_gives, d_gets;  ///< (slaves, columns)
+  Eigen::VectorXd covered, gives,
+      gets;    ///< shares: covered, of the node's own, and of what all give
+  Index most;  ///< the node of which most is covered
 };
 
 /// Shares lambda that nodes give, smooth in what is covered, and those q that they get,
 ///   lambda = t^2 (3 - 2 t), t = (kept - s) / (kept - given), s = D_i / D_i^whole over the largest,
 ///   q_i = (1 - lambda_i) / sum_k (1 - lambda_k) .
-inline HandOver shares_handed_over(std::span<const double> whole, const DualWeights& in) {
-  const auto n = static_cast<Index>(whole.size()), columns = in.d_area.cols();
-  const Eigen::VectorXd per_whole =
-      Eigen::Map<const Eigen::VectorXd>(whole.data(), n).cwiseInverse();
-  const Eigen::VectorXd covered = in.area.cwiseProduct(per_whole);
-  Index most = 0;
-  const double largest = covered.maxCoeff(&most);
-  const Eigen::ArrayXd share = covered.array() / largest;
-  const Eigen::ArrayXd t = ((kept - share) / (kept - given)).max(0.0).min(1.0);
+inline HandOver shares_handed_over(const Eigen::VectorXd& per_whole, const Eigen::VectorXd& area) {
   HandOver out;
+  const Eigen::VectorXd covered = area.cwiseProduct(per_whole);
+  const double largest = covered.maxCoeff(&out.most);
+  out.covered = covered / largest;
+  const Eigen::ArrayXd t = ((kept - out.covered.array()) / (kept - given)).max(0.0).min(1.0);
   out.gives = t * t * (3.0 - 2.0 * t);
-  const double rest = static_cast<double>(n) - out.gives.sum();
+  const double rest = static_cast<double>(area.size()) - out.gives.sum();
   out.gets = (1.0 - out.gives.array()) / rest;
-  if (columns == 0) return out;
-  const Eigen::VectorXd slope = -6.0 * t * (1.0 - t) / ((kept - given) * largest);
-  out.d_gives = per_whole.asDiagonal() * in.d_area;
-  out.d_gives -= share.matrix() * Eigen::RowVectorXd(out.d_gives.row(most));
-  out.d_gives = slope.asDiagonal() * out.d_gives;
-  out.d_gets = out.gets * out.d_gives.colwise().sum() - out.d_gives;
-  out.d_gets /= rest;
   return out;
+}
+
+/// Derivatives of what nodes give and get, (slaves, columns) each.
+inline std::array<DualWeights::Matrix, 2> slopes_handed_over(const Eigen::VectorXd& per_whole,
+                                                             const DualWeights& in,
+                                                             const HandOver& by) {
+  if (in.d_area.cols() == 0) return {};
+  const double largest = in.area[by.most] * per_whole[by.most];
+  const Eigen::ArrayXd t = ((kept - by.covered.array()) / (kept - given)).max(0.0).min(1.0);
+  const Eigen::VectorXd slope = -6.0 * t * (1.0 - t) / ((kept - given) * largest);
+  DualWeights::Matrix gives = per_whole.asDiagonal() * in.d_area;
+  gives -= by.covered * Eigen::RowVectorXd(gives.row(by.most));
+  gives = slope.asDiagonal() * gives;
+  DualWeights::Matrix gets = by.gets * gives.colwise().sum() - gives;
+  gets /= static_cast<double>(in.area.size()) - by.gives.sum();
+  return {gives, gets};
 }
 
 /// Gives the weights of nodes that would be extrapolated to the other nodes of the facet, so that a
 /// uniform traction is still handed over exactly; `whole` are the weights where all is covered.
 inline void hand_over(std::span<const double> whole, DualWeights& out) {
-  const HandOver by = shares_handed_over(whole, out);
-  if (!(by.gives.maxCoeff() > 0.0)) return;
   const auto n = static_cast<Index>(whole.size()), columns = out.d_area.cols();
+  const Eigen::VectorXd per_whole =
+      Eigen::Map<const Eigen::VectorXd>(whole.data(), n).cwiseInverse();
+  const HandOver by = shares_handed_over(per_whole, out.area);
+  if (!(by.gives.maxCoeff() > 0.0)) return;
+  const auto [d_gives, d_gets] = slopes_handed_over(per_whole, out, by);
   const Eigen::VectorXd keeps = 1.0 - by.gives.array();
   // x_i becomes (1 - lambda_i) x_i + q_i sum_j lambda_j x_j
-  const auto move = [&](DualWeights::Matrix& x, DualWeights::Matrix& dx) {
+  const auto move = [&, &d_give = d_gives, &d_get = d_gets](DualWeights::Matrix& x,
+                                                            DualWeights::Matrix& dx) {
     const Eigen::RowVectorXd sum = by.gives.transpose() * x;
     for (Index k = 0; k < x.cols() && columns > 0; ++k) {
       Eigen::RowVectorXd d_sum = Eigen::RowVectorXd::Zero(columns);
       for (Index j = 0; j < n; ++j)
-        d_sum += by.d_gives.row(j) * x(j, k) + by.gives[j] * dx.row(j * x.cols() + k);
+        d_sum += d_give.row(j) * x(j, k) + by.gives[j] * dx.row(j * x.cols() + k);
       for (Index i = 0; i < n; ++i) {
         auto row = dx.row(i * x.cols() + k);
-        row = keeps[i] * row - by.d_gives.row(i) * x(i, k) + by.d_gets.row(i) * sum[k] +
-              by.gets[i] * d_sum;
+        row = keeps[i] * row - d_give.row(i) * x(i, k) + d_get.row(i) * sum[k] + by.gets[i] * d_sum;
       }
     }
     x = (keeps.asDiagonal() * x + by.gets * sum).eval();

@@ -60,6 +60,19 @@ class Accepted:
         relaxed: Whether penalties hold in it, as no multipliers were found.
         event: What has happened where an event ends the step here, in words.
         missed: What has not, where a step that waits for an event ends without it.
+
+    Example:
+        >>> from anisocontact.bulk import make_material
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> from anisocontact.solver import Problem, Solver, Step
+        >>> model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 4), (1, 1, 1))})
+        >>> problem = Problem(model, {"bar": make_material("linear-elastic", E=200.0, nu=0.0)})
+        >>> held = {"bar.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}, "bar.top": {"z": 0.1}}
+        >>> for found in Solver(problem, [Step("pull", 2, held)]).run():
+        ...     force = found.reactions["bar.top"].round(6)
+        ...     print(found.step, found.increment, found.time, force[2])
+        pull 1 0.5 2.5
+        pull 2 1.0 5.0
     """
 
     step: str

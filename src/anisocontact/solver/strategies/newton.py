@@ -135,6 +135,22 @@ class Newton:
         prefix: Prefix of the PETSc options.
         options: PETSc options without prefix; those already in the PETSc database come first.
         on_iteration: Called with the number of the iteration and the residual.
+
+    Example:
+        A block that is held below and pushed from above; its equations are linear.
+
+        >>> from anisocontact.bulk import make_material
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> from anisocontact.solver import Problem, Step
+        >>> model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+        >>> problem = Problem(model, {"block": make_material("linear-elastic", E=100.0, nu=0.3)})
+        >>> held = {"block.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
+        >>> problem.begin(Step("push", 1, held, traction={"block.top": {"z": -1.0}}))
+        >>> problem.set_load_factor(1.0, 1.0)
+        >>> newton = Newton(problem, "example_", {}, lambda number, residual: None)
+        >>> newton.solve(problem.accepted()).iterations
+        1
+        >>> newton.close()
     """
 
     def __init__(

@@ -71,6 +71,24 @@ class Strategy(Protocol):
         entry: Name to ask for it, and what it does in a line.
         merit: Why it is taken where nothing speaks against it, in a line.
         reduces: Whether it goes on from states that are known without the interior of the bodies.
+
+    Example:
+        Newton's method with a tangent that stays what it was for three corrections:
+
+        >>> from anisocontact.base.registry import Entry
+        >>> from anisocontact.solver import Newton
+        >>> class Lazy:
+        ...     entry = Entry("lazy", "strategy", "Newton's method with old tangents", ())
+        ...     merit, reduces = "asked for", False
+        ...     def obstacles(self, task):
+        ...         yield from ()
+        ...     def costs(self, task):
+        ...         yield "more corrections than with the tangent of now"
+        ...     def solver(self, task, on_iteration, note, kept):
+        ...         options = {"snes_lag_jacobian": 3, **task.options}
+        ...         return Newton(task.problem, task.prefix, options, on_iteration)
+
+        `register_strategy(Lazy)` lets it be asked for.
     """
 
     entry: Entry
