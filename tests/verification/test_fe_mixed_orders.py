@@ -138,3 +138,77 @@ def test_bodies_of_both_orders_in_contact(cell, slave):
     pressure = 0.01 / (1.0 / modulus + 1e-3)
     assert made.contacts[0].last.pressure == pytest.approx(pressure, rel=1e-7)
     assert last.reactions["two.top"][2] == pytest.approx(-pressure, rel=1e-7)
+
+
+@pytest.mark.parametrize("cell", CELLS)
+def test_slave_nodes_of_a_linear_body_are_its_corners(cell):
+    """A linear block on a sphere with multipliers, beside a quadratic body that nothing touches.
+
+    Requirement: nodes in contact and force are those of the block in a mesh of order 1. Source: the
+    same problem in two meshes. Tolerance: 1e-8, Newton to 1e-11 of the forces. With middle nodes as
+    slaves, whose displacement follows from the corners, the force was up to twice as large.
+    """
+    from anisocontact.contact import Contact
+    from anisocontact.interface import Augmentation, ContactLaw
+    from anisocontact.laws import Adhesion, Friction, NormalLaw
+    from anisocontact.solver import Step
+    from anisocontact.surfaces import make_surface
+
+    sphere = make_surface("sphere", centre=(0.5, 0.4, -1.0), radius=1.0)
+    law = ContactLaw(
+        NormalLaw(penalty=1e3), Adhesion(stiffness=(1e3, 1e3)), Friction(coefficients=(0.3, 0.3))
+    )
+
+    def contact(model):
+        exact = Augmentation(multipliers="newton")
+        return Contact(model, "one.bottom", sphere, law, augmentation=exact, mortar=True)
+
+    found = []
+    for more in ([], [block("two", 2, cell, x=5.0)]):
+        made = problem([block("one", 1, cell), *more], [contact], material="linear-elastic")
+        names = made.model.body_names()
+        held = {f"{name}.top": {"x": 0.0, "y": 0.0, "z": 0.0} for name in names}
+        steps = (
+            Step("press", 2, held | {"one.top": {"x": 0.0, "y": 0.0, "z": -0.05}}),
+            Step("drag", 2, held | {"one.top": {"x": 0.1, "y": 0.05, "z": -0.05}}),
+        )
+        run(made, *steps)
+        pair = made.contacts[0]
+        found.append((pair.counts(), pair.resultant()[0]))
+    assert found[0][0] == found[1][0]
+    assert found[0][0]["slip"] > 0
+    assert found[1][1] == pytest.approx(found[0][1], abs=1e-8 * np.abs(found[0][1]).max())
+
+
+@pytest.mark.parametrize("cell", CELLS)
+def test_linear_slaves_on_quadratic_masters(cell):
+    """Uniform pressure where the slave nodes are the corners of a linear block; forces in balance.
+
+    Requirement: 1e-7 of the pressure. Source: patch test with multipliers; matching facets.
+    """
+    from anisocontact.contact import Contact
+    from anisocontact.interface import Augmentation, ContactLaw
+    from anisocontact.laws import Adhesion, Friction, NormalLaw
+    from anisocontact.solver import Step
+
+    law = ContactLaw(
+        NormalLaw(penalty=1e3), Adhesion(stiffness=(5.0, 5.0)), Friction(coefficients=(0.3, 0.3))
+    )
+
+    def contact(model):
+        exact = Augmentation(multipliers="newton")
+        return Contact(model, "one.top", "two.bottom", law, augmentation=exact, mortar=True)
+
+    bodies = [block("one", 1, cell), block("two", 2, cell, z=0.5)]
+    made = problem(bodies, [contact], material="linear-elastic")
+    sides = {
+        f"{name}.{side}": {axis: 0.0}
+        for name in ("one", "two")
+        for side, axis in (("left", "x"), ("right", "x"), ("front", "y"), ("back", "y"))
+    }
+    ends = {"one.bottom": {"z": 0.0}, "two.top": {"z": -0.01}}
+    last = run(made, Step("press", 2, sides | ends))
+    pressure = 0.01 * 10.0 * 0.7 / (1.3 * 0.4)
+    assert len(made.contacts[0].state) == 9
+    assert made.contacts[0].last.pressure == pytest.approx(pressure, rel=1e-7)
+    assert last.reactions["two.top"][2] == pytest.approx(-pressure, rel=1e-7)

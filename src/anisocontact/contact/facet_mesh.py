@@ -30,6 +30,8 @@ TOPOLOGY = {
     ("quadrilateral", 1): "quad4",
     ("quadrilateral", 2): "quad9",
 }
+#: Corners of the facet of a cell, which come first.
+_CORNERS = {"tetrahedron": 3, "hexahedron": 4, "triangle": 2, "quadrilateral": 2}
 
 
 @dataclass(frozen=True)
@@ -54,13 +56,17 @@ class FacetMesh:
         return 1.0 if self.sweep is None else self.sweep.share
 
 
-def facet_mesh(space: Any, facets: Ints, sweep: Sweep | None = None) -> FacetMesh:
+def facet_mesh(
+    space: Any, facets: Ints, sweep: Sweep | None = None, order: int | None = None
+) -> FacetMesh:
     """Boundary facets that this rank owns, with outward orientation.
 
     Args:
         space: Vector Lagrange space of order 1 or 2.
         facets: Local facets on the boundary.
         sweep: Of a mesh in the plane.
+        order: Order of the displacement there, 1 where middle nodes follow the corners; that of
+            the space if left out.
 
     Returns:
         Nodes and orientation.
@@ -68,7 +74,10 @@ def facet_mesh(space: Any, facets: Ints, sweep: Sweep | None = None) -> FacetMes
     nodes, cells = _of_cells(space, facets)
     element, x = scalar_element(space), node_positions(space)
     middle = x[space.dofmap.list[cells]].mean(axis=1)
-    topology = TOPOLOGY[element.cell_type.name, element.degree]
+    cell = element.cell_type.name
+    topology = TOPOLOGY[cell, order or element.degree]
+    if order == 1:
+        nodes = nodes[:, : _CORNERS[cell]]
     if sweep is not None:
         x, nodes = sweep.positions(x), sweep.facets(nodes)
     return FacetMesh(topology, nodes, outward_flips(x, nodes, topology, middle), sweep)

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import facet_keys
+from anisocontact.base.fenicsx import facet_keys, facet_sides
 from anisocontact.contact.analytic import AnalyticMaster
 from anisocontact.contact.facet_master import FacetMaster
 from anisocontact.contact.facet_mesh import facet_mesh, node_positions
@@ -159,7 +159,8 @@ def _on_surface(
     comm = model.mesh.comm
     current = options.current_area is not False
     if options.mortar:
-        nodes = _slave_nodes(model, facets, current, SlaveEdges.in_plane)
+        order = _order(model, facets)
+        nodes = _slave_nodes(model, facets, current, SlaveEdges.in_plane, order=order)
         interface = without_poles(interface, nodes.quadrature.reference, comm)
         points: SlavePoints = nodes
     else:
@@ -176,8 +177,11 @@ def _slave_nodes(
     current_area: bool,
     of_edges: Callable[[SlaveEdges], NodesOfFacets],
     towards: Towards | None = None,
+    order: int | None = None,
 ) -> SlaveNodes:
-    """Slave nodes of a mortar contact.
+    """Slave nodes of a mortar contact; of a body of order 1 in a space of order 2 its corners.
+
+    Displacements of order 1 cannot hold multipliers of middle nodes.
 
     Raises:
         InputError: The mesh has two dimensions, on several processes.
@@ -186,7 +190,7 @@ def _slave_nodes(
     if sweep is not None and comm.size > 1:
         text = f"mortar given on {comm.size} processes: in two dimensions it needs a single one"
         raise InputError(text, "pass")
-    mesh = facet_mesh(model.space, facets, sweep)
+    mesh = facet_mesh(model.space, facets, sweep, order)
     whole = around_own_nodes(model.space, mesh, facet_keys(model.mesh, np.sort(facets)))
     x = whole.far.everywhere(node_positions(model.space))
     if sweep is None:
@@ -194,6 +198,16 @@ def _slave_nodes(
     else:
         found = of_edges(SlaveEdges(mesh, x, towards))
     return SlaveNodes(found, whole, x, current_area=current_area, comm=comm)
+
+
+def _order(model: Model, facets: npt.NDArray[np.int32]) -> int:
+    """Order of the displacement on facets, the higher one where bodies of both orders have them."""
+    if not model.linear:
+        return model.order
+    cells, _ = facet_sides(model.mesh, np.sort(facets))
+    linear = np.concatenate([model.cells(body) for body in model.linear])
+    alike = bool(np.isin(cells, linear).all())
+    return 1 if all(model.mesh.comm.allgather(alike)) else model.order
 
 
 def _check_pair(model: Model) -> None:
@@ -266,7 +280,9 @@ def _on_facets(
     current, nodes = options.current_area is not False, None
     if options.mortar:
         towards = None if options.self_contact else towards_facets(model, master)
-        nodes = _slave_nodes(model, model.facets(slave), current, SlaveEdges.in_space, towards)
+        facets = model.facets(slave)
+        order = None if options.self_contact else _order(model, facets)
+        nodes = _slave_nodes(model, facets, current, SlaveEdges.in_space, towards, order)
     sides = make_sides(
         model,
         (slave, master),
