@@ -176,6 +176,7 @@ SLOW = ("scipy.", "pyvista", "vtk", "vtkmodules", "rich", "meshio", "h5py", "gms
 LATE = (
     "anisocontact.results.report",
     "anisocontact.results.scene",
+    "anisocontact.results.solids",
     "anisocontact.point.pictures",
 )
 

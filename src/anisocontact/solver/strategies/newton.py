@@ -42,7 +42,7 @@ DIVERGED = 1e8
 STUCK, STUCK_OVER = 0.5, 8
 #: With multipliers that follow a residual rises and falls while points find their status; it goes
 #: round in circles where the least of so many is more than this share of the least before, while
-#: no more and no fewer points touch than before. Where none does bodies bend far.
+#: no more points touch than before. Where none does bodies bend far; where ever fewer do they part.
 IDLE, IDLE_OVER = 0.5, 5
 #: Residuals that repeat every second time, to this share of them, are those of a cycle.
 CYCLE, SAME = 5, 1e-3
@@ -321,8 +321,8 @@ class Newton:
         known, touching = self._residuals, self._touching
         if len(known) < IDLE_OVER + 3:
             return False
-        before, lately = set(touching[1:-IDLE_OVER]), set(touching[-IDLE_OVER:])
-        searches = max(lately) == 0 or min(lately) < min(before) or max(lately) > max(before)
+        before, lately = max(touching[1:-IDLE_OVER]), max(touching[-IDLE_OVER:])
+        searches = lately == 0 or lately > before
         return not searches and min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
 
     def _cycles(self) -> bool:
