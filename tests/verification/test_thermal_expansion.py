@@ -16,6 +16,7 @@ from anisocontact.bulk import Expanding, make_material, materials
 from anisocontact.cli import main
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.results import Results
+from anisocontact.results.history import read_history
 from anisocontact.results.paraview import Bodies
 from anisocontact.solver import ElasticSupport, Problem, Solver, Step
 
@@ -191,6 +192,60 @@ def test_case_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         assert main(["check", str(case)]) != 0
         said = f'step[0].temperature: "{body}" given, no such body whose material has an expansion'
         assert said in capsys.readouterr().err
+
+
+SHEET = """
+[mesh.rectangle.bar]
+origin = [0, 0]
+size = [2, 1]
+cells = [2, 1]
+[idealisation]
+kind = "plane-stress"
+thickness = 0.5
+[material.bar]
+{material}
+expansion = 1e-4
+[[step]]
+name = "heat"
+increments = 1
+temperature = {{ bar = 100 }}
+displacement = {{ "bar.left" = {{ x = 0 }}, "bar.bottom" = {{ y = 0 }} }}
+[[step]]
+name = "hold"
+increments = 1
+temperature = {{ bar = 0 }}
+displacement = {{ "bar.right" = {{ x = 0 }} }}
+[[step]]
+name = "heat again"
+increments = 1
+temperature = {{ bar = 100 }}
+[output]
+pictures = false
+[output.probe.middle]
+point = [1, 0.5, 0]
+"""
+ISOTROPIC = 'model = "linear-elastic"\nE = 200\nnu = 0.3'
+WOOD = 'model = "orthotropic"\nE = [200, 90, 70]\nnu = [0.3, 0.2, 0.4]\nG = [50, 40, 30]'
+
+
+@pytest.mark.parametrize("material", [ISOTROPIC, WOOD], ids=["isotropic", "wood"])
+def test_a_sheet_in_plane_stress(tmp_path: Path, material: str) -> None:
+    """Requirement: a free sheet grows by `a dT` without stress; between rigid ends it has the
+    stress `-E_1 a dT` and grows across by `(1 + nu_12) a dT`, with none through its thickness.
+
+    Source: Hooke's law of a bar. Tolerance: rounding of the solution.
+    """
+    case = tmp_path / "case.toml"
+    case.write_text(SHEET.format(material=material))
+    assert main(["run", str(case), "-o", str(tmp_path / "out")]) == 0
+    table = read_history(tmp_path / "out" / "probes" / "middle.csv")
+    np.testing.assert_allclose(table["displacement.x"], [0.01, 0.0, 0.0], atol=1e-12)
+    np.testing.assert_allclose(table["displacement.y"], [0.005, 0.0, 0.5 * 1.3 * 0.01], atol=1e-12)
+    np.testing.assert_allclose(table["stress.XX"], [0.0, 0.0, -2.0], atol=1e-10)
+    for name in ("YY", "ZZ", "XY"):
+        np.testing.assert_allclose(table[f"stress.{name}"], 0.0, atol=1e-10)
+    force = Results(tmp_path / "out").history["reactions.bar.right.x"]
+    np.testing.assert_allclose(force[-1], -1.0, rtol=1e-9)
 
 
 def test_scripts_are_told_as_well() -> None:

@@ -103,6 +103,10 @@ class Heated(Idealisation):
         """An expression of `grad(u)` as one of what is not made by the temperature, UFL."""
         return self._ideal.seen(self._left(expression, u), u)
 
+    def stress(self, expression: Any, u: Any) -> Any:
+        """As of `Idealisation`."""
+        return self._ideal.stress(self._left(expression, u), u)
+
     def at_nodes(self, expression: Any, u: Any) -> Any:
         """As of `Idealisation`."""
         return self._ideal.at_nodes(self._left(expression, u), u)

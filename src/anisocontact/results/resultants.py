@@ -1,4 +1,8 @@
-"""Forces and moments about a point: of what holds a facet group, and through a section."""
+"""Forces and moments about a point: of what holds a facet group, and through a section.
+
+Forces at finite strain are in balance where nodes are now, those of a body at small strain where
+its nodes are in the mesh: moments are taken there.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.fenicsx import fem
+from anisocontact.bulk import small_strain
 from anisocontact.solver import Problem
 
 __all__ = ["GroupResultant", "Resultant", "SectionResultant"]
@@ -29,6 +34,10 @@ class GroupResultant:
 
     group: str
     about: Sequence[float] = (0.0, 0.0, 0.0)
+
+    def body_of(self, problem: Problem) -> str:
+        """Name of the body."""
+        return problem.model.body_of(self.group)
 
     def nodes(self, problem: Problem, field: str) -> Nodes:
         """Nodes of the group that this process owns."""
@@ -61,6 +70,10 @@ class SectionResultant:
     normal: Sequence[float]
     about: Sequence[float] = (0.0, 0.0, 0.0)
 
+    def body_of(self, problem: Problem) -> str:
+        """Name of the body."""
+        return self.body
+
     def nodes(self, problem: Problem, field: str) -> Nodes:
         """Nodes of the body in front of the plane that this process owns."""
         space, cells = problem.model.space, problem.model.cells(self.body, f"{field}.body")
@@ -89,11 +102,18 @@ def resultant(what: Resultant, problem: Problem, nodes: Nodes) -> dict[str, Any]
         `force` and `moment`.
     """
     forces = what.forces(problem)[nodes]
-    places = problem.model.space.tabulate_dof_coordinates()[nodes]
-    places = places + problem.u.x.array.reshape(-1, 3)[nodes]
-    moments = np.cross(places - np.array(what.about), forces)
+    arms = _places(problem, what.body_of(problem), nodes) - np.array(what.about)
+    moments = np.cross(arms, forces)
     force, moment = problem.comm.allreduce(np.stack([forces.sum(axis=0), moments.sum(axis=0)]))
     return {"force": force.tolist(), "moment": moment.tolist()}
+
+
+def _places(problem: Problem, body: str, nodes: Nodes) -> Floats:
+    """Where the forces at nodes of a body are in balance, (nodes, 3), length."""
+    places = problem.model.space.tabulate_dof_coordinates()[nodes]
+    if small_strain(problem.materials[body]):
+        return np.asarray(places)
+    return np.asarray(places + problem.u.x.array.reshape(-1, 3)[nodes])
 
 
 def _owned(problem: Problem, nodes: Any) -> Nodes:

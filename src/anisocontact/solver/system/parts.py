@@ -10,7 +10,7 @@ import numpy as np
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
-from anisocontact.bulk import LinearBulk, Material, NonlinearBulk, small_strain
+from anisocontact.bulk import LinearBulk, Material, NonlinearBulk, bare, small_strain
 from anisocontact.contact import Contact
 from anisocontact.contact.shared_nodes import tell_shared
 from anisocontact.mesh import Model
@@ -88,7 +88,7 @@ def make_parts(
     """
     _check(model, materials, contacts)
     for name, material in materials.items():
-        model.idealisation.check_material(material, f"material.{name}")
+        model.idealisation.check_material(bare(material), f"material.{name}")
     faces = CoupledFaces(coupled, model, materials, middle_nodes(model))
     bulk = _bulk(model, materials, faces)
     bodies, rigid = Bodies(bulk, model.unknowns), RigidBodies(contacts, model.mesh.comm, faces)
