@@ -71,6 +71,23 @@ def test_cells_and_numbers_survive(tmp_path, suffix):
     assert np.allclose(np.sort(x, axis=0), np.sort(POINTS, axis=0), atol=1e-12)
 
 
+def test_numbers_of_another_name_are_said(tmp_path):
+    """Requirement: an array that may number the bodies and is not read is named, one that numbers
+    every cell or has no whole numbers is not."""
+    points, cells = np.concatenate([POINTS, POINTS + 5.0]), np.arange(32).reshape(4, 8)
+    arrays = {"region": [1, 1, 2, 2], "id": [1, 2, 3, 4], "heat": [0.5, 0.5, 1, 2], "one": [1] * 4}
+    data = {name: [np.array(values)] for name, values in arrays.items()}
+    mesh = meshio.Mesh(points, [("hexahedron", cells)], cell_data=data)
+    mesh.write(tmp_path / "cubes.vtu")
+    (note,) = file_arrays(tmp_path / "cubes.vtu", field="").notes
+    assert note.startswith("are numbered from 1 to 2 by 'region', which is not read; bodies are")
+    mesh.cell_data["PartId"] = [np.array([5, 5, 6, 6])]
+    mesh.write(tmp_path / "cubes.vtu")
+    named = file_arrays(tmp_path / "cubes.vtu", field="")
+    assert list(named.bodies) == ["body5", "body6"]
+    assert not named.notes
+
+
 @pytest.mark.filterwarnings("ignore")
 def test_exodus_with_sets_of_nodes(tmp_path):
     mesh = meshio.Mesh(

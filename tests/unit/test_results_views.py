@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.figure_style import new_figure
 from anisocontact.results.dataset import DataSet, polygons, vertices
 from anisocontact.results.deformed import SHOWN, surfaces
+from anisocontact.results.report import maps
 from anisocontact.results.report.frame import ContactView
+from anisocontact.results.report.run_data import Moment
 from anisocontact.results.solids import Solid
 
 
@@ -84,3 +88,27 @@ def test_points_that_have_never_seen_their_master_are_seen_across_their_plane():
     view = ContactView(_touching(place, np.zeros((20, 3))), 0)
     assert not view.closed
     assert view.frame.names() == ("x", "z")
+
+
+@pytest.mark.parametrize("height", [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0])
+def test_no_text_of_a_map_is_cut_off(height):
+    """Points on a line, as of a mesh in the plane, in a strip and in a square: titles, labels of
+    axes and of the scale of colours lie within the picture. Tolerance: a pixel."""
+    places = np.random.default_rng(3).uniform(size=(60, 3)) * [1.0, height, 0.0]
+    data = {"pressure": np.ones(60), "traction_principal": np.ones((60, 2))}
+    data |= {f"direction_friction_{i + 1}": np.tile(np.eye(3)[i], (60, 1)) for i in range(2)}
+    points = _touching(places, np.tile([0.0, 0.0, 1.0], (60, 1)), **data)
+    points.point_data["area"][:] = 1e-3
+    view = ContactView(points, 0)
+    moments = [Moment("drag, increment 4", 1, 1)]
+    run = SimpleNamespace(moments=moments, ends=lambda: moments, view=lambda *_: view)
+    for drawn in (maps.traction, maps.pressure):
+        figure = drawn(run, 0)
+        figure.draw_without_rendering()
+        for text in figure.findobj(Text):
+            if len(text.get_text()) < 5:  # ticks, also those beyond the ends of their axes
+                continue
+            box = text.get_window_extent()
+            inside = [figure.bbox.x0 - 1 <= box.x0, box.x1 <= figure.bbox.x1 + 1]
+            inside += [figure.bbox.y0 - 1 <= box.y0, box.y1 <= figure.bbox.y1 + 1]
+            assert all(inside), text.get_text()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import Any
@@ -50,6 +50,7 @@ LOWER = {"vertex": 0, "line": 1, "line3": 1}
 TAGS: tuple[str, ...] = (
     *("gmsh:physical", "medit:ref", "nastran:ref", "cell_tags", "ugrid:ref", "su2:tag"),
     *("avsucd:material", "flac3d:group", "netgen:index", "MaterialIds", "tags"),
+    *("CellEntityIds", "PartId", "body"),
 )
 
 
@@ -96,6 +97,8 @@ def read_by_meshio(path: Path) -> WholeMesh:
         flat = "surfaces are bodies in the plane z = 0 alone; " if kinds & set(PLANE) else ""
         text = f"no solid cell ({', '.join(SOLIDS)}); {flat}there are: {found}"
         raise InputError(text)
+    if all(set(labels) == {"body"} for labels in mesh.bodies):
+        mesh.notes = (*mesh.notes, *_unread(given, solids))
     for name, found in given.point_sets.items():
         nodes = np.asarray(found, dtype=np.int64).ravel()
         before = mesh.node_sets.get(_plain(name), np.zeros(0, dtype=np.int64))
@@ -180,6 +183,20 @@ def _tags(mesh: Any, of_bodies: int) -> Iterator[list[str]]:
             of_med.get(n) or known.get((dim, n)) or (f"{word}{n}" if n or dim == of_bodies else "")
             for n in numbers
         ]
+
+
+def _unread(mesh: Any, solids: Mapping[str, str]) -> Iterator[str]:
+    """Lines on arrays of numbers that look as if they were bodies, and are not read as such."""
+    kept = [k for k, block in enumerate(mesh.cells) if block.type in solids]
+    for name, parts in mesh.cell_data.items():
+        values = [np.asarray(parts[k]) for k in kept]
+        if name in TAGS or any(value.ndim != 1 for value in values):
+            continue
+        given = np.concatenate(values)
+        count = len(np.unique(given))
+        if 1 < count < len(given) and np.all(given == np.round(given)):
+            text = f"are numbered from {given.min():g} to {given.max():g} by {name!r}"
+            yield f"{text}, which is not read; bodies are numbered by {', '.join(TAGS)}"
 
 
 def _plain(name: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.colors import BoundaryNorm, ListedColormap
@@ -14,12 +14,15 @@ from anisocontact.results.report.run_data import Moment, RunData
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
 __all__ = ["pressure", "status", "traction"]
 
 #: Panels side by side; of more steps the last ones are shown.
 MOST = 3
+#: Height of a map over its width below which the scale of colours lies under it, to be long enough.
+FLAT = 0.5
 #: Size of a map in which panels can share their axes, over that of the points.
 ROOM = 1.5
 
@@ -34,7 +37,7 @@ def pressure(run: RunData, contact: int) -> Figure:
         image = view.draw_touching(
             axes, view.data["pressure"], cmap="viridis", vmin=0.0, vmax=top or 1.0
         )
-    figure.colorbar(image, ax=[p[0] for p in panels], label="pressure [stress]")
+    _scale(figure, [p[0] for p in panels], image, panels[0][1], "pressure [stress]")
     _legend(figure, ["open"])
     return figure
 
@@ -53,7 +56,7 @@ def status(run: RunData, contact: int) -> Figure:
 def traction(run: RunData, contact: int) -> Figure:
     """Tangential traction on the slave along the first and the second friction axis, at the end."""
     view = run.view(run.moments[-1].index, contact)
-    figure = new_figure(10.0, 4.2 * view.aspect + 1.4)
+    figure = new_figure(10.0, 4.2 * view.aspect + _margin(view))
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
     values = view.data["traction_principal"]
     limit = float(np.abs(values[view.touching]).max(initial=0.0)) or 1.0
@@ -61,7 +64,7 @@ def traction(run: RunData, contact: int) -> Figure:
         image = view.draw_touching(axes, values[:, i], cmap="RdBu_r", vmin=-limit, vmax=limit)
         axes.set_title(f"along the {name} axis of friction")
         _arrows(axes, view, i)
-    figure.colorbar(image, ax=[left, right], label="tangential traction on the slave [stress]")
+    _scale(figure, [left, right], image, view, "tangential traction on the slave [stress]")
     figure.suptitle(f"{plain(run.moments[-1].title)}; arrows: direction of the axis")
     _legend(figure, ["open"])
     return figure
@@ -71,7 +74,7 @@ def _panels(
     run: RunData, contact: int, moments: list[Moment]
 ) -> tuple[Figure, list[tuple[Axes, ContactView, Moment]]]:
     views = [run.view(moment.index, contact) for moment in moments]
-    figure = new_figure(3.9 * len(moments) + 1.0, 3.6 * views[0].aspect + 1.4)
+    figure = new_figure(3.9 * len(moments) + 1.0, 3.6 * views[0].aspect + _margin(views[0]))
     shared = _in_one_place(views)
     row = figure.subplots(1, len(moments), sharex=shared, sharey=shared, squeeze=False)[0]
     if shared:
@@ -83,6 +86,22 @@ def _panels(
             axes.set_xlim(left, right)
             axes.set_ylim(bottom, top)
     return figure, list(zip(row, views, moments, strict=True))
+
+
+def _margin(view: ContactView) -> float:
+    """Height of all that is no map, inches."""
+    return 2.1 if view.aspect < FLAT else 1.4
+
+
+def _scale(
+    figure: Figure, panels: list[Axes], image: ScalarMappable, view: ContactView, label: str
+) -> None:
+    """A scale of colours beside the maps, or under those that are too flat for its label."""
+    if view.aspect < FLAT:
+        place: dict[str, Any] = {"location": "bottom", "shrink": 0.6, "aspect": 40}
+        figure.colorbar(image, ax=panels, label=label, **place)
+    else:
+        figure.colorbar(image, ax=panels, label=label)
 
 
 def _in_one_place(views: list[ContactView]) -> bool:
