@@ -198,7 +198,6 @@ def test_the_case_runs(deck: Path, capsys: pytest.CaptureFixture[str]):
         ("NAME=RAMP", "NAME=RAMP, DEFINITION=SMOOTH STEP", "DEFINITION=SMOOTH STEP is not read"),
         (" HEAD, 3, -25.", " 99, 3, -25.", "99 is on no body, a force is on one"),
         (" HEAD, 3, -25.", " HEAD, 5, -25.", "a moment on head; faces on a reference point"),
-        ("*STATIC\n 0.5, 2.", "*DYNAMIC\n 0.5, 2.", "step 'pull' is not *STATIC: taken as one"),
         ("UPPER, P2", "UPPER, BX", "BX on upper; P1, P2 ... and GRAV are read"),
     ],
 )
@@ -211,6 +210,42 @@ def test_what_is_left_out_is_said(
     case, lines = converted(deck, capsys)
     assert any(said.startswith("left out  ") and line in said for said in lines), lines
     assert len(case["step"]) == 2
+
+
+def test_steps_that_are_not_static(deck: Path, capsys: pytest.CaptureFixture[str]):
+    """Requirement: a step that is not static is left out with its loads, in a line that says what
+    it is; supports from the start go with the first that is left."""
+    deck.write_text(DECK.replace("*STATIC\n 0.25, 1.", "*MODAL DYNAMIC\n 0.25, 1."))
+    case, lines = converted(deck, capsys)
+    text = "step 1 is *MODAL DYNAMIC, not *STATIC; steps behind it begin without what it does"
+    assert lines[0] == f"left out  {text}"
+    (step,) = case["step"]
+    assert step["name"] == "pull"
+    assert "pressure" not in step
+    assert step["displacement"] == {
+        "lower.foot": {"x": 0, "y": 0, "z": 0},
+        "upper.head": {"x": 0.001},
+    }
+    deck.write_text(DECK.replace("*STATIC\n 0.5, 2.", "*FREQUENCY\n 10"))
+    case, lines = converted(deck, capsys)
+    assert lines[0] == "left out  step 2 is *FREQUENCY, not *STATIC"
+    assert case["step"] == WANTED["step"][:1]
+    deck.write_text(DECK.replace("*STEP\nPull", "*STEP, PERTURBATION\nPull"))
+    case, lines = converted(deck, capsys)
+    assert lines[0] == "left out  step 2 is a PERTURBATION of the steps before"
+    deck.write_text(DECK.replace("*STEP\nPress", "*STEP, PERTURBATION\nPress"))
+    assert converted(deck, capsys)[0]["step"] == WANTED["step"]
+
+
+def test_a_deck_without_a_static_step(deck: Path, capsys: pytest.CaptureFixture[str]):
+    """Requirement: it is refused in a line that names the steps, and no file is written."""
+    deck.write_text(DECK.replace("*STATIC\n 0.25", "*BUCKLE\n 5").replace("*STATIC", "*DYNAMIC"))
+    target = deck.with_suffix(".toml")
+    assert main(["convert", str(deck), str(target)]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    text = "no step can be taken over: step 1 is *BUCKLE, not *STATIC, step 2 is *DYNAMIC, not"
+    assert text in line
+    assert not target.exists()
 
 
 def test_finite_strain_the_plane_and_nodes(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

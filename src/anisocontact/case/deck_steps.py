@@ -1,4 +1,4 @@
-"""Steps of a deck as tables of a case file: supports, loads, times."""
+"""Static steps of a deck as tables of a case file: supports, loads, times."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ import numpy as np
 
 from anisocontact.base.errors import InputError
 from anisocontact.case.deck_materials import Temperatures
+from anisocontact.case.deck_procedures import STATIC
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck, pressed_face, pressures
@@ -35,14 +36,14 @@ class _Step:
 
     Attributes:
         name: Its name.
-        duration: Its time; None where it is no static step.
+        duration: Its time.
         increments: Number of increments.
         keys: Key of a step of a case file -> group -> what is given.
         new: Keywords of which it takes back what earlier steps had.
     """
 
     name: str
-    duration: float | None = None
+    duration: float = 1.0
     increments: int = 1
     keys: dict[str, _Given] = field(default_factory=dict)
     new: set[str] = field(default_factory=set)
@@ -93,7 +94,7 @@ class Steps:
             self._steps.append(_Step(name if name and name not in names else f"step {step}"))
             self.finite = self.finite or card.options.get("NLGEOM", "NO").upper() in ("", "YES")
             return True
-        if card.name == "STATIC" and step:
+        if card.name in STATIC and step:
             times = [real(v) for v in next(card.fields(), [])]
             first, whole = (*times, *(1.0, 1.0)[len(times) :])[:2]
             here = self._steps[-1]
@@ -122,9 +123,6 @@ class Steps:
                 left.append(f"step {one.step}: {one.text}")
             elif self._steps:
                 left += self._support(one)
-        for step in self._steps:
-            if step.duration is None:
-                left.append(f"step {step.name!r} is not *STATIC: taken as one")
         self._renew()
         return left
 
@@ -132,7 +130,7 @@ class Steps:
         """Tables of the steps."""
         for step in self._steps:
             table: dict[str, object] = {"name": step.name, "increments": step.increments}
-            if step.duration not in (None, 1.0):
+            if step.duration != 1.0:
                 table["duration"] = step.duration
             yield table | step.keys
 

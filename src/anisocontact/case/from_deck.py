@@ -9,6 +9,7 @@ from pathlib import Path
 from anisocontact.base.errors import InputError
 from anisocontact.case.deck_cyclic import Sectors
 from anisocontact.case.deck_materials import Materials, Temperatures
+from anisocontact.case.deck_procedures import static_steps
 from anisocontact.case.deck_steps import Steps
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
@@ -39,11 +40,12 @@ def case_of_deck(path: Path, target: Path) -> tuple[str, list[str]]:
         The text, and a line for everything that was not taken over.
 
     Raises:
-        InputError: The deck cannot be read.
+        InputError: The deck cannot be read, or none of its steps is static.
         OSError: It cannot be read.
     """
     deck, mesh = read_deck(path), file_arrays(path, field="")
-    case = _Case(deck, mesh)
+    deck.cards, left = static_steps(deck.cards)
+    case = _Case(deck, mesh, left)
     file = path.resolve().relative_to(target.resolve().parent, walk_up=True)
     return "\n".join(case.lines(file.as_posix())) + "\n", case.left_out
 
