@@ -131,6 +131,44 @@ def test_uniform_tension(tmp_path, element):
     assert found[:, 3:] == pytest.approx(hooke(kind, found[:, :3]), abs=1e-10)
 
 
+def test_a_single_free_node(tmp_path):
+    """Requirement: a deck of CPS4 is solved with bilinear squares in plane stress.
+
+    Source: stiffness of a corner of a cell of a by b, E t/(1 - nu^2) (b/3a + (1 - nu)/2 a/3b) along
+    x, and as much with a and b changed along y; the parts that couple both cancel between two cells
+    side by side. Tolerance: 1e-10.
+    """
+    from anisocontact.case import load
+    from anisocontact.case.build import build
+    from anisocontact.case.from_deck import case_of_deck
+
+    rest = """*NSET, NSET=HELD
+1, 2, 3, 4, 6
+*MATERIAL, NAME=STEEL
+*ELASTIC
+1000., 0.3
+*BOUNDARY
+HELD, 1, 2
+*STEP
+*STATIC
+*CLOAD
+5, 1, 3.
+5, 2, 5.
+*END STEP"""
+    (tmp_path / "plate.inp").write_text(deck("CPS4", rest).replace("\n1.\n", "\n0.5\n"))
+    text, left_out = case_of_deck(tmp_path / "plate.inp", tmp_path / "plate.toml")
+    assert not left_out
+    (tmp_path / "plate.toml").write_text(text)
+    built = build(load(str(tmp_path / "plate.toml")))
+    list(built.solver.run())
+    place = built.problem.model.space.tabulate_dof_coordinates()
+    (node,) = np.flatnonzero(np.all(np.abs(place - [2.0, 2.0, 0.0]) < 1e-9, axis=1))
+    found = built.problem.u.x.array.reshape(-1, 3)[node]
+    plate = 2 * 1000.0 * 0.5 / (1.0 - 0.3**2)
+    along_x, along_y = plate * (2 / 3 + 0.35 / 6), plate * (1 / 6 + 0.35 * 2 / 3)
+    assert found == pytest.approx([3.0 / along_x, 5.0 / along_y, 0.0], abs=1e-10)
+
+
 def test_triangles_beside_quadrilaterals(tmp_path):
     """Requirement: quadrilaterals are cut, said in a line, and the stress is uniform; of order 2
     they are refused. Source: Hooke. Tolerance: 1e-10."""
