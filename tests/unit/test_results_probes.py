@@ -150,6 +150,16 @@ def test_principal_stresses_of_a_shear():
         ('group = "bar.top"\nq', 'group = "bar.tip"\nq', "output.probe.end.group: no facet group"),
         ('["displacement"]', '["gap"]', "output.probe.end.quantities: 'gap' given, those of a"),
         ('body = "bar"', 'body = "rod"', "output.resultant.waist.body: no body 'rod'"),
+        (
+            "point = [0, 0, 1.4]",
+            "point = [0, 0, 3.1]",
+            "output.resultant.waist.point: all of the body 'bar' is behind the plane",
+        ),
+        (
+            "point = [0, 0, 1.4]",
+            "point = [0, 0, -1]",
+            "output.resultant.waist.point: all of the body 'bar' is in front of the plane",
+        ),
         ("normal = [0, 0, 2]", "", "output.resultant.waist.normal: a body needs it"),
         ("[output.probe.end]", '[output.probe."a/b"]', 'output.probe: "a/b" given, a name of'),
     ],

@@ -94,6 +94,19 @@ def test_a_case_is_warned_of_in_one_line(tmp_path, capsys, units, young, density
     assert not said or said in lines[0]
 
 
+@pytest.mark.parametrize("timed", [False, True])
+def test_a_material_that_knows_time_wants_durations(tmp_path, capsys, timed):
+    text = CASE.format(units="", young="210e3", density="7.85e-9")
+    relaxing = 'model = "viscoelastic"\ng = [0.5]\ntau = [1]'
+    text = text.replace('model = "linear-elastic"', relaxing)
+    if timed:
+        text = text.replace("increments = 1", "increments = 1\nduration = 2")
+    (tmp_path / "case.toml").write_text(text)
+    assert main(["check", str(tmp_path / "case.toml")]) == 0
+    lines = [line for line in capsys.readouterr().out.splitlines() if "knows time" in line]
+    assert len(lines) == (not timed)
+
+
 def test_unknown_unit_is_one_line(tmp_path, capsys):
     path = tmp_path / "case.toml"
     path.write_text(CASE.format(units='[units]\nlength = "mile"', young="1", density="1"))

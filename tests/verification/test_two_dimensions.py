@@ -335,6 +335,17 @@ def test_what_is_not_the_same_in_every_plane_is_refused(ideal, surface, directio
         Contact(rectangle(ideal), "b.top", surface, _law(**directions))
 
 
+@pytest.mark.parametrize(
+    ("ideal", "normal"),
+    [(PlaneStrain(), (0, 0, 1)), (PlaneStrain(), (0, -1, 0.1)), (Axisymmetric(), (0, 0, 1))],
+)
+def test_a_surface_across_the_plane_is_refused(ideal, normal):
+    """Requirement: a surface whose normals leave the plane of the mesh is one line."""
+    plane = make_surface("plane", point=(0, 0.9, 0), normal=normal)
+    with pytest.raises(InputError, match="normal of the surface is not in the plane of the mesh"):
+        Contact(rectangle(ideal), "b.top", plane, _law())
+
+
 def test_mistakes_are_one_line():
     """Requirement: what a mesh of two dimensions cannot be is said."""
     with pytest.raises(InputError, match="idealisation: missing"):

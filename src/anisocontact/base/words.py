@@ -20,6 +20,13 @@ _SAME = {
     "stiffness": "tangential_stiffness stick_stiffness elastic_slip_stiffness shear_stiffness fkt "
     "eps_t epsilon_t kt penalty",
     "density": "rho dens mass_density",
+    "expansion": "alpha alpx cte thermal_expansion coefficient_of_thermal_expansion",
+    "yield_stress": "sigma_y sigma_0 sigy yield_strength rp02 re",
+    "lankford": "r_values r_value r_bar anisotropy",
+    "bulk_modulus": "k kappa bulk",
+    "tau": "relaxation_times times time_constants",
+    "viscoelastic": "prony maxwell",
+    "plastic": "j2 von_mises mises elastoplastic",
     "directions": "direction orientation axes texture local_axes",
     "displacement": "boundary bc bcs boundary_condition boundary_conditions dirichlet dirichlet_bc "
     "dirichletbc support supports fix fixed encastre spc disp prescribed_displacement",
@@ -104,6 +111,7 @@ _ELSEWHERE = {
     "step_size": _STEPS,
     "penalty": _STIFFNESS,
     "coefficients": "the table friction of a contact has them: friction = { coefficients = ... }",
+    "d1": "bulk_modulus is 2/D1",
     "thermal": "expansion in the table of a material, and temperature in steps",
     "damping": "inertia is left out, and damping with it; contact laws may be viscous",
     "velocity": "a displacement and the duration of its step; inertia is left out",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +13,7 @@ import numpy as np
 from anisocontact.base.errors import InputError, ModelWarning
 from anisocontact.base.fenicsx import MPI, PETSc
 from anisocontact.base.limits import Limits
+from anisocontact.bulk import materials
 from anisocontact.case import objects
 from anisocontact.case.amplitudes import times
 from anisocontact.case.contacts import contact
@@ -71,7 +72,7 @@ class Built:
     adjusted: Sequence[str] = ()
 
     def doubts(self) -> list[str]:
-        """What is hardly meant in the units of the case, a line each; collective."""
+        """What is hardly meant: numbers in the units of the case, times; collective."""
         case, model = self.file.case, self.problem.model
         young = {name: material.young for name, material in self.problem.materials.items()}
         forces = [force for step in case.step for force in step.body_force.values()]
@@ -82,11 +83,23 @@ class Built:
         low = np.min(self.problem.comm.allgather(low), axis=0)
         high = np.max(self.problem.comm.allgather(high), axis=0)
         found = doubts(case.units, young, densities, float((high - low).max()))
+        found += _untimed(case)
         return found + [
             f'contact[{i}].pass: "{section.pass_}" is "{MORTAR}" from now on; name that'
             for i, section in enumerate(case.contact)
             if section.of_before
         ]
+
+
+def _untimed(case: Case) -> Iterator[str]:
+    """Steps that are given no time beside a material that knows it, by the units of the entries."""
+    timed = {e.name for e in materials() if any("time" in p.unit for p in e.parameters)}
+    bodies = [name for name, table in case.material.items() if table.chosen["model"] in timed]
+    steps = [repr(step.name) for step in case.step if "duration" not in step.model_fields_set]
+    if bodies and steps:
+        yield (
+            f"{bodies[0]} knows time, and no duration is given for {', '.join(steps)}: they take 1"
+        )
 
 
 def build(file: CaseFile, python: bool = True) -> Built:
@@ -319,7 +332,8 @@ def _steps(case: Case, model: Model, schedule: Schedule) -> list[Step]:
             known = model.nodes if what in ON_NODES else model.facets
             known(group, f"{place}.{what}")
         with objects.within(place):
-            until = None if section.until is None else section.until.made(case.output.probe)
+            event, probes = section.until, case.output.probe
+            until = None if event is None else event.made(section.name, probes)
             steps.append(_step(section, schedule, begun, _weights(case, section), until))
         begun += section.duration
     return steps

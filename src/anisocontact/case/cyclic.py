@@ -20,7 +20,7 @@ class CyclicSection(Section):
         description='cut face that they follow, "body.group"; turned by 360 degrees over sectors, '
         "to either side, it lies on the slave"
     )
-    sectors: int = Field(ge=2, description="number of sectors of the whole")
+    sectors: Annotated[int, number("integer", "1", "number of sectors of the whole", "positive")]
     axis: Annotated[
         tuple[float, float, float],
         number("vector", "1", "direction of the axis"),

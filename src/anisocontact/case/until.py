@@ -69,10 +69,11 @@ class UntilSection(Section):
         ),
     ] = Until.tolerance
 
-    def made(self, probes: Mapping[str, ProbeSection]) -> Until:
+    def made(self, step: str, probes: Mapping[str, ProbeSection]) -> Until:
         """The event.
 
         Args:
+            step: Name of the step, for messages.
             probes: The probes of the case, by name.
 
         Raises:
@@ -92,5 +93,5 @@ class UntilSection(Section):
 
         quantity = quantity or "von_mises"
         said = f"{quantity}{'' if component is None else f' {component}'} at probe {name!r}"
-        peak = Peak(probes[name].probe(), quantity, component, f"probe {name!r}")
+        peak = Peak(probes[name].probe(), quantity, component, f"step {step!r}.until")
         return Until(measure=peak, name=said, **given)

@@ -39,10 +39,11 @@ def check_symmetry(
         comm: Communicator of the mesh; the call is collective.
 
     Raises:
-        InputError: The tractions differ.
+        InputError: The tractions differ, or the surface lies across the plane.
     """
     if idealisation.dim == 3:
         return
+    _check_normals(idealisation, interface, points, comm)
     here = _tractions(interface, points, np.eye(3), np.zeros(3))
     rotation, shift = idealisation.image(SHARE)
     there = _tractions(interface, points, rotation, shift)
@@ -55,6 +56,24 @@ def check_symmetry(
             f"{off / size:.2g} of the largest"
         )
         raise InputError(text, "master")
+
+
+def _check_normals(
+    idealisation: Idealisation, interface: Interface, points: SlavePoints, comm: Any
+) -> None:
+    """Refuse a surface whose normals leave the plane, which it does not cut in a line.
+
+    Raises:
+        InputError: There is such a normal.
+    """
+    places = points.quadrature.reference
+    hit = interface.surface.project(places)
+    below = hit.status == PROJECTION_STATUS.index("interior")
+    across = idealisation.across(places)
+    leaves = np.abs(np.einsum("ni,ni->n", hit.dgap_dx, across)) > SAME * np.abs(across).max()
+    if any(comm.allgather(bool(np.any(leaves & below)))):
+        text = "the normal of the surface is not in the plane of the mesh"
+        raise InputError(f"{text}, in which it has to be a line", "master")
 
 
 def _tractions(

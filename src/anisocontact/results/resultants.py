@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem
 from anisocontact.bulk import small_strain
 from anisocontact.solver import Problem
@@ -75,12 +76,22 @@ class SectionResultant:
         return self.body
 
     def nodes(self, problem: Problem, field: str) -> Nodes:
-        """Nodes of the body in front of the plane that this process owns."""
+        """Nodes of the body in front of the plane that this process owns; collective.
+
+        Raises:
+            InputError: There is no such body, or the plane does not cut it.
+        """
         space, cells = problem.model.space, problem.model.cells(self.body, f"{field}.body")
         dim = problem.model.idealisation.dim
         own = _owned(problem, fem.locate_dofs_topological(space, dim, cells))
         away = space.tabulate_dof_coordinates()[own] - np.array(self.point)
-        return np.asarray(own[away @ np.array(self.normal) > 0.0])
+        front = away @ np.array(self.normal) > 0.0
+        there, before = problem.comm.allreduce(np.array([len(own), front.sum()]))
+        if before in (0, there):
+            side = "behind" if before == 0 else "in front of"
+            text = f"all of the body {self.body!r} is {side} the plane, which has to cut it"
+            raise InputError(text, f"{field}.point")
+        return np.asarray(own[front])
 
     def forces(self, problem: Problem) -> Floats:
         """At all nodes that this process owns, (nodes, 3), force."""
