@@ -14,6 +14,7 @@ def _needs_dolfinx(fe):
     """All tests here need DOLFINx."""
 
 
+FLAT = ("rectangle", "disc", "annulus")
 SHAPES = [
     ("disc", {"radius": 1.0, "cells": (16, 3)}, ("whole", "half", "quarter")),
     ("cylinder", {"radius": 1.0, "length": 1.0, "cells": (16, 3, 2)}, ("whole", "half", "quarter")),
@@ -73,6 +74,86 @@ def test_ring():
         assert len(sizes) == 12
         assert sizes == pytest.approx(sizes[::-1], abs=1e-8)
         assert sizes[:6] / sizes[0] == pytest.approx(0.2 ** (np.arange(6) / 5), abs=1e-7)
+
+
+@pytest.mark.parametrize("place", [0.0, 0.3, 0.5, 1.0])
+def test_zone_of_fine_cells(place):
+    """Requirement: planes from 0 to 1 with one at the place; the size of cells grows in the same
+    share from one to the next on either side, and is there over the largest what is asked for.
+
+    Source: sizes linear in the distance, x = (e^(g s) - 1)/g. Tolerance: rounding; the ratio of the
+    sizes and their jump at the place are met with the first power of the number of cells, the
+    ratio to the growth of one cell of 20.
+    """
+    from anisocontact.mesh.lattice import zoned
+
+    off = []
+    for count in (40, 80):
+        planes = zoned(count, place, 0.1)
+        sizes, at = np.diff(planes), int(np.argmin(abs(planes - place)))
+        assert len(sizes) == count
+        assert planes[at] == place
+        assert (planes[0], planes[-1]) == (0.0, 1.0)
+        for side in (sizes[:at][::-1], sizes[at:]):
+            if len(side):
+                assert side[1:] / side[:-1] == pytest.approx(max(side[1] / side[0], 1.0), rel=1e-9)
+        beside = sizes[max(at - 1, 0) : at + 1]
+        assert beside.max() < (1.0 + 4.0 / count) * beside.min()
+        off.append(abs(sizes.min() / sizes.max() / 0.1 - 1.0))
+    assert off[1] < 0.6 * off[0]
+    assert off[0] < 0.1 ** (-1.0 / 20.0) - 1.0
+
+
+ZONES = [
+    ("box", {"origin": (0, 0, 0), "size": (2, 3, 1), "cells": (8, 8, 4)}, ("x", "y", "z")),
+    ("rectangle", {"origin": (0, 0), "size": (2, 3), "cells": (8, 8)}, ("x", "y")),
+    ("disc", {"radius": 1.0, "cells": (16, 8)}, ("out",)),
+    ("cylinder", {"radius": 1.0, "length": 2.0, "cells": (16, 8, 8)}, ("out", "z")),
+    ("dome", {"radius": 3.0, "rim": 1.0, "height": 2.0, "cells": (16, 8, 8)}, ("out", "z")),
+    ("ball", {"radius": 1.0, "cells": (16, 8)}, ("out",)),
+    ("ring", {"inner": 1, "outer": 2, "length": 1, "cells": (8, 16, 8)}, ("wall", "around", "z")),
+    ("annulus", {"inner": 1, "outer": 2, "cells": (8, 16), "end": 2.0}, ("wall", "around")),
+]
+
+
+@pytest.mark.parametrize(("name", "given", "ways"), ZONES)
+def test_zones_of_every_shape(name, given, ways):
+    """Requirement: the parameter of each direction makes the smallest cell along it smaller, blocks
+    still meet node by node, and a ratio besides or a place outside is one line.
+
+    Source: the even mesh, of whose cells the smallest is 0.4 in the limit of many cells.
+    """
+    from anisocontact.mesh import Body, make_shape
+
+    def smallest(shape):
+        return [np.diff(planes).min() for planes in shape.blocks()[-1].planes]
+
+    plain = make_shape(name, **given)
+    even = Body("b", plain).arrays()
+    for way in ways:
+        shape = make_shape(name, **given, **{f"zone_{way}": (0.5, 0.2)})
+        fine = Body("b", shape).arrays()
+        assert len(fine.points) == len(even.points)
+        assert min(np.divide(smallest(shape), smallest(plain))) < 0.7
+        ratio = given | {"ratio": 0.5 if name in ("ball", "disc") else (0.5,) * len(ways)}
+        if len(ways) < 3 and name not in ("ball", "disc", "rectangle", "annulus"):
+            ratio["ratio"] = (0.5, 0.5)
+        for wrong in (given | {f"zone_{way}": (1.5, 0.2)}, ratio | {f"zone_{way}": (0.5, 0.2)}):
+            with pytest.raises(InputError, match=f"zone_{way}: "):
+                make_shape(name, **wrong)
+
+
+def test_rings_around_a_circle():
+    """Requirement: nodes of the face of a ring lie on the circle of the zone, cells are smallest
+    there. Source: definition, a radius of 1.3 between 1 and 2. Tolerance: rounding."""
+    from anisocontact.mesh import Body, make_shape
+
+    shape = make_shape("ring", inner=1, outer=2, length=1, cells=(20, 8, 1), zone_wall=(0.3, 0.05))
+    radii = np.unique(np.hypot(*Body("b", shape).arrays().points[:, :2].T).round(12))
+    sizes = np.diff(radii)
+    assert np.abs(radii - 1.3).min() < 1e-12
+    assert abs(radii[np.argmin(sizes)] - 1.3) < 2.1 * sizes.min()
+    assert sizes.min() < 0.1 * sizes.max()
 
 
 def pressed(name, way, support, idealisation=None, **given):

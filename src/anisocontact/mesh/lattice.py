@@ -113,6 +113,50 @@ def focused(cells: int, focus: float, low: float = -1.0, high: float = 1.0) -> F
     return np.concatenate([0.5 - right[:0:-1], 0.5 + right])
 
 
+def zoned(cells: int, place: float, size: float) -> Floats:
+    """Planes of cells that are fine around a place and grow geometrically away from it.
+
+    The size of a cell is linear in its distance from the place, and there is a plane at the place:
+    cells on its two sides differ there by no more than rounding their numbers asks for.
+
+    Args:
+        cells: Number of cells.
+        place: Where they are fine, from 0 to 1.
+        size: Size at the place over that at the farther end, in the limit of many cells.
+
+    Returns:
+        Positions of the planes, from 0 to 1, (cells + 1,).
+
+    Raises:
+        InputError: More cells than anybody can mean, or one for both sides.
+
+    Example:
+        >>> zoned(4, 0.25, 1.0).tolist()
+        [0.0, 0.25, 0.5, 0.75, 1.0]
+        >>> zoned(3, 0.0, 0.25).round(6).tolist()
+        [0.0, 0.1958, 0.506614, 1.0]
+    """
+    check_line(cells)
+    away = np.array([place, 1.0 - place])
+    growth = (1.0 / size - 1.0) / away.max()
+    # the integral of one over the size
+    spans = np.log1p(growth * away) / growth if growth > 0.0 else away
+    sides = np.flatnonzero(away)
+    if cells < len(sides):
+        raise InputError(f"{cells} given, fine cells inside need at least {len(sides)}", "cells")
+    low = round(cells * spans[0] / spans.sum())
+    low = min(max(low, int(away[0] > 0.0)), cells - int(away[1] > 0.0))
+
+    def distances(span: float, count: int) -> Floats:
+        steps = span * np.arange(count + 1) / max(count, 1)
+        return np.asarray(np.expm1(growth * steps) / growth if growth > 0.0 else steps)
+
+    left, right = distances(spans[0], low), distances(spans[1], cells - low)
+    planes = np.concatenate([place - left[:0:-1], place + right])
+    planes[0], planes[-1] = 0.0, 1.0
+    return planes
+
+
 def check_line(cells: int) -> None:
     """Refuse more cells along one direction than anybody can mean.
 

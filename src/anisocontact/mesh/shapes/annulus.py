@@ -10,13 +10,14 @@ from typing import ClassVar
 from anisocontact.base.cells import IN_PLANE
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.lattice import Block
-from anisocontact.mesh.shapes.ring import RingSpec
+from anisocontact.mesh.shapes.ring import ZONES, RingSpec
 from anisocontact.mesh.shapes.shape import (
     FACE,
     cells_parameter,
     check_shape,
     focus_parameter,
     ratio_parameter,
+    zone_parameter,
 )
 
 _KEPT = ("inner", "outer", "start", "end")
@@ -37,6 +38,8 @@ class AnnulusSpec:
         ratio: Size of the last cell over the first, through the wall and around, > 0.
         focus: Size of the cells in the middle between start and end over that of those farthest
             from there, <= 1; instead of the second ratio.
+        zone_wall: Where from the inner (0) to the outer radius (1) cells are fine, and how fine.
+        zone_around: The same from start to end, instead of focus.
 
     Raises:
         InputError: A value is out of range.
@@ -57,6 +60,8 @@ class AnnulusSpec:
     end: float = 2.0 * math.pi
     ratio: Sequence[float] = (1.0, 1.0)
     focus: float = 1.0
+    zone_wall: Sequence[float] = ()
+    zone_around: Sequence[float] = ()
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
@@ -71,6 +76,7 @@ class AnnulusSpec:
             *(p for p in RingSpec.entry.parameters if p.name in ("start", "end")),
             ratio_parameter("through the wall", "around"),
             focus_parameter("in the middle between start and end"),
+            *(zone_parameter(*zone) for zone in ZONES[:2]),
         ),
     )
 
@@ -89,6 +95,8 @@ class AnnulusSpec:
             end=self.end,
             ratio=(*self.ratio, 1.0),
             focus=self.focus,
+            zone_wall=self.zone_wall,
+            zone_around=self.zone_around,
         )
         return [
             replace(

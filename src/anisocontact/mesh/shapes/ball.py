@@ -11,7 +11,7 @@ import numpy as np
 
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.lattice import Block, Side, focused, graded
+from anisocontact.mesh.lattice import Block, Side, focused
 from anisocontact.mesh.shapes.shape import (
     cells_parameter,
     check_around,
@@ -22,6 +22,8 @@ from anisocontact.mesh.shapes.shape import (
     focus_parameter,
     part_parameter,
     ratio_parameter,
+    spaced,
+    zone_parameter,
 )
 
 # Part -> range along each axis of a cube from -1 to 1.
@@ -52,6 +54,7 @@ class BallSpec:
         core: Distance of the corners of the inner cube from the middle over the radius, < 1.
         focus: Size of the cells at the poles x = y = 0 over that of those farthest from there,
             <= 1.
+        zone_out: Where between cube (0) and surface (1) cells are fine, and how fine.
 
     Raises:
         InputError: A value is out of range.
@@ -71,6 +74,7 @@ class BallSpec:
     ratio: float = 1.0
     core: float = 0.5
     focus: float = 1.0
+    zone_out: Sequence[float] = ()
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
@@ -87,6 +91,7 @@ class BallSpec:
             ratio_parameter("outwards"),
             core_parameter(),
             focus_parameter("at the poles x = y = 0"),
+            zone_parameter("out", "from the inner cube outwards"),
         ),
     )
 
@@ -114,7 +119,7 @@ class BallSpec:
             lambda p: half * (low + p * (high - low)),
             {(axis, end): CUTS[axis] for axis, end in self._cuts((0, 1, 2))},
         )
-        out = graded(self.cells[1], self.ratio)
+        out = spaced(self, "out", self.cells[1], self.ratio)
         blocks = [cube]
         for axis, end in ((a, e) for a in range(3) for e in (0, 1)):
             if ranges[axis][end] == 0:

@@ -11,8 +11,14 @@ import numpy as np
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.lattice import Block, Side, graded
-from anisocontact.mesh.shapes.shape import cells_parameter, check_shape, ratio_parameter
+from anisocontact.mesh.lattice import Block, Side
+from anisocontact.mesh.shapes.shape import (
+    cells_parameter,
+    check_shape,
+    ratio_parameter,
+    spaced,
+    zone_parameter,
+)
 
 AXES = ("x", "y", "z")
 FACES: dict[Side, str] = {
@@ -47,6 +53,9 @@ class BoxSpec:
         planes_x: Planes of nodes along x as shares of the size, from 0 to 1; none: as `ratio` says.
         planes_y: The same along y.
         planes_z: The same along z.
+        zone_x: Where along x cells are fine, as a share of the size, and how fine; none: nowhere.
+        zone_y: The same along y.
+        zone_z: The same along z.
 
     Raises:
         InputError: A value is out of range.
@@ -66,6 +75,9 @@ class BoxSpec:
     planes_x: Sequence[float] = ()
     planes_y: Sequence[float] = ()
     planes_z: Sequence[float] = ()
+    zone_x: Sequence[float] = ()
+    zone_y: Sequence[float] = ()
+    zone_z: Sequence[float] = ()
 
     curved: ClassVar[bool] = False
     entry: ClassVar[Entry] = Entry(
@@ -79,6 +91,7 @@ class BoxSpec:
             cells_parameter("along x", "along y", "along z"),
             ratio_parameter("along x", "along y", "along z"),
             *map(planes_parameter, AXES),
+            *(zone_parameter(axis, f"along {axis}") for axis in AXES),
         ),
     )
 
@@ -94,15 +107,18 @@ class BoxSpec:
                 raise InputError(text, field)
             if planes[0] != 0.0 or planes[-1] != 1.0 or np.any(np.diff(planes) <= 0.0):
                 raise InputError(f"{list(planes)} given, must rise from 0 to 1", field)
+            if len(getattr(self, f"zone_{axis}")):
+                raise InputError(f"given with zone_{axis}, one of the two", field)
             if ratio != 1.0:
                 raise InputError(f"given with ratio {ratio:g} along {axis}, one of the two", field)
+        self.blocks()
 
     def blocks(self) -> list[Block]:
         """One block; see `Shape`."""
         planes = [
             np.asarray(self._given(axis), dtype=float)
             if len(self._given(axis))
-            else graded(int(cells), ratio)
+            else spaced(self, axis, cells, ratio)
             for axis, cells, ratio in zip(AXES, self.cells, self.ratio, strict=True)
         ]
         return [Block((planes[0], planes[1], planes[2]), self._place, FACES)]

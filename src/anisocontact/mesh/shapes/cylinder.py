@@ -10,7 +10,13 @@ import numpy as np
 
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.lattice import Block
-from anisocontact.mesh.shapes.disc import PARTS, check_disc, disc_blocks, disc_parameters
+from anisocontact.mesh.shapes.disc import (
+    PARTS,
+    check_disc,
+    disc_blocks,
+    disc_parameters,
+    disc_planes,
+)
 from anisocontact.mesh.shapes.shape import check_focus, focus_parameter
 
 
@@ -29,6 +35,8 @@ class CylinderSpec:
         core: Distance of the corners of the inner square from the axis over the radius, < 1.
         part: "whole", "half" (x >= 0) or "quarter" (also y >= 0).
         focus: Size of the cells at the lines x = 0 over that of those farthest from there, <= 1.
+        zone_out: Where between square (0) and rim (1) cells are fine, and how fine.
+        zone_z: The same along z.
 
     Raises:
         InputError: A value is out of range.
@@ -49,6 +57,8 @@ class CylinderSpec:
     core: float = 0.5
     part: str = "whole"
     focus: float = 1.0
+    zone_out: Sequence[float] = ()
+    zone_z: Sequence[float] = ()
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
@@ -74,4 +84,5 @@ class CylinderSpec:
         size = np.array([self.radius, self.radius, self.length])
         part = PARTS[self.part]
         place, focus = (lambda p: p * size), self.focus
-        return disc_blocks(self.cells, self.ratio, self.core, place, part, focus=focus)
+        planes = disc_planes(self, self.cells, self.ratio)
+        return disc_blocks(self.cells[0], planes, self.core, place, part, focus=focus)

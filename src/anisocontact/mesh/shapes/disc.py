@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.registry import Parameter
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.lattice import Block, Side, focused, graded
+from anisocontact.mesh.lattice import Block, Side, focused
 from anisocontact.mesh.shapes.shape import (
     Shape,
     cells_parameter,
@@ -19,6 +19,8 @@ from anisocontact.mesh.shapes.shape import (
     core_parameter,
     part_parameter,
     ratio_parameter,
+    spaced,
+    zone_parameter,
 )
 
 #: How far a part of a disc goes along x and y, from -1 to 1.
@@ -37,13 +39,22 @@ CUTS = ("left", "front")
 
 
 def disc_parameters() -> tuple[Parameter, ...]:
-    """Parameters of the cells of bodies made of discs: `cells`, `ratio`, `core` and `part`."""
+    """Parameters of the cells of bodies made of discs: `cells`, `ratio`, `core`, `part`, zones."""
     return (
         cells_parameter(AROUND, "from the inner square outwards", "along z"),
         ratio_parameter("outwards", "along z"),
         core_parameter(),
         part_parameter(PARTS),
+        zone_parameter("out", "from the inner square outwards"),
+        zone_parameter("z", "along z"),
     )
+
+
+def disc_planes(
+    shape: Shape, cells: Sequence[int], ratio: Sequence[float]
+) -> tuple[Floats, Floats]:
+    """Planes of the cells of a body made of discs, from the square to the rim and along z."""
+    return spaced(shape, "out", cells[1], ratio[0]), spaced(shape, "z", cells[2], ratio[1])
 
 
 def check_disc(shape: Shape, cells: Sequence[int], core: float, part: str) -> None:
@@ -64,8 +75,8 @@ def check_disc(shape: Shape, cells: Sequence[int], core: float, part: str) -> No
 
 
 def disc_blocks(
-    cells: Sequence[int],
-    ratio: Sequence[float],
+    around: int,
+    planes: tuple[Floats, Floats],
     core: float,
     place: Callable[[Floats], Floats],
     part: Ranges = PARTS["whole"],
@@ -76,8 +87,8 @@ def disc_blocks(
     """Blocks of a cylinder of radius 1 and height 1, or a part; each point taken to its place.
 
     Args:
-        cells: Number around a whole disc, between the square and the rim, along the axis.
-        ratio: Growth of the cells from the square to the rim, and along the axis.
+        around: Number of cells around a whole disc.
+        planes: Planes of the cells from the square to the rim, and along the axis, from 0 to 1.
         core: Distance of the corners of the square from the axis.
         place: Takes points of that cylinder to points in space, (n, 3).
         part: How far it goes along x and y.
@@ -88,12 +99,12 @@ def disc_blocks(
     Returns:
         The blocks, with the facet groups outer and those of cuts and ends.
     """
-    along, out = graded(cells[2], ratio[1]), graded(cells[1], ratio[0])
+    out, along = planes
     half = core / np.sqrt(2.0)
     shares = [((1 + low) / 2.0, (1 + high) / 2.0) for low, high in part]
     square = partial(_part, partial(_square, half=half), shares[0], shares[1])
     sides = {(axis, end): cuts[axis] for axis in (0, 1) for end in (0, 1) if not part[axis][end]}
-    x, y = _planes(cells[0], shares[0], focus), _planes(cells[0], shares[1])
+    x, y = _planes(around, shares[0], focus), _planes(around, shares[1])
     blocks = [Block((x, y, along), partial(_through, square, place), {**sides, **ends})]
     for quarter in range(4):
         axis, end = quarter % 2, int(quarter < 2)
@@ -101,12 +112,12 @@ def disc_blocks(
             continue
         # along the rim, against the clock: y, -x, -y, x
         first, last = shares[1 - axis]
-        around = (first, last) if quarter in (0, 3) else (1.0 - last, 1.0 - first)
+        arc = (first, last) if quarter in (0, 3) else (1.0 - last, 1.0 - first)
         rim = partial(_rim, half=half, start=(quarter - 0.5) * np.pi / 2.0)
-        cut = {(1, e): cuts[1 - axis] for e in (0, 1) if around[e] == 0.5}
-        to_rim = partial(_through, partial(_part, rim, (0.0, 1.0), around), place)
-        planes = out, _planes(cells[0], around, focus if axis else 1.0), along
-        blocks.append(Block(planes, to_rim, {(0, 1): "outer", **cut, **ends}))
+        cut = {(1, e): cuts[1 - axis] for e in (0, 1) if arc[e] == 0.5}
+        to_rim = partial(_through, partial(_part, rim, (0.0, 1.0), arc), place)
+        own = out, _planes(around, arc, focus if axis else 1.0), along
+        blocks.append(Block(own, to_rim, {(0, 1): "outer", **cut, **ends}))
     return blocks
 
 

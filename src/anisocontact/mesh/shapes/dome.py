@@ -13,7 +13,13 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block
-from anisocontact.mesh.shapes.disc import PARTS, check_disc, disc_blocks, disc_parameters
+from anisocontact.mesh.shapes.disc import (
+    PARTS,
+    check_disc,
+    disc_blocks,
+    disc_parameters,
+    disc_planes,
+)
 
 
 @dataclass(frozen=True)
@@ -33,6 +39,8 @@ class DomeSpec:
         ratio: Size of the last cell over the first, to the wall and along z, > 0.
         core: Distance of the corners of the inner square from the axis over the rim, < 1.
         part: "whole", "half" (x >= 0) or "quarter" (also y >= 0).
+        zone_out: Where between square (0) and rim (1) cells are fine, and how fine.
+        zone_z: The same along z.
 
     Raises:
         InputError: A value is out of range.
@@ -51,6 +59,8 @@ class DomeSpec:
     ratio: Sequence[float] = (1.0, 1.0)
     core: float = 0.5
     part: str = "whole"
+    zone_out: Sequence[float] = ()
+    zone_z: Sequence[float] = ()
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
@@ -75,10 +85,12 @@ class DomeSpec:
         if not self.height > segment:
             text = f"{self.height:g} given, must be > {segment:g}, the height of the segment"
             raise InputError(text, "height")
+        self.blocks()
 
     def blocks(self) -> list[Block]:
         """A square and four blocks around it; see `Shape`."""
-        return disc_blocks(self.cells, self.ratio, self.core, self._place, PARTS[self.part])
+        planes, part = disc_planes(self, self.cells, self.ratio), PARTS[self.part]
+        return disc_blocks(self.cells[0], planes, self.core, self._place, part)
 
     def _place(self, p: Floats) -> Floats:
         plane = self.rim * p[:, :2]

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 from anisocontact.base.cells import IN_PLANE
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.mesh.lattice import Block, Side
+from anisocontact.mesh.lattice import Block, Side, even
 from anisocontact.mesh.shapes.box import BoxSpec, planes_parameter
 from anisocontact.mesh.shapes.disc import AROUND, PARTS, Ranges, check_disc, disc_blocks
 from anisocontact.mesh.shapes.shape import (
@@ -20,6 +20,8 @@ from anisocontact.mesh.shapes.shape import (
     focus_parameter,
     part_parameter,
     ratio_parameter,
+    spaced,
+    zone_parameter,
 )
 
 _SIDES: dict[Side, str] = {
@@ -45,6 +47,8 @@ class RectangleSpec:
         ratio: Size of the last cell over that of the first along x and y, > 0.
         planes_x: Lines of nodes along x as shares of the size, from 0 to 1; none: as `ratio` says.
         planes_y: The same along y.
+        zone_x: Where along x cells are fine, as a share of the size, and how fine; none: nowhere.
+        zone_y: The same along y.
 
     Raises:
         InputError: A value is out of range.
@@ -64,6 +68,8 @@ class RectangleSpec:
     ratio: Sequence[float] = (1.0, 1.0)
     planes_x: Sequence[float] = ()
     planes_y: Sequence[float] = ()
+    zone_x: Sequence[float] = ()
+    zone_y: Sequence[float] = ()
 
     curved: ClassVar[bool] = False
     entry: ClassVar[Entry] = Entry(
@@ -77,6 +83,7 @@ class RectangleSpec:
             cells_parameter("along x", "along y"),
             ratio_parameter("along x", "along y"),
             *map(planes_parameter, ("x", "y")),
+            *(zone_parameter(axis, f"along {axis}") for axis in ("x", "y")),
         ),
     )
 
@@ -93,6 +100,8 @@ class RectangleSpec:
             ratio=(*self.ratio, 1.0),
             planes_x=self.planes_x,
             planes_y=self.planes_y,
+            zone_x=self.zone_x,
+            zone_y=self.zone_y,
         )
         return [replace(block, sides=_SIDES) for block in box.blocks()]
 
@@ -111,6 +120,7 @@ class DiscSpec:
         core: Distance of the corners of the inner square from the middle over the radius, < 1.
         part: "whole", "half" or "quarter".
         focus: Size of the cells at the points x = 0 over that of those farthest from there, <= 1.
+        zone_out: Where between square (0) and rim (1) cells are fine, and how fine.
 
     Raises:
         InputError: A value is out of range.
@@ -130,6 +140,7 @@ class DiscSpec:
     core: float = 0.5
     part: str = "whole"
     focus: float = 1.0
+    zone_out: Sequence[float] = ()
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
@@ -144,6 +155,7 @@ class DiscSpec:
             core_parameter(),
             part_parameter(_PARTS),
             focus_parameter("at the points x = 0"),
+            zone_parameter("out", "from the inner square to the rim"),
         ),
     )
 
@@ -156,5 +168,6 @@ class DiscSpec:
         """A square and blocks around it; see `Shape`."""
         cells, part = (*self.cells, 1), _PARTS[self.part]
         radius, ends = [self.radius, self.radius, 1.0], {(2, 0): FACE}
-        ratio, cuts, place = (self.ratio, 1.0), ("left", "top"), (lambda p: p * radius)
-        return disc_blocks(cells, ratio, self.core, place, part, cuts, ends, self.focus)
+        out = spaced(self, "out", cells[1], self.ratio)
+        planes, cuts, place = (out, even(1)), ("left", "top"), (lambda p: p * radius)
+        return disc_blocks(cells[0], planes, self.core, place, part, cuts, ends, self.focus)

@@ -13,7 +13,7 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.mesh.arrays import Floats
-from anisocontact.mesh.lattice import Block, Side, focused, graded
+from anisocontact.mesh.lattice import Block, Side, focused
 from anisocontact.mesh.shapes.shape import (
     cells_parameter,
     check_focus,
@@ -21,7 +21,12 @@ from anisocontact.mesh.shapes.shape import (
     focus_parameter,
     full_circle,
     ratio_parameter,
+    spaced,
+    zone_parameter,
 )
+
+#: Directions with zones of fine cells.
+ZONES = (("wall", "through the wall"), ("around", "around"), ("z", "along z"))
 
 
 @dataclass(frozen=True)
@@ -40,6 +45,9 @@ class RingSpec:
         ratio: Size of the last cell over the first, through the wall, around and along z, > 0.
         focus: Size of the cells in the middle between start and end over that of those farthest
             from there, <= 1; instead of the second ratio.
+        zone_wall: Where from the inner (0) to the outer radius (1) cells are fine, and how fine.
+        zone_around: The same from start to end, instead of focus.
+        zone_z: The same along z.
 
     Raises:
         InputError: A value is out of range.
@@ -60,6 +68,9 @@ class RingSpec:
     end: float = 2.0 * math.pi
     ratio: Sequence[float] = (1.0, 1.0, 1.0)
     focus: float = 1.0
+    zone_wall: Sequence[float] = ()
+    zone_around: Sequence[float] = ()
+    zone_z: Sequence[float] = ()
 
     curved: ClassVar[bool] = True
     entry: ClassVar[Entry] = Entry(
@@ -90,6 +101,7 @@ class RingSpec:
             ),
             ratio_parameter("through the wall", "around", "along z"),
             focus_parameter("in the middle between start and end"),
+            *(zone_parameter(*zone) for zone in ZONES),
         ),
     )
 
@@ -99,6 +111,8 @@ class RingSpec:
         if self.focus != 1.0 and self.ratio[1] != 1.0:
             text = f"given with ratio {self.ratio[1]:g} around, one of the two"
             raise InputError(text, "focus")
+        if self.focus != 1.0 and len(self.zone_around):
+            raise InputError("given with focus, one of the two", "zone_around")
         if not self.inner < self.outer:
             text = f"{self.outer:g} given, must be > inner, {self.inner:g}"
             raise InputError(text, "outer")
@@ -121,7 +135,10 @@ class RingSpec:
 
     def blocks(self) -> list[Block]:
         """One block; see `Shape`."""
-        wall, around, along = (graded(n, r) for n, r in zip(self.cells, self.ratio, strict=True))
+        names = [name for name, _ in ZONES]
+        wall, around, along = (
+            spaced(self, *way) for way in zip(names, self.cells, self.ratio, strict=True)
+        )
         around = around if self.focus == 1.0 else focused(self.cells[1], self.focus)
         sides: dict[Side, str] = {
             (0, 0): "inner",

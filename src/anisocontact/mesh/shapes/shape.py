@@ -10,8 +10,9 @@ from anisocontact.base import registry
 from anisocontact.base.cells import CELLS, IN_PLANE, IN_SPACE
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.blocks import check_count
-from anisocontact.mesh.lattice import Block
+from anisocontact.mesh.lattice import Block, graded, zoned
 
 #: Cells of shapes in the plane, and those of bodies whose facets they are.
 FLAT = dict(zip(CELLS[IN_PLANE], CELLS[IN_SPACE], strict=True))
@@ -77,6 +78,41 @@ def check_focus(focus: float) -> None:
     """Refuse cells that are coarse where they ought to be fine."""
     if focus > 1.0:
         raise InputError(f"{focus!r} given, must be <= 1", "focus")
+
+
+def zone_parameter(name: str, along: str) -> Parameter:
+    """Parameter `zone_<name>`: where inside the shape cells are fine."""
+    doc = (
+        f"cells that are fine inside: where {along}, as a share from 0 to 1, and their size there "
+        "over that of the largest; instead of ratio"
+    )
+    return Parameter(f"zone_{name}", "array", "1", doc, required=False)
+
+
+def spaced(shape: Shape, name: str, cells: int, ratio: float) -> Floats:
+    """Planes of the cells along one direction of a shape, by its ratio or its zone of fine cells.
+
+    Args:
+        shape: The shape.
+        name: Of the direction, in `zone_<name>`.
+        cells: Number of cells along it.
+        ratio: Size of the last over that of the first.
+
+    Returns:
+        Positions of the planes, from 0 to 1, (cells + 1,).
+
+    Raises:
+        InputError: The zone is out of range, or given with a ratio.
+    """
+    zone, field = getattr(shape, f"zone_{name}"), f"zone_{name}"
+    if len(zone) == 0:
+        return graded(int(cells), ratio)
+    if len(zone) != 2 or not (0.0 <= zone[0] <= 1.0 and 0.0 < zone[1] <= 1.0):
+        text = "a place from 0 to 1 and a size > 0, at most 1, are needed"
+        raise InputError(f"{list(zone)} given, {text}", field)
+    if ratio != 1.0:
+        raise InputError(f"given with ratio {ratio:g} along the same, one of the two", field)
+    return zoned(int(cells), *zone)
 
 
 def part_parameter(parts: Iterable[str]) -> Parameter:
