@@ -12,6 +12,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import dolfinx, fem, ufl
 from anisocontact.mesh import GmshFile, Placement, Rotation, build_mesh
+from anisocontact.mesh.deck_contents import read_deck
 from anisocontact.mesh.readers import file_arrays
 
 CUBE = """\
@@ -206,6 +207,21 @@ def test_instances_are_placed_copies_of_parts(tmp_path):
     # turned by 90 degrees about y: up is along x, below is along -x
     assert areas(model, "second.upper")[1] == pytest.approx([4, 0, 0], abs=1e-12)
     assert areas(model, "second.held")[1] == pytest.approx([-4, 0, 0], abs=1e-12)
+
+
+@pytest.mark.parametrize("before", ["*NSET, NSET=held", "*INSTANCE, NAME=second"])
+def test_nodes_of_the_assembly_are_none_of_a_part(tmp_path, before):
+    """Requirement: a reference point of the assembly with the number of a node of a part leaves the
+    part as it is, wherever it stands. Source: Abaqus, numbers are those of a part or the assembly's
+    own."""
+    nodes = CUBE[CUBE.index("*Node") : CUBE.index("*NSET, NSET=Low, G")]
+    text = INSTANCES.format(nodes=nodes).replace("first.Upper_set, S1", "Upper_set, S1")
+    point = "*NODE\n1, 50., 60., 70.\n*NSET, NSET=rp\n1,\n"
+    model = build_mesh([GmshFile(written(tmp_path, text.replace(before, point + before)))])
+    assert volume(model) == pytest.approx(16.0)
+    assert areas(model, "second.held")[1] == pytest.approx([-4, 0, 0], abs=1e-12)
+    deck = read_deck(written(tmp_path, text.replace(before, point + before)))
+    assert [deck.nodes[n] for n in deck.nodes_of("rp")] == [[50.0, 60.0, 70.0]]
 
 
 def test_it_stands_where_it_is_put_and_bodies_are_renamed(tmp_path):

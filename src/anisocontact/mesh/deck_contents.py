@@ -5,7 +5,7 @@ Parts are put where their instances are. What is no mesh is kept as it is writte
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -65,10 +65,11 @@ def read_deck(path: Path) -> Deck:
         InputError: As of `read_inp`.
         OSError: It cannot be read.
     """
-    whole = current = Deck()
+    cards = read_cards(path)
+    whole = current = Deck(own=_own_numbers(cards))
     step = 0
     parts: dict[str, Deck] = {}
-    for card in read_cards(path):
+    for card in cards:
         try:
             if card.name in GENERATED:
                 raise InputError("is not read; write nodes and elements out")
@@ -121,6 +122,7 @@ class Deck:
         left_out: Elements that are no solids -> how many.
         offsets: Instance -> what is added to the numbers of its part.
         cards: Cards that are not of the mesh, with the number of the step in which they stand.
+        own: Largest number that nodes and elements beside the parts have; instances begin behind.
     """
 
     nodes: dict[int, list[float]] = field(default_factory=dict)
@@ -132,6 +134,7 @@ class Deck:
     left_out: dict[str, int] = field(default_factory=dict)
     offsets: dict[str, int] = field(default_factory=dict)
     cards: list[tuple[int, Card]] = field(default_factory=list)
+    own: int = 0
 
     def read_nodes(self, card: Card) -> None:
         """Take `*NODE`."""
@@ -207,7 +210,7 @@ class Deck:
         if card.option("PART").upper() not in parts:
             raise InputError(f"there is no part {card.options['PART']!r}")
         part = parts[card.options["PART"].upper()]
-        more = max((*self.nodes, *self.elements), default=0)
+        more = max((*self.nodes, *self.elements, self.own))
         self.offsets[name.upper()] = more
         points = _instance_places(np.array(list(part.nodes.values())), card)
         places = zip(part.nodes, points.tolist(), strict=True)
@@ -263,6 +266,18 @@ class Deck:
     def _of(entry: str, known: dict[str, list[int]], more: int = 0) -> list[int]:
         """Members of a set by its name, or a number; empty for a set that is not there."""
         return [more + int(entry)] if entry.isdigit() else known.get(entry.upper(), [])
+
+
+def _own_numbers(cards: Sequence[Card]) -> int:
+    """Largest number of a node or element of an assembly itself, as of its reference points."""
+    largest, inside = 0, False
+    if any(card.name == "PART" for card in cards):
+        for card in cards:
+            inside = card.name == "PART" or (inside and card.name != "ENDPART")
+            if card.name in ("NODE", "ELEMENT") and not inside:
+                firsts = (entries[0] for entries in card.fields() if entries)
+                largest = max(largest, *(int(n) for n in firsts if n.isdigit()), 0)
+    return largest
 
 
 def _instance_places(points: Floats, card: Card) -> Floats:
