@@ -109,10 +109,10 @@ class Steps:
         for key, group, given in _LOADS[card.name](self, card):
             groups = self._steps[-1].keys.setdefault(key, {})
             if isinstance(given, dict):
-                components = {name: self._led(value, amplitude) for name, value in given.items()}
+                components = {name: self.led(value, amplitude) for name, value in given.items()}
                 groups[group] = {**groups.get(group, {}), **components}
             else:
-                groups[group] = self._led(given, amplitude)
+                groups[group] = self.led(given, amplitude)
         return True
 
     def finish(self) -> list[str]:
@@ -140,7 +140,7 @@ class Steps:
         if not groups:
             yield f"support of node {one.entry}: it is on no body"
         for group in groups:
-            given = {name: self._led(value, one.amplitude) for name, value in one.given.items()}
+            given = {name: self.led(value, one.amplitude) for name, value in one.given.items()}
             keys[group] = {**keys.get(group, {}), **given}
 
     def _node(self, number: int) -> tuple[str, ...]:
@@ -154,8 +154,13 @@ class Steps:
                 return (name,)
         return ()
 
-    def _led(self, value: object, amplitude: str) -> object:
-        """A value that follows an amplitude, if there is one."""
+    def led(self, value: object, amplitude: str) -> object:
+        """A value that follows an amplitude, if there is one.
+
+        Args:
+            value: The value.
+            amplitude: Name of the amplitude in small letters; empty for none.
+        """
         if amplitude in self.constant and isinstance(value, float):
             return self.constant[amplitude] * value
         return led(value, amplitude)

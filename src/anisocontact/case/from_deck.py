@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from anisocontact.base.errors import InputError
+from anisocontact.case.deck_coupling import Couplings, of_ideal
 from anisocontact.case.deck_cyclic import Sectors
 from anisocontact.case.deck_materials import Materials, Temperatures
 from anisocontact.case.deck_procedures import static_steps
@@ -76,13 +77,11 @@ class _Case:
         self._named = named_in([*self.mesh.facets, *self.mesh.nodes])
         self._sectors = Sectors(self.mesh, self._named)
         self._steps = Steps(self.deck, self.mesh, self._named, self._temperatures)
-        for step, card in self.deck.cards:
-            try:
-                self._take(step, card)
-            except InputError as error:
-                self._leave(card, f": {error}")
-            except (ValueError, IndexError):
-                self._leave(card, ": its data are of another kind")
+        kinds = {kind for kind, _ in self.deck.elements.values()}
+        self._couplings = Couplings(self.deck, self.mesh, self._named, of_ideal(kinds), self._leave)
+        self._each(lambda step, card: bool(step) or not self._couplings.take(card))
+        self.deck.cards = self._couplings.without(self.deck.cards)
+        self._each(self._take)
         self.left_out += self._steps.finish()
 
     def lines(self, file: str) -> Iterator[str]:
@@ -112,8 +111,24 @@ class _Case:
                 sides = self._sides(card, slave, master)
                 if sides:
                     yield from _table("[[tie]]", sides)
-        for step in self._steps.tables():
-            yield from _table("[[step]]", step)
+        for name, table in self._couplings.tables.items():
+            yield from _table(f"[rigid.{key_of(name)}]", table)
+        for number, step in enumerate(self._steps.tables(), 1):
+            led = self._couplings.step(number, self._steps.led)
+            yield from _table("[[step]]", step | led)
+
+    def _each(self, take: Callable[[int, Card], object]) -> None:
+        """Hand each card on; those that cannot be taken over are left out with a line."""
+        kept = []
+        for step, card in self.deck.cards:
+            try:
+                if take(step, card) is not False:
+                    kept.append((step, card))
+            except InputError as error:
+                self._leave(card, f": {error}")
+            except (ValueError, IndexError):
+                self._leave(card, ": its data are of another kind")
+        self.deck.cards = kept
 
     def _take(self, step: int, card: Card) -> None:
         if card.name in _READERS and not step:
