@@ -14,7 +14,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.base.figure_style import new_figure
 from anisocontact.results.dataset import DataSet, polygons, vertices
 from anisocontact.results.deformed import SHOWN, surfaces
-from anisocontact.results.report import maps
+from anisocontact.results.report import curves, maps
 from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import Moment
 from anisocontact.results.solids import Solid
@@ -88,6 +88,17 @@ def test_points_that_have_never_seen_their_master_are_seen_across_their_plane():
     view = ContactView(_touching(place, np.zeros((20, 3))), 0)
     assert not view.closed
     assert view.frame.names() == ("x", "z")
+
+
+def test_names_of_short_steps_do_not_hide_each_other():
+    """Three steps of which the first two go hardly anywhere: one label for both."""
+    axes = new_figure(6.0, 4.0).subplots()
+    steps = [("touch", np.array([0])), ("load", np.array([1, 2])), ("turn", np.array([3, 4]))]
+    run = SimpleNamespace(steps=steps)
+    curves._name_steps(run, axes, np.array([0.0, 1e-3, 1.5e-3, 2e-3, 5.0, 10.0]))
+    assert [text.get_text() for text in axes.texts] == ["turn", "touch, load"]
+    curves._name_steps(run, axes, np.array([0.0, 0.9, 1.0, 1.8, 5.0, 10.0]))
+    assert [text.get_text() for text in axes.texts[2:]] == ["turn", "touch", "load"]
 
 
 @pytest.mark.parametrize("height", [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0])

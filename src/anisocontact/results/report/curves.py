@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import cycle
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,8 @@ __all__ = ["domain", "force"]
 
 Floats = npt.NDArray[np.float64]
 
+#: Distance of names of steps above a curve that leaves room for both, over its length.
+BESIDE = 0.04
 _DOMAIN = "adhesion domain at the end of each step"
 
 
@@ -173,15 +175,28 @@ def _shade(run: RunData, axes: Axes, at: Floats) -> None:
 
 
 def _name_steps(run: RunData, axes: Axes, at: Floats) -> None:
+    """Names above their spans; those of narrow ones at nearly one place in one label."""
+    labels: list[tuple[str, float, str]] = []
+    size = float(at[-1] - at[0])
     for name, start, end, colour in _spans(run, at):
-        narrow = end - start < 0.1 * (at[-1] - at[0])
-        axes.annotate(
-            plain(name),
-            (0.5 * (start + end), 1.0),
-            xycoords=("data", "axes fraction"),
-            xytext=(0, 4),
-            textcoords="offset points",
-            ha="left" if narrow else "center",
-            rotation=45.0 if narrow else 0.0,
-            color=colour,
-        )
+        middle = 0.5 * (start + end)
+        if end - start >= 0.1 * size:
+            _name(axes, plain(name), middle, colour)
+        elif labels and middle - labels[-1][1] < BESIDE * size:
+            labels[-1] = (f"{labels[-1][0]}, {plain(name)}", *labels[-1][1:])
+        else:
+            labels.append((plain(name), middle, colour))
+    for name, middle, colour in labels:
+        _name(axes, name, middle, colour, ha="left", rotation=45.0)
+
+
+def _name(axes: Axes, name: str, place: float, colour: str, **style: Any) -> None:
+    axes.annotate(
+        name,
+        (place, 1.0),
+        xycoords=("data", "axes fraction"),
+        xytext=(0, 4),
+        textcoords="offset points",
+        color=colour,
+        **{"ha": "center"} | style,
+    )
