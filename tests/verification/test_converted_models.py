@@ -46,6 +46,7 @@ CUBE = """*NODE, NSET=ALL
 """
 STEEL = "*ELASTIC\n1000., 0.3"
 #: A force of 4 along z on the upper face, at its four nodes.
+KINEMATIC = "*PLASTIC, HARDENING=KINEMATIC\n 2., 0.\n 8., 0.06"
 NODES = "*CLOAD\n5, 3, 1.\n7, 3, 1.\nCORNERS, 3, 1."
 E, NU, G = (1000.0, 500.0, 250.0), (0.3, 0.25, 0.2), (300.0, 200.0, 100.0)
 ENGINEERING = "1000., 500., 250., .3, .25, .2, 300., 200.\n100."
@@ -255,3 +256,26 @@ def test_sector(tmp_path: Path, capsys: pytest.CaptureFixture[str], faces: str) 
     r = np.hypot(out[:, 0], out[:, 1])
     radial = (u[:, 0] * out[:, 0] + u[:, 1] * out[:, 1]) / r
     np.testing.assert_allclose(radial, 10.0 / 3000.0 * (r + 4.0 / r), rtol=1e-2)
+
+
+def test_kinematic_hardening(tmp_path: Path) -> None:
+    """Requirement: two points of kinematic hardening are Prager's, on a cube that is pulled by 3 %
+    and pushed back; nodes that two steps lead by their numbers are one group.
+
+    Source: of a bar with Y = 2, H = 6/0.06 = 100, E = 1000 the stress s = E (H e + Y)/(E + H), back
+    by 2 Y with E and the rest of the way with E H/(E + H). Tolerance: Newton's.
+    """
+    lead = "*BOUNDARY\n5, 3, 3, {0}\n6, 3, 3, {0}\n7, 3, 3, {0}\n8, 3, 3, {0}"
+    steps = lead.format(0.06) + "\n*END STEP\n*STEP\n*STATIC\n0.5, 1.\n" + lead.format(0.0)
+    deck = CUBE.format(material=f"{STEEL}\n{KINEMATIC}", orientation="", loads=steps)
+    (tmp_path / "deck.inp").write_text(deck)
+    target = tmp_path / "deck.toml"
+    assert main(["convert", str(tmp_path / "deck.inp"), str(target)]) == 0
+    material = tomllib.loads(target.read_text())["material"]["cube"]
+    assert (material["yield_stress"], material["kinematic"]) == (2, 100)
+    built = build(load(str(target)))
+    stress = [built.problem.reactions()["cube.held_32"][2] / 4.0 for _ in built.solver.run()]
+    pulled, slope = 1000.0 * (100.0 * 0.03 + 2.0) / 1100.0, 1000.0 * 100.0 / 1100.0
+    turned = pulled - 4.0, 0.03 - 0.004
+    back = [turned[0] - slope * (turned[1] - strain) for strain in (0.015, 0.0)]
+    assert stress == pytest.approx([pulled, *back], rel=1e-7)

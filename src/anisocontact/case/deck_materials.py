@@ -71,7 +71,7 @@ class Materials:
             strain = {"strain": "green-lagrange"} if finite else {}
             axes = self._directions.get(orientation, {})
             return {"model": "orthotropic"} | known | axes | strain, []
-        if "flow_curve" in known:
+        if "flow_curve" in known or "yield_stress" in known:
             strain = {"strain": "logarithmic"} if finite else {}
             return {"model": "plastic"} | known | strain, []
         return {"model": "st-venant-kirchhoff" if finite else "linear-elastic"} | known, []
@@ -140,12 +140,18 @@ class Materials:
             self._leave(card, ": its values at other temperatures")
 
     def read_plastic(self, card: Card) -> None:
-        """Take `*PLASTIC`: yield stress over plastic strain, hardening that is isotropic."""
-        kind = card.options.get("HARDENING", "ISOTROPIC")
+        """Take `*PLASTIC`: a curve of yield stress, or two points of one that moves."""
+        kind = card.options.get("HARDENING", "ISOTROPIC").upper()
         rows = list(card.fields())
-        if kind.upper() != "ISOTROPIC" or any(len(row) > 2 for row in rows):
-            raise InputError("one curve of isotropic hardening is taken over; see plastic")
+        moves = kind == "KINEMATIC" and len(rows) == 2
+        if not (moves or kind == "ISOTROPIC") or any(len(row) > 2 for row in rows):
+            raise InputError("one isotropic curve, or two kinematic points, are taken over")
         pairs = [(real((*row, "0")[1]), real(row[0])) for row in rows]
+        if moves:
+            (start, first), (end, last) = pairs
+            self._model["yield_stress"] = first
+            self._model["kinematic"] = (last - first) / (end - start)
+            return
         self._model["flow_curve"] = [value for pair in pairs for value in pair]
 
     def read_orientation(self, card: Card) -> None:

@@ -118,7 +118,8 @@ class Steps:
     def finish(self) -> list[str]:
         """Take the supports over; lines on what is not."""
         left = []
-        for one in supports_of(self._deck.cards, self._deck.nodes_of, self._named):
+        deck = self._deck
+        for one in supports_of(deck.cards, deck.nodes_of, lambda n: self._named(deck.name_of(n))):
             if isinstance(one, Unread):
                 left.append(f"step {one.step}: {one.text}")
             elif self._steps:

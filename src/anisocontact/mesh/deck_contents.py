@@ -122,6 +122,7 @@ class Deck:
         left_out: Elements that are no solids -> how many.
         offsets: Instance -> what is added to the numbers of its part.
         cards: Cards that are not of the mesh, with the number of the step in which they stand.
+        same: Name of nodes that are held alike once more -> the name that they have already.
         own: Largest number that nodes and elements beside the parts have; instances begin behind.
     """
 
@@ -135,6 +136,8 @@ class Deck:
     offsets: dict[str, int] = field(default_factory=dict)
     cards: list[tuple[int, Card]] = field(default_factory=list)
     own: int = 0
+    same: dict[str, str] = field(default_factory=dict)
+    _held: dict[tuple[int, ...], str] = field(default_factory=dict)
 
     def read_nodes(self, card: Card) -> None:
         """Take `*NODE`."""
@@ -196,7 +199,12 @@ class Deck:
         """
         self.cards.append((step, card))
         if card.name == "BOUNDARY":
-            self.node_sets |= held_nodes(card)
+            for name, nodes in held_nodes(card).items():
+                first = self._held.setdefault(tuple(sorted(nodes)), name)
+                if first == name:
+                    self.node_sets[name] = nodes
+                else:
+                    self.same[name] = first
         for name, (_, faces) in pressures(card).items() if card.name == "DLOAD" else ():
             self.surfaces[name] = [
                 (entry, face)
@@ -239,7 +247,11 @@ class Deck:
 
     def nodes_of(self, entry: str) -> list[int]:
         """Nodes of a set, or the one of a number."""
-        return self._of(entry, self.node_sets)
+        return self._of(self.name_of(entry), self.node_sets)
+
+    def name_of(self, entry: str) -> str:
+        """The name under which a set of nodes is kept."""
+        return self.same.get(entry.upper(), entry)
 
     def members_of(self, entry: str) -> list[int]:
         """Elements of a set, or the one of a number."""

@@ -56,7 +56,8 @@ def deck_supports(path: Path, groups: Iterable[str]) -> list[str]:
         OSError: It cannot be read.
     """
     deck = read_deck(path)
-    return list(support_lines(deck.cards, deck.nodes_of, named_in(groups)))
+    named = named_in(groups)
+    return list(support_lines(deck.cards, deck.nodes_of, lambda n: named(deck.name_of(n))))
 
 
 def named_in(groups: Iterable[str]) -> Callable[[str], list[str]]:
