@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from pathlib import Path
 
@@ -164,3 +165,58 @@ def test_what_is_left_out_is_said(
     case, left = converted(tmp_path, capsys, DECK.replace(old, new))
     assert any(line in said for said in left), left
     assert len(case["step"]) == 2
+
+
+PLANE = """*NODE
+ 1, 0, 0
+ 2, 10, 0
+ 3, 10, 10
+ 4, 0, 10
+ 90, 0, 12
+*ELEMENT, TYPE={element}, ELSET=BAR
+ 1, 1, 2, 3, 4
+*NSET, NSET=FOOT
+ 1, 2
+*SURFACE, NAME=ROOF
+ BAR, S3
+*MATERIAL, NAME=M
+*ELASTIC
+ 1000., 0.
+*SOLID SECTION, ELSET=BAR, MATERIAL=M
+ 2.
+*COUPLING, CONSTRAINT NAME=Grip, REF NODE=90, SURFACE=ROOF
+*KINEMATIC
+ 1, 2
+*BOUNDARY
+ FOOT, 1, 2
+*STEP
+*STATIC
+*CLOAD
+ 90, 2, -50.
+ 90, 6, -250.
+*END STEP
+"""
+
+
+@pytest.mark.parametrize(
+    ("element", "free", "area"),
+    [("CPE4", {"x", "y", "rz_deg"}, 20.0), ("CAX4", {"y"}, 100.0 * math.pi)],
+)
+def test_in_the_plane(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    element: str,
+    free: set[str],
+    area: float,
+) -> None:
+    """Requirement: a point has the directions that the plane leaves it, and couples with 1 and 2
+    alone. Source: Hooke, F L / (E A) with the thickness or the whole face; the moment puts the
+    force in the plane into the middle of the head. Tolerance: Newton's."""
+    case, left = converted(tmp_path, capsys, PLANE.format(element=element))
+    assert not left
+    assert case["step"][0]["motion"] == {"grip": dict.fromkeys(free, "free")}
+    assert main(["run", str(tmp_path / "deck.toml"), "-o", str(tmp_path / "out")]) == 0
+    history = Results(tmp_path / "out").history
+    down, turn = history["rigid.grip.translation.y"], history["rigid.grip.turn.z"]
+    assert down == pytest.approx([-50.0 * 10.0 / (1000.0 * area)], rel=1e-6)
+    assert turn == pytest.approx([0.0], abs=1e-9)

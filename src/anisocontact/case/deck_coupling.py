@@ -93,8 +93,10 @@ class Couplings:
             if card.name == "DISTRIBUTING":
                 raise InputError("its face may deform, one of a rigid body does not; see force")
             tied = {k for first, last in map(_range, card.fields()) for k in range(first, last + 1)}
-            if tied and not {1, 2, 3} <= tied:
-                raise InputError("single components are coupled, all of 1 to 3 are taken over")
+            needed = 3 if 3 in self._components else 2  # of nodes, in space and in the plane
+            if tied and not tied.issuperset(range(1, needed + 1)):
+                text = f"single components are coupled, all of 1 to {needed} are taken over"
+                raise InputError(text)
             self._add(coupling)
         else:
             return False
