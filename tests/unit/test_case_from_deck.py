@@ -198,6 +198,11 @@ def test_the_case_runs(deck: Path, capsys: pytest.CaptureFixture[str]):
         ("NAME=RAMP", "NAME=RAMP, DEFINITION=SMOOTH STEP", "DEFINITION=SMOOTH STEP is not read"),
         (" HEAD, 3, -25.", " 99, 3, -25.", "99 is on no body, a force is on one"),
         (" HEAD, 3, -25.", " HEAD, 5, -25.", "a moment on head; faces on a reference point"),
+        ("NAME=RAMP", "NAME=RAMP, USER", "USER is not read; see kind"),
+        ("NAME=RAMP", "NAME=RAMP, SHIFTX=1.", "SHIFTX is not read; shift its times"),
+        (" 1., 1.\n", " 1.\n", "*AMPLITUDE of line 46: 5 numbers, times and values are needed"),
+        ("*DLOAD, AMP", "*DLOAD, TIME DELAY=1., AMP", "*DLOAD of line 57: TIME DELAY is not read"),
+        ("*BOUNDARY, OP", "*BOUNDARY, TIME DELAY=1., OP", "line 66 is not read: TIME DELAY"),
         ("UPPER, P2", "UPPER, BX", "BX on upper; P1, P2 ... and GRAV are read"),
     ],
 )

@@ -251,11 +251,24 @@ _READERS: dict[str, Callable[[_Case, Card], None]] = {
 }
 
 
+#: Option of `*AMPLITUDE` whose numbers are no times and values -> what to write instead.
+_NO_TABLE = {
+    "USER": 'see kind = "python" of [amplitude]',
+    "SHIFTX": "shift its times",
+    "SHIFTY": "shift its values",
+}
+
+
 def _amplitude(card: Card) -> dict[str, object]:
     """Table of a `*AMPLITUDE`."""
     if card.options.get("DEFINITION", "TABULAR").upper() != "TABULAR":
         raise InputError(f"DEFINITION={card.options['DEFINITION']} is not read; see [amplitude]")
+    for option, instead in _NO_TABLE.items():
+        if option in card.options:
+            raise InputError(f"{option} is not read; {instead}")
     numbers = card.numbers().tolist()
+    if not numbers or len(numbers) % 2:
+        raise InputError(f"{len(numbers)} numbers, times and values are needed")
     table: dict[str, object] = {"kind": "table", "time": numbers[::2], "value": numbers[1::2]}
     total = card.options.get("TIME", "").upper().startswith("TOTAL")
     return table | ({"time_of": "total"} if total else {})

@@ -16,7 +16,15 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, real
 
-__all__ = ["Support", "Transform", "Unread", "support_lines", "supports_of", "transform_of"]
+__all__ = [
+    "Support",
+    "Transform",
+    "Unread",
+    "check_delay",
+    "support_lines",
+    "supports_of",
+    "transform_of",
+]
 
 Floats = npt.NDArray[np.float64]
 
@@ -191,6 +199,7 @@ def supports_of(
             elif "FIXED" in card.options and step > 1:
                 raise InputError("FIXED holds nodes where they are; give their displacements")
             else:
+                check_delay(card)
                 amplitude = card.options.get("AMPLITUDE", "").lower()
                 for entry, values in _entries(card, of_node):
                     directed = _directed(entry, values, of_node, members)
@@ -284,6 +293,16 @@ def _directed(
             f"{entry.lower()} has directions that are no axes of space: symmetry, or turn the mesh"
         )
     return found
+
+
+def check_delay(card: Card) -> None:
+    """Refuse a card whose amplitude begins later than its step.
+
+    Raises:
+        InputError: It has a delay.
+    """
+    if "TIMEDELAY" in card.options:
+        raise InputError("TIME DELAY is not read; shift the times of the amplitude")
 
 
 def led(value: object, amplitude: str) -> object:
