@@ -203,6 +203,10 @@ def test_the_case_runs(deck: Path, capsys: pytest.CaptureFixture[str]):
         (" 1., 1.\n", " 1.\n", "*AMPLITUDE of line 46: 5 numbers, times and values are needed"),
         ("*DLOAD, AMP", "*DLOAD, TIME DELAY=1., AMP", "*DLOAD of line 57: TIME DELAY is not read"),
         ("*BOUNDARY, OP", "*BOUNDARY, TIME DELAY=1., OP", "line 66 is not read: TIME DELAY"),
+        ("*BOUNDARY, OP", "*BOUNDARY, TYPE=VELOCITY, OP", "the option TYPE=VELOCITY is not read"),
+        ("*BOUNDARY, OP", "*BOUNDARY, SUBMODEL, OP", "the option SUBMODEL is not read"),
+        ("*CLOAD\n", "*CLOAD, FOLLOWER\n", "*CLOAD of line 69: the option FOLLOWER is not read"),
+        ("*STEP\nPress", "*TIE, MULTISTAGE\nSOLE, DECK\n*STEP\nPress", "MULTISTAGE is no tie"),
         ("UPPER, P2", "UPPER, BX", "BX on upper; P1, P2 ... and GRAV are read"),
     ],
 )
@@ -251,6 +255,18 @@ def test_a_deck_without_a_static_step(deck: Path, capsys: pytest.CaptureFixture[
     text = "no step can be taken over: step 1 is *BUCKLE, not *STATIC, step 2 is *DYNAMIC, not"
     assert text in line
     assert not target.exists()
+
+
+@pytest.mark.parametrize(
+    ("option", "given"), [("", {}), (", POSITION TOLERANCE=0.2", {"tolerance": 0.2})]
+)
+def test_a_tie(deck: Path, capsys: pytest.CaptureFixture[str], option: str, given: dict):
+    """Requirement: faces that are tied, within the distance that the deck says."""
+    pair = "*CONTACT PAIR, INTERACTION=DRY, ADJUST=0.1"
+    deck.write_text(DECK.replace(pair, f"*TIE, NAME=T{option}"))
+    case, _ = converted(deck, capsys)
+    assert case["tie"] == [{"slave": "upper.sole", "master": "lower.deck"} | given]
+    assert "contact" not in case
 
 
 def test_finite_strain_the_plane_and_nodes(tmp_path: Path, capsys: pytest.CaptureFixture[str]):

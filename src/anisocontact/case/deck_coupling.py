@@ -14,7 +14,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck
-from anisocontact.mesh.deck_supports import check_delay
+from anisocontact.mesh.deck_supports import check_options
 
 __all__ = ["Couplings", "of_ideal"]
 
@@ -196,7 +196,7 @@ class Couplings:
     ) -> None:
         if "FIXED" in card.options and step > 1:
             raise InputError(f"FIXED holds {entries[0].lower()} where it is; give its motion")
-        check_delay(card)
+        check_options(card)
         amplitude = card.options.get("AMPLITUDE", "").lower()
         first, last = _range(entries[1:]) if key == "motion" else (int(entries[1]),) * 2
         value = real((*entries[3:], "0")[0] if key == "motion" else entries[2])

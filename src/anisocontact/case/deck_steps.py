@@ -16,7 +16,7 @@ from anisocontact.case.deck_procedures import STATIC
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck, pressed_face, pressures
-from anisocontact.mesh.deck_supports import Support, Unread, check_delay, led, supports_of
+from anisocontact.mesh.deck_supports import Support, Unread, check_options, led, supports_of
 from anisocontact.mesh.inp import bodies_of
 
 __all__ = ["Steps"]
@@ -105,7 +105,8 @@ class Steps:
             self._steps[-1].new |= _RENEWED.get(card.name, set())
         if card.name not in _LOADS or not step:
             return False
-        check_delay(card)
+        if card.name != "TEMPERATURE":  # which has options of its own
+            check_options(card)
         amplitude = card.options.get("AMPLITUDE", "").lower()
         for key, group, given in _LOADS[card.name](self, card):
             groups = self._steps[-1].keys.setdefault(key, {})

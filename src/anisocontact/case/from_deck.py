@@ -110,7 +110,9 @@ class _Case:
             for slave, master, *_ in card.fields():
                 sides = self._sides(card, slave, master)
                 if sides:
-                    yield from _table("[[tie]]", sides)
+                    given = card.options.get("POSITIONTOLERANCE")
+                    within = {"tolerance": real(given)} if given else {}
+                    yield from _table("[[tie]]", sides | within)
         for name, table in self._couplings.tables.items():
             yield from _table(f"[rigid.{key_of(name)}]", table)
         for number, step in enumerate(self._steps.tables(), 1):
@@ -187,6 +189,9 @@ class _Case:
 
     def read_tie(self, card: Card) -> None:
         """Take `*TIE`; those of sectors are taken with them."""
+        for option in ("MULTISTAGE", "FLUIDCYCLIC", "FLUIDPERIODIC"):
+            if option in card.options:
+                raise InputError(f"{option} is no tie of faces")
         if not self._sectors.take(card):
             self._ties.append(card)
 

@@ -20,7 +20,7 @@ __all__ = [
     "Support",
     "Transform",
     "Unread",
-    "check_delay",
+    "check_options",
     "support_lines",
     "supports_of",
     "transform_of",
@@ -39,6 +39,8 @@ NAMED = {
     "YASYMM": (1, 3),
     "ZASYMM": (1, 2),
 }
+#: Options of supports and loads that are read; FIXED in the first step holds what has not moved.
+READ = {"AMPLITUDE", "OP", "FIXED"}
 #: Single nodes that are named in a line.
 SHOWN = 6
 #: Share of a direction along an axis of space that counts as none.
@@ -199,7 +201,7 @@ def supports_of(
             elif "FIXED" in card.options and step > 1:
                 raise InputError("FIXED holds nodes where they are; give their displacements")
             else:
-                check_delay(card)
+                check_options(card)
                 amplitude = card.options.get("AMPLITUDE", "").lower()
                 for entry, values in _entries(card, of_node):
                     directed = _directed(entry, values, of_node, members)
@@ -295,14 +297,18 @@ def _directed(
     return found
 
 
-def check_delay(card: Card) -> None:
-    """Refuse a card whose amplitude begins later than its step.
+def check_options(card: Card) -> None:
+    """Refuse a support or load whose numbers are made something else by an option.
 
     Raises:
-        InputError: It has a delay.
+        InputError: It has such an option.
     """
     if "TIMEDELAY" in card.options:
         raise InputError("TIME DELAY is not read; shift the times of the amplitude")
+    for option, value in card.options.items():
+        plain = option == "TYPE" and value.upper() == "DISPLACEMENT"
+        if option not in READ and not plain:
+            raise InputError(f"the option {option}{'=' * bool(value)}{value} is not read")
 
 
 def led(value: object, amplitude: str) -> object:
