@@ -26,6 +26,8 @@ SILENT = {"HEADING", "PREPRINT", "OUTPUT", "RESTART", "ENDSTEP", "ASSEMBLY", "EN
 SILENT |= {"ENDINSTANCE", "MONITOR", "NODEOUTPUT", "ELEMENTOUTPUT", "CONTACTOUTPUT"}
 SILENT |= {f"{what}{how}" for what in ("NODE", "EL", "CONTACT") for how in ("PRINT", "FILE")}
 SILENT |= {"SECTIONPRINT", "TRANSFORM", "BOUNDARY"}
+#: Options of `*FRICTION` with which its first number is not the coefficient of all slips.
+OTHER_FRICTION = {"ANISOTROPIC", "USER", "EXPONENTIALDECAY", "TAUMAX", "ROUGH", "DEPENDENCIES"}
 #: Keyword that has no words in a case -> what to look at instead.
 INSTEAD = {"EQUATION": ": components of single nodes are not tied; see faces, symmetry, tie"}
 
@@ -164,13 +166,16 @@ class _Case:
 
     def read_friction(self, card: Card) -> None:
         """Take `*FRICTION`."""
-        if "ANISOTROPIC" in card.options or "USER" in card.options:
+        if not OTHER_FRICTION.isdisjoint(card.options) or len(list(card.fields())) > 1:
             raise InputError("one coefficient is taken over; see friction")
         self._friction[self._interaction] = float(card.numbers()[0])
 
     def read_behaviour(self, card: Card) -> None:
         """Take `*SURFACE BEHAVIOR`: contact is exact here, a line says what was given."""
-        if card.options.get("PRESSURE-OVERCLOSURE", "").upper() == "LINEAR":
+        kind = card.options.get("PRESSURE-OVERCLOSURE", "").upper()
+        if kind == "TIED" or "NOSEPARATION" in card.options:
+            raise InputError("its faces do not come apart, as [[tie]] has it; contact does here")
+        if kind == "LINEAR":
             self._penalty[self._interaction] = float(card.numbers()[0])
 
     def read_amplitude(self, card: Card) -> None:
