@@ -14,8 +14,8 @@ from anisocontact.base.python_file import module_of, where_failed
 from anisocontact.case import objects
 from anisocontact.case.model import ContactSection
 from anisocontact.case.section import near
-from anisocontact.interface import ContactLaw
-from anisocontact.interface.python_law import (
+from anisocontact.interface import (
+    ContactLaw,
     LawKinematics,
     LawResult,
     LawState,

@@ -215,6 +215,27 @@ class ContactPlanes:
         right = np.einsum("nai,ni->na", axes, self.slave - self.mean)
         return np.asarray(np.linalg.solve(axes @ axes.swapaxes(1, 2), right[..., None])[..., 0])
 
+    def points(self, facet: Ints, xi: Floats) -> tuple[Floats, Floats]:
+        """Points in the planes, (n, 3), length, and the axes of these, (n, 2, 3).
+
+        Args:
+            facet: Numbers of the planes, of now or behind them of then, (n,); -1 for none.
+            xi: Coordinates, (n, 2).
+        """
+        then = (facet >= len(facet))[:, None]
+        axes = np.where(then[:, :, None], self.then.axes, self.now.axes)
+        axes[facet < 0] = np.eye(3)[:2]
+        return np.where(then, self.mean_then, self.mean) + np.einsum("na,nai->ni", xi, axes), axes
+
+    def slid(self, xi: Floats) -> Floats:
+        """Way from points in the planes of then to the feet of now, (n, 3), length.
+
+        Args:
+            xi: Coordinates in the planes of then, (n, 2).
+        """
+        before = self.mean_then + np.einsum("na,nai->ni", xi, self.then.axes)
+        return np.asarray(self.slave - self.gap[:, None] * self.normal - before)
+
     def upright(self, xi: Floats, size: float) -> tuple[Floats, Floats] | None:
         """The planes of then as supports hold the nodes now.
 

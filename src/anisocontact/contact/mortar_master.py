@@ -276,12 +276,7 @@ class MortarMaster(MeshedMaster):
 
     @override
     def at(self, state: State) -> tuple[Floats, Floats]:
-        planes, count = self._at.planes, len(state)
-        then = (state["facet"] >= count)[:, None]
-        tangents = np.where(then[:, :, None], planes.then.axes, planes.now.axes)
-        tangents[state["facet"] < 0] = np.eye(3)[:2]
-        places = np.where(then, planes.mean_then, planes.mean)
-        return places + np.einsum("na,nai->ni", state["xi"], tangents), tangents
+        return self._at.planes.points(state["facet"], state["xi"])
 
     @override
     def feet(self) -> Ints:
@@ -321,11 +316,9 @@ class MortarMaster(MeshedMaster):
 
     @override
     def slid(self, state: State) -> Floats:
-        planes = self._at.planes
-        before = planes.mean_then + np.einsum("na,nai->ni", state["xi"], planes.then.axes)
-        way = planes.slave - planes.gap[:, None] * planes.normal - before
+        way = self._at.planes.slid(state["xi"])
         way[~(self._located & (state["facet"] >= 0))] = 0.0
-        return np.asarray(way)
+        return way
 
     @override
     def begin(self) -> None:

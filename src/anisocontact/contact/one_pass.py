@@ -164,7 +164,7 @@ class Pass:
         """
         self.master.take_resting(resting, self.state)
         held = self.slave_points.held(fixed, self.last.normal)
-        self.trials.take_immovable(held & self.master.immovable(fixed))
+        self.trials.immovable = held & self.master.immovable(fixed)
         self._begin()
 
     def update(self, u: Floats, dt: float) -> Response:

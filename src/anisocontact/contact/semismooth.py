@@ -20,6 +20,7 @@ from typing import ClassVar
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.contact.master import Linear
 from anisocontact.contact.multipliers import (
     OPEN,
     RATIO,
@@ -63,6 +64,21 @@ class Base:
         rest = (1.0 - share) * self.multiplier
         new = share * (self.traction + self.residual) + change
         return np.asarray(rest + self.kept * new)
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """The trial that the next Newton step is linear about.
+
+    Attributes:
+        linear: How tractions change with the nodes.
+        base: Tractions there, and what the multipliers have yet to take.
+        slip: Slip by which the multipliers violate friction, see `Semismooth.stiff`.
+    """
+
+    linear: Linear
+    base: Base
+    slip: Floats
 
 
 class Semismooth(Multipliers):

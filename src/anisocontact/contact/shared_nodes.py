@@ -23,4 +23,4 @@ def tell_shared(contacts: Sequence[Contact]) -> None:
     own = [one.slave_points.nodes[:, 0] for one in shared]
     times = np.bincount(np.concatenate(own))
     for one, nodes in zip(shared, own, strict=True):
-        one.trials.take_shared(times[nodes] > 1)
+        one.trials.shared = times[nodes] > 1

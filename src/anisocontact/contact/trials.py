@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.layer import Layer
-from anisocontact.contact.master import Answer, Linear, Master
+from anisocontact.contact.master import Answer, Master
 from anisocontact.contact.multipliers import (
     RATIO,
     STICK,
@@ -21,13 +21,14 @@ from anisocontact.contact.multipliers import (
 )
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.schemes import USUAL, make_multipliers
-from anisocontact.contact.semismooth import Base, Semismooth
+from anisocontact.contact.semismooth import Base, Linearised, Semismooth
+from anisocontact.contact.supported_share import supported_share
 from anisocontact.interface import State
 from anisocontact.interface.augmentation import Augmentation
 
 Floats = npt.NDArray[np.float64]
 #: What a trial starts from, and what the next Newton step is linear about.
-type Mark = tuple[State, Linear | None, Base, Floats]
+type Mark = tuple[State, Linearised | None]
 
 #: Least share of its weight that a point counts with, and the one up to which it may be left to its
 #: penalty: times a gap of a hundredth of a facet that is the tolerance.
@@ -48,6 +49,8 @@ class Trials:
         master: As given.
         interface: Laws, as the user gave them.
         start: State from which trials start.
+        immovable: Points that supports hold along the normal, left to their penalty, (n,).
+        shared: Points that are slaves of other contacts with multipliers too, (n,).
     """
 
     def __init__(
@@ -60,11 +63,8 @@ class Trials:
         self._ways: Mapping[str, Multipliers] = {}
         self._multipliers: Multipliers | None = None
         self._layer: Layer | None = None
-        self._immovable = self._shared = self._slight = np.zeros(len(state), dtype=bool)
-        self._linear: Linear | None = None
-        none = np.zeros((0, 3))
-        self._base = Base(none, none, none, none)
-        self._slip: Floats = none
+        self.immovable = self.shared = self._slight = np.zeros(len(state), dtype=bool)
+        self._linear: Linearised | None = None
         self._state: State
         self._accepted: Snapshot
         self._now: Snapshot
@@ -148,10 +148,10 @@ class Trials:
     def answer(self, dt: float) -> Answer:
         """The trial where the master is, with the derivative of a Newton step."""
         follower, answer = self._follower, None
-        if follower is not None:
-            answer = self._linearised(follower, dt)
-        else:
+        if follower is None:
             answer = self.master.answer(self.start, dt)
+        else:
+            answer = self._linearised(follower, dt)
         self._now = answer.snapshot
         return answer
 
@@ -191,8 +191,7 @@ class Trials:
         """Let points that came to lie in the trial, which is in equilibrium, carry friction."""
         if self._multipliers is None or self._layer is not None:
             return
-        settled = self._multipliers.settled(self._step(self._now))
-        if settled is not None:
+        if (settled := self._multipliers.settled(self._step(self._now))) is not None:
             self._start_from(settled)
 
     def soften(self) -> bool:
@@ -216,64 +215,44 @@ class Trials:
         trial = master.answer(self.start, dt, tangent=False, separate=True)
         self._slight = self._slight & (self._points.covered(trial.snapshot.areas) < SLIGHT)
         step = self._step(trial.snapshot)
-        state, self._slip = follower.stiff(step)
+        state, slip = follower.stiff(step)
         stiff = master.answer(state, dt, derivative=True, separate=True)
         stiffness = stiff.stiffness / follower.ratio
         if not follower.tangential:
             physical = self._laws.slip_stiffness(dt) * trial.snapshot.areas
             stiffness += physical * (trial.snapshot.response.status == STICK)
         answer: Answer = trial.by_derivative(stiff, stiffness)
-        self._linear = master.linear(answer)
+        linear = master.linear(answer)
         traction = master.into_frame(trial.snapshot.response.traction)
         if follower.tangential:
             traction = traction + step.supported
-        slipped = self._linear.slipped(self._slip)
-        self._base = Base(follower.vector(step), traction, slipped, step.kept)
+        base = Base(follower.vector(step), traction, linear.slipped(slip), step.kept)
+        self._linear = Linearised(linear, base, slip)
         return answer
 
     def _follow(self, follower: Semismooth | Layer, dt: float) -> None:
         """Let the multipliers follow a step of Newton's method."""
-        change = None if self._linear is None else self._linear.change()
-        if change is None:
+        about = self._linear
+        if about is None or (change := about.linear.change()) is None:
             return
         now = self._frames(self.master.here(self.start, dt))
         before = self._frames(self.start)
-        traction = self._base.after(change, follower.share)
-        if follower.tangential:
-            traction = self._as_supported(traction, now, before)
+        traction = about.base.after(change, follower.share)
+        if follower.tangential and self.master.held is not None:
+            traction = supported_share(
+                traction,
+                self.master.held,
+                last=before.turned_to(now, before.vector(self._state["stored"])),
+                carried=about.base.traction,
+                normal=now.normal,
+                stick=self._now.response.status == STICK,
+            )
         self.start = follower.advance(self.start, traction, now, before)
         self._let_go_of_immovable()
 
-    def _as_supported(self, traction: Floats, now: Frames, before: Frames) -> Floats:
-        """Multipliers, (n, 3), with what supports can carry of them.
-
-        Along directions that supports hold nothing says what a point carries that does not slide:
-        it keeps what it did. One that slides carries no more than friction.
-        """
-        held = self.master.held
-        if held is None:
-            return traction
-        along = (held @ traction[..., None])[..., 0]
-        before_slip = before.turned_to(now, before.vector(self._state["stored"]))
-        kept = (held @ before_slip[..., None])[..., 0]
-        normal = np.einsum("nd,nd->n", self._base.traction, now.normal)
-        most = np.linalg.norm(self._base.traction - normal[:, None] * now.normal, axis=1)
-        size = np.linalg.norm(along, axis=1)
-        less = along * np.divide(most, size, out=np.ones_like(size), where=size > most)[:, None]
-        stick = self._now.response.status[:, None] == STICK
-        return np.asarray(traction - along + np.where(stick, kept, less))
-
     def _let_go_of_immovable(self) -> None:
         if self._multipliers is not None:
-            self.start["multiplier"][self._immovable | self._slight] = 0.0
-
-    def take_immovable(self, points: npt.NDArray[np.bool_]) -> None:
-        """Leave points to their penalty that supports hold along the normal, (n,)."""
-        self._immovable = points
-
-    def take_shared(self, points: npt.NDArray[np.bool_]) -> None:
-        """Learn which points are slaves of other contacts with multipliers too, (n,)."""
-        self._shared = points
+            self.start["multiplier"][self.immovable | self._slight] = 0.0
 
     def add_multiplier_residual(self, out: Floats) -> None:
         """Add the condensed residual of the multipliers: what a step takes beyond the trial.
@@ -281,7 +260,7 @@ class Trials:
         These forces take the violation of multipliers that follow away; (nodes, 3), force.
         """
         if self._linear is not None:
-            self._linear.add_force(self._slip, out)
+            self._linear.linear.add_force(self._linear.slip, out)
 
     def multiplier_wrench(self, about: Floats) -> Floats:
         """Force and moment on the slave of `add_multiplier_residual` over the points here, (6,).
@@ -291,7 +270,7 @@ class Trials:
         """
         if self._linear is None:
             return np.zeros(6)
-        return self._now.wrench(about, self.master.out_of_frame(self._base.residual))
+        return self._now.wrench(about, self.master.out_of_frame(self._linear.base.residual))
 
     @property
     def ways(self) -> tuple[str, ...]:
@@ -325,11 +304,11 @@ class Trials:
 
     def mark(self) -> Mark:
         """Where the multipliers are, and about which trial the next step is linear."""
-        return self.start, self._linear, self._base, self._slip
+        return self.start, self._linear
 
     def go_back(self, mark: Mark) -> None:
         """Take it that the trials since a mark have not been."""
-        self.start, self._linear, self._base, self._slip = mark
+        self.start, self._linear = mark
 
     def damp_correction(self, share: float) -> None:
         """Take only a share of the next step of multipliers that follow."""
@@ -367,8 +346,7 @@ class Trials:
             self._layer.stiffer(compliance, (start, begun))
         else:
             normal = None if self._multipliers is None else self._multipliers.follower
-            histories = start, begun
-            self._layer = Layer(compliance, histories, normal, self.master.at, self._comm)
+            self._layer = Layer(compliance, (start, begun), normal, self.master.at, self._comm)
         self._take(soft, stiff)
         self.start = self._layer.begin(first, self.master.axes(self._accepted.response))
 
@@ -411,9 +389,9 @@ class Trials:
             self._frames(trial.response.state),
             self._frames(self.start),
             self.master.axes(trial.response),
-            self._immovable | self._slight,
+            self.immovable | self._slight,
             self._points.covered(trial.areas).clip(LEAST, 1.0),
-            self._shared,
+            self.shared,
             self.master.held,
         )
 

@@ -8,14 +8,8 @@ from typing import TYPE_CHECKING, Any
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.interface.contact_law import VECTOR_FORMS, AdhesionAndFriction, ContactLaw
 from anisocontact.interface.interface import Interface
-from anisocontact.interface.python_law import (
-    LawInSeries,
-    LawKinematics,
-    LawResult,
-    LawState,
-    PythonLaw,
-    TangentialLaw,
-)
+from anisocontact.interface.law_in_series import LawInSeries
+from anisocontact.interface.python_law import PythonLaw
 from anisocontact.interface.states import (
     FAILURE,
     STATE,
@@ -25,6 +19,12 @@ from anisocontact.interface.states import (
     State,
     as_state,
     raw_state,
+)
+from anisocontact.interface.tangential_law import (
+    LawKinematics,
+    LawResult,
+    LawState,
+    TangentialLaw,
 )
 
 __all__ = [
