@@ -151,7 +151,7 @@ def test_the_case_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> No
         ("*KINEMATIC\n", "*DISTRIBUTING\n", "*DISTRIBUTING of line 29: its face may deform"),
         ("*KINEMATIC\n", "*KINEMATIC\n3, 3\n", "*KINEMATIC of line 29: single components are"),
         ("SURFACE=ROOF", "SURFACE=WALL", "*KINEMATIC of line 29: wall holds no faces"),
-        ("SURFACE=ROOF", "INFLUENCE RADIUS=1", "a surface or node set that holds faces"),
+        ("SURFACE=ROOF", "INFLUENCE RADIUS=1", "or a node set that holds faces"),
         ("REF NODE=RP", "REF NODE=HEAD", "the reference point head is 4 nodes"),
         (" RP, 1, 2", " RP, XSYMM", "XSYMM of a reference point is not read; give its directions"),
         (" RP, 3, -50.", " RP, 3", "*CLOAD of line 38: rp has data of another kind"),

@@ -11,10 +11,13 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from anisocontact.base.errors import InputError
+from anisocontact.case.deck_contact import SKIN
+from anisocontact.case.deck_tools import Tools
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck
 from anisocontact.mesh.deck_supports import check_options
+from anisocontact.mesh.inp import bodies_of
 
 __all__ = ["Couplings", "of_ideal"]
 
@@ -25,7 +28,7 @@ _MOVED = dict(zip(LOAD, MOTION, strict=True))
 #: Names of supports in the place of directions.
 NAMED = {"ENCASTRE": (1, 6), "PINNED": (1, 3)}
 #: Options that name what follows: a surface, or nodes that hold faces.
-FACES = ("SURFACE", "NSET", "TIENSET", "PINNSET")
+FACES = ("ANALYTICALSURFACE", "SURFACE", "ELSET", "NSET", "TIENSET", "PINNSET")
 
 
 @dataclass(frozen=True)
@@ -56,11 +59,13 @@ class Couplings:
         deck: The deck.
         mesh: Its mesh.
         named: Name of a set or surface -> groups "body.name".
+        tools: Its analytical surfaces.
         components: Directions that a point can go along or turn about, from 1 on.
         leave: Told a card that is left out, and why.
 
     Attributes:
         tables: Tables of the rigid bodies by name.
+        rigid: Bodies that are rigid as a whole.
     """
 
     def __init__(
@@ -68,16 +73,23 @@ class Couplings:
         deck: Deck,
         mesh: MeshArrays,
         named: Callable[[str], list[str]],
+        tools: Tools,
         components: Sequence[int],
         leave: Callable[[Card, str], None],
     ) -> None:
         self._deck, self._mesh, self._named = deck, mesh, named
-        self._components, self._leave = components, leave
+        self._tools, self._components, self._leave = tools, components, leave
         self._points: dict[int, tuple[str, int]] = {}
         self._led: list[_Led] = []
         self._new: set[tuple[int, str]] = set()
         self._open: Card | None = None
         self.tables: dict[str, dict[str, object]] = {}
+        self.rigid: list[str] = []
+
+    @property
+    def skins(self) -> list[str]:
+        """All facets of the bodies that are rigid as a whole, as groups."""
+        return [f"{body}.{SKIN}" for body in self.rigid]
 
     def take(self, card: Card) -> bool:
         """Take a card over; whether it is one of a coupling.
@@ -113,7 +125,7 @@ class Couplings:
                 continue
             lines = []
             for line in card.data:
-                entries = [entry.strip() for entry in line.split(",") if entry.strip()]
+                entries = next(replace(card, data=(line,)).rows())
                 nodes = self._deck.nodes_of(entries[0]) if entries else []
                 if nodes and self._points.keys() >= set(nodes):
                     self._try_line(step, key, card, nodes, entries)
@@ -161,19 +173,43 @@ class Couplings:
         return now
 
     def _add(self, card: Card) -> None:
+        node = self._point(card.option("REFNODE"))
         option = next((name for name in FACES if card.options.get(name)), "")
         if not option:
-            raise InputError("a surface or node set that holds faces is taken over")
+            raise InputError("a surface, elements, or a node set that holds faces is taken over")
         wanted = card.options[option]
-        faces = [group for group in self._named(wanted) if group in self._mesh.facets]
-        if not faces:
-            raise InputError(f"{wanted.lower()} holds no faces")
-        node = self._point(card.option("REFNODE"))
         name = (card.options.get("CONSTRAINTNAME") or wanted).lower().replace(".", "_")
-        self.tables[name] = {"faces": faces, "reference": self._deck.nodes[node]}
+        self.tables[name] = {
+            **self._carried(option, wanted),
+            "reference": self._deck.nodes[node],
+        }
         self._points[node] = (name, 0)
         if card.options.get("ROTNODE"):
             self._points[self._point(card.options["ROTNODE"])] = (name, 3)
+
+    def _carried(self, option: str, wanted: str) -> dict[str, object]:
+        """What a reference point carries: surfaces, faces, or bodies as a whole."""
+        if option == "ANALYTICALSURFACE":
+            if not self._tools.known(wanted):
+                raise InputError(f"there is no analytical surface {wanted.lower()}")
+            return {"surfaces": [self._tools.use(wanted)]}
+        if option == "ELSET":
+            members, of_element = set(self._deck.members_of(wanted)), bodies_of(self._deck)
+            whole: dict[str, bool] = {}
+            for number in self._deck.elements:
+                body = of_element.get(number, "")
+                whole[body] = whole.get(body, True) and number in members
+            bodies = [body for body in self._mesh.bodies if whole.get(body)]
+            if not bodies:
+                raise InputError(
+                    f"{wanted.lower()} is no whole body of solids; see rigid bodies for tools"
+                )
+            self.rigid += bodies
+            return {"faces": [f"{body}.{SKIN}" for body in bodies]}
+        faces = [group for group in self._named(wanted) if group in self._mesh.facets]
+        if not faces:
+            raise InputError(f"{wanted.lower()} holds no faces")
+        return {"faces": faces}
 
     def _point(self, entry: str) -> int:
         nodes = self._deck.nodes_of(entry)
@@ -215,9 +251,9 @@ def _range(entries: Sequence[str]) -> tuple[int, int]:
         return 1, 6
     if entries[0].upper() in NAMED:
         return NAMED[entries[0].upper()]
-    if not all(entry.isdigit() for entry in entries[:2]):
+    if not all(entry.isdigit() for entry in entries[:2] if entry):
         raise InputError(f"{entries[0]} of a reference point is not read; give its directions")
-    return int(entries[0]), int(entries[1] if len(entries) > 1 else entries[0])
+    return int(entries[0]), int((*entries[1:2], "")[0] or entries[0])
 
 
 def of_ideal(kinds: Iterable[str]) -> tuple[int, ...]:

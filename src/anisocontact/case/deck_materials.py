@@ -12,6 +12,7 @@ from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck
 from anisocontact.mesh.deck_supports import key_of
 from anisocontact.mesh.inp import bodies_of, plain
+from anisocontact.mesh.placement import Rotation
 
 __all__ = ["Materials", "Temperatures"]
 
@@ -112,8 +113,10 @@ class Materials:
         numbers, terms = card.numbers().tolist(), int(card.options.get("N", "1"))
         constants = numbers[: _RUBBERS[kind] or 2 * terms]
         volume = numbers[len(constants) :]
-        if not volume or not volume[0] > 0.0 or any(volume[1 : 3 if kind == "YEOH" else terms]):
-            raise InputError("D1 > 0 alone is taken over; see bulk_modulus")
+        if len(constants) < (_RUBBERS[kind] or 2 * terms) or "TESTDATAINPUT" in card.options:
+            raise InputError("constants alone are taken over, no data of tests")
+        if any(volume[1 : 3 if kind == "YEOH" else terms]):
+            raise InputError("D1 alone is taken over; see bulk_modulus")
         found: dict[str, object] = {"model": kind.lower()}
         if kind == "OGDEN":  # 2 mu / alpha^2 there, mu / alpha here
             exponents = constants[1::2]
@@ -124,7 +127,12 @@ class Materials:
         else:
             found["model"] = "mooney-rivlin"
             found |= dict(zip(("C10", "C01"), (*constants, 0.0), strict=False))
-        self._model |= found | {"bulk_modulus": 2.0 / volume[0]}
+        if volume and volume[0] > 0.0:
+            found["bulk_modulus"] = 2.0 / volume[0]
+        else:
+            text = ": without D1, which is incompressible in Abaqus and nu = 0.475 in CalculiX: "
+            self._leave(card, f"{text}bulk_modulus has to be written")
+        self._model |= found
 
     def read_density(self, card: Card) -> None:
         """Take `*DENSITY`."""
@@ -158,16 +166,34 @@ class Materials:
         """Take `*ORIENTATION`: two vectors, or the axis of cylinder coordinates."""
         first, *others = card.fields()
         a, b = np.array([real(v) for v in first[:6]]).reshape(2, 3)
-        if others and any(real(row[1]) for row in others if len(row) > 1):
-            raise InputError("axes with a turn of their own; see orthotropic")
+        turns = [(int(row[0]), real(row[1])) for row in others if len(row) > 1 and real(row[1])]
         kind = card.options.get("SYSTEM", "RECTANGULAR").upper()
         if kind.startswith("R"):
-            found: dict[str, object] = {"first": a.tolist(), "second": b.tolist()}
+            axes = _axes(a, b)
+            for about, angle in turns:
+                turn = Rotation(tuple(axes[about - 1]), angle_deg=angle)
+                axes = turn.apply(axes)
+            kept = axes[:2] if turns else (a, b)
+            found: dict[str, object] = dict(
+                zip(("first", "second"), map(_listed, kept), strict=True)
+            )
+        elif turns:
+            raise InputError("axes of a cylinder with a turn of their own; see orthotropic")
         elif kind.startswith("C"):
             found = {"around": [a.tolist(), (b - a).tolist()]}
         else:
             raise InputError(f"SYSTEM={kind} is not read; see orthotropic")
         self._directions[card.option("NAME").upper()] = found
+
+
+def _axes(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+    """Unit vectors along the first vector, across it towards the second, and normal to both."""
+    first, third = a / np.linalg.norm(a), np.cross(a, b) / np.linalg.norm(np.cross(a, b))
+    return np.array([first, np.cross(third, first), third])
+
+
+def _listed(vector: npt.NDArray[np.float64]) -> list[float]:
+    return [round(float(v), 12) + 0.0 for v in vector]
 
 
 def _engineering(d: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:

@@ -7,6 +7,7 @@ would stand in their place has numbers without a meaning, so there is none.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card
@@ -49,6 +50,7 @@ def static_steps(cards: Sequence[tuple[int, Card]]) -> tuple[list[tuple[int, Car
     taken = 0
     for step in range(1, max((number for number, _ in cards), default=0) + 1):
         own = [card for number, card in cards if number == step]
+        own = [replace(card, name=STATIC[0]) if _quasi_static(card) else card for card in own]
         why = _why_not(own, taken)
         if why:
             left.append((taken, f"step {step} is {why}"))
@@ -60,6 +62,11 @@ def static_steps(cards: Sequence[tuple[int, Card]]) -> tuple[list[tuple[int, Car
         raise InputError(f"no step can be taken over: {text}; its mesh alone is read, see [mesh]")
     behind = "; steps behind it begin without what it does"
     return kept, [line + (behind if before < taken else "") for before, line in left]
+
+
+def _quasi_static(card: Card) -> bool:
+    """Whether a `*DYNAMIC` means the equilibrium without inertia."""
+    return card.name == "DYNAMIC" and card.options.get("APPLICATION", "").upper() == "QUASI-STATIC"
 
 
 def _why_not(cards: Sequence[Card], before: int) -> str:

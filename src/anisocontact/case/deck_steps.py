@@ -223,11 +223,21 @@ class Steps:
                 raise InputError(f"{label} on {entry.lower()}; P1, P2 ... and GRAV are read")
 
     def dsloads(self, card: Card) -> Iterator[_Load]:
-        """Pressures of `*DSLOAD`."""
-        for name, label, value, *_ in card.fields():
-            if label.upper() != "P":
-                raise InputError(f"{label} on {name.lower()}; P is read, see traction")
-            yield "pressure", self._facets(name), real(value)
+        """Pressures and tractions of `*DSLOAD`."""
+        for name, label, value, *along in card.fields():
+            if label.upper() == "P":
+                yield "pressure", self._facets(name), real(value)
+            elif label.upper() == "TRVEC" and len(along) >= 3 and not self.finite:
+                direction = np.array([real(v) for v in along[:3]])
+                traction = real(value) * direction / np.linalg.norm(direction)
+                yield (
+                    "traction",
+                    self._facets(name),
+                    dict(zip("xyz", traction.tolist(), strict=True)),
+                )
+            else:
+                turns = " turns with the surface under NLGEOM" if label.upper() == "TRVEC" else ""
+                raise InputError(f"{label} on {name.lower()}{turns}; P is read, see traction")
 
     def _renew(self) -> None:
         """Release and take away what a step with OP=NEW does not name."""
@@ -264,5 +274,5 @@ _RENEWED = {
     "BOUNDARY": {"displacement", "cylindrical"},
     "CLOAD": {"force"},
     "DLOAD": {"pressure", "gravity"},
-    "DSLOAD": {"pressure"},
+    "DSLOAD": {"pressure", "traction"},
 }

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 from anisocontact.base.errors import InputError
+from anisocontact.case.deck_contact import Contacts, table_lines
 from anisocontact.case.deck_coupling import Couplings, of_ideal
 from anisocontact.case.deck_cyclic import Sectors
 from anisocontact.case.deck_materials import Materials, Temperatures
 from anisocontact.case.deck_procedures import static_steps
 from anisocontact.case.deck_steps import Steps
+from anisocontact.case.deck_tools import Tools
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import PLANE, Deck, read_deck
@@ -26,10 +30,25 @@ SILENT = {"HEADING", "PREPRINT", "OUTPUT", "RESTART", "ENDSTEP", "ASSEMBLY", "EN
 SILENT |= {"ENDINSTANCE", "MONITOR", "NODEOUTPUT", "ELEMENTOUTPUT", "CONTACTOUTPUT"}
 SILENT |= {f"{what}{how}" for what in ("NODE", "EL", "CONTACT") for how in ("PRINT", "FILE")}
 SILENT |= {"SECTIONPRINT", "TRANSFORM", "BOUNDARY"}
-#: Options of `*FRICTION` with which its first number is not the coefficient of all slips.
-OTHER_FRICTION = {"ANISOTROPIC", "USER", "EXPONENTIALDECAY", "TAUMAX", "ROUGH", "DEPENDENCIES"}
+#: What a rigid body is made of whose deck says nothing: it changes nothing.
+ANY_MATERIAL: dict[str, object] = {"model": "neo-hookean", "E": 1.0, "nu": 0.3}
+#: Parts of a smooth step.
+SMOOTH_PARTS = 20
 #: Keyword that has no words in a case -> what to look at instead.
-INSTEAD = {"EQUATION": ": components of single nodes are not tied; see faces, symmetry, tie"}
+INSTEAD = {
+    "EQUATION": ": components of single nodes are not tied; see faces, symmetry, tie",
+    "MPC": ": single nodes are not tied; see faces of [rigid], symmetry, tie",
+    "PRE-TENSIONSECTION": ": bolts; a force on the head, or an overlap in the mesh, does it",
+    "MODELCHANGE": ": bodies and contacts are the same in all steps",
+    "CHANGEFRICTION": ": friction is the same in all steps",
+    "CLEARANCE": ": gaps are those of the mesh; move its nodes, or see adjust_gap",
+    "CONTACTINTERFERENCE": ": overlaps of the mesh are pushed apart in the first increment",
+    "CONTACTEXCLUSIONS": ": take its pairs out of [[contact]]",
+    "RIGIDSURFACE": ": write it as *SURFACE and *RIGID BODY, ANALYTICAL SURFACE",
+    "PARAMETER": ": write the numbers in their places",
+    "VISCOELASTIC": ": see the model viscoelastic",
+    "CREEP": ": a law in Python; see materials",
+}
 
 
 def case_of_deck(path: Path, target: Path) -> tuple[str, list[str]]:
@@ -69,18 +88,20 @@ class _Case:
 
     def __post_init__(self) -> None:
         self._materials = Materials(self.deck, self._leave)
-        self._friction: dict[str, float] = {}
-        self._penalty: dict[str, float] = {}
         self._amplitudes: dict[str, dict[str, object]] = {}
-        self._pairs: list[Card] = []
         self._ties: list[Card] = []
-        self._title, self._interaction = "", ""
+        self._title = ""
         self._warm: list[Card] = []
         self._named = named_in([*self.mesh.facets, *self.mesh.nodes])
         self._sectors = Sectors(self.mesh, self._named)
         self._steps = Steps(self.deck, self.mesh, self._named, self._temperatures)
         kinds = {kind for kind, _ in self.deck.elements.values()}
-        self._couplings = Couplings(self.deck, self.mesh, self._named, of_ideal(kinds), self._leave)
+        turned = bool(kinds) and {kind[:3] for kind in kinds} <= {"CAX"}
+        self._tools = Tools(self.deck.profiles, self.mesh.points, turned)
+        self._contacts = Contacts(self.mesh, self._named, self._tools, self._leave)
+        self._couplings = Couplings(
+            self.deck, self.mesh, self._named, self._tools, of_ideal(kinds), self._leave
+        )
         self._each(lambda step, card: bool(step) or not self._couplings.take(card))
         self.deck.cards = self._couplings.without(self.deck.cards)
         self._each(self._take)
@@ -94,32 +115,31 @@ class _Case:
         """
         if self._title:
             yield f"title = {written(self._title)}"
-        yield from _table("[mesh]", {"file": file})
+        yield from table_lines("[mesh]", {"file": file})
         kinds = {kind for kind, _ in self.deck.elements.values()}
         if kinds <= set(PLANE):
-            yield from _table("[idealisation]", self._ideal(kinds))
+            yield from table_lines("[idealisation]", self._ideal(kinds))
         for body in self.mesh.bodies:
-            yield from _table(f"[material.{key_of(body)}]", self._of_body(body))
+            yield from table_lines(f"[material.{key_of(body)}]", self._of_body(body))
         for name, amplitude in self._amplitudes.items():
-            yield from _table(f"[amplitude.{key_of(name)}]", amplitude)
+            yield from table_lines(f"[amplitude.{key_of(name)}]", amplitude)
         for place, node in self._steps.nodes.items():
-            yield from _table(f"[nodes.{key_of(place)}]", {"near": node})
-        for card in self._pairs:
-            yield from self._contact(card)
+            yield from table_lines(f"[nodes.{key_of(place)}]", {"near": node})
+        yield from self._contacts.lines(self._couplings.skins)
         for table in self._sectors.tables():
-            yield from _table("[[cyclic]]", table)
+            yield from table_lines("[[cyclic]]", table)
         for card in self._ties:
             for slave, master, *_ in card.fields():
-                sides = self._sides(card, slave, master)
-                if sides:
+                if sides := self._contacts.sides(card, slave, master):
                     given = card.options.get("POSITIONTOLERANCE")
+                    both: dict[str, object] = {"slave": sides[0], "master": sides[1]}
                     within = {"tolerance": real(given)} if given else {}
-                    yield from _table("[[tie]]", sides | within)
+                    yield from table_lines("[[tie]]", both | within)
         for name, table in self._couplings.tables.items():
-            yield from _table(f"[rigid.{key_of(name)}]", table)
+            yield from table_lines(f"[rigid.{key_of(name)}]", table)
         for number, step in enumerate(self._steps.tables(), 1):
             led = self._couplings.step(number, self._steps.led)
-            yield from _table("[[step]]", step | led)
+            yield from table_lines("[[step]]", step | led)
 
     def _each(self, take: Callable[[int, Card], object]) -> None:
         """Hand each card on; those that cannot be taken over are left out with a line."""
@@ -137,7 +157,9 @@ class _Case:
     def _take(self, step: int, card: Card) -> None:
         if card.name in _READERS and not step:
             _READERS[card.name](self, card)
-        elif not step and (self._materials.take(card) or self._sectors.take(card)):
+        elif self._contacts.take(step, card) or (
+            not step and (self._materials.take(card) or self._sectors.take(card))
+        ):
             return
         elif not self._steps.take(step, card) and card.name not in SILENT:
             self._leave(card, INSTEAD.get(card.name, ""))
@@ -160,37 +182,15 @@ class _Case:
         bodies = [body for body in self.mesh.bodies if self._materials.expands(body)]
         return Temperatures(self.deck, bodies, self._warm)
 
-    def read_interaction(self, card: Card) -> None:
-        """Take `*SURFACE INTERACTION`; what follows is of it."""
-        self._interaction = card.option("NAME").upper()
-
-    def read_friction(self, card: Card) -> None:
-        """Take `*FRICTION`."""
-        if not OTHER_FRICTION.isdisjoint(card.options) or len(list(card.fields())) > 1:
-            raise InputError("one coefficient is taken over; see friction")
-        self._friction[self._interaction] = float(card.numbers()[0])
-
-    def read_behaviour(self, card: Card) -> None:
-        """Take `*SURFACE BEHAVIOR`: contact is exact here, a line says what was given."""
-        kind = card.options.get("PRESSURE-OVERCLOSURE", "").upper()
-        if kind == "TIED" or "NOSEPARATION" in card.options:
-            raise InputError("its faces do not come apart, as [[tie]] has it; contact does here")
-        if kind == "LINEAR":
-            self._penalty[self._interaction] = float(card.numbers()[0])
-
     def read_amplitude(self, card: Card) -> None:
         """Take `*AMPLITUDE`; what jumps to its value at the start goes there along the step."""
         name, table = card.option("NAME").lower(), _amplitude(card)
-        values = set(card.numbers()[1::2].tolist())
+        values = set(table["value"])
         if len(values) == 1:
             self._steps.constant[name] = values.pop()
             self._leave(card, ": it is constant, values are reached at the end of the step")
         else:
             self._amplitudes[name] = table
-
-    def read_pair(self, card: Card) -> None:
-        """Take `*CONTACT PAIR`."""
-        self._pairs.append(card)
 
     def read_tie(self, card: Card) -> None:
         """Take `*TIE`; those of sectors are taken with them."""
@@ -213,50 +213,17 @@ class _Case:
         sheet = {"plane-stress"} == ideals(kind for kind, _ in self.deck.elements.values())
         finite = self._steps.finite and not sheet  # sheets are at small strain alone
         table, left = self._materials.table(body, finite)
+        if body in self._couplings.rigid and "model" not in table:
+            return dict(ANY_MATERIAL)  # of a body that does not deform
         self.left_out += left
         return table
-
-    def _contact(self, card: Card) -> Iterator[str]:
-        name = card.options.get("INTERACTION", "").upper()
-        for slave, *others in card.fields():
-            if not others:
-                self._leave(card, ": a surface with itself; see self_contact")
-                continue
-            sides = self._sides(card, slave, others[0])
-            if not sides:
-                continue
-            more: dict[str, object] = {}
-            if "ADJUST" in card.options:
-                more["adjust"] = True
-            more["friction"] = {"coefficients": self._friction.get(name, 0.0)}
-            yield from _table("[[contact]]", sides | more)
-            if name in self._penalty:
-                stiff = f"normal = {{ penalty = {self._penalty[name]:g} }}"
-                yield f'# nothing overlaps; as in the deck: method = "penalty", {stiff}'
-
-    def _sides(self, card: Card, slave: str, master: str) -> dict[str, object]:
-        """Slave and master of a pair; empty where one of them is not on one body."""
-        found: dict[str, object] = {}
-        for side, name in (("slave", slave), ("master", master)):
-            groups = [group for group in self._named(name) if group in self.mesh.facets]
-            if len(groups) != 1:
-                said = f"on {' and '.join(groups)}" if groups else "no facet group"
-                self._leave(card, f": {name.lower()} is {said}")
-                return {}
-            found[side] = groups[0]
-        return found
 
 
 #: Keyword in front of the first step -> what takes it.
 _READERS: dict[str, Callable[[_Case, Card], None]] = {
     "HEADING": _Case.read_heading,
     "INITIALCONDITIONS": _Case.read_start,
-    "SURFACEINTERACTION": _Case.read_interaction,
-    "FRICTION": _Case.read_friction,
-    "SURFACEBEHAVIOR": _Case.read_behaviour,
-    "SURFACEBEHAVIOUR": _Case.read_behaviour,
     "AMPLITUDE": _Case.read_amplitude,
-    "CONTACTPAIR": _Case.read_pair,
     "TIE": _Case.read_tie,
 }
 
@@ -269,24 +236,35 @@ _NO_TABLE = {
 }
 
 
-def _amplitude(card: Card) -> dict[str, object]:
-    """Table of a `*AMPLITUDE`."""
-    if card.options.get("DEFINITION", "TABULAR").upper() != "TABULAR":
+def _amplitude(card: Card) -> dict[str, Any]:
+    """Table of a `*AMPLITUDE`; steps that are smooth become one with points between."""
+    definition = "".join(card.options.get("DEFINITION", "TABULAR").upper().split())
+    if definition not in ("TABULAR", "EQUALLYSPACED", "SMOOTHSTEP"):
         raise InputError(f"DEFINITION={card.options['DEFINITION']} is not read; see [amplitude]")
     for option, instead in _NO_TABLE.items():
         if option in card.options:
             raise InputError(f"{option} is not read; {instead}")
     numbers = card.numbers().tolist()
+    if definition == "EQUALLYSPACED":
+        interval = real(card.option("FIXEDINTERVAL"))
+        start = real(card.options.get("BEGIN") or "0")
+        numbers = [v for k, value in enumerate(numbers) for v in (start + k * interval, value)]
     if not numbers or len(numbers) % 2:
         raise InputError(f"{len(numbers)} numbers, times and values are needed")
-    table: dict[str, object] = {"kind": "table", "time": numbers[::2], "value": numbers[1::2]}
+    times, values = numbers[::2], numbers[1::2]
+    if definition == "SMOOTHSTEP":
+        times, values = _smooth(times, values)
+    table: dict[str, Any] = {"kind": "table", "time": times, "value": values}
     total = card.options.get("TIME", "").upper().startswith("TOTAL")
     return table | ({"time_of": "total"} if total else {})
 
 
-def _table(head: str, values: dict[str, object]) -> Iterator[str]:
-    """Lines of a table."""
-    yield ""
-    yield head
-    for key, value in values.items():
-        yield f"{key} = {written(value)}"
+def _smooth(times: list[float], values: list[float]) -> tuple[list[float], list[float]]:
+    """Points of steps without slope and curvature at their ends, as the manual has them."""
+    shares = [k / SMOOTH_PARTS for k in range(1, SMOOTH_PARTS + 1)]
+    points = [(times[0], values[0])]
+    for (start, first), (end, last) in pairwise(zip(times, values, strict=True)):
+        for x in shares:
+            rise = x**3 * (10.0 - 15.0 * x + 6.0 * x * x)
+            points.append((start + x * (end - start), first + rise * (last - first)))
+    return [time for time, _ in points], [value for _, value in points]

@@ -46,10 +46,22 @@ class Card:
         return self.options[name]
 
     def fields(self) -> Iterator[list[str]]:
-        """The entries of each line of data, without blanks and without what is left empty."""
-        for line in self.data:
-            entries = [entry.strip() for entry in line.split(",")]
+        """The entries of each line of data, without blanks, quotes and what is left empty."""
+        for entries in self.rows():
             yield [entry for entry in entries if entry]
+
+    def rows(self) -> Iterator[list[str]]:
+        """The entries of each line of data at their places, empty ones behind the last left out.
+
+        Example:
+            >>> list(Card("BOUNDARY", {}, ('"the head", 3, , 0.1,',), 1).rows())
+            [['the head', '3', '', '0.1']]
+        """
+        for line in self.data:
+            entries = [entry.strip().strip('"') for entry in line.split(",")]
+            while entries and not entries[-1]:
+                entries.pop()
+            yield entries
 
     def numbers(self) -> npt.NDArray[np.float64]:
         """All numbers of the data, one after the other.
@@ -127,7 +139,7 @@ def _finished(head: tuple[str, int] | None, data: list[str], path: Path, depth: 
     card = Card("".join(keyword.split()).upper(), options, tuple(data), number)
     if card.name != "INCLUDE":
         return [card]
-    other = path.parent / card.option("INPUT")
+    other = path.parent / card.option("INPUT").replace("\\", "/")
     if depth == DEPTH:
         raise InputError(f"line {number}: more than {DEPTH} files include each other")
     if not other.is_file():

@@ -5,19 +5,20 @@ Parts are put where their instances are. What is no mesh is kept as it is writte
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+import math
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, read_cards, real
+from anisocontact.mesh.deck_generated import GENERATORS, NOT_READ
+from anisocontact.mesh.deck_instances import begun, numbered, own_numbers, place
+from anisocontact.mesh.deck_profiles import ANALYTIC, Profile, profile_of
 from anisocontact.mesh.deck_supports import held_nodes
-from anisocontact.mesh.placement import Rotation
-
-Floats = npt.NDArray[np.float64]
 
 #: Element -> cell, number of nodes; letters behind it say how it is integrated.
 SOLIDS = {
@@ -35,10 +36,10 @@ IDEAL = {"CPE": "plane-strain", "CPS": "plane-stress", "CAX": "axisymmetric"}
 #: Cells of these by the number of their nodes.
 _IN_PLANE = {3: "triangle", 6: "triangle", 4: "quadrilateral", 8: "quadrilateral"}
 PLANE = {f"{kind}{n}": (cell, n) for kind in IDEAL for n, cell in _IN_PLANE.items()}
+#: Keywords of a part that every instance of it has under its own names.
+OF_PARTS = ("RIGIDBODY", "COUPLING", "KINEMATIC", "DISTRIBUTING", "TIE", "EQUATION", "MPC")
 #: All of them.
 KNOWN = SOLIDS | PLANE
-#: Keywords that make nodes or elements in a way that is not read.
-GENERATED = ("NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY", "NMAP")
 
 
 def solid(element: str) -> str:
@@ -66,29 +67,55 @@ def read_deck(path: Path) -> Deck:
         OSError: It cannot be read.
     """
     cards = read_cards(path)
-    whole = current = Deck(own=_own_numbers(cards))
-    step = 0
-    parts: dict[str, Deck] = {}
+    reader = _Reader(Deck(own=own_numbers(cards)))
     for card in cards:
         try:
-            if card.name in GENERATED:
-                raise InputError("is not read; write nodes and elements out")
-            if card.name == "PART":
-                current = parts.setdefault(card.option("NAME").upper(), Deck())
-            elif card.name == "ENDPART":
-                current = whole
-            elif card.name == "INSTANCE":
-                whole.add_instance(card, parts)
-            elif card.name in _READERS:
-                _READERS[card.name](current, card)
-            else:
-                step += card.name == "STEP"
-                whole.add_card(step, card)
+            reader.take(card)
         except InputError as error:
             raise InputError(f"line {card.line}: *{card.name}: {error}") from None
         except (ValueError, IndexError):
             raise InputError(f"line {card.line}: *{card.name}: its data cannot be read") from None
-    return whole
+    return reader.whole
+
+
+class _Reader:
+    """Takes the cards of a file one after the other.
+
+    Args:
+        whole: What is filled.
+    """
+
+    def __init__(self, whole: Deck) -> None:
+        self.whole = self._current = whole
+        self._parts: dict[str, Deck] = {}
+        self._instance: Card | None = None
+        self._step = 0
+
+    def take(self, card: Card) -> None:
+        """Take a card.
+
+        Raises:
+            InputError: It cannot be read.
+        """
+        if card.name in NOT_READ:
+            raise InputError("is not read; write nodes and elements out")
+        card = numbered(card, self.whole.offsets)
+        if card.name == "PART":
+            self._current = self._parts.setdefault(card.option("NAME").upper(), Deck())
+        elif card.name == "INSTANCE":
+            self._instance, self._current = card, begun(card, self._parts)
+        elif card.name in ("ENDPART", "ENDINSTANCE"):
+            if self._instance is not None:
+                place(self.whole, self._instance, self._current)
+            self._instance, self._current = None, self.whole
+        elif card.name in _READERS:
+            _READERS[card.name](self._current, card)
+        elif card.name in GENERATORS:
+            GENERATORS[card.name](self._current, card)
+        else:
+            self._step += card.name == "STEP"
+            inside = card.name in OF_PARTS and self._current is not self.whole
+            (self._current if inside else self.whole).add_card(self._step, card)
 
 
 @dataclass(frozen=True)
@@ -118,12 +145,15 @@ class Deck:
         node_sets: Name -> numbers.
         element_sets: Name -> numbers.
         surfaces: Name -> (element or set, face; empty for all free ones).
+        profiles: Name -> analytical surface of a rigid body.
         sections: Body -> its section.
         left_out: Elements that are no solids -> how many.
         offsets: Instance -> what is added to the numbers of its part.
         cards: Cards that are not of the mesh, with the number of the step in which they stand.
         same: Name of nodes that are held alike once more -> the name that they have already.
+        of_parts: Names of sets and surfaces that parts alone have given.
         own: Largest number that nodes and elements beside the parts have; instances begin behind.
+        unsorted: Names of node sets whose order counts.
     """
 
     nodes: dict[int, list[float]] = field(default_factory=dict)
@@ -131,23 +161,30 @@ class Deck:
     node_sets: dict[str, list[int]] = field(default_factory=dict)
     element_sets: dict[str, list[int]] = field(default_factory=dict)
     surfaces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
+    profiles: dict[str, Profile] = field(default_factory=dict)
     sections: dict[str, Section] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
     offsets: dict[str, int] = field(default_factory=dict)
     cards: list[tuple[int, Card]] = field(default_factory=list)
     own: int = 0
+    of_parts: set[str] = field(default_factory=set)
+    unsorted: set[str] = field(default_factory=set)
     same: dict[str, str] = field(default_factory=dict)
     _held: dict[tuple[int, ...], str] = field(default_factory=dict)
 
     def read_nodes(self, card: Card) -> None:
         """Take `*NODE`."""
-        if card.options.get("SYSTEM", "R").upper() != "R":
-            raise InputError(f"SYSTEM={card.options['SYSTEM']} is not read, cartesian is needed")
+        system = card.options.get("SYSTEM", "R").upper() or "R"
+        if system not in ("R", "C"):
+            raise InputError(f"SYSTEM={system} is not read; x, y, z are, and r, angle, z")
         found = []
-        for number, *place in card.fields():
-            self.nodes[int(number)] = [real(v) for v in (*place, "0", "0", "0")[:3]]
+        for number, *given in card.rows():
+            x, y, z = (real(v or "0") for v in (*given, "0", "0", "0")[:3])
+            if system == "C":
+                x, y = x * math.cos(math.radians(y)), x * math.sin(math.radians(y))
+            self.nodes[int(number)] = [x, y, z]
             found.append(int(number))
-        self._add(self.node_sets, card.options.get("NSET", ""), found)
+        self.add_nodes(card, found)
 
     def read_elements(self, card: Card) -> None:
         """Take `*ELEMENT` where it is a solid, else count it."""
@@ -164,25 +201,44 @@ class Deck:
         if any(len(row) < size for row in rows):
             raise InputError(f"elements {written} need {size - 1} nodes each")
         self.elements |= {number: (kind, tuple(nodes)) for number, *nodes in rows}
-        self._add(self.element_sets, card.options.get("ELSET", ""), [row[0] for row in rows])
+        self.add_elements(card, [row[0] for row in rows])
 
     def read_node_set(self, card: Card) -> None:
         """Take `*NSET`."""
-        self._add(self.node_sets, card.option("NSET"), self._members(card, self.node_sets))
+        self._renew(self.node_sets, card.option("NSET"))
+        if "UNSORTED" in card.options:
+            self.unsorted.add(card.option("NSET").upper())
+        self.add_nodes(card, self._members(card, self.node_sets))
 
     def read_element_set(self, card: Card) -> None:
         """Take `*ELSET`."""
-        self._add(self.element_sets, card.option("ELSET"), self._members(card, self.element_sets))
+        self._renew(self.element_sets, card.option("ELSET"))
+        self.add_elements(card, self._members(card, self.element_sets))
 
     def read_surface(self, card: Card) -> None:
         """Take `*SURFACE`."""
-        name = card.option("NAME")
-        if card.options.get("TYPE", "ELEMENT").upper() == "NODE":
+        name, kind = card.option("NAME").upper(), card.options.get("TYPE", "ELEMENT").upper()
+        if kind in ANALYTIC:
+            self.profiles[name] = profile_of(card)
+            return
+        self._renew(self.surfaces, name)
+        if kind == "NODE":
+            self._renew(self.node_sets, name)
             found = [n for first, *_ in card.fields() for n in self._of(first, self.node_sets)]
             self._add(self.node_sets, name, found)
             return
-        faces = [(first.upper(), (*rest, "")[0].upper()) for first, *rest in card.fields()]
-        self.surfaces.setdefault(name.upper(), []).extend(faces)
+        if kind != "ELEMENT":
+            raise InputError(f"TYPE={kind} is not read")
+        how = card.options.get("COMBINE", "")
+        if how and how.upper() != "UNION":
+            raise InputError(f"COMBINE={how} is not read, UNION is")
+        faces: list[tuple[str, str]] = []
+        for first, *rest in card.fields():
+            if how:
+                faces += [face for one in (first, *rest) for face in self.surfaces[one.upper()]]
+            else:
+                faces.append((first.upper(), (*rest, "")[0].upper()))
+        self.surfaces.setdefault(name, []).extend(faces)
 
     def read_section(self, card: Card) -> None:
         """Take `*SOLID SECTION`."""
@@ -212,38 +268,18 @@ class Deck:
                 if entry.isdigit() or entry in self.element_sets
             ]
 
-    def add_instance(self, card: Card, parts: Mapping[str, Deck]) -> None:
-        """Put a part where an instance of it is; its sets are named `INSTANCE.SET` and `SET`."""
-        name = card.option("NAME")
-        if card.option("PART").upper() not in parts:
-            raise InputError(f"there is no part {card.options['PART']!r}")
-        part = parts[card.options["PART"].upper()]
-        more = max((*self.nodes, *self.elements, self.own))
-        self.offsets[name.upper()] = more
-        points = _instance_places(np.array(list(part.nodes.values())), card)
-        places = zip(part.nodes, points.tolist(), strict=True)
-        self.nodes |= {more + number: place for number, place in places}
-        for number, (kind, nodes) in part.elements.items():
-            self.elements[more + number] = kind, tuple(more + n for n in nodes)
-        for own, of_part in (
-            (self.node_sets, part.node_sets),
-            (self.element_sets, part.element_sets),
-        ):
-            for key, numbers in of_part.items():
-                for full in (f"{name}.{key}", key):
-                    self._add(own, full, [more + n for n in numbers])
-        for key, faces in part.surfaces.items():
-            moved = [
-                (f"{name.upper()}.{s}" if s in part.element_sets else str(more + int(s)), face)
-                for s, face in faces
-            ]
-            self.surfaces.setdefault(key, []).extend(moved)
-        for body, section in part.sections.items():
-            only = len(part.sections) == 1
-            moved_set = f"{name}.{section.elements}".upper()
-            self.sections[name if only else f"{name}_{body}"] = replace(section, elements=moved_set)
-        for element, count in part.left_out.items():
-            self.left_out[element] = self.left_out.get(element, 0) + count
+    def add_nodes(self, card: Card, numbers: Iterable[int]) -> None:
+        """Nodes of the set that a card names, if it does."""
+        self._add(self.node_sets, card.options.get("NSET", ""), numbers)
+
+    def add_elements(self, card: Card, numbers: Iterable[int]) -> None:
+        """Elements of the set that a card names, if it does."""
+        self._add(self.element_sets, card.options.get("ELSET", ""), numbers)
+
+    def bound(self, entry: str) -> list[int]:
+        """Nodes of a set as `*NFILL` pairs them: by their numbers, if not as they are written."""
+        found = list(dict.fromkeys(self.nodes_of(entry)))
+        return found if entry.upper() in self.unsorted else sorted(found)
 
     def nodes_of(self, entry: str) -> list[int]:
         """Nodes of a set, or the one of a number."""
@@ -257,13 +293,21 @@ class Deck:
         """Elements of a set, or the one of a number."""
         return self._of(entry, self.element_sets)
 
+    def _renew(self, sets: dict[str, Any], name: str) -> None:
+        """Forget what parts call by a name that the assembly gives now."""
+        if name.upper() in self.of_parts:
+            for known in (self.node_sets, self.element_sets, self.surfaces):
+                known.pop(name.upper(), None)
+            self.of_parts.discard(name.upper())
+
     def _add(self, sets: dict[str, list[int]], name: str, numbers: Iterable[int]) -> None:
         if name:
             sets.setdefault(name.upper(), []).extend(numbers)
 
     def _members(self, card: Card, known: dict[str, list[int]]) -> list[int]:
         """Numbers of a set: one by one, by first, last and step, or by the names of others."""
-        more = self.offsets.get(card.options.get("INSTANCE", "").upper(), 0)
+        instance = card.options.get("INSTANCE", "").upper()
+        more = self.offsets.get(instance, 0)
         found: list[int] = []
         for entries in card.fields():
             if "GENERATE" in card.options:
@@ -271,37 +315,14 @@ class Deck:
                 found += range(more + first, more + last + 1, *step)
             else:
                 for entry in entries:
-                    found += self._of(entry, known, more)
+                    full = f"{instance}.{entry.upper()}"
+                    found += known[full] if full in known else self._of(entry, known, more)
         return found
 
     @staticmethod
     def _of(entry: str, known: dict[str, list[int]], more: int = 0) -> list[int]:
         """Members of a set by its name, or a number; empty for a set that is not there."""
         return [more + int(entry)] if entry.isdigit() else known.get(entry.upper(), [])
-
-
-def _own_numbers(cards: Sequence[Card]) -> int:
-    """Largest number of a node or element of an assembly itself, as of its reference points."""
-    largest, inside = 0, False
-    if any(card.name == "PART" for card in cards):
-        for card in cards:
-            inside = card.name == "PART" or (inside and card.name != "ENDPART")
-            if card.name in ("NODE", "ELEMENT") and not inside:
-                firsts = (entries[0] for entries in card.fields() if entries)
-                largest = max(largest, *(int(n) for n in firsts if n.isdigit()), 0)
-    return largest
-
-
-def _instance_places(points: Floats, card: Card) -> Floats:
-    """Points of a part where its instance is: moved, then turned about an axis."""
-    lines = [[real(v) for v in entries] for entries in card.fields()]
-    if lines:
-        points = points + lines[0][:3]
-    if len(lines) > 1:
-        start, end, angle = np.array(lines[1][:3]), np.array(lines[1][3:6]), lines[1][6]
-        turn = Rotation(tuple(end - start), angle_deg=angle, point=tuple(start))
-        points = turn.apply(points)
-    return points
 
 
 _READERS: dict[str, Callable[[Deck, Card], None]] = {

@@ -230,11 +230,11 @@ def _where(step: int) -> str:
 def _values(card: Card) -> dict[str, dict[int, float]]:
     """Set or node -> direction -> displacement at the end of the step."""
     found: dict[str, dict[int, float]] = {}
-    for entry, first, *rest in card.fields():
+    for entry, first, *rest in card.rows():
         if first.upper() in NAMED:
             found.setdefault(entry, {}).update(dict.fromkeys(NAMED[first.upper()], 0.0))
             continue
-        last = int(rest[0]) if rest else int(first)
+        last = int(rest[0]) if rest and rest[0] else int(first)
         value = real(rest[1]) if len(rest) > 1 else 0.0
         led = {k: value for k in range(int(first), last + 1) if k <= 3}
         if led:

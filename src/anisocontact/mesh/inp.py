@@ -6,7 +6,7 @@ are not read: they stand in the case file.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -66,7 +66,8 @@ def named_in(groups: Iterable[str]) -> Callable[[str], list[str]]:
 
     def named(entry: str) -> list[str]:
         name = plain(entry)
-        return [one for one in known if one.partition(".")[2] == name or one == entry.lower()]
+        found = [one for one in known if one.partition(".")[2] == name]
+        return found or [one for one in known if one == entry.lower()]
 
     return named
 
@@ -95,15 +96,24 @@ def _whole_mesh(deck: Deck) -> WholeMesh:
             raise InputError(text)
         cell, _ = KNOWN[kind]
         mesh.add_cells(cell, places, [bodies.get(n, "") for n in elements])
-    for name, members in deck.node_sets.items():
+    for name, members in _once(deck, deck.node_sets):
         places = np.searchsorted(numbers[order], np.unique(members)).clip(max=len(numbers) - 1)
         known = np.isin(numbers[order][places], members)
         mesh.node_sets[plain(name)] = places[known]
     at = dict(zip(numbers[order].tolist(), range(len(numbers)), strict=True))
-    for name, faces in deck.surfaces.items():
+    for name, faces in _once(deck, deck.surfaces):
         mesh.surfaces[plain(name)] = _faces(deck, faces, at)
     mesh.left_out = deck.left_out
     return mesh
+
+
+def _once[T](deck: Deck, sets: Mapping[str, T]) -> Iterator[tuple[str, T]]:
+    """Sets without `INSTANCE.NAME` where the instance is a body and `NAME` has the same there."""
+    bodies = {body.upper() for body in deck.sections}
+    for name, found in sets.items():
+        instance, _, own = name.rpartition(".")
+        if not (instance in bodies and own in sets and own in deck.of_parts):
+            yield name, found
 
 
 def ideals(kinds: Iterable[str]) -> set[str]:
