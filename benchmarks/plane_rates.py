@@ -46,7 +46,7 @@ def block(cells: int, layers: int) -> tuple[Problem, Contact, list[Step]]:
         shape = make_shape("rectangle", origin=(0, 0), size=size, cells=numbers)
         model = build_mesh([Body("b", shape)], idealisation=PlaneStrain(thickness=WIDTH))
     roll = make_surface("cylinder", point=(1.0, 3.0, 0.0), axis=(0, 0, 1), radius=2.0)
-    contact = Contact(model, names["top"], roll, LAW)
+    contact = Contact(model, names["top"], roll, LAW, mortar=False)
     ways = {"press": {"x": 0.0, "y": 0.05}, "drag": {"x": 0.1, "y": 0.05}}
     steps = [Step(name, 4, planes | {names["bottom"]: way}) for name, way in ways.items()]
     return Problem(model, {"b": RUBBER}, [contact]), contact, steps
@@ -71,7 +71,7 @@ def ring(cells: int, layers: int) -> tuple[Problem, Contact, list[Step]]:
         model = build_mesh([Body("b", shape)], idealisation=Axisymmetric(lateral=True))
     axis, way = ((0, 0, 1), "z") if layers else ((0, 1, 0), "y")
     plate = make_surface("plane", point=(0, 0, 0), normal=axis)
-    contact = Contact(model, "b.bottom", plate, LAW)
+    contact = Contact(model, "b.bottom", plate, LAW, mortar=False)
     pressed = dict.fromkeys("xyz", 0.0) | {way: -0.02}
     steps = [
         Step("press", 4, {"b.top": pressed}),

@@ -114,7 +114,7 @@ def make_block(
         model.mesh.geometry.x[:] = move(model.mesh.geometry.x)
     material = make_material("linear-elastic", E=young, nu=nu)
     master = MovingSurface(interface, of_contact.pop("body", None))
-    contact = Contact(model, "block.bottom", master, **of_contact)
+    contact = Contact(model, "block.bottom", master, **({"mortar": False} | of_contact))
     return Block(model, material, contact, Problem(model, {"block": material}, [contact]))
 
 

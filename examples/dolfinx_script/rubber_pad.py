@@ -10,13 +10,14 @@ import numpy as np
 import ufl
 from mpi4py import MPI
 
-from anisocontact.anisotropy import make_directions
-from anisocontact.contact import Contact
-from anisocontact.interface import Interface
-from anisocontact.laws import Adhesion, Friction, NormalLaw
-from anisocontact.mesh import Model
-from anisocontact.solver import ContactProblem
-from anisocontact.surfaces import make_surface
+from anisocontact import (
+    Contact,
+    ContactProblem,
+    Friction,
+    Model,
+    make_directions,
+    make_surface,
+)
 
 from dolfinx import fem, mesh
 
@@ -39,17 +40,13 @@ def main() -> np.ndarray:
     residual = ufl.derivative(energy * ufl.dx(metadata={"quadrature_degree": 2}), u, v)
 
     # What the plate is.
+    plate = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
     brushed = make_directions("constant", vector=(1, 0, 0), angle=np.radians(30))
-    plate = Interface(
-        make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)),
-        NormalLaw(penalty=1e10),
-        Adhesion(stiffness=(2e9, 1e9), directions=brushed),
-        Friction(coefficients=(0.3, 0.6), directions=brushed),
-    )
+    friction = Friction(coefficients=(0.3, 0.6), directions=brushed)
 
-    # Contact: the names, the contact, the problem.
+    # Contact, which holds exactly: the names, the contact, the problem.
     model = Model.of(V, {"pad.bottom": bottom})
-    contact = Contact(model, "pad.bottom", plate)
+    contact = Contact(model, "pad.bottom", plate, friction)
     problem = ContactProblem(residual, u, bcs=bcs, contacts=[contact])
 
     forces = []

@@ -31,8 +31,8 @@ _PUBLIC = {
     "surfaces": "FacetSurface Geometry Projection SmoothSurface Surface make_surface",
     "anisotropy": "DirectionField from_callable from_reparametrisation make_directions",
     "laws": "Adhesion Friction NormalLaw adhesion_domain force_domain slide",
-    "interface": "Augmentation ContactLaw Interface LawInSeries LawKinematics LawResult LawState "
-    "PythonLaw Response State",
+    "interface": "AdhesionAndFriction Augmentation ContactLaw Interface LawInSeries LawKinematics "
+    "LawResult LawState PythonLaw Response State",
     "point": "DeadLoad DraggingSpring Group History PrescribedPath Push drive",
     "results": "Results SlavePoints register_quantity",
     "rigid": "MovingSurface Pose RigidBody",

@@ -82,11 +82,11 @@ WRONG = {
         "symmetry: 'block.left' given, a list of facet groups needed",
     ),
     "laws without a surface": (
-        lambda m: Contact(m, "block.bottom", PAIR),
+        lambda m: Contact(m, "block.bottom", PAIR, mortar=False),
         "master: ContactLaw given, a surface, an Interface or a facet group needed",
     ),
     "laws with a surface": (
-        lambda m: Contact(m, "block.bottom", "base.top", law=INTERFACE),
+        lambda m: Contact(m, "block.bottom", "base.top", law=INTERFACE, mortar=False),
         "law: Interface given, ContactLaw needed",
     ),
     "no degree on a plane": (
@@ -102,11 +102,11 @@ WRONG = {
         "mortar: 'no' given, True or False needed",
     ),
     "a word for an area": (
-        lambda m: Contact(m, "block.bottom", INTERFACE, current_area="reference"),
+        lambda m: Contact(m, "block.bottom", INTERFACE, current_area="reference", mortar=False),
         "current_area: 'reference' given, True or False needed",
     ),
     "a word for a gap": (
-        lambda m: Contact(m, "block.bottom", INTERFACE, adjust="all"),
+        lambda m: Contact(m, "block.bottom", INTERFACE, adjust="all", mortar=False),
         "adjust: 'all' given, a finite number needed",
     ),
     "half a degree": (
@@ -114,7 +114,7 @@ WRONG = {
         "degree: 2.5 given, a whole number needed",
     ),
     "yes for an augmentation": (
-        lambda m: Contact(m, "block.bottom", INTERFACE, augmentation=True),
+        lambda m: Contact(m, "block.bottom", INTERFACE, augmentation=True, mortar=False),
         "augmentation: True given, Augmentation needed",
     ),
     "a name for an idealisation": (

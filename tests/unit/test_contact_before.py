@@ -39,8 +39,8 @@ def _answer(contact: Any) -> np.ndarray:
 @pytest.mark.parametrize(
     ("name", "before", "now"),
     [
-        ("FacetContact", SIDES, {}),
-        ("FacetContact", SIDES, {"degree": 1, "name": "pair"}),
+        ("FacetContact", SIDES, {"mortar": False}),
+        ("FacetContact", SIDES, {"mortar": False, "degree": 1, "name": "pair"}),
         ("TwoHalfPass", SIDES, {"mortar": True}),
         ("SelfContact", SIDES[:1], {"self_contact": True, "apart": 0.5, "name": "fold"}),
     ],
@@ -72,19 +72,19 @@ def test_arguments() -> None:
     interface = Interface(make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)), *LAWS)
     with pytest.warns(DeprecationWarning, match="MovingSurface"):
         old = Contact(model, SIDES[0], interface=interface, body=die)
-    new = Contact(model, SIDES[0], MovingSurface(interface, die))
+    new = Contact(model, SIDES[0], MovingSurface(interface, die), mortar=False)
     assert old.body is new.body is die
     assert np.array_equal(_answer(old), _answer(new))
     with pytest.raises(TypeError, match="unexpected keyword argument 'degre'"):
-        Contact(model, SIDES[0], interface, degre=2)  # type: ignore[call-arg]
+        Contact(model, SIDES[0], interface, degre=2, mortar=False)  # type: ignore[call-arg]
 
 
 def test_laws_go_on_a_surface() -> None:
     """Laws and a surface apart answer as an `Interface` of both does, exactly."""
     model = _model()
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    apart = Contact(model, SIDES[0], plane, ContactLaw(*LAWS))
-    together = Contact(model, SIDES[0], Interface(plane, *LAWS))
+    apart = Contact(model, SIDES[0], plane, ContactLaw(*LAWS), mortar=False)
+    together = Contact(model, SIDES[0], Interface(plane, *LAWS), mortar=False)
     assert np.array_equal(_answer(apart), _answer(together))
 
 

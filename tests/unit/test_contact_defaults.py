@@ -1,143 +1,128 @@
-"""What "auto" takes for the pass and the method of a contact, and that a run says it."""
+"""What a contact of a script is that is not told more than its sides and its law."""
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
-from anisocontact.case import load
-from anisocontact.case.build import build
-from anisocontact.cli import main
+from tests.verification.laws_in_python import RadialReturn
 
-PAIR = """
-[mesh.box.block]
-origin = [0, 0, 0]
-size = [1, 1, 1]
-cells = [{cells}, {cells}, 1]
+from anisocontact import (
+    Adhesion,
+    AdhesionAndFriction,
+    Augmentation,
+    Contact,
+    ContactLaw,
+    Friction,
+    NormalLaw,
+    PlaneStrain,
+    PythonLaw,
+    RigidBody,
+    make_material,
+    make_surface,
+)
+from anisocontact.base.errors import InputError, ModelWarning
+from anisocontact.mesh import Body, BoxSpec, Model, build_box, build_mesh, make_shape
+from anisocontact.rigid import MovingSurface
+from anisocontact.solver import Problem, Solver, Step
 
-[mesh.box.base]
-origin = [-1, -1, -1]
-size = [3, 3, 1]
-cells = [3, 3, 1]
-
-[material]
-block = {{ model = "linear-elastic", E = {young}, nu = 0.3 }}
-base = {{ model = "linear-elastic", E = 100, nu = 0.3 }}
-
-[surface.plate]
-shape = "plane"
-point = [0, 0, 0]
-normal = [0, 0, 1]
-
-[[contact]]
-slave = "block.bottom"
-master = "{master}"
-{more}
-
-[[step]]
-name = "press"
-increments = 1
-[step.displacement]
-"block.top" = {{ x = 0, y = 0, z = -0.01 }}
-"base.bottom" = {{ x = 0, y = 0, z = 0 }}
-"""
-FRICTION = "friction = { coefficients = 0.3 }\n"
-EXPLICIT = 'friction = { coefficients = 0.3, sliding_rule = "explicit" }\n'
+PLANE = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+STICK, SLIP = Adhesion(stiffness=50.0), Friction(coefficients=0.3)
 
 
-def text(more: str = FRICTION, **given: Any) -> str:
-    values = {"cells": 3, "young": 100, "master": "base.top"} | given
-    return PAIR.format(more=more, **values)
+def _model(below: int = 2) -> Model:
+    upper = BoxSpec((0, 0, 0), (1, 1, 1), (3, 3, 1))
+    return build_box({"block": upper, "base": BoxSpec((0, 0, -1), (1, 1, 1), (below, below, 1))})
 
 
-def taken(folder: Path, case: str) -> tuple[bool, bool]:
-    """Whether the law is evaluated at slave nodes, and whether there are multipliers."""
-    (folder / "case.toml").write_text(case)
-    (contact,) = build(load(folder / "case.toml")).problem.contacts
-    return contact.slave_points.at_nodes, contact.trials.augmented
+def _pressed(contact: Contact, model: Model) -> Contact:
+    """After a press by 0.01 and a drag by 0.001, which sticks."""
+    materials = {
+        name: make_material("linear-elastic", E=1e3, nu=0.0) for name in model.body_names()
+    }
+    held = {"base.bottom": dict.fromkeys("xyz", 0.0)} if "base" in materials else {}
+    ways = ({"x": x, "y": 0.0, "z": -0.01} for x in (0.0, 1e-3))
+    steps = [Step(name, 1, held | {"block.top": way}) for name, way in zip("pd", ways, strict=True)]
+    list(Solver(Problem(model, materials, [contact]), steps).run())
+    return contact
 
 
-@pytest.mark.parametrize("master", ["base.top", "plate"])
 @pytest.mark.parametrize(
-    ("more", "wanted"),
+    "master", ["base.top", PLANE, MovingSurface(PLANE, RigidBody("p", (0, 0, 0)))]
+)
+def test_nodes_are_taken(master: Any) -> None:
+    """Facets and surfaces: the nine or sixteen slave nodes; points where these are asked for."""
+    model = _model()
+    assert Contact(model, "block.bottom", master, SLIP).slave_points.at_nodes
+    for options in ({"mortar": False}, {"degree": 2}):
+        assert not Contact(model, "block.bottom", master, SLIP, **options).slave_points.at_nodes
+    with pytest.raises(InputError, match="slave nodes have no quadrature"):
+        Contact(model, "block.bottom", master, SLIP, degree=2, mortar=True)
+
+
+def test_nodes_are_taken_in_the_plane() -> None:
+    bodies = [Body("b", make_shape("rectangle", origin=(0, 0), size=(1, 1), cells=(3, 3)))]
+    model = build_mesh(bodies, idealisation=PlaneStrain())
+    below = make_surface("plane", point=(0, 0, 0), normal=(0, 1, 0))
+    assert Contact(model, "b.bottom", below, SLIP).slave_points.at_nodes
+
+
+@pytest.mark.parametrize(
+    ("law", "creeps"),
     [
-        ("", (True, True)),
-        ("adhesion = { stiffness = 100 }", (True, True)),
-        ("adhesion = { stiffness = 100 }\ntolerance = 1e-4", (True, True)),
-        ("normal = { penalty = 1000 }", (True, False)),
-        ('normal = { penalty = 1000 }\nmethod = "augmented"', (True, True)),
-        ('normal = { model = "kelvin-voigt", stiffness = 10, viscosity = 1 }', (True, False)),
-        ('evolution = "backward-euler"', (True, True)),
-        ('method = "penalty"', (True, False)),
-        ('pass = "single"', (False, False)),
-        ('pass = "single"\ntolerance = 1e-4', (False, True)),
-        ('pass = "single"\nmethod = "augmented"', (False, True)),
-        ("degree = 3", (False, False)),
+        (SLIP, 0.0),
+        (AdhesionAndFriction(STICK, SLIP), 1.0),
+        (PythonLaw(RadialReturn(stiffness=(50.0, 50.0), coefficients=(0.3, 0.3))), 1.0),
     ],
 )
-def test_what_auto_takes(tmp_path: Path, master: str, more: str, wanted: tuple[bool, bool]) -> None:
-    assert taken(tmp_path, text(f"{FRICTION}{more}", master=master)) == wanted
-
-
-def test_a_rule_without_multipliers_that_follow_has_penalties(tmp_path: Path) -> None:
-    assert taken(tmp_path, text(EXPLICIT)) == (True, False)
-    assert taken(tmp_path, text(f'{EXPLICIT}multipliers = "uzawa"')) == (True, True)
-
-
-def test_a_stiff_and_fine_slave_has_points(tmp_path: Path) -> None:
-    """Its nodes would lose contact between those of the master, docs/verification/mortar.md."""
-    assert taken(tmp_path, text(young=1000)) == (False, False)
-    assert taken(tmp_path, text(young=200)) == (True, True)
-    assert taken(tmp_path, text(young=1000, cells=1)) == (True, True)
-    assert taken(tmp_path, text(young=1000, master="plate")) == (True, True)
-
-
-def test_check_says_what_was_taken(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    for more, said in {
-        "": "at slave nodes (mortar), multipliers",
-        'pass = "single"': "at integration points, penalties",
-    }.items():
-        (tmp_path / "case.toml").write_text(text(FRICTION + more))
-        assert main(["check", str(tmp_path / "case.toml")]) == 0
-        (line,) = (x for x in capsys.readouterr().out.splitlines() if x.startswith("contact "))
-        assert line.endswith(f", maximum-dissipation, {said}")
-
-
-@pytest.mark.parametrize(
-    ("more", "wanted"),
-    [
-        ("", (True, True)),
-        ("normal = { penalty = 1000 }", (True, False)),
-        ("apart = 1", (True, True)),
-    ],
-)
-def test_a_fold_has_slave_nodes(tmp_path: Path, more: str, wanted: tuple[bool, bool]) -> None:
-    folded = f"{FRICTION}self_contact = true\n{more}"
-    assert taken(tmp_path, text(folded, master="block.bottom")) == wanted
-
-
-@pytest.mark.parametrize(
-    ("name", "more", "master"),
-    [("two-half", "", "base.top"), ("single", "self_contact = true", "block.bottom")],
-)
-def test_passes_of_before_are_mortar(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, more: str, master: str
+@pytest.mark.parametrize("master", ["base.top", PLANE])
+def test_without_a_law_of_the_pressure_nothing_penetrates(
+    master: Any, law: Any, creeps: float
 ) -> None:
-    """A line says so; the bodies are those for which "auto" takes points."""
-    given = text(f'{FRICTION}pass = "{name}"\n{more}', master=master, young=1000)
-    assert taken(tmp_path, given) == (True, True)
-    assert main(["check", str(tmp_path / "case.toml")]) == 0
-    assert (
-        f'contact[0].pass: "{name}" is "mortar" from now on; name that' in capsys.readouterr().out
-    )
+    """Penetration below 1e-6 of a facet, the default tolerance; friction alone does not creep.
+
+    Adhesion of 50 beside a shear stiffness of 500 over a height of one takes up most of the way.
+    The drag tilts what presses a little, by some 1e-5 of the force.
+    """
+    model = _model()
+    contact = _pressed(Contact(model, "block.bottom", master, law), model)
+    assert (contact.last.status == 1).all()
+    assert np.abs(contact.last.gap).max() < 1e-6 * contact.facet_size
+    assert contact.resultant()[0][2] == pytest.approx(10.0 if master is PLANE else 5.0, rel=1e-4)
+    slips = np.linalg.norm(contact.last.traction[:, :2], axis=1) / 50.0 * creeps
+    stiff = 0.5 * 1e3 / (1.0 if master is PLANE else 2.0)
+    expected = 1e-3 / (1.0 + 50.0 / stiff) if creeps else 0.0
+    assert slips.mean() == pytest.approx(expected, rel=0.2, abs=1e-15)
 
 
-def test_slave_nodes_have_no_degree(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """A degree is for integration points: with slave nodes it would say nothing."""
-    (tmp_path / "case.toml").write_text(text(f'{FRICTION}pass = "mortar"\ndegree = 3'))
-    assert main(["check", str(tmp_path / "case.toml")]) == 2
-    assert capsys.readouterr().err.startswith('error: contact[0].degree: given with pass "mortar"')
+def test_a_penalty_that_is_given_holds() -> None:
+    """Springs in series, E / L and the penalty: the penetration is 0.01 / 11."""
+    model = _model()
+    law = ContactLaw(NormalLaw(penalty=1e4), STICK, Friction(coefficients=0))
+    contact = _pressed(Contact(model, "block.bottom", PLANE, law), model)
+    assert contact.last.gap == pytest.approx(np.full(16, -0.01 / 11.0), rel=1e-6)
+
+
+def test_multipliers_that_are_given_are_kept() -> None:
+    """A tolerance of their own, or cycles, in the place of the default."""
+    own = Augmentation(multipliers="uzawa")
+    model = _model()
+    contact = _pressed(Contact(model, "block.bottom", PLANE, SLIP, augmentation=own), model)
+    assert np.abs(contact.last.gap).max() < 1e-6 * contact.facet_size
+
+
+def test_a_stiff_and_fine_slave_is_told() -> None:
+    """A script that takes nodes there, as it does not know materials yet, hears of it."""
+    model = _model()
+    stiff = {
+        name: make_material("linear-elastic", E=e, nu=0.3)
+        for name, e in (("block", 1e5), ("base", 1e3))
+    }
+    contact = Contact(model, "block.bottom", "base.top", SLIP)
+    held = {group: dict.fromkeys("xyz", 0.0) for group in ("base.bottom", "block.top")}
+    with pytest.warns(ModelWarning, match="as stiff as the master and its facets are smaller"):
+        Solver(Problem(model, stiff, [contact]), [Step("rest", 1, held)])

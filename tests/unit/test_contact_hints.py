@@ -48,16 +48,16 @@ def _model(unit: float = 1.0, **more) -> Model:
 def test_a_coarse_slave_is_named_with_the_ratio_and_the_cure(unit, more):
     """The pin overlaps the base, and no point of the base meets it: sizes 2 and 0.1."""
     model = _model(unit, **more)
-    contact = Contact(model, "base.top", "pin.bottom", law=LAW)
+    contact = Contact(model, "base.top", "pin.bottom", law=LAW, mortar=False)
     (line,) = coarse_slaves([contact])
     assert "contact of base.top with pin.bottom" in line
     assert "20 times as large" in line and "swap slave and master" in line
-    assert not coarse_slaves([Contact(model, "pin.bottom", "base.top", law=LAW)])
+    assert not coarse_slaves([Contact(model, "pin.bottom", "base.top", law=LAW, mortar=False)])
 
 
 def test_a_script_gets_a_warning_of_the_package():
     model = _model()
-    contact = Contact(model, "base.top", "pin.bottom", law=LAW)
+    contact = Contact(model, "base.top", "pin.bottom", law=LAW, mortar=False)
     steel = make_material("linear-elastic", E=100.0, nu=0.3)
     problem = Problem(model, {"base": steel, "pin": steel}, [contact])
     held = {group: dict.fromkeys("xyz", 0.0) for group in ("base.bottom", "pin.top")}
@@ -72,7 +72,7 @@ def test_a_script_is_told_of_bodies_that_overlap(depth, adjust):
     low = BoxSpec((0, 0, -depth), (1, 1, 1), (2, 2, 2))
     model = build_box({"pad": low})
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    contact = Contact(model, "pad.bottom", plane, LAW, adjust=adjust)
+    contact = Contact(model, "pad.bottom", plane, LAW, adjust=adjust, mortar=False)
     u, v = fem.Function(model.space), ufl.TestFunction(model.space)
     form = ufl.inner(ufl.grad(u), ufl.grad(v)) * ufl.dx
     with warnings.catch_warnings(record=True) as heard:

@@ -19,7 +19,7 @@ from anisocontact.solver.terms.free_modes import bodies
 from anisocontact.surfaces import make_surface
 
 #: At slave nodes.
-MORTAR = partial(Contact, mortar=True)
+POINTS, MORTAR = (partial(Contact, mortar=nodes) for nodes in (False, True))
 
 
 SIZE = 0.5
@@ -52,7 +52,9 @@ def _plane(normal: float, height: float = 0.0) -> Any:
 
 def test_overlap_says_how_deep_where_and_how_many() -> None:
     """A block 0.01 deep in a plane that is met by all of its 16 points."""
-    contact = Contact(_blocks(-0.01), "block.bottom", Interface(_plane(1.0), *_laws()))
+    contact = Contact(
+        _blocks(-0.01), "block.bottom", Interface(_plane(1.0), *_laws()), mortar=False
+    )
     found = initial_overlap(contact, SIZE)
     assert found is not None
     assert found.depth == pytest.approx(0.01)
@@ -74,9 +76,9 @@ def test_adjusted_points_just_touch(kind: str, gap: float) -> None:
         contact: Contact
         if kind == "plane":
             interface = Interface(_plane(1.0), *_laws())
-            contact = Contact(model, "block.bottom", interface, adjust=adjust)
+            contact = Contact(model, "block.bottom", interface, adjust=adjust, mortar=False)
         else:
-            made = Contact if kind == "single" else MORTAR
+            made = POINTS if kind == "single" else MORTAR
             contact = made(
                 model, "block.bottom", "base.top", law=ContactLaw(*_laws()), adjust=adjust
             )
@@ -93,13 +95,13 @@ def test_surface_that_points_the_wrong_way_is_named() -> None:
     """The normal of the plane points down, as that of the bottom of the block above it."""
     said = r"'block.bottom' faces the same way .* are \(0, 0, -1\) and \(0, 0, -1\); turn"
     with pytest.raises(InputError, match=said):
-        Contact(_blocks(0.0), "block.bottom", Interface(_plane(-1.0), *_laws()))
+        Contact(_blocks(0.0), "block.bottom", Interface(_plane(-1.0), *_laws()), mortar=False)
 
 
 def test_group_on_the_wrong_side_is_named() -> None:
     """The top of the block is named where its bottom meets the base."""
     model = _blocks(0.0)
-    for made in (Contact, MORTAR):
+    for made in (POINTS, MORTAR):
         with pytest.raises(InputError, match=r"'(block|base).top' faces the same way"):
             made(model, "block.top", "base.top", law=ContactLaw(*_laws()), reach=2.0)
 
@@ -108,8 +110,8 @@ def test_bodies_that_face_each_other_pass() -> None:
     """Nothing is said of a block above a plane or a base, near or far."""
     for gap in (0.0, 0.3, -0.01):
         model = _blocks(gap)
-        Contact(model, "block.bottom", Interface(_plane(1.0), *_laws()))
-        Contact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
+        Contact(model, "block.bottom", Interface(_plane(1.0), *_laws()), mortar=False)
+        Contact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()), mortar=False)
 
 
 @pytest.mark.parametrize("meshed", [False, True])
@@ -118,15 +120,15 @@ def test_singular_directions_in_the_contact_are_found(meshed: bool, which: str) 
     """A polar field whose centre is one of the slave points has no direction there."""
     model = _blocks(0.0)
     plain = make_directions("constant", vector=(1, 0, 0))
-    probe = Contact(model, "block.bottom", Interface(_plane(1.0), *_laws()))
+    probe = Contact(model, "block.bottom", Interface(_plane(1.0), *_laws()), mortar=False)
     x, y, z = probe.points[5]
     polar = make_directions("polar", axis=((x, y, z), (0, 0, 1)))
     laws = _laws(polar) if which == "directions" else _laws(plain, polar)
     with pytest.raises(InputError, match="no direction at 1 slave points") as error:
         if meshed:
-            Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws))
+            Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws), mortar=False)
         else:
-            Contact(model, "block.bottom", Interface(_plane(1.0), *laws))
+            Contact(model, "block.bottom", Interface(_plane(1.0), *laws), mortar=False)
     assert error.value.field == f"friction.{which}"
     assert f"({x:.4g}, {y:.4g}" in str(error.value)
 
@@ -137,12 +139,14 @@ def test_augmentation_needs_penalties() -> None:
     viscous = NormalLaw("maxwell", stiffness=1.0, relaxation_time=1.0)
     law = Interface(_plane(1.0), viscous, adhesion, friction)
     with pytest.raises(InputError, match=r"normal\.model: \"maxwell\" given"):
-        Contact(_blocks(0.0), "block.bottom", law, augmentation=Augmentation())
+        Contact(_blocks(0.0), "block.bottom", law, augmentation=Augmentation(), mortar=False)
     maxwell = Adhesion("maxwell", stiffness=(1.0, 1.0), relaxation_time=(1.0, 1.0))
     law = Interface(_plane(1.0), normal, maxwell, friction)
     with pytest.raises(InputError, match=r"adhesion\.model"):
-        Contact(_blocks(0.0), "block.bottom", law, augmentation=Augmentation())
-    Contact(_blocks(0.0), "block.bottom", law, augmentation=Augmentation(tangential=False))
+        Contact(_blocks(0.0), "block.bottom", law, augmentation=Augmentation(), mortar=False)
+    Contact(
+        _blocks(0.0), "block.bottom", law, augmentation=Augmentation(tangential=False), mortar=False
+    )
     for tolerance in (0.0, 1.0, math.nan):
         with pytest.raises(InputError, match="tolerance"):
             Augmentation(tolerance)

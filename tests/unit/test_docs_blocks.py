@@ -152,7 +152,7 @@ from pathlib import Path
 from anisocontact.solver import Limits
 
 ends = make_directions(
-    "tabulated-grid", lower=(-2, -2), upper=(0.8, 2), counts=(2, 2), vectors=[1, 0, 0] * 4,
+    "tabulated-grid", lower=(-2, -2), upper=(1.02, 2), counts=(2, 2), vectors=[1, 0, 0] * 4,
     interpolation="bilinear",
 )
 plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1), tangent=(1, 0, 0))

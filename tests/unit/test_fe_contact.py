@@ -99,7 +99,7 @@ def test_misspelt_slave_suggests_the_near_one(fe):
 
     block = fe.block(fe.interface())
     with pytest.raises(InputError, match=r"no facet group 'block.botom'.*'block.bottom'"):
-        Contact(block.model, "block.botom", fe.interface())
+        Contact(block.model, "block.botom", fe.interface(), mortar=False)
 
 
 def test_slave_without_facets(fe):
@@ -111,7 +111,7 @@ def test_slave_without_facets(fe):
     nothing = np.zeros(0, dtype=np.int32)
     model = Model(mesh, {"block": nothing}, {"block.bottom": nothing})
     with pytest.raises(InputError, match=r"facet group 'block.bottom' has no facets"):
-        Contact(model, "block.bottom", fe.interface())
+        Contact(model, "block.bottom", fe.interface(), mortar=False)
 
 
 def test_degree_below_one(fe):

@@ -34,7 +34,7 @@ def _problem(**material: Any) -> Problem:
         Adhesion(stiffness=(1e4, 1e4)),
         Friction(coefficients=(0.3, 0.3)),
     )
-    contact = Contact(model, "block.bottom", Interface(plane, *laws))
+    contact = Contact(model, "block.bottom", Interface(plane, *laws), mortar=False)
     given = {"model": "linear-elastic", "E": 1000.0, "nu": 0.3} | material
     return Problem(model, {"block": make_material(**given)}, [contact])
 

@@ -21,7 +21,7 @@ from anisocontact.solver.system.prediction import FARTHEST, SPACING, ContactPred
 from anisocontact.solver.terms.turn import Turn
 
 #: At slave nodes.
-MORTAR = partial(Contact, mortar=True)
+POINTS, MORTAR = (partial(Contact, mortar=nodes) for nodes in (False, True))
 
 
 LAW = ContactLaw(
@@ -32,7 +32,7 @@ CLAMP = {"mat.bottom": dict.fromkeys("xyz", 0.0)}
 SHORT, LONG = 0.4, 1.5
 
 
-def pair(kind=Contact, length=2.0):
+def pair(kind=POINTS, length=2.0):
     """A block on a mat of facets that do not match."""
     facets = round(7 * length / 2)
     model = build_box(
@@ -65,7 +65,7 @@ def run(problem, steps, ahead=True):
     return np.array(forces), count
 
 
-@pytest.mark.parametrize("kind", [Contact, MORTAR])
+@pytest.mark.parametrize("kind", [POINTS, MORTAR])
 def test_pressed_and_dragged_it_is_built_once(kind):
     """Requirement: sparsity built once and reused. What is grown into makes the same forces.
 
@@ -109,7 +109,7 @@ def test_where_no_way_is_prescribed_points_are_taken_to_slide_on():
 
 def test_the_way_is_that_of_the_slave_against_the_master():
     """Supports of both bodies count, from where the steps have come to, as far as the window."""
-    contact = Contact(pair().model, "block.bottom", "mat.top", law=LAW)
+    contact = Contact(pair().model, "block.bottom", "mat.top", law=LAW, mortar=False)
     steps = pressed(0.3, 4)
     moving = {"mat.bottom": {"x": -0.1}}
     steps[1] = dataclasses.replace(steps[1], displacement=steps[1].displacement | moving)

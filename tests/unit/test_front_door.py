@@ -73,7 +73,7 @@ def pad():
             model, slave = anisocontact.Model.of(space, tags), "body.3"
         else:
             model, slave = anisocontact.Model.of(space, names, tags=tags), next(iter(names))
-        contact = anisocontact.Contact(model, slave, plane, law)
+        contact = anisocontact.Contact(model, slave, plane, law, mortar=False)
         found = anisocontact.ContactProblem(residual, u, bcs=[held], contacts=[contact])
         return found, moved, contact
 

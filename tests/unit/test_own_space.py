@@ -96,19 +96,19 @@ def test_facets_inside_the_body_are_no_slave(given):
     """All facets of the mesh: 12 of 36 have a cell on either side."""
     model = Model.of(given.space, {"pad.all": np.arange(36)})
     with pytest.raises(InputError, match=r"slave: 12 of 36 facets of 'pad\.all' have a cell on"):
-        Contact(model, "pad.all", _interface())
+        Contact(model, "pad.all", _interface(), mortar=False)
 
 
 def test_a_facet_named_twice_counts_once(given):
     model = Model.of(given.space, {"pad.sole": np.repeat(given.bottom, 2)})
-    contact = Contact(model, "pad.sole", _interface())
+    contact = Contact(model, "pad.sole", _interface(), mortar=False)
     assert contact.areas.sum() == pytest.approx(1.0, rel=1e-14)
 
 
 def test_a_surface_that_points_the_wrong_way_is_refused_in_a_script(given):
     model = Model.of(given.space, {"pad.sole": given.bottom})
     with pytest.raises(InputError, match=r"'pad\.sole' faces the same way as its master"):
-        Contact(model, "pad.sole", _interface(normal=-1.0))
+        Contact(model, "pad.sole", _interface(normal=-1.0), mortar=False)
 
 
 @pytest.mark.parametrize("finite", [False, True])
@@ -123,7 +123,7 @@ def test_the_area_is_that_of_the_strain_of_the_form(given, finite, told):
     if finite:
         strain = strain + ufl.grad(u).T * ufl.grad(u)
     model = Model.of(given.space, {"pad.sole": given.bottom})
-    contact = Contact(model, "pad.sole", _interface(), current_area=told)
+    contact = Contact(model, "pad.sole", _interface(), current_area=told, mortar=False)
     form = ufl.inner(strain, ufl.grad(v)) * ufl.dx
     ContactProblem(form, u, contacts=[contact]).close()
     assert contact.current_area == (finite if told is None else told)
@@ -147,9 +147,9 @@ def test_a_body_that_nothing_holds_is_one_line(meshed):
     model = build_box(boxes)
     laws = NormalLaw(penalty=1e3), Adhesion(stiffness=1e3), Friction(coefficients=0.3)
     contact = (
-        Contact(model, "pad.bottom", "base.top", law=ContactLaw(*laws))
+        Contact(model, "pad.bottom", "base.top", law=ContactLaw(*laws), mortar=False)
         if meshed
-        else Contact(model, "pad.bottom", _interface())
+        else Contact(model, "pad.bottom", _interface(), mortar=False)
     )
     u = fem.Function(model.space)
     v = ufl.TestFunction(model.space)
@@ -186,7 +186,7 @@ def test_a_mixed_problem_has_its_contact_on_its_own_displacement(given):
     w, test = fem.Function(spaces[0]), ufl.TestFunction(spaces[0])
     form = ufl.inner(w, test) * ufl.dx
     model = Model.of(spaces[1].sub(0), {"pad.sole": given.bottom})
-    contact = Contact(model, "pad.sole", _interface())
+    contact = Contact(model, "pad.sole", _interface(), mortar=False)
     with pytest.raises(InputError, match=r"contacts: contact .pad\.sole. lives on another space"):
         ContactProblem(form, w, contacts=[contact])
     with pytest.raises(InputError, match=r"space: a mixed element given, .*name its displacement"):

@@ -70,7 +70,7 @@ def test_facets_between_slave_nodes_cover_the_slave(cell, order):
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
     friction = Friction(coefficients=(0.3, 0.3))
     law = ContactLaw(NormalLaw(penalty=1.0), Adhesion(stiffness=(1.0, 1.0)), friction)
-    loose = Contact(model, "block.bottom", plane, law, name="loose")
+    loose = Contact(model, "block.bottom", plane, law, name="loose", mortar=False)
     drawn = slave_points([loose, Contact(model, "block.bottom", plane, law, mortar=True)])
     cells = drawn.cells["Polys"]
     assert len(drawn.cells["Verts"]["connectivity"]) == len(loose.areas)

@@ -38,7 +38,7 @@ def patch(fe, shape, body=None, **friction):
         Adhesion(stiffness=(1.0, 1.0)),
         Friction(**({"coefficients": (0.1, 0.1)} | friction)),
     )
-    contact = Contact(block.model, "block.bottom", MovingSurface(law, body))
+    contact = Contact(block.model, "block.bottom", MovingSurface(law, body), mortar=False)
     return contact, Surfaces([block.contact, contact], block.model.mesh.comm)
 
 

@@ -117,7 +117,7 @@ def test_refused_steps(fe, step, text):
     die, fixed = RigidBody("die", (0, 0, 0), free=True), RigidBody("fixed", (0, 0, 0))
     block = fe.block(fe.interface(), body=die)
     above = fe.interface(point=(0, 0, 0.6), normal=(0, 0, -1))
-    other = Contact(block.model, "block.top", MovingSurface(above, fixed))
+    other = Contact(block.model, "block.top", MovingSurface(above, fixed), mortar=False)
     problem = Problem(block.model, {"block": block.material}, [block.contact, other])
     with pytest.raises(InputError, match=text):
         Solver(problem, [Step("s", 1, **step)])
@@ -145,7 +145,9 @@ def test_two_bodies_of_one_name(fe):
 
     block = fe.block(fe.interface(), body=RigidBody("die", (0, 0, 0)))
     above = fe.interface(point=(0, 0, 0.6), normal=(0, 0, -1))
-    other = Contact(block.model, "block.top", MovingSurface(above, RigidBody("die", (0, 0, 1))))
+    other = Contact(
+        block.model, "block.top", MovingSurface(above, RigidBody("die", (0, 0, 1))), mortar=False
+    )
     with pytest.raises(InputError, match="two rigid bodies have the name 'die'"):
         Problem(block.model, {"block": block.material}, [block.contact, other])
 
@@ -157,7 +159,7 @@ def test_one_body_for_two_contacts(fe):
     die = RigidBody("die", (0.5, 0.5, 0.25))
     block = fe.block(fe.interface(point=(0, 0, 0.01)), body=die)
     above = fe.interface(point=(0, 0, 0.45), normal=(0, 0, -1))
-    other = Contact(block.model, "block.top", MovingSurface(above, die))
+    other = Contact(block.model, "block.top", MovingSurface(above, die), mortar=False)
     problem = Problem(block.model, {"block": block.material}, [block.contact, other])
     sides = {f"block.{side}": {"x": 0.0, "y": 0.0} for side in ("left", "right", "front", "back")}
     solver = Solver(problem, [Step("s", 2, sides, motion={"die": {"x": 0.001, "z": 0.02}})])

@@ -179,14 +179,18 @@ class Held:
         return np.array(forces)
 
 
+#: Where laws are evaluated that are not told.
+POINTS: dict[str, Any] = {"mortar": False}
+
+
 def on_plate(g: Given, mu: tuple[float, float] = (0.3, 0.6), **options: Any) -> Contact:
     """The pad on a rigid plate."""
-    return Contact(g.model, "pad.bottom", PLATE, law(mu=mu), **options)
+    return Contact(g.model, "pad.bottom", PLATE, law(mu=mu), **POINTS | options)
 
 
 def on_base(g: Given, mu: tuple[float, float] = (0.3, 0.6), **options: Any) -> Contact:
     """The pad on the base."""
-    return Contact(g.model, "pad.bottom", "base.top", law(mu=mu), **options)
+    return Contact(g.model, "pad.bottom", "base.top", law(mu=mu), **POINTS | options)
 
 
 #: Ways to the contact forces.

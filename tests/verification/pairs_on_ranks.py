@@ -91,7 +91,7 @@ def _dragged(model: Any, contacts: list[Any], material: str = "neo-hookean") -> 
 
 def _single() -> Made:
     model = _bodies("tetrahedron")
-    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law())])
+    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law(), mortar=False)])
 
 
 def _in_python() -> Made:
@@ -100,12 +100,12 @@ def _in_python() -> Made:
     along = make_directions("constant", vector=(1, 0, 0), angle=0.5)
     own = RadialReturn((8.0, 16.0), (0.2, 0.4))
     law = ContactLaw(NormalLaw(penalty=20.0), PythonLaw(own, directions=along))
-    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=law)])
+    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=law, mortar=False)])
 
 
 def _second_order() -> Made:
     model = _bodies("hexahedron", 2)
-    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law())])
+    return _dragged(model, [Contact(model, "block.bottom", "mat.top", law=_law(), mortar=False)])
 
 
 def _mortar_matching() -> Made:
@@ -118,7 +118,7 @@ def _far(
     slave: str = "block.bottom",
     master: str = "mat.top",
     lengths: tuple[int, int] = (2, 16),
-    **options: bool,
+    mortar: bool = False,
 ) -> Made:
     """A block that is drawn along a strip: it meets facets that were far away at the start."""
     block, strip = lengths
@@ -128,7 +128,7 @@ def _far(
             "mat": BoxSpec((-6, -1.5, -1), (strip, 3, 1), (strip, 3, 1)),
         }
     )
-    pair = Contact(model, slave, master, law=_law(), reach=0.4, **options)
+    pair = Contact(model, slave, master, law=_law(), reach=0.4, mortar=mortar)
     problem, steps = _dragged(model, [pair])
     along = steps[0].displacement | {"block.top": {"x": 6.0, "y": 0.2, "z": -0.2}}
     return problem, [steps[0], Step("drag", 5, along)]
@@ -179,7 +179,7 @@ def _mortar_following() -> Made:
 def _augmented(multipliers: str = "uzawa") -> Made:
     model = _bodies(gap=0.0)
     exact = Augmentation(tangential=False, multipliers=multipliers)
-    pair = Contact(model, "block.bottom", "mat.top", law=_law(), augmentation=exact)
+    pair = Contact(model, "block.bottom", "mat.top", law=_law(), augmentation=exact, mortar=False)
     return _dragged(model, [pair], "linear-elastic")
 
 
@@ -192,12 +192,12 @@ def _mortar_plane() -> Made:
     return _following_plane(mortar=True)
 
 
-def _following_plane(**options: bool) -> Made:
+def _following_plane(mortar: bool = False) -> Made:
     """The same on an analytic surface, with multipliers of friction too."""
     model = build_box({"block": BoxSpec((-2, -2, 0), (4, 4, 2), (4, 3, 2))})
     plane = make_interface(stiffness=(8.0, 16.0), penalty=20.0, coefficients=(0.2, 0.4), angle=0.5)
     exact = Augmentation(multipliers="newton")
-    pair = Contact(model, "block.bottom", plane, augmentation=exact, **options)
+    pair = Contact(model, "block.bottom", plane, augmentation=exact, mortar=mortar)
     problem = Problem(model, {"block": make_material("linear-elastic", E=8.0, nu=0.3)}, [pair])
     steps = [
         Step("press", 2, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.2}}),
@@ -210,7 +210,7 @@ def _mortar_under_a_lid() -> Made:
     return _under_a_lid(mortar=True)
 
 
-def _under_a_lid(**options: bool) -> Made:
+def _under_a_lid(mortar: bool = False) -> Made:
     """A free rigid lid presses the block on the mat: unknowns beyond those of the mesh."""
     model = _bodies()
     lid = RigidBody("lid", (0, 0, 2), free=True, springs={"x": 4.0, "y": 4.0, "rz": 40.0})
@@ -221,8 +221,8 @@ def _under_a_lid(**options: bool) -> Made:
         penalty=20.0,
         angle=0.3,
     )
-    pair = Contact(model, "block.bottom", "mat.top", law=_law(), current_area=False, **options)
-    top = Contact(model, "block.top", MovingSurface(plane, lid), **options)
+    pair = Contact(model, "block.bottom", "mat.top", law=_law(), current_area=False, mortar=mortar)
+    top = Contact(model, "block.top", MovingSurface(plane, lid), mortar=mortar)
     problem, _ = _dragged(model, [pair, top], "linear-elastic")
     held = {"mat.bottom": dict.fromkeys("xyz", 0.0)}
     free = {"lid": dict.fromkeys(("x", "y", "rz"))}

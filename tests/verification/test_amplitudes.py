@@ -191,7 +191,7 @@ def on_die(free: bool = False) -> Any:
     )
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, -1))
     die = RigidBody("die", (0, 0, 1), free=free)
-    contact = Contact(model, "block.top", MovingSurface(Interface(plane, *laws), die))
+    contact = Contact(model, "block.top", MovingSurface(Interface(plane, *laws), die), mortar=False)
     steel = make_material("linear-elastic", E=100.0, nu=0.3)
     return die, Problem(model, {"block": steel}, [contact])
 

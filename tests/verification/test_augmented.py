@@ -63,10 +63,13 @@ def _run(
             law=ContactLaw(*laws),
             current_area=False,
             augmentation=augmentation,
+            mortar=False,
         )
     else:
         plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-        contact = Contact(model, "block.bottom", Interface(plane, *laws), augmentation=augmentation)
+        contact = Contact(
+            model, "block.bottom", Interface(plane, *laws), augmentation=augmentation, mortar=False
+        )
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
     problem = Problem(model, dict.fromkeys(boxes, elastic), [contact])
     press = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01 * unit}} | support
@@ -153,7 +156,9 @@ def _ironed() -> list[Accepted]:
     model = build_box({"slab": BoxSpec((0, 0, 0), (4, 0.5, 1), (16, 1, 4))})
     die = make_surface("cylinder", point=(2.5, 0, 1.6), axis=(0, 1, 0), radius=0.6)
     laws = NormalLaw(penalty=16.0), Adhesion(stiffness=(16.0, 16.0)), Friction(coefficients=0.3)
-    contact = Contact(model, "slab.top", Interface(die, *laws), augmentation=Augmentation())
+    contact = Contact(
+        model, "slab.top", Interface(die, *laws), augmentation=Augmentation(), mortar=False
+    )
     soft = make_material("neo-hookean", E=1.0, nu=0.4)
     problem = Problem(model, {"slab": soft}, [contact])
     press = Step("press", 5, {"slab.bottom": {"x": 0.0, "y": 0.0, "z": 0.33}})
@@ -221,6 +226,7 @@ def test_patch() -> None:
         "block.bottom",
         Interface(plane, *laws),
         augmentation=Augmentation(tangential=False),
+        mortar=False,
     )
     problem = Problem(model, {"block": make_material("linear-elastic", E=YOUNG, nu=0.3)}, [contact])
     held = {"block.left": {"x": 0.0}, "block.front": {"y": 0.0}}

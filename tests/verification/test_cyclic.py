@@ -67,7 +67,7 @@ def pressed(
 ) -> np.ndarray:
     """Force and moment along the axis of a ring that is pressed on a plane and turned, of all."""
     model = ring(sectors, order)
-    contact = Contact(model, "ring.bottom", FLOOR)
+    contact = Contact(model, "ring.bottom", FLOOR, mortar=False)
     problem = Problem(model, {"ring": material}, [contact], cyclic=faces(sectors))
     solved(problem, PRESS, TURN, strategy=strategy)
     force, moment = contact.resultant()
@@ -103,7 +103,7 @@ def test_displacements_on_the_cut_faces():
     Source: the constraint. A node's partner is found by its place.
     """
     model = ring(6)
-    contact = Contact(model, "ring.bottom", FLOOR)
+    contact = Contact(model, "ring.bottom", FLOOR, mortar=False)
     problem = solved(Problem(model, {"ring": STEEL}, [contact], cyclic=faces(6)), PRESS, TURN)
     x, u = model.space.tabulate_dof_coordinates(), problem.u.x.array.reshape(-1, 3)
     c, s = math.cos(math.pi / 3.0), math.sin(math.pi / 3.0)
@@ -122,7 +122,9 @@ def shaft(sectors: int) -> tuple[Problem, Contact]:
     model = build_mesh([Body("shaft", shape)])
     ball = make_surface("sphere", centre=(0, 0, -5), radius=5)
     die = RigidBody("die", reference=(0, 0, 0))
-    contact = Contact(model, "shaft.bottom", MovingSurface(Interface(ball, *LAWS), die))
+    contact = Contact(
+        model, "shaft.bottom", MovingSurface(Interface(ball, *LAWS), die), mortar=False
+    )
     cut = [] if sectors == 1 else [CyclicSymmetry("shaft.left", "shaft.front", 4)]
     return Problem(model, {"shaft": STEEL}, [contact], cyclic=cut), contact
 
@@ -157,7 +159,7 @@ def test_sector_against_the_axisymmetric_model():
     plane = make_shape("rectangle", origin=(1, 0), size=(1, 1), cells=(4, 4))
     model = build_mesh([Body("ring", plane)], idealisation=Axisymmetric(lateral=True))
     floor = Interface(make_surface("plane", point=(0, 0, 0), normal=(0, 1, 0)), *LAWS)
-    flat = Contact(model, "ring.bottom", floor)
+    flat = Contact(model, "ring.bottom", floor, mortar=False)
     steps = [
         Step("press", 2, {"ring.top": {"x": 0.0, "y": -0.02, "z": 0.0}}),
         Step("turn", 3, rotation={"ring.top": Turn(axis=(0, 1, 0), angle=0.02)}),
@@ -168,7 +170,7 @@ def test_sector_against_the_axisymmetric_model():
         "ring", inner=1.0, outer=2.0, length=1.0, cells=(4, 1, 4), end=math.radians(5)
     )
     model = build_mesh([Body("ring", shape)])
-    contact = Contact(model, "ring.bottom", FLOOR)
+    contact = Contact(model, "ring.bottom", FLOOR, mortar=False)
     solved(Problem(model, {"ring": STEEL}, [contact], cyclic=faces(72)), PRESS, TURN)
     sector_force, sector_moment = contact.resultant()
     assert 72 * sector_force[2] == pytest.approx(force[1], rel=2e-3)

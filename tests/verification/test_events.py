@@ -29,7 +29,7 @@ def block(height: float = 0.0, nu: float = 0.0, **given: Any) -> Problem:
     plane = Interface(make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)), *laws)
     body = given.pop("body", None)
     master = plane if body is None else MovingSurface(plane, body)
-    contact = Contact(model, "block.bottom", master)
+    contact = Contact(model, "block.bottom", master, mortar=False)
     elastic = make_material(given.pop("material", "linear-elastic"), E=E, nu=nu)
     return Problem(model, {"block": elastic}, [contact], **given)
 

@@ -45,7 +45,7 @@ def on_surface(law: str) -> Contact:
     interface = Interface(CYLINDER, ContactLaw(*(LAWS if law == "core" else OWN)))
     body = RigidBody("drum", (0.0, 0.0, -4.0))
     body.move(z=0.05, rz=0.1)
-    return Contact(model, "block.bottom", MovingSurface(interface, body))
+    return Contact(model, "block.bottom", MovingSurface(interface, body), mortar=False)
 
 
 def on_facets(law: str) -> Contact:
@@ -54,7 +54,7 @@ def on_facets(law: str) -> Contact:
         "base": BoxSpec((-1, -1, -1), (2, 2, 1), (3, 3, 1)),
     }
     laws = ContactLaw(*(LAWS if law == "core" else OWN))
-    return Contact(build_box(boxes), "block.bottom", "base.top", laws)
+    return Contact(build_box(boxes), "block.bottom", "base.top", laws, mortar=False)
 
 
 def moved(contact: Contact, way: tuple[float, float, float]) -> Any:

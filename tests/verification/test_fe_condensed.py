@@ -45,7 +45,7 @@ from anisocontact.solver.strategies.condensed.condensed import Condensed
 from anisocontact.surfaces import make_surface
 
 #: At slave nodes.
-MORTAR = partial(Contact, mortar=True)
+POINTS, MORTAR = (partial(Contact, mortar=nodes) for nodes in (False, True))
 
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
@@ -67,7 +67,7 @@ def _model(cell: str = "hexahedron", order: int = 1, n: int = 4, length: float =
     return build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (n, n, 2), **shape), "base": base})
 
 
-def _pair(model: Model, laws: Laws = LAWS, kind: type = Contact, **options: Any) -> Problem:
+def _pair(model: Model, laws: Laws = LAWS, kind: Any = POINTS, **options: Any) -> Problem:
     law = ContactLaw(*laws)
     contact = kind(model, "block.bottom", "base.top", law=law, current_area=False, **options)
     elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
@@ -79,7 +79,7 @@ def _on_surface(surface: str = "plane", **parameters: Any) -> Problem:
     parameters = parameters or {"point": (0, 0, 0), "normal": (0, 0, 1)}
     interface = Interface(make_surface(surface, **parameters), *LAWS)
     elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
-    contacts: list[Contact] = [Contact(model, "block.bottom", interface)]
+    contacts: list[Contact] = [Contact(model, "block.bottom", interface, mortar=False)]
     return Problem(model, {"block": elastic}, contacts)
 
 
@@ -142,7 +142,7 @@ def test_block_on_surface(surface: dict[str, Any]) -> None:
     _same(lambda: _on_surface(**surface), steps)
 
 
-@pytest.mark.parametrize("kind", [Contact, MORTAR])
+@pytest.mark.parametrize("kind", [POINTS, MORTAR])
 def test_block_on_block(kind: type) -> None:
     """Meshed bodies, each condensed by itself."""
     notes = _same(lambda: _pair(_model(), kind=kind), [PRESS, DRAG])
@@ -274,7 +274,7 @@ def _turned(angle: float = 0.0, orders: Sequence[int] = (1,), **held: Any) -> Pr
     ]
     model = build_mesh(bodies)
     interface = Interface(make_surface("plane", **PLANE), *LAWS)
-    contacts = [Contact(model, f"{body.name}.bottom", interface) for body in bodies]
+    contacts = [Contact(model, f"{body.name}.bottom", interface, mortar=False) for body in bodies]
     return Problem(model, {body.name: ELASTIC for body in bodies}, contacts, **held)
 
 
@@ -328,7 +328,7 @@ def test_free_rigid_body() -> None:
         ball = RigidBody("ball", (0.4, 0.7, -0.9), free=True, springs=springs)
         adhesion = Adhesion(stiffness=(4e3, 1e3), directions=MARKS)
         interface = Interface(surface, NormalLaw(penalty=1e4), adhesion, LAWS[2])
-        contact = Contact(model, "block.bottom", MovingSurface(interface, ball))
+        contact = Contact(model, "block.bottom", MovingSurface(interface, ball), mortar=False)
         return Problem(model, {"block": ELASTIC}, [contact])
 
     clamp = {"block.top": dict.fromkeys("xyz", 0.0)}
@@ -366,7 +366,9 @@ def test_law_in_python() -> None:
         plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
         interface = Interface(plane, NormalLaw(penalty=1e5), PythonLaw(Creeping()))
         elastic = make_material("linear-elastic", E=1000.0, nu=0.3)
-        return Problem(model, {"block": elastic}, [Contact(model, "block.bottom", interface)])
+        return Problem(
+            model, {"block": elastic}, [Contact(model, "block.bottom", interface, mortar=False)]
+        )
 
     _same(make, [Step("press", 2, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}), DRAG])
 

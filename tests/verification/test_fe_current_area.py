@@ -27,7 +27,7 @@ def _problem(model: Model, surface: Surface, mu: float, stiffness: float = 1e4) 
         Adhesion(stiffness=(stiffness, 0.5 * stiffness), directions=marks),
         Friction(coefficients=(mu, 0.5 * mu), directions=marks),
     )
-    contact = Contact(model, "block.bottom", interface, current_area=True)
+    contact = Contact(model, "block.bottom", interface, current_area=True, mortar=False)
     return Problem(model, {"block": RUBBER}, [contact])
 
 

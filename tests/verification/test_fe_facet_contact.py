@@ -24,7 +24,7 @@ from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.solver import Problem, Solver, Step
 
 #: At slave nodes.
-MORTAR = partial(Contact, mortar=True)
+POINTS, MORTAR = (partial(Contact, mortar=nodes) for nodes in (False, True))
 
 
 CLAMP = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
@@ -59,7 +59,7 @@ def _blocks(
 
 
 def _problem(
-    model: Model, law: ContactLaw, material: str, kind: Any = Contact, **options: object
+    model: Model, law: ContactLaw, material: str, kind: Any = POINTS, **options: object
 ) -> Problem:
     elastic = make_material(material, E=1000.0, nu=0.3)
     options.setdefault("current_area", material != "linear-elastic")
@@ -101,7 +101,7 @@ def test_against_calculix() -> None:
     [("hexahedron", 1), ("hexahedron", 2), ("tetrahedron", 1), ("tetrahedron", 2)],
 )
 @pytest.mark.parametrize("mu", [0.3, 30.0])
-@pytest.mark.parametrize("kind", [Contact, MORTAR])
+@pytest.mark.parametrize("kind", [POINTS, MORTAR])
 def test_tangent_of_the_system_by_order(
     cell: str, order: int, material: str, mu: float, kind: Any
 ) -> None:
@@ -239,6 +239,6 @@ def test_mistakes_are_said() -> None:
     """Overlapping groups and groups that do not exist: one line with the field."""
     model = _blocks(2)
     with pytest.raises(InputError, match=r"master: .*share 4 facets"):
-        Contact(model, "block.bottom", "block.bottom", law=_law())
+        Contact(model, "block.bottom", "block.bottom", law=_law(), mortar=False)
     with pytest.raises(InputError, match=r"master: .*did you mean 'base.top'"):
-        Contact(model, "block.bottom", "base.topp", law=_law())
+        Contact(model, "block.bottom", "base.topp", law=_law(), mortar=False)

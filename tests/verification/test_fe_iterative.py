@@ -48,7 +48,9 @@ def _on_plane(
 ) -> Problem:
     model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (n, n, n // 2))})
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    contact = Contact(model, "block.bottom", MovingSurface(Interface(plane, *_laws(penalty)), body))
+    contact = Contact(
+        model, "block.bottom", MovingSurface(Interface(plane, *_laws(penalty)), body), mortar=False
+    )
     return Problem(model, {"block": make_material(**ELASTIC)}, [contact], **options)
 
 
@@ -184,7 +186,7 @@ def test_oblique_symmetry_planes() -> None:
         sector = RingSpec(1.0, 2.0, 0.25, (4, 8, 2), start=start, end=end)
         model = build_mesh([Body("tube", sector)])
         cylinder = make_surface("cylinder", point=(0, 0, 0), axis=(0, 0, 1), radius=1.01)
-        inside = Contact(model, "tube.inner", Interface(cylinder, *_laws()))
+        inside = Contact(model, "tube.inner", Interface(cylinder, *_laws()), mortar=False)
         planes = ["tube.start", "tube.end", "tube.bottom"]
         return Problem(model, {"tube": make_material(**ELASTIC)}, [inside], symmetry=planes)
 

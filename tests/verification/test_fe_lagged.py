@@ -67,7 +67,7 @@ def _on_plane(
     """A block on a rigid plane."""
     model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (cells, cells, 2), order=order)})
     plane = Interface(make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)), *LAWS)
-    contact = Contact(model, "block.bottom", MovingSurface(plane, body))
+    contact = Contact(model, "block.bottom", MovingSurface(plane, body), mortar=False)
     return Problem(model, {"block": make_material(**RUBBER)}, [contact], **options)
 
 

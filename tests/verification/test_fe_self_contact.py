@@ -354,7 +354,7 @@ def test_what_is_given_is_checked() -> None:
     model = hairpin(half=False)
     law = ContactLaw(NormalLaw(penalty=PENALTY), **LAWS)
     with pytest.raises(InputError, match=r"master: .*share 96 facets"):
-        Contact(model, "pin.inner", "pin.inner", law=law)
+        Contact(model, "pin.inner", "pin.inner", law=law, mortar=False)
     with pytest.raises(InputError, match=r"apart: -1.0 given, must be > 0"):
         folding(model, law, apart=-1.0)
     with pytest.raises(InputError, match=r"degree: given, but slave nodes have no quadrature"):

@@ -186,7 +186,7 @@ def _contact(kind: str, method: str, model: Any, normal: np.ndarray) -> Any:
         law = ContactLaw(*laws)
         return Contact(model, "block.bottom", "base.top", law=law, current_area=False, mortar=True)
     augmented = None if method == "penalty" else Augmentation(multipliers=method)
-    options: dict[str, Any] = {"augmentation": augmented, "current_area": False}
+    options: dict[str, Any] = {"augmentation": augmented, "current_area": False, "mortar": False}
     if kind == "facets":
         return Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws), **options)
     plane = make_surface("plane", point=(0, 0, 0), normal=normal)

@@ -68,7 +68,7 @@ def _own_body(n: int) -> np.ndarray:
     box = BoxSpec((0.0, 0.0, 0.0), (1.0, 1.0, mixed.HEIGHT), (n, n, n // 2), order=2)
     model = build_box({"pad": box})
     rubber = make_material("neo-hookean-incompressible", E=3.0 * mixed.SHEAR, nu=0.5)
-    contact = Contact(model, "pad.bottom", mixed.PLATE, mixed.law())
+    contact = Contact(model, "pad.bottom", mixed.PLATE, mixed.law(), mortar=False)
     ends = (PRESS_AND_DRAG[3], PRESS_AND_DRAG[-1])
     steps = [
         Step(str(i), 4, {"pad.top": dict(zip("xyz", way, strict=True))})
@@ -287,7 +287,7 @@ def test_a_part_that_nothing_holds_is_one_line() -> None:
     """A pad of Taylor-Hood elements above its plate without conditions: its six motions."""
     g = pad(2, "linear", 2)
     above = make_surface("plane", point=(0.0, 0.0, -0.1), normal=(0.0, 0.0, 1.0))
-    contact = Contact(g.model, "pad.bottom", above, mixed.law())
+    contact = Contact(g.model, "pad.bottom", above, mixed.law(), mortar=False)
     problem = ContactProblem(g.form, g.w, contacts=[contact])
     with pytest.raises(InputError, match=r"nothing holds the body around .*translation along x, y"):
         problem.solve()

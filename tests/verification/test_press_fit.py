@@ -65,7 +65,9 @@ class Pushed:
             Adhesion(stiffness=(PENALTY, PENALTY)),
             Friction(coefficients=tuple(MU), directions=grooves),
         )
-        self.contact = Contact(self.model, "hub.inner", "shaft.outer", law=law, current_area=False)
+        self.contact = Contact(
+            self.model, "hub.inner", "shaft.outer", law=law, current_area=False, mortar=False
+        )
         materials = {
             name: make_material("linear-elastic", E=e, nu=nu)
             for name, (e, nu) in (("shaft", SHAFT), ("hub", HUB))

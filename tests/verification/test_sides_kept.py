@@ -66,17 +66,17 @@ def _problem(
 def _contact(model: Model, master: str, unit: float, mu: tuple[float, float]) -> Contact:
     laws = _laws(unit, mu)
     if master == "plate":
-        return Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws))
+        return Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws), mortar=False)
     if master == "plate at slave nodes":
         return Contact(model, "block.bottom", "base.top", law=ContactLaw(*laws), mortar=True)
     if master == "plane":
         surface = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-        return Contact(model, "block.bottom", Interface(surface, *laws))
+        return Contact(model, "block.bottom", Interface(surface, *laws), mortar=False)
     centre = (0.5 * unit, 0.5 * unit, -0.4 * unit)
     roll = make_surface("cylinder", point=centre, axis=(0, 1, 0), radius=0.4 * unit)
     body = RigidBody("roll", centre) if master == "rigid roll" else None
     law = Interface(roll, *_laws(unit)[:2], Friction(coefficients=0.3))
-    return Contact(model, "block.bottom", MovingSurface(law, body))
+    return Contact(model, "block.bottom", MovingSurface(law, body), mortar=False)
 
 
 def _state(problem: Problem, move: Move) -> Vec:
@@ -175,7 +175,7 @@ def test_a_block_that_sinks_in_is_not_done(strategy: str) -> None:
     model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
     surface = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
     laws = NormalLaw(penalty=0.5), Adhesion(stiffness=(0.5, 0.5)), Friction(coefficients=(0.0, 0.0))
-    contact = Contact(model, "block.bottom", Interface(surface, *laws))
+    contact = Contact(model, "block.bottom", Interface(surface, *laws), mortar=False)
     material = make_material("linear-elastic", E=10.0, nu=0.3)
     hold = Spring("hold", "block.top", (0.0, 0.0, 1e-3))
     problem = Problem(model, {"block": material}, [contact], [hold])
@@ -274,10 +274,10 @@ def _flat(master: str, law: str, tilt: float) -> tuple[Problem, Rotation]:
     model.mesh.geometry.x[:] = turn.apply(model.mesh.geometry.x)
     contact: Contact | Contact
     if master == "plate":
-        contact = Contact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
+        contact = Contact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()), mortar=False)
     else:
         plane = make_surface("plane", point=(0, 0, 0), normal=turn.apply([0.0, 0.0, 1.0]))
-        contact = Contact(model, "block.bottom", Interface(plane, *_laws()))
+        contact = Contact(model, "block.bottom", Interface(plane, *_laws()), mortar=False)
     material = make_material(law, E=1000.0, nu=0.3)
     return Problem(model, dict.fromkeys(boxes, material), [contact]), turn
 

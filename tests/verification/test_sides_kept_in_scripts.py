@@ -58,7 +58,7 @@ def test_a_script_asks_nodes_of_bodies(master: str, named: bool) -> None:
     soft = ContactLaw(NormalLaw(penalty=1.0), Adhesion(stiffness=1.0), Friction(coefficients=0.2))
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
     met = plane if master == "plane" else f"{prefix[1]}top"
-    contact = Contact(model, f"{prefix[0]}bottom", met, soft)
+    contact = Contact(model, f"{prefix[0]}bottom", met, soft, mortar=False)
     space = model.space
     u, v = fem.Function(space), ufl.TestFunction(space)
     form = ufl.inner(make_material("linear-elastic", E=1e3, nu=0.3).stress(u), ufl.grad(v)) * ufl.dx

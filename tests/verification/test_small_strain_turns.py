@@ -148,7 +148,7 @@ def _on_a_soft_plane() -> Problem:
         Friction(coefficients=(1.0, 1.0)),
     )
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    contact = Contact(mesh, "block.bottom", Interface(plane, *laws))
+    contact = Contact(mesh, "block.bottom", Interface(plane, *laws), mortar=False)
     return Problem(mesh, {"block": make_material("linear-elastic", E=1e5, nu=0.3)}, [contact])
 
 
@@ -190,7 +190,7 @@ def test_parts_of_a_bent_beam(fe: Any, strategy: str) -> None:
         Friction(coefficients=(0.3, 0.3)),
     )
     plane = make_surface("plane", point=(0, 0, -1.0), normal=(0, 0, 1))
-    contact = Contact(model, "beam.bottom", Interface(plane, *laws))
+    contact = Contact(model, "beam.bottom", Interface(plane, *laws), mortar=False)
     steel = {"beam": make_material("linear-elastic", E=1000.0, nu=0.0)}
     problem = Problem(model, steel, [contact])
     lift = {"beam.left": HELD, "beam.right": {"z": 0.4}}

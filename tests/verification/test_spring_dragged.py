@@ -50,7 +50,9 @@ def _on_plane(
     spec = BoxSpec((0, 0, height), (1, 1, 0.5), (2, 2, 1), cell, order)
     model = build_box({"block": spec})
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    contact = Contact(model, "block.bottom", Interface(plane, *_laws(coefficients, stiffness)))
+    contact = Contact(
+        model, "block.bottom", Interface(plane, *_laws(coefficients, stiffness)), mortar=False
+    )
     elastic = make_material("linear-elastic", E=young, nu=0.3)
     return Problem(model, {"block": elastic}, [contact], attached, **options)
 
@@ -67,7 +69,7 @@ def _on_plate(attached: Attached, stacked: bool = False) -> Problem:
         pairs.append(("upper.bottom", "block.top"))
     model = build_box(boxes)
     law = ContactLaw(*_laws(MU, PENALTY))
-    contacts = [Contact(model, a, b, law=law, current_area=False) for a, b in pairs]
+    contacts = [Contact(model, a, b, law=law, current_area=False, mortar=False) for a, b in pairs]
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
     return Problem(model, dict.fromkeys(boxes, elastic), contacts, attached)
 

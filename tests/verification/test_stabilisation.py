@@ -63,7 +63,9 @@ def _block(
         Friction(coefficients=(0.3, 0.3)),
     )
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    contact = Contact(model, "block.bottom", Interface(plane, *laws, evolution=evolution))
+    contact = Contact(
+        model, "block.bottom", Interface(plane, *laws, evolution=evolution), mortar=False
+    )
     elastic = make_material("linear-elastic", E=YOUNG * stress, nu=0.3)
     return Problem(model, {"block": elastic}, [contact], **options)  # type: ignore[arg-type]
 
@@ -152,7 +154,12 @@ def test_block_falls_on_a_body() -> None:
         }
     )
     contact = Contact(
-        model, "block.bottom", "base.top", law=ContactLaw(*_laws()), current_area=False
+        model,
+        "block.bottom",
+        "base.top",
+        law=ContactLaw(*_laws()),
+        current_area=False,
+        mortar=False,
     )
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
     problem = Problem(model, {"block": elastic, "base": elastic}, [contact])
@@ -179,9 +186,9 @@ def _under_a_ram(stabilised: bool = True) -> Problem:
         }
     )
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    below = Contact(model, "block.bottom", Interface(plane, *_laws()))
+    below = Contact(model, "block.bottom", Interface(plane, *_laws()), mortar=False)
     law = ContactLaw(*_laws())
-    above = Contact(model, "block.top", "ram.bottom", law=law, current_area=False)
+    above = Contact(model, "block.top", "ram.bottom", law=law, current_area=False, mortar=False)
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
     materials = {"block": elastic, "ram": elastic}
     return Problem(model, materials, [below, above], stabilised=stabilised)
@@ -357,7 +364,7 @@ def test_bodies_that_only_touch_each_other_are_refused_before_the_run() -> None:
             "base": BoxSpec((0, 0, -1), (1, 1, 1), (2, 2, 1)),
         }
     )
-    contact = Contact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()))
+    contact = Contact(model, "block.bottom", "base.top", law=ContactLaw(*_laws()), mortar=False)
     elastic = make_material("linear-elastic", E=YOUNG, nu=0.3)
     problem = Problem(model, {"block": elastic, "base": elastic}, [contact])
     step = Step("press", 1, {"base.bottom": {"z": 0.0}}, {"block.top": {"z": -1.0}})

@@ -185,7 +185,9 @@ def test_tangent_by_order(name, cell, order):
     """
     ideal, surface, directions = MASTERS[name]
     model = rectangle(ideal, (5, 2), cell=cell, order=order)
-    contact = Contact(model, "b.top", surface, _law(0.1, **directions), current_area=True)
+    contact = Contact(
+        model, "b.top", surface, _law(0.1, **directions), current_area=True, mortar=False
+    )
     problem = Problem(model, {"b": RUBBER}, [contact])
     led: dict[str, Any] = {"displacement": {"b.bottom": {"x": 0.0, "y": 0.03, "z": 0.02}}}
     if ideal.turn.any():
@@ -217,7 +219,7 @@ def test_plane_strain_is_a_slice():
     forces = []
     for model, planes in ((flat, {}), (slab, {"b.bottom": {"z": 0.0}, "b.top": {"z": 0.0}})):
         of = (lambda name: name) if model is flat else names.__getitem__
-        contact = Contact(model, of("b.top"), surface, _law())
+        contact = Contact(model, of("b.top"), surface, _law(), mortar=False)
         problem = Problem(model, {"b": RUBBER}, [contact])
         press = {of("b.bottom"): {"x": 0.0, "y": 0.05}, **planes}
         drag = {of("b.bottom"): {"x": 0.1, "y": 0.05}}
@@ -254,7 +256,7 @@ def test_pair_in_plane_strain_is_a_slice(order):
         if ideal is None:
             of = names.__getitem__
             planes = {f"{body}.{side}": {"z": 0.0} for body in "ab" for side in names}
-        contact = Contact(model, f"b.{of('bottom')}", f"a.{of('top')}", _law())
+        contact = Contact(model, f"b.{of('bottom')}", f"a.{of('top')}", _law(), mortar=False)
         problem = Problem(model, {"a": RUBBER, "b": STEEL}, [contact])
         low, high = f"a.{of('bottom')}", f"b.{of('top')}"
         press = {low: {"x": 0.0, "y": 0.0}, high: {"x": 0.0, "y": -0.05}, **planes}
@@ -270,7 +272,7 @@ def test_tangent_of_a_pair_by_order(ideal, order):
 
     Requirement: exact tangents of facets that are swept out of edges, areas of now included.
     """
-    contact = Contact(model := _stacked(ideal, order), "b.bottom", "a.top", _law(0.1))
+    contact = Contact(model := _stacked(ideal, order), "b.bottom", "a.top", _law(0.1), mortar=False)
     problem = Problem(model, {"a": RUBBER, "b": RUBBER}, [contact])
     led = {"x": 0.0, "y": -0.05} | ({"z": 0.05} if ideal.lateral else {})
     run(problem, Step("press", 2, {"a.bottom": dict.fromkeys(led, 0.0), "b.top": led}))
@@ -304,7 +306,7 @@ def test_shrink_fit_converges_to_lame():
         law = ContactLaw(
             NormalLaw(penalty=1e3 * E * n), Adhesion(stiffness=1.0), Friction(coefficients=0)
         )
-        contact = Contact(model, "outer.left", "inner.right", law)
+        contact = Contact(model, "outer.left", "inner.right", law, mortar=False)
         problem = Problem(model, {"inner": STEEL, "outer": STEEL}, [contact])
         ends = {
             f"{one}.{end}": {"y": 0.0} for one in ("inner", "outer") for end in ("bottom", "top")
@@ -332,7 +334,7 @@ def test_shrink_fit_converges_to_lame():
 def test_what_is_not_the_same_in_every_plane_is_refused(ideal, surface, directions):
     """Requirement: a master, or friction, that is not of the symmetry of the body is one line."""
     with pytest.raises(InputError, match="surface and directions are not the same"):
-        Contact(rectangle(ideal), "b.top", surface, _law(**directions))
+        Contact(rectangle(ideal), "b.top", surface, _law(**directions), mortar=False)
 
 
 @pytest.mark.parametrize(
@@ -343,7 +345,7 @@ def test_a_surface_across_the_plane_is_refused(ideal, normal):
     """Requirement: a surface whose normals leave the plane of the mesh is one line."""
     plane = make_surface("plane", point=(0, 0.9, 0), normal=normal)
     with pytest.raises(InputError, match="normal of the surface is not in the plane of the mesh"):
-        Contact(rectangle(ideal), "b.top", plane, _law())
+        Contact(rectangle(ideal), "b.top", plane, _law(), mortar=False)
 
 
 def test_mistakes_are_one_line():
@@ -357,7 +359,7 @@ def test_mistakes_are_one_line():
         rectangle(Axisymmetric(), start=-1.0)
     twisted = _stacked(Axisymmetric(lateral=True))
     with pytest.raises(InputError, match="facets given with twist"):
-        Contact(twisted, "b.bottom", "a.top", _law())
+        Contact(twisted, "b.bottom", "a.top", _law(), mortar=False)
     with pytest.raises(InputError, match="plane stress needs a linear material"):
         Problem(rectangle(PlaneStress()), {"b": RUBBER})
     problem = Problem(rectangle(Axisymmetric()), {"b": STEEL})

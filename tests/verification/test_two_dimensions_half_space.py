@@ -46,7 +46,7 @@ def _pressed(ideal: Idealisation, surface: Surface, n: int, depth: float, half: 
     model = _half_space(ideal, n, half, 36)
     laws = NormalLaw(penalty=10.0 * E * n / half), Adhesion(stiffness=1.0), Friction(coefficients=0)
     moving = MovingSurface(surface, RigidBody("punch", (0.0, 10.0, 0.0)))
-    contact = Contact(model, "b.top", moving, ContactLaw(*laws))
+    contact = Contact(model, "b.top", moving, ContactLaw(*laws), mortar=False)
     held = {"b.bottom": {"y": 0.0}, "b.left": {"x": 0.0}}
     problem = Problem(model, {"b": STEEL}, [contact])
     run(problem, Step("press", 1, held, motion={"punch": {"y": -depth}}))

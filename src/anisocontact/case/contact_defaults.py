@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import Material
 from anisocontact.case.model import AUGMENTED, MORTAR, PENALTY, SINGLE, ContactSection
 from anisocontact.case.quantity import AUTO
-from anisocontact.contact import facet_size
-from anisocontact.contact.hints import FINER, STIFF
+from anisocontact.contact.defaults import takes_nodes
 from anisocontact.contact.multipliers import check, follows
 from anisocontact.interface import ContactLaw
 from anisocontact.interface.augmentation import Augmentation
@@ -37,8 +36,8 @@ def chosen(
     """
     taken = section
     if section.pass_ == AUTO or section.of_before:
-        points = section.pass_ == AUTO and any(_for_points(section, model, materials))
-        taken = section.model_copy(update={"pass": SINGLE if points else MORTAR})
+        nodes = section.pass_ != AUTO or _takes_nodes(section, model, materials)
+        taken = section.model_copy(update={"pass": MORTAR if nodes else SINGLE})
     if taken.method == AUTO:
         taken = taken.model_copy(update={"method": _method(taken, law)})
     return taken
@@ -50,19 +49,11 @@ def physical_adhesion(section: ContactSection) -> bool:
     return python or bool(section.adhesion.parameters().get("stiffness") != AUTO)
 
 
-def _for_points(
-    section: ContactSection, model: Model, materials: Sequence[Material]
-) -> Iterator[bool]:
-    """What speaks for integration points, not slave nodes."""
-    if section.self_contact:  # a fold has none
-        return
-    yield section.degree is not None
-    yield model.mesh.comm.size > 1 and model.idealisation.dim == 2
-    if section.meshed:
-        slave, master = materials
-        finer = facet_size(model, section.slave) < FINER * facet_size(model, section.master)
-        # nodes of a slave that is stiffer and finer lose contact in between, see `stiff_slaves`
-        yield finer and slave.young > STIFF * master.young
+def _takes_nodes(section: ContactSection, model: Model, materials: Sequence[Material]) -> bool:
+    """As of `takes_nodes`."""
+    master = section.master if section.meshed else None
+    young = (materials[0].young, materials[-1].young)
+    return takes_nodes(model, section.slave, master, section.degree, young)
 
 
 def _method(section: ContactSection, law: ContactLaw) -> str:

@@ -7,6 +7,7 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.contact.defaults import WithoutPenalty, exact
 from anisocontact.contact.making import Before, Options, SurfaceMaster, before_this, parts_of
 from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.quadrature import FacetQuadrature
@@ -24,7 +25,7 @@ Mask = npt.NDArray[np.bool_]
 class Contact(Pass):
     """Contact of a facet group with an analytic surface, one on a rigid body, or other facets.
 
-    At every integration point of the slave `t = N n + T`, from the closest point of the master. The
+    At every slave point `t = N n + T`, from what is opposite on the master. The
     residual gets `-integral of t . (delta u_slave - delta u_master)` over the slave area, the
     tangent its derivative: by projection, normal, metric, directions and, where the area is that of
     now, its change. The history advances with `commit` only.
@@ -34,16 +35,19 @@ class Contact(Pass):
 
     Args:
         model: Mesh with the facet groups.
-        slave: Facet group "body.group" that carries the integration points.
+        slave: Facet group "body.group" that carries the slave points.
         master: A surface, one on a rigid body (`MovingSurface`), a surface that has its laws
             (`Interface`), or the facet group "body.group" that is met.
-        law: Laws, also written in Python (`ContactLaw`); directions are given in the
+        law: `Friction` for a contact that holds exactly, by multipliers, as do an
+            `AdhesionAndFriction` or a `PythonLaw`, whose elastic slip is physical. A `ContactLaw`
+            has a law of the pressure, which holds as it is. Directions are given in the
             reference configuration and carried by the body that is named, the master if none is.
         degree: Degree of the quadrature on the facets, >= 1; if not given twice the order of the
             displacement, with an augmentation the order.
         current_area: Whether tractions act on the area of now or of the reference; where it is not
             given on that of now, but for a problem whose bodies at this contact are linear.
-        augmentation: How exactly the contact is to hold; by its penalties alone if not given.
+        augmentation: How exactly a contact is to hold that has a law of the pressure; by its
+            penalties alone if not given.
         adjust: Gaps up to this one are closed and overlaps taken out before the first step, see
             `adjusted`, length; nothing if not given.
         reach: Distance within which facets are searched, length; twice the size of the slave's
@@ -53,8 +57,9 @@ class Contact(Pass):
             each other there do not meet, nor do neighbours, length; in self-contact three facet
             sizes if not given.
         mortar: Whether the law is evaluated at the slave nodes, with dual mortar weights, see
-            `MortarMaster`; against a surface at the slave nodes with the integrals of their shape
-            functions.
+            `MortarMaster`, against a surface with the integrals of their shape functions; or at
+            integration points. If not given at the nodes, unless there is a `degree`, or a mesh of
+            two dimensions on several processes.
         name: Name in output; the slave if not given.
 
     Attributes:
@@ -86,15 +91,15 @@ class Contact(Pass):
         >>> adhesion, friction = Adhesion(stiffness=(100, 100)), Friction(coefficients=(0.3, 0.3))
         >>> law = ContactLaw(NormalLaw(penalty=100.0), adhesion, friction)
         >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-        >>> on_plane = Contact(model, "block.bottom", plane, law)
+        >>> on_plane = Contact(model, "block.bottom", plane, law)  # at four nodes
         >>> down = np.tile([0.0, 0.0, -0.01], (len(model.space.tabulate_dof_coordinates()), 1))
-        >>> on_plane.update(down, 1.0).pressure.round(12).tolist()  # at four points
+        >>> on_plane.update(down, 1.0).pressure.round(12).tolist()
         [1.0, 1.0, 1.0, 1.0]
-        >>> pair = Contact(model, "block.bottom", "base.top", law)
+        >>> pair = Contact(model, "block.bottom", "base.top", friction)  # with multipliers
         >>> len(pair.areas), round(float(pair.areas.sum()), 12)
         (4, 1.0)
-        >>> nodes = Contact(model, "block.bottom", "base.top", law, mortar=True)
-        >>> len(nodes.areas), round(float(nodes.areas.sum()), 12)
+        >>> points = Contact(model, "block.bottom", "base.top", law, mortar=False)
+        >>> len(points.areas), round(float(points.areas.sum()), 12)
         (4, 1.0)
     """
 
@@ -103,7 +108,7 @@ class Contact(Pass):
         model: Model,
         slave: str,
         master: str | SurfaceMaster | None = None,
-        law: ContactLaw | None = None,
+        law: ContactLaw | WithoutPenalty | None = None,
         *,
         degree: int | None = None,
         current_area: bool | None = None,
@@ -112,21 +117,16 @@ class Contact(Pass):
         reach: float | None = None,
         self_contact: bool = False,
         apart: float | None = None,
-        mortar: bool = False,
+        mortar: bool | None = None,
         name: str = "",
         **before: Unpack[Before],
     ) -> None:
-        master, before_mortar = before_this(master, before)
+        master, of_before = before_this(master, before)
+        law, augmentation = exact(law, augmentation)
+        mortar = of_before if mortar is None else mortar
         options = Options(
-            degree,
-            current_area,
-            augmentation,
-            adjust,
-            reach,
-            self_contact,
-            apart,
-            mortar or before_mortar or self_contact,
-        )
+            degree, current_area, augmentation, adjust, reach, self_contact, apart, mortar
+        ).decided(model, slave, master if isinstance(master, str) else None)
         parts = parts_of(model, slave, master, law, options)
         super().__init__(model.unknowns, slave, name or slave, *parts, **options.of_pass)
         self.sagitta = sum(sagitta(model, group) for group in self.groups)

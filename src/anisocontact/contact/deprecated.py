@@ -16,7 +16,10 @@ def _self_contact(model: Model, group: str, *, law: ContactLaw, **options: Any) 
 
 #: Names, what makes the same, and what to take instead.
 BEFORE = {
-    "FacetContact": (Contact, 'Contact(model, slave, "body.group", law)'),
+    "FacetContact": (
+        partial(Contact, mortar=False),
+        'Contact(model, slave, "body.group", law, mortar=False)',
+    ),
     "TwoHalfPass": (partial(Contact, mortar=True), "Contact(..., mortar=True)"),
     "SelfContact": (_self_contact, "Contact(model, group, group, law, self_contact=True)"),
     "AnyContact": (Contact, "Contact"),

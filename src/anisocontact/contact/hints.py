@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from anisocontact.base.errors import ModelWarning
 from anisocontact.contact.contact import Contact
+from anisocontact.contact.defaults import FINER, STIFF
 from anisocontact.contact.initial import initial_overlap
 
 __all__ = ["COARSE", "coarse_slaves", "doubtful_sides", "warn_of"]
@@ -14,10 +15,6 @@ __all__ = ["COARSE", "coarse_slaves", "doubtful_sides", "warn_of"]
 #: Size of the facets of the slave over those of the master beyond which points between which
 #: something of the master fits are worth a word; where nothing touches, already at MISSED.
 COARSE, MISSED = 3.0, 1.5
-#: How many times as stiff as the master a finer slave of a mortar contact may be, and its facets
-#: over those of the master. At 5 on 4 facets per contact radius the pressures of Hertz are off by
-#: 2.6 % of the peak for 2, 13 % for 10, docs/verification/mortar.md.
-STIFF, FINER = 3.0, 0.95
 #: Height of arcs over flat facets over an overlap at the start that is worth a word: a press fit of
 #: two rings whose arcs are 1.3 times as high as the overlap carries 15 to 19 % too much.
 FLAT = 0.1

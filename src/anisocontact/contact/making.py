@@ -13,6 +13,7 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_keys, facet_sides
 from anisocontact.contact.analytic import AnalyticMaster
+from anisocontact.contact.defaults import takes_nodes
 from anisocontact.contact.facet_master import FacetMaster
 from anisocontact.contact.facet_mesh import facet_mesh, node_positions
 from anisocontact.contact.master import Master
@@ -59,7 +60,7 @@ class Options:
     reach: float | None = None
     self_contact: bool = False
     apart: float | None = None
-    mortar: bool = False
+    mortar: bool | None = None
 
     def __post_init__(self) -> None:
         for name in ("mortar", "self_contact", "current_area"):
@@ -75,6 +76,13 @@ class Options:
         given = self.augmentation
         if given is not None and not isinstance(given, Augmentation):
             raise InputError(f"{given!r:.60} given, Augmentation needed", "augmentation")
+
+    def decided(self, model: Model, slave: str, master: str | None) -> Options:
+        """Options that say where the law is evaluated."""
+        if self.mortar is not None and not self.self_contact:
+            return self
+        nodes = self.self_contact or takes_nodes(model, slave, master, self.degree)
+        return replace(self, mortar=nodes)
 
     def chosen_degree(self, model: Model) -> int:
         """Degree of the quadrature."""
@@ -106,8 +114,8 @@ class Before(TypedDict, total=False):
 
 def before_this(
     master: str | SurfaceMaster | None, before: Before
-) -> tuple[str | SurfaceMaster | None, bool]:
-    """The master, also from arguments of before, and whether these ask for slave nodes.
+) -> tuple[str | SurfaceMaster | None, bool | None]:
+    """The master, also from arguments of before, and whether these mean slave nodes or points.
 
     Raises:
         TypeError: There are other arguments.
@@ -119,7 +127,7 @@ def before_this(
         text = "two_half, overlaps: take mortar=True, which is taken now"
         warnings.warn(text, DeprecationWarning, stacklevel=3)
     if not before:
-        return master, mortar
+        return master, mortar or None
     text = "interface, body: take master=interface or master=MovingSurface(interface, body)"
     warnings.warn(text, DeprecationWarning, stacklevel=3)
     surface: Any = before.get("interface", master)

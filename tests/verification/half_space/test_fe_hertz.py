@@ -34,7 +34,7 @@ from anisocontact.solver import Problem, Solver, Step
 from anisocontact.surfaces import make_surface
 
 #: At slave nodes.
-MORTAR = partial(Contact, mortar=True)
+POINTS, MORTAR = (partial(Contact, mortar=nodes) for nodes in (False, True))
 
 
 RADIUS, E, NU = 40.0, 1000.0, 0.3
@@ -80,7 +80,7 @@ def test_rigid_sphere_on_a_block(half_spaces: Any, n: int, tolerance: float) -> 
     sphere = make_surface(
         "sphere", centre=(0, 0, RADIUS), radius=RADIUS, axis=(1, 0, 0), start=(0, 0, 1)
     )
-    contact = Contact(model, "block.contact", Interface(sphere, **_laws(n, 10.0)))
+    contact = Contact(model, "block.contact", Interface(sphere, **_laws(n, 10.0)), mortar=False)
     errors = _errors(half_spaces, model, contact, {"block": APPROACH}, REDUCED)
     assert np.abs(errors).max() < tolerance
 
@@ -93,12 +93,12 @@ def test_elastic_sphere_on_a_rigid_plane(half_spaces: Any, n: int, tolerance: fl
     """
     model = Model.from_arrays(half_spaces.body("ball", n, upper=True, radius=RADIUS))
     plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
-    contact = Contact(model, "ball.contact", Interface(plane, **_laws(n, 10.0)))
+    contact = Contact(model, "ball.contact", Interface(plane, **_laws(n, 10.0)), mortar=False)
     errors = _errors(half_spaces, model, contact, {"ball": -APPROACH}, REDUCED)
     assert np.abs(errors).max() < tolerance
 
 
-@pytest.mark.parametrize("kind", [Contact, MORTAR])
+@pytest.mark.parametrize("kind", [POINTS, MORTAR])
 @pytest.mark.parametrize(
     ("n", "below", "tolerance"), [(6, 5, 0.02), pytest.param(12, 9, 0.01, marks=pytest.mark.slow)]
 )

@@ -109,7 +109,9 @@ def _run(half_spaces: Any, n: int, legs: list[tuple[float, int]], across: float)
             coefficients=(MU, across), directions=make_directions("constant", vector=(1, 0, 0))
         ),
     )
-    contact = Contact(model, "ball.contact", "base.contact", law=law, current_area=False)
+    contact = Contact(
+        model, "ball.contact", "base.contact", law=law, current_area=False, mortar=False
+    )
     problem = Problem(model, {"ball": _steel(), "base": _steel()}, [contact])
     symmetric = {"ball.y": {"y": 0.0}, "base.y": {"y": 0.0}, "base.far": FIXED}
     full = 3.0 * MU * K / 16.0 * 2.0 / 3.0 * E / (1.0 - NU**2) / (0.5 * RADIUS)

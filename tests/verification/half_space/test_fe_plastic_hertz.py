@@ -45,7 +45,7 @@ def _pressed(half_spaces: Any, limit: float, ways: list[tuple[float, int]]) -> n
         Adhesion(stiffness=(1.0, 1.0)),
         Friction(coefficients=(1e-9, 1e-9)),
     )
-    contact = Contact(model, "block.contact", Interface(sphere, law))
+    contact = Contact(model, "block.contact", Interface(sphere, law), mortar=False)
     steel = make_material("plastic", E=E, nu=NU, yield_stress=limit)
     problem = Problem(model, {"block": steel}, [contact])
     planes = {f"block.{axis}": {axis: 0.0} for axis in "xy"}

@@ -103,13 +103,13 @@ class ContactProblem(AssembledSystem):
         space = u.function_space
         unknowns = _unknowns(contacts, space)
         self._bodies = _movable(contacts)
-        warn_of(contacts)
-        warn_of_overlaps(contacts)
         self.u, self.bcs, self.contacts = u, list(bcs), list(contacts)
         form = FormBulk(F, u, J)
         bodies, layout = Bodies(form, unknowns), Layout(unknowns, 0)
         self._unknowns, self._fields = unknowns, fields_beside(unknowns, space)
         suit(contacts, bodies, [form.finite] * len(contacts))
+        warn_of(contacts)
+        warn_of_overlaps(contacts)
         self._assembly = Assembly(
             layout,
             bodies,
