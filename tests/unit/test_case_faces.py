@@ -115,7 +115,11 @@ def test_check_tells_of_the_faces(case, capsys):
             'motion = { head = { z = -0.01 } }\ndisplacement = { "pin.left" = { x = 0 } }',
             "step 'press'.displacement: 3 nodes of 'pin.top', which follows the rigid body 'head',",
         ),
-        ("z = -3", "x = -3", 'the component is held; motion.head.x = "free" lets a load act on it'),
+        (
+            "z = -3",
+            "x = -3",
+            'the component is fixed; motion.head.x = "free" lets a load act',
+        ),
     ],
 )
 def test_wrong_faces_are_one_line(case, capsys, old, new, line):

@@ -95,7 +95,7 @@ WRONG = [
     ("reference", "referenc", "rigid.plate.referenc", 'did you mean "reference"?'),
     ("x = 20", "x = -20", "rigid.plate.springs.x", ">= 0"),
     ("x = 20", "u = 20", "rigid.plate.springs.u", "allowed: x, y, z, rx, ry, rz"),
-    ('x = "free", ', "", "step[1].load.plate.x", 'the component is held; motion.plate.x = "free"'),
+    ('x = "free", ', "", "step[1].load.plate.x", 'the component is fixed; motion.plate.x = "free"'),
     ("x = 2 }", "rz = 2 }", "step[1].load.plate.rz", 'motion.plate.rz_deg = "free"'),
     ("x = 2 }", 'x = "free" }', "step[1].load.plate.x", "a number needed"),
     ("x = 2 }", "}", "step[1].load.plate", "at least one of x, y, z, rx, ry, rz"),

@@ -197,5 +197,5 @@ def test_motion_out_of_a_plane_is_found_before_anything_is_written(tmp_path, cap
     assert main(["run", str(path), "-o", str(out)]) == 2
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 1
-    assert "leads nodes out of the symmetry plane 'bar.left', by 0.1" in lines[0]
+    assert "moves nodes out of the symmetry plane 'bar.left', by 0.1" in lines[0]
     assert not out.exists()

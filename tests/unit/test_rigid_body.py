@@ -102,11 +102,11 @@ def test_refused_motion():
             {"motion": {"die": {"u": 1.0}}},
             r"motion.die.u: 1.0 given, .* no such motion; allowed: x, y, z, rx",
         ),
-        ({"load": {"die": {"z": 1.0}}}, r"load.die.z: z is held; a load acts on a component"),
+        ({"load": {"die": {"z": 1.0}}}, r"load.die.z: z is fixed; a load acts on a component"),
         ({"motion": {"fixed": {"z": None}}}, r"motion.fixed.z: the rigid body was not made free"),
         (
             {"motion": {"die": {"z": 1.0}}, "load": {"die": {"z": 1.0}}},
-            r"load.die.z: z is held; a load acts on a component that motion frees",
+            r"load.die.z: z is fixed; a load acts on a component that motion frees",
         ),
     ],
 )

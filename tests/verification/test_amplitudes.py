@@ -266,7 +266,7 @@ def test_a_course_out_of_a_symmetry_plane_is_refused():
 @pytest.mark.parametrize(
     ("goal", "says"),
     [
-        (Course(lambda t: 1.0), "begins at 1 where 0.25 is: lead it there in a step before"),
+        (Course(lambda t: 1.0), "begins at 1 where 0.25 is: prescribe that value in a step before"),
         (Course(lambda t: math.nan), "amplitude at the time 0 is nan, a finite number needed"),
         (Course(lambda t: 1 / 0), "amplitude at the time 0: .*ZeroDivisionError"),
         (Course(lambda t: "much"), "amplitude at the time 0: .*ValueError"),

@@ -296,8 +296,8 @@ def test_mistakes_of_the_sector(given: dict[str, Any], line: str):
     ("held", "line"),
     [
         ({"ring.top": {"x": 0.0, "z": 0.0}}, "only one component across the axis z is held"),
-        ({"ring.top": {"x": 0.1, "y": 0.0, "z": 0.0}}, "led otherwise on one than on the other"),
-        ({"ring.start": {"x": 0.0, "y": 0.0, "z": 0.0}}, "led otherwise on one than on the other"),
+        ({"ring.top": {"x": 0.1, "y": 0.0, "z": 0.0}}, "other prescribed motions on the slave"),
+        ({"ring.start": {"x": 0.0, "y": 0.0, "z": 0.0}}, "other prescribed motions on the slave"),
     ],
     ids=["sideways", "moved", "one face"],
 )

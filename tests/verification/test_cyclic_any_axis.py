@@ -131,7 +131,11 @@ def quarter(**given: Any) -> Problem:
     ("given", "held", "line"),
     [
         ({}, {"shaft.top": {"x": 0.0}}, "hold all three or none, or take `cylindrical`"),
-        ({}, {"shaft.top": {"x": 0.1, "y": 0.0, "z": 0.0}}, "led otherwise on one|off the axis"),
+        (
+            {},
+            {"shaft.top": {"x": 0.1, "y": 0.0, "z": 0.0}},
+            "other prescribed|off the axis",
+        ),
         ({"symmetry": ["shaft.left"]}, {}, "nodes on the slave.*whose axis is not its normal"),
     ],
 )

@@ -139,7 +139,7 @@ def test_stress_at_a_point_is_reached(strategy: str):
 def test_strategy_that_does_not_know_all_displacements():
     """Requirement: one line."""
     until = Until(measure=Peak(Probe(((0.5, 0.5, 0.25),)), "von_mises"), value=10.0)
-    with pytest.raises(InputError, match="ends on what all displacements are needed for"):
+    with pytest.raises(InputError, match="needs all displacements"):
         run(block(), Step("press", 2, PRESS, until=until), strategy="condensed")
 
 

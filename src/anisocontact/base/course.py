@@ -35,13 +35,13 @@ _COARSE = 0.25
 class Course:
     """A value times an amplitude of the time since the beginning of the step.
 
-    What is led by it is at `value A(t)`, or with `relative` at `value (A(t) - A(0))` from where it
+    The prescribed value is `value A(t)`, or with `relative` at `value (A(t) - A(0))` from where it
     is when the step begins. A support, or load, that takes over what was free begins where that
     is, and the difference goes to zero along the step.
 
     Attributes:
         amplitude: A, a number at a time.
-        value: Its factor, of the unit of what is led.
+        value: Its factor, of the unit of the prescribed value.
         relative: Whether it counts from where it is.
 
     Example:
@@ -113,7 +113,7 @@ def courses_of(path: Path) -> dict[str, Course]:
         path: The path.
 
     Returns:
-        A course for each axis that is led, from where it is.
+        A course for each axis of the path, from where it is.
 
     Example:
         >>> from anisocontact.base.paths import make_path

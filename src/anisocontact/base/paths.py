@@ -1,4 +1,4 @@
-"""Paths in space that something is led along, as amplitudes of its components."""
+"""Paths in space for prescribed motions, as amplitudes of its components."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _NOTHING = 1e-12
 
 
 class Path(Protocol):
-    """A curve over time; what is led along it begins where it is.
+    """A curve over time; a motion along it begins where the body or group is.
 
     Example:
         >>> class Helix:
@@ -33,14 +33,19 @@ class Path(Protocol):
     """
 
     def components(self) -> dict[str, Amplitude]:
-        """Position over time by axis; axes that are left out are not led."""
+        """Position over time by axis; axes that are left out are not prescribed."""
         ...
 
 
 def _columns(doc: str) -> tuple[Parameter, ...]:
     return tuple(
         Parameter(
-            axis, "array", "length", f"{axis} {doc}; not led along {axis} if left out", "any", False
+            axis,
+            "array",
+            "length",
+            f"{axis} {doc}; not prescribed along {axis} if left out",
+            "any",
+            False,
         )
         for axis in _AXES
     )

@@ -161,7 +161,7 @@ class NonlinearBulk:
         """
         for body in self._points:
             body.write_tangent()
-        with self._pressures.led():
+        with self._pressures.predicted():
             self._tangent.write(out)
         self._pressures.add_tangent(out)
 

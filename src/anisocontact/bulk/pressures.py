@@ -184,7 +184,7 @@ class Pressures:
             self._assemble_slope()
 
     @contextmanager
-    def led(self) -> Iterator[None]:
+    def predicted(self) -> Iterator[None]:
         """The pressures that the last correction has led to, if they follow; collective."""
         if self._from is None:
             yield

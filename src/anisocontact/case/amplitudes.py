@@ -1,4 +1,4 @@
-"""Tables of amplitudes and paths, and values that are led by them."""
+"""Tables of amplitudes and paths, and values that follow them."""
 
 from __future__ import annotations
 
@@ -18,17 +18,17 @@ __all__ = [
     "FunctionTable",
     "Scheduled",
     "amplitude_table",
-    "led",
     "path_table",
+    "prescribed",
     "times",
 ]
 
 #: Kind of an amplitude that is a function in a Python file.
 PYTHON = Entry("python", "amplitude", "a function of time in a Python file of yours", ())
-#: The key of a path where something is led.
+#: The key of a path among prescribed components.
 PATH: Any = Field(
     None,
-    description="name of a path, which leads its components from where they are when the step "
+    description="name of a path that prescribes its components, from where they are when the step "
     "begins",
 )
 STEP, TOTAL = "step", "total"
@@ -64,16 +64,16 @@ class Scheduled(Section):
     """A value that follows an amplitude: `value` times it."""
 
     amplitude: str = Field(description="name of an amplitude")
-    value: Annotated[float, number("scalar", "unit of what is led", "factor of the amplitude")] = (
-        1.0
-    )
+    value: Annotated[
+        float, number("scalar", "unit of the prescribed value", "factor of the amplitude")
+    ] = 1.0
     relative: Annotated[
-        bool, number("flag", "1", "whether it counts from where things are when the step begins")
+        bool, number("flag", "1", "whether it is added to the value at the start of the step")
     ] = False
 
 
-class Led(Quantity):
-    """Annotation of a number that steps lead: at the end of the step, or as a table `Scheduled`."""
+class Prescribed(Quantity):
+    """Annotation of a prescribed number: at the end of the step, or as a table `Scheduled`."""
 
     def check(self, given: object) -> Any:
         """As of `Quantity`; tables and what has been checked are passed on."""
@@ -98,15 +98,15 @@ class Led(Quantity):
 
 
 def times(value: float | Scheduled, factor: float) -> float | Scheduled:
-    """A multiple of a value that a step leads."""
+    """A multiple of a prescribed value."""
     if isinstance(value, Scheduled):
         return value.model_copy(update={"value": factor * value.value})
     return factor * value
 
 
-def led(unit: str, doc: str, **more: Any) -> Led:
-    """Annotation of a component that a step leads."""
-    return Led(Parameter("", "scalar", unit, doc), **more)
+def prescribed(unit: str, doc: str, **more: Any) -> Prescribed:
+    """Annotation of a component that a step prescribes."""
+    return Prescribed(Parameter("", "scalar", unit, doc), **more)
 
 
 def amplitude_table(known: tuple[Entry, ...]) -> Any:

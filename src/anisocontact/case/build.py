@@ -49,7 +49,7 @@ from anisocontact.solver import (
 
 __all__ = ["Built", "build", "mesh_of"]
 
-#: What points and edges are led or loaded by as well as facet groups.
+#: Supports and loads that points and edges have as well as facet groups.
 ON_NODES = ("displacement", "cylindrical", "rotation", "force")
 
 
@@ -351,7 +351,7 @@ def _weights(case: Case, section: StepSection) -> dict[str, dict[str, Any]]:
 
 
 def _cylinders(section: StepSection, schedule: Schedule, begun: float) -> dict[str, Cylindrical]:
-    """What is led along cylindrical directions."""
+    """Displacements prescribed along cylindrical directions."""
     found = {}
     for name, given in section.cylindrical.items():
         with objects.within(f"cylindrical.{name}"):

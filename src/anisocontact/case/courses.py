@@ -1,4 +1,4 @@
-"""What steps lead: numbers and courses from the values, amplitudes and paths of a case file."""
+"""Prescribed values: numbers and courses from the values, amplitudes and paths of a case file."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Schedule:
 
         Args:
             given: Values as they are in the case file, by component.
-            path: Name of a path that leads components, too.
+            path: Name of a path that prescribes components, too.
             begun: Time of the run at which the step begins.
         """
         found = {component: self.value(value, begun) for component, value in given.items()}
@@ -86,7 +86,7 @@ def _path(table: Any, place: str) -> Any:
 
 
 def led_axes(case: Case, path: str | None) -> list[str]:
-    """Components that a path leads; none where it is not there or wrong."""
+    """Components that a path prescribes; none where it is not there or wrong."""
     try:
         return [] if path is None else list(_path(case.path[path], "").components())
     except (InputError, KeyError):
@@ -129,7 +129,7 @@ def _along_path(given: Any, led: Mapping[str, list[str]], place: str) -> Iterato
         return
     for axis in given.given():
         if axis in led[given.path]:
-            text = f'given with path "{given.path}", which leads {axis}; one of the two is allowed'
+            text = f'given with path "{given.path}", which has {axis}; one of the two is allowed'
             yield InputError(text, f"{place}.{axis}")
 
 

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 from pydantic_core import ErrorDetails
 
-from anisocontact.case.amplitudes import PATH, Scheduled, led, times
+from anisocontact.case.amplitudes import PATH, Scheduled, prescribed, times
 from anisocontact.case.bodies import Point, Rotate
 from anisocontact.case.quantity import FREE, line, number
 from anisocontact.case.section import Section
@@ -40,9 +40,9 @@ class Components(Section):
 class Displacement(Components):
     """Displacement of a facet group at the end of the step; "free" releases the support."""
 
-    x: Annotated[float | Scheduled | str | None, led("length", "along x", word=FREE)] = None
-    y: Annotated[float | Scheduled | str | None, led("length", "along y", word=FREE)] = None
-    z: Annotated[float | Scheduled | str | None, led("length", "along z", word=FREE)] = None
+    x: Annotated[float | Scheduled | str | None, prescribed("length", "along x", word=FREE)] = None
+    y: Annotated[float | Scheduled | str | None, prescribed("length", "along y", word=FREE)] = None
+    z: Annotated[float | Scheduled | str | None, prescribed("length", "along z", word=FREE)] = None
     path: str | None = PATH
 
 
@@ -53,15 +53,15 @@ class CylindricalLead(Section):
     """
 
     radial: Annotated[
-        float | Scheduled | str | None, led("length", "away from the axis", word=FREE)
+        float | Scheduled | str | None, prescribed("length", "away from the axis", word=FREE)
     ] = None
     tangential: Annotated[
         float | Scheduled | str | None,
-        led("length", "about the axis, right-handed", word=FREE),
+        prescribed("length", "about the axis, right-handed", word=FREE),
     ] = None
-    axial: Annotated[float | Scheduled | str | None, led("length", "along the axis", word=FREE)] = (
-        None
-    )
+    axial: Annotated[
+        float | Scheduled | str | None, prescribed("length", "along the axis", word=FREE)
+    ] = None
     axis: Annotated[Point, number("vector", "1", "direction of the axis")] = (0.0, 0.0, 1.0)
     point: Annotated[Point, number("vector", "length", "a point of the axis")] = (0.0, 0.0, 0.0)
 
@@ -74,25 +74,25 @@ class CylindricalLead(Section):
 class Traction(Components):
     """Force per reference area on a facet group at the end of the step."""
 
-    x: Annotated[float | Scheduled | None, led("stress", "along x")] = None
-    y: Annotated[float | Scheduled | None, led("stress", "along y")] = None
-    z: Annotated[float | Scheduled | None, led("stress", "along z")] = None
+    x: Annotated[float | Scheduled | None, prescribed("stress", "along x")] = None
+    y: Annotated[float | Scheduled | None, prescribed("stress", "along y")] = None
+    z: Annotated[float | Scheduled | None, prescribed("stress", "along z")] = None
 
 
 class Force(Components):
     """Force on a whole facet group, as a uniform traction, or on nodes, in equal shares."""
 
-    x: Annotated[float | Scheduled | None, led("force", "along x")] = None
-    y: Annotated[float | Scheduled | None, led("force", "along y")] = None
-    z: Annotated[float | Scheduled | None, led("force", "along z")] = None
+    x: Annotated[float | Scheduled | None, prescribed("force", "along x")] = None
+    y: Annotated[float | Scheduled | None, prescribed("force", "along y")] = None
+    z: Annotated[float | Scheduled | None, prescribed("force", "along z")] = None
 
 
 class BodyForce(Components):
     """Force on a body per reference volume, or its acceleration where a density is given."""
 
-    x: Annotated[float | Scheduled | None, led("stress/length", "along x")] = None
-    y: Annotated[float | Scheduled | None, led("stress/length", "along y")] = None
-    z: Annotated[float | Scheduled | None, led("stress/length", "along z")] = None
+    x: Annotated[float | Scheduled | None, prescribed("stress/length", "along x")] = None
+    y: Annotated[float | Scheduled | None, prescribed("stress/length", "along y")] = None
+    z: Annotated[float | Scheduled | None, prescribed("stress/length", "along z")] = None
     density: Annotated[
         float,
         number(
@@ -111,17 +111,17 @@ class BodyForce(Components):
 class Gravity(Components):
     """Acceleration of all bodies, times `density` of the material a force per volume."""
 
-    x: Annotated[float | Scheduled | None, led("length/time^2", "along x")] = None
-    y: Annotated[float | Scheduled | None, led("length/time^2", "along y")] = None
-    z: Annotated[float | Scheduled | None, led("length/time^2", "along z")] = None
+    x: Annotated[float | Scheduled | None, prescribed("length/time^2", "along x")] = None
+    y: Annotated[float | Scheduled | None, prescribed("length/time^2", "along y")] = None
+    z: Annotated[float | Scheduled | None, prescribed("length/time^2", "along z")] = None
 
 
 class Anchor(Components):
     """Displacement of a spring's end on ground at the end of the step."""
 
-    x: Annotated[float | Scheduled | None, led("length", "along x")] = None
-    y: Annotated[float | Scheduled | None, led("length", "along y")] = None
-    z: Annotated[float | Scheduled | None, led("length", "along z")] = None
+    x: Annotated[float | Scheduled | None, prescribed("length", "along x")] = None
+    y: Annotated[float | Scheduled | None, prescribed("length", "along y")] = None
+    z: Annotated[float | Scheduled | None, prescribed("length", "along z")] = None
     path: str | None = PATH
 
 
@@ -184,7 +184,7 @@ class Loading(Section):
         default_factory=dict,
         description='forces on whole facet groups, points or edges by "body.group"',
     )
-    pressure: dict[str, Annotated[float | Scheduled, led("stress", "pressure")]] = Field(
+    pressure: dict[str, Annotated[float | Scheduled, prescribed("stress", "pressure")]] = Field(
         default_factory=dict,
         description='pressures by "body.group", positive into the body; they follow a body at '
         "finite strain",
@@ -194,7 +194,9 @@ class Loading(Section):
     )
 
     gravity: Gravity | None = Field(None, description=str(Gravity.__doc__))
-    temperature: dict[str, Annotated[float | Scheduled, led("temperature", "temperature")]] = Field(
+    temperature: dict[
+        str, Annotated[float | Scheduled, prescribed("temperature", "temperature")]
+    ] = Field(
         default_factory=dict,
         description="temperature by body whose material has an expansion, over that without stress",
     )

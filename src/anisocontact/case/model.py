@@ -282,7 +282,10 @@ def case_type(known: Registries) -> type[Case]:
         ),
         path=(
             dict[str, Annotated[Any, path_table(known.paths)]],
-            Field(default_factory=dict, description="paths by name, for what is led along them"),
+            Field(
+                default_factory=dict,
+                description="paths by name, for displacements and motions along them",
+            ),
         ),
         contact=(
             list[contact],  # type: ignore[valid-type]

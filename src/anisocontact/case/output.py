@@ -56,7 +56,9 @@ class ProbeSection(Section):
 class ResultantSection(Section):
     """Force and moment of the supports of a facet group, or through a section of a body."""
 
-    group: str | None = Field(None, description='facet group that is held or led, "body.group"')
+    group: str | None = Field(
+        None, description='facet group with supports or prescribed displacements, "body.group"'
+    )
     body: str | None = Field(None, description="body with a section, in the place of `group`")
     point: Annotated[Point | None, number("vector", "length", "a point of the section")] = None
     normal: Annotated[

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Self
 from pydantic import Field, model_validator
 from pydantic_core import ErrorDetails
 
-from anisocontact.case.amplitudes import PATH, Scheduled, led
+from anisocontact.case.amplitudes import PATH, Scheduled, prescribed
 from anisocontact.case.quantity import FREE, line, number
 from anisocontact.case.section import Section
 
@@ -58,7 +58,9 @@ class Rigid(Section):
 
 
 def _turn(axis: str) -> Any:
-    return Annotated[float | Scheduled | str | None, led("angle", f"turn about {axis}", word=FREE)]
+    return Annotated[
+        float | Scheduled | str | None, prescribed("angle", f"turn about {axis}", word=FREE)
+    ]
 
 
 class Motion(Section):
@@ -67,9 +69,9 @@ class Motion(Section):
     Turns are about axes of space through its reference point; `rotation` has others.
     """
 
-    x: Annotated[float | Scheduled | str | None, led("length", "along x", word=FREE)] = None
-    y: Annotated[float | Scheduled | str | None, led("length", "along y", word=FREE)] = None
-    z: Annotated[float | Scheduled | str | None, led("length", "along z", word=FREE)] = None
+    x: Annotated[float | Scheduled | str | None, prescribed("length", "along x", word=FREE)] = None
+    y: Annotated[float | Scheduled | str | None, prescribed("length", "along y", word=FREE)] = None
+    z: Annotated[float | Scheduled | str | None, prescribed("length", "along z", word=FREE)] = None
     rx_deg: _turn("x") = None  # type: ignore[valid-type]
     ry_deg: _turn("y") = None  # type: ignore[valid-type]
     rz_deg: _turn("z") = None  # type: ignore[valid-type]
@@ -104,12 +106,12 @@ class Load(Section):
     Moments are about the reference point and along axes of space; they do not turn with the body.
     """
 
-    x: Annotated[float | Scheduled | None, led("force", "force along x")] = None
-    y: Annotated[float | Scheduled | None, led("force", "force along y")] = None
-    z: Annotated[float | Scheduled | None, led("force", "force along z")] = None
-    rx: Annotated[float | Scheduled | None, led("force length", "moment about x")] = None
-    ry: Annotated[float | Scheduled | None, led("force length", "moment about y")] = None
-    rz: Annotated[float | Scheduled | None, led("force length", "moment about z")] = None
+    x: Annotated[float | Scheduled | None, prescribed("force", "force along x")] = None
+    y: Annotated[float | Scheduled | None, prescribed("force", "force along y")] = None
+    z: Annotated[float | Scheduled | None, prescribed("force", "force along z")] = None
+    rx: Annotated[float | Scheduled | None, prescribed("force length", "moment about x")] = None
+    ry: Annotated[float | Scheduled | None, prescribed("force length", "moment about y")] = None
+    rz: Annotated[float | Scheduled | None, prescribed("force length", "moment about z")] = None
 
     @model_validator(mode="after")
     def _some(self) -> Self:

@@ -73,7 +73,7 @@ def _step(
         for component in load.given():
             if name in case.rigid and component not in free[name]:
                 key = f"{component}_deg" if component.startswith("r") else component
-                text = f'the component is held; motion.{name}.{key} = "free" lets a load act on it'
+                text = f'the component is fixed; motion.{name}.{key} = "free" lets a load act on it'
                 yield InputError(text, field=f"{place}.load.{name}.{component}")
 
 

@@ -19,7 +19,7 @@ _EVENTS = "; ".join(f"{name}: {text}" for name, text in CONTACT_EVENTS.items())
 
 
 class UntilSection(Section):
-    """Event at which a step ends before its end; what it leads then stays where it is."""
+    """Event at which a step ends before its end; prescribed values then stay as they are."""
 
     contact: str | None = Field(
         None,

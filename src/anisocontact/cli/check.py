@@ -96,7 +96,7 @@ def contents(built: Built) -> list[str]:
     for rigid in problem.rigid.bodies:
         how = "free where a step frees it" if rigid.free else "moved as prescribed"
         at = ", ".join(f"{v:g}" for v in rigid.reference)
-        led = [face.group for face in problem.rigid.led[rigid]]
+        led = [face.group for face in problem.rigid.coupled[rigid]]
         with_ = f", with {', '.join(led)}" if led else ""
         lines.append(f"rigid     {rigid.name}: reference point ({at}), {how}{with_}")
     for step in built.steps:

@@ -368,8 +368,8 @@ _TABLE = {
             (
                 "approach",
                 "length",
-                "how far the bodies have moved towards each other, by the facet groups that are "
-                "led or loaded",
+                "approach of the bodies: how far facet groups with prescribed motion or loads have "
+                "moved towards each other",
                 lambda c: c.approach(),
             ),
         ),

@@ -52,7 +52,9 @@ class Observer:
         }
         model = problem.model
         steps = list(steps)
-        self._supports = named_groups([problem.holding, *(step.led() for step in steps)])
+        self._supports = named_groups(
+            [problem.holding, *(step.prescribed_groups() for step in steps)]
+        )
         driven = [step.driven() for step in steps]
         self._watched = {
             group: mean_shares(model, group, group)
@@ -131,7 +133,7 @@ class _ContactNow(SlavePoints):
     """A contact in the accepted state, all processes together.
 
     Args:
-        displacements: Mean displacement of the facet groups that are led or loaded, by name.
+        displacements: Mean displacement of facet groups with prescribed motion or loads, by name.
         rigid: What the summary has of rigid bodies, by name.
         problem: The problem.
     """
@@ -190,12 +192,12 @@ def _approach(
 ) -> float:
     """Displacement of the slave's body against the master's, along the force that presses them.
 
-    A body moves as far as the facet group of it that is led or loaded and has gone farthest; one
-    without such groups counts as at rest. Gaps at the start are part of it.
+    A body moves as far as that one of its facet groups with prescribed motion or loads that moves
+    most; one without such groups counts as at rest. Gaps at the start are part of it.
 
     Args:
         contact: The contact.
-        displacements: Mean displacement of the facet groups that are led or loaded, length.
+        displacements: Mean displacement of facet groups with prescribed motion or loads, length.
         rigid: What the summary has of rigid bodies, by name.
 
     Returns:

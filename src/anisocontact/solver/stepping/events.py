@@ -177,7 +177,7 @@ def check_events(problem: Problem, steps: Sequence[Step]) -> None:
     """
     supported = list(problem.guides.groups)
     for step in steps:
-        supported += step.led()
+        supported += step.prescribed_groups()
         until, field = step.until, f"step {step.name!r}.until"
         if until is None:
             continue

@@ -1,4 +1,4 @@
-"""Steps that lead a body at small strain through a turn: found before anything is solved."""
+"""Prescribed rotations of bodies at small strain: found before anything is solved."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ def prescribed_turns(
         steps: The steps.
 
     Returns:
-        Warnings: bodies that are led through more than a degree.
+        Warnings: bodies that are turned by more than a degree.
 
     Raises:
-        InputError: A body is led through more than five degrees.
+        InputError: A body is turned by more than five degrees.
     """
     linear = [name for name, law in sorted(materials.items()) if small_strain(law)]
     largest: dict[str, tuple[float, str]] = {}

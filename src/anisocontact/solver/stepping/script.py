@@ -337,7 +337,7 @@ class ContactProblem(AssembledSystem):
                 at = ", ".join(f"{v:.4g}" for v in part.middle)
                 raise InputError(
                     f"nothing holds the body around ({at}): {motions}; no condition does, and no "
-                    "contact touches it: let it touch at the start, or lead it there with "
+                    "contact touches it: let it touch at the start, or move it there with "
                     "conditions",
                     "contacts" if self.contacts else "bcs",
                 )

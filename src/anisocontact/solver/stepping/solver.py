@@ -80,7 +80,7 @@ class Solver:
 
     Raises:
         InputError: A step names an unknown facet group, shared nodes get two values, the strategy
-            cannot solve the problem, or supports lead a body at small strain through a turn of more
+            cannot solve the problem, or supports turn a body at small strain by more
             than five degrees.
 
     Example:

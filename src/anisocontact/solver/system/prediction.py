@@ -1,4 +1,4 @@
-"""Couplings that contact will need: those of facets that prescribed motions lead to."""
+"""Couplings that contact will need: those of facets reached by prescribed motions."""
 
 from __future__ import annotations
 

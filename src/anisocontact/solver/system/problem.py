@@ -171,7 +171,7 @@ class Problem(ReportedSystem):
     @property
     def coupled(self) -> list[str]:
         """Facet groups that follow rigid bodies."""
-        return [face.group for faces in self.rigid.led.values() for face in faces]
+        return [face.group for faces in self.rigid.coupled.values() for face in faces]
 
     def new_vector(self) -> Vec:
         """Vector of the unknowns, zero."""
@@ -201,7 +201,7 @@ class Problem(ReportedSystem):
         self._tangent.begin(step)
 
     def end_at(self, factor: float) -> None:
-        """End the step that has begun at a fraction of it: what it leads stays where it is."""
+        """End the step that has begun at a fraction of it: prescribed values stay as they are."""
         self.supports.stop()
         self.guides.stop()
         self.assembly.terms.end_at(factor)

@@ -123,7 +123,7 @@ def _on_bodies(parts: Parts) -> npt.NDArray[np.int64]:
 def _check_motions(parts: Parts, step: Step) -> None:
     """Refuse rigid motions that make a plane, or a body of revolution, something else."""
     idealisation = parts.model.idealisation
-    with_faces = {body.name for body, faces in parts.rigid.led.items() if faces}
+    with_faces = {body.name for body, faces in parts.rigid.coupled.items() if faces}
 
     def known(body: str) -> tuple[tuple[str, ...], str]:
         allowed = idealisation.of_faces if body in with_faces else idealisation.motions

@@ -14,9 +14,9 @@ from anisocontact.base.registry import Parameter
 from anisocontact.contact import facet_quadrature
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
-from anisocontact.solver.terms.led import Led
 from anisocontact.solver.terms.loads import mean_shares
 from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.prescribed import Prescribed
 from anisocontact.solver.terms.pressure import outward
 from anisocontact.solver.terms.step import AXES, Step
 from anisocontact.solver.terms.term import Term
@@ -217,23 +217,23 @@ class _SpringTerm(Attached):
             raise InputError(text, field)
         self._weights = weights[self.nodes]
         self._stiffness = np.asarray(spec.stiffness, dtype=float)
-        self._led, self._anchor = Led(3), np.zeros(3)
+        self._prescribed, self._anchor = Prescribed(3), np.zeros(3)
         #: Anchor and force in the accepted state, (2, 3), length and force.
         self._accepted: Floats = np.zeros((2, 3))
 
     @override
     def begin(self, step: Step, released: Floats) -> None:
-        self._led.begin(step.duration)
+        self._prescribed.begin(step.duration)
         for axis, value in step.anchor.get(self.name, {}).items():
-            self._led.lead(AXES.index(axis), value)
+            self._prescribed.prescribe(AXES.index(axis), value)
 
     @override
     def end_at(self, factor: float) -> None:
-        self._led.stop(factor)
+        self._prescribed.stop(factor)
 
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
-        self._anchor = self._led.at(factor)
+        self._anchor = self._prescribed.at(factor)
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:

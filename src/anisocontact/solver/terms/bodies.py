@@ -14,8 +14,8 @@ from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.bulk import LinearBulk, NonlinearBulk
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.solver.terms.form import FormBulk
-from anisocontact.solver.terms.led import Led
 from anisocontact.solver.terms.persistent import Arrays
+from anisocontact.solver.terms.prescribed import Prescribed
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
 
@@ -57,7 +57,7 @@ class Bodies(Term):
         diagonal = unknowns.own_nodal(np.array(bulk.diagonal.array_r))
         self.scale = mean_diagonal(diagonal, unknowns.comm)
         self._u = bulk.stiffness.createVecRight()
-        self._temperatures = {name: Led(1) for name in bulk.heated}
+        self._temperatures = {name: Prescribed(1) for name in bulk.heated}
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:
@@ -82,21 +82,21 @@ class Bodies(Term):
     @override
     def begin(self, step: Step, released: Floats) -> None:
         self.check(step)
-        for led in self._temperatures.values():
-            led.begin(step.duration)
+        for one in self._temperatures.values():
+            one.begin(step.duration)
         for name, value in step.temperature.items():
-            self._temperatures[name].lead(0, value)
+            self._temperatures[name].prescribe(0, value)
 
     @override
     def end_at(self, factor: float) -> None:
-        for led in self._temperatures.values():
-            led.stop(factor)
+        for one in self._temperatures.values():
+            one.stop(factor)
 
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
         self.bulk.set_time(dt)
-        for name, led in self._temperatures.items():
-            self.bulk.heated[name].set_temperature(float(led.at(factor)[0]))
+        for name, one in self._temperatures.items():
+            self.bulk.heated[name].set_temperature(float(one.at(factor)[0]))
 
     @override
     def add_tangent(self, matrix: Mat) -> None:

@@ -149,9 +149,9 @@ class CutFaces:
         off = ~np.isnan(here) & (np.isnan(turned) | differ)
         if off.any():
             text = (
-                f"{int(off.any(axis=1).sum())} nodes on the cut faces of {self.name} are led "
-                "otherwise on one than on the other: give the same motion in every sector, or "
-                "leave the slave free, which follows the master"
+                f"{int(off.any(axis=1).sum())} nodes on the cut faces of {self.name} have "
+                "other prescribed motions on the slave than on the master: give the same motion in "
+                "every sector, or leave the slave free, which follows the master"
             )
             raise InputError(text, field)
 

@@ -49,22 +49,22 @@ class Guide:
         return np.broadcast_to(self.direction, (len(self.nodes), 3))
 
     def contradicted(self, off: float) -> str:
-        """What to say where other supports lead nodes elsewhere, by a length."""
+        """What to say where other supports move nodes elsewhere, by a length."""
         if self.component in COMPONENTS:
             return (
                 f"{self.group!r} and another support prescribe different displacements of shared "
                 f"nodes along {self.component}, by {off:.3g}"
             )
         if self.component == ACROSS:
-            return f"leads nodes off {self.group}, by {off:.3g}"
-        return f"leads nodes out of the symmetry plane {self.group!r}, by {off:.3g}"
+            return f"moves nodes off the cylinder {self.group}, by {off:.3g}"
+        return f"moves nodes out of the symmetry plane {self.group!r}, by {off:.3g}"
 
 
 type _Key = tuple[str, str]
 
 
 class Cylinders:
-    """What the steps so far hold or lead along directions of cylinder coordinates.
+    """What the steps so far prescribe along directions of cylinder coordinates.
 
     Args:
         model: Mesh with named facets and nodes.
@@ -80,7 +80,7 @@ class Cylinders:
 
     @property
     def unknowns(self) -> Ints:
-        """Local numbers of all unknowns of nodes that are held or led."""
+        """Local numbers of all unknowns of nodes with prescribed displacements."""
         nodes = np.unique(np.concatenate([np.zeros(0, np.int64), *(g.nodes for g in self._guides)]))
         return (3 * nodes[:, None] + np.arange(3)).reshape(-1)
 
@@ -127,7 +127,7 @@ class Cylinders:
         self._guides = [self._guide(step, *key, goal, u) for key, goal in self._goals.items()]
 
     def stop(self) -> None:
-        """The step ends where it is: what it leads stays there."""
+        """The step ends where it is: prescribed values stay there."""
         self._goals = dict.fromkeys(self._goals)
 
     def lets_go(self, guide: Guide, step: Step) -> bool:

@@ -8,7 +8,7 @@ import numpy.typing as npt
 from anisocontact.base.errors import InputError
 from anisocontact.rigid import COMPONENTS, RigidBody
 from anisocontact.rigid.body import component_number
-from anisocontact.solver.terms.led import Led
+from anisocontact.solver.terms.prescribed import Prescribed
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.turn import Turn
 
@@ -32,7 +32,7 @@ class Drive:
         self._body = body
         self.held = np.ones(6, dtype=bool)
         self._turn: Turn | None = None
-        self._motion, self._load = Led(6), Led(6)
+        self._motion, self._load = Prescribed(6), Prescribed(6)
 
     def begin(self, step: Step, values: Floats, reaction: Floats) -> None:
         """Take over a step; what it does not name stays where it is.
@@ -57,7 +57,7 @@ class Drive:
         start = np.where(self.held, 0.0, np.where(freed, reaction, loads))
         self._load.begin(step.duration, start)
         for i in np.flatnonzero(freed):
-            self._load.lead(int(i), float(loads[i]))
+            self._load.prescribe(int(i), float(loads[i]))
         self._take_load(step)
 
     def values(self, fraction: float) -> Floats:
@@ -100,7 +100,7 @@ class Drive:
             if given is None and not self._body.free:
                 raise InputError("the rigid body was not made free", where)
             self.held[i] = given is not None
-            self._motion.lead(i, 0.0 if given is None else given)
+            self._motion.prescribe(i, 0.0 if given is None else given)
 
     def _take_load(self, step: Step) -> None:
         name = self._body.name
@@ -109,6 +109,7 @@ class Drive:
             i = component_number(component, where)
             if self.held[i]:
                 raise InputError(
-                    f"{COMPONENTS[i]} is held; a load acts on a component that motion frees", where
+                    f"{COMPONENTS[i]} is fixed; a load acts on a component that motion frees",
+                    where,
                 )
-            self._load.lead(i, value)
+            self._load.prescribe(i, value)

@@ -36,14 +36,14 @@ class Elimination:
     values: Floats
     share: Floats
 
-    def left(self, led: Floats, given: Floats) -> Floats:
+    def left(self, prescribed: Floats, given: Floats) -> Floats:
         """How far the open conditions are from met by what is prescribed, (m, R), length.
 
         Args:
-            led: Prescribed components, zero where there is none, (m, 3), length.
+            prescribed: Prescribed components, zero where there is none, (m, 3), length.
             given: The g, (m, R), length.
         """
-        off = (self.rows @ led[..., None])[..., 0] - (self.values @ given[..., None])[..., 0]
+        off = (self.rows @ prescribed[..., None])[..., 0] - (self.values @ given[..., None])[..., 0]
         return np.asarray(np.where(self.open, off, 0.0))
 
 

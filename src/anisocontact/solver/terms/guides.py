@@ -1,4 +1,4 @@
-"""Nodes that are held or led along directions that are no axes: planes and cylinders."""
+"""Supports along directions that are no axes: planes and cylinders."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class _Rows:
 class Guides:
     """Conditions `e . u = g` at nodes, with directions e that are no axes of space.
 
-    Symmetry planes hold all along the run, g = 0; cylindrical supports are led by the steps. At a
+    Symmetry planes hold all along the run, g = 0; steps prescribe g of cylindrical supports. At a
     node one component for each condition follows from the others, `u_s = c . u + d`: a
     `Constraint`.
 
@@ -122,7 +122,7 @@ class Guides:
         return Guides(self._model, self._planes, self._like, self._tied, self._ties)
 
     def held(self) -> list[tuple[Ints, Floats]]:
-        """Nodes this rank owns that are held or led, and the directions, (3,) or (nodes, 3)."""
+        """Nodes this rank owns that have a support, and the directions, (3,) or (nodes, 3)."""
         return [(guide.nodes, guide.direction) for guide in self._guides]
 
     def of_planes(self) -> list[tuple[Ints, Floats]]:
@@ -153,12 +153,12 @@ class Guides:
         self.set_load_factor(0.0)
 
     def take_over(self, step: Step, u: Floats) -> None:
-        """Take over what a step leads, without constraints."""
+        """Take over what a step prescribes, without constraints."""
         self._cylinders.begin(step, u)
         self._take(self._still + self._cylinders.guides())
 
     def stop(self) -> None:
-        """The step ends where it is: what it leads stays there."""
+        """The step ends where it is: prescribed values stay there."""
         self._cylinders.stop()
 
     def set_load_factor(self, factor: float) -> None:

@@ -12,7 +12,7 @@ from anisocontact.base.fenicsx import body_shares
 from anisocontact.bulk import Material
 from anisocontact.contact import facet_quadrature
 from anisocontact.mesh import Model
-from anisocontact.solver.terms.led import Led
+from anisocontact.solver.terms.prescribed import Prescribed
 from anisocontact.solver.terms.pressure import Given, Pressures
 from anisocontact.solver.terms.step import AXES, Goal, Step
 from anisocontact.solver.terms.term import Term, TermGroup
@@ -31,7 +31,7 @@ class DeadLoads(Term):
     def __init__(self, model: Model) -> None:
         self._model = model
         self._shares: dict[tuple[str, str], Floats] = {}
-        self._values: dict[tuple[str, str], Led] = {}
+        self._values: dict[tuple[str, str], Prescribed] = {}
         index_map = model.space.dofmap.index_map
         self._released: Floats = np.zeros(3 * (index_map.size_local + index_map.num_ghosts))
         self._left = np.zeros_like(self._released)
@@ -41,32 +41,32 @@ class DeadLoads(Term):
     def begin(self, step: Step, released: Floats) -> None:
         self._released = released + self._left
         self._left = np.zeros_like(released)
-        for led in self._values.values():
-            led.begin(step.duration)
+        for one in self._values.values():
+            one.begin(step.duration)
         for kind, share in _SHARES.items():
             loads: Mapping[str, Mapping[str, Goal]] = getattr(step, kind)
             for name, values in loads.items():
                 if (kind, name) not in self._shares:
                     found = share(self._model, name, f"step {step.name!r}.{kind}")
                     self._shares[kind, name] = found
-                    self._values[kind, name] = Led(3)
+                    self._values[kind, name] = Prescribed(3)
                     self._values[kind, name].begin(step.duration)
                 for axis, value in values.items():
-                    self._values[kind, name].lead(AXES.index(axis), value)
+                    self._values[kind, name].prescribe(AXES.index(axis), value)
 
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
         force = (1.0 - factor) * self._released
         nodal = force.reshape(-1, 3)
-        for key, led in self._values.items():
-            nodal += self._shares[key][:, None] * led.at(factor)
+        for key, one in self._values.items():
+            nodal += self._shares[key][:, None] * one.at(factor)
         self._now = nodal
 
     @override
     def end_at(self, factor: float) -> None:
         self._left = (1.0 - factor) * self._released
-        for led in self._values.values():
-            led.stop(factor)
+        for one in self._values.values():
+            one.stop(factor)
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:

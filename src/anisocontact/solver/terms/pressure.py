@@ -13,7 +13,7 @@ from anisocontact.bulk import Material, small_strain
 from anisocontact.contact import FacetQuadrature, facet_quadrature
 from anisocontact.contact.quadrature import Couplings, Surfaced, inward
 from anisocontact.mesh import Model
-from anisocontact.solver.terms.led import Led
+from anisocontact.solver.terms.prescribed import Prescribed
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
 
@@ -36,13 +36,13 @@ class Pressures(Term):
         self._model = model
         self._materials = materials
         self._surfaces: dict[str, _Surface] = {}
-        self._values: dict[str, Led] = {}
+        self._values: dict[str, Prescribed] = {}
         self._now: dict[str, float] = {}
 
     @override
     def begin(self, step: Step, released: Floats) -> None:
-        for led in self._values.values():
-            led.begin(step.duration)
+        for one in self._values.values():
+            one.begin(step.duration)
         for group, value in step.pressure.items():
             field = f"step {step.name!r}.pressure"
             body = self._model.body_of(group, field)
@@ -51,14 +51,14 @@ class Pressures(Term):
                 self._surfaces[group] = _Surface(
                     self._model, group, small_strain(self._materials[body])
                 )
-                self._values[group] = Led(1)
+                self._values[group] = Prescribed(1)
                 self._values[group].begin(step.duration)
-            self._values[group].lead(0, value)
+            self._values[group].prescribe(0, value)
 
     @override
     def end_at(self, factor: float) -> None:
-        for led in self._values.values():
-            led.stop(factor)
+        for one in self._values.values():
+            one.stop(factor)
 
     def given(self, step: Step) -> Iterator[Given]:
         """Pressures of a step that has begun, other than zero, as they act in the reference."""
@@ -71,7 +71,7 @@ class Pressures(Term):
 
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
-        self._now = {group: float(led.at(factor)[0]) for group, led in self._values.items()}
+        self._now = {group: float(one.at(factor)[0]) for group, one in self._values.items()}
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:

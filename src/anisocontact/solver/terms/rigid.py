@@ -48,7 +48,7 @@ class RigidBodies(Term):
     Attributes:
         bodies: The bodies in the order of their contacts.
         free: Those with unknowns.
-        led: Faces that follow each of them.
+        coupled: Facet groups that follow each of them.
 
     Raises:
         InputError: Two bodies of one name.
@@ -59,12 +59,12 @@ class RigidBodies(Term):
     ) -> None:
         on_bodies = [contact for contact in contacts if contact.body is not None]
         self.faces = faces
-        led = [] if faces is None else faces.faces
+        coupled = [] if faces is None else faces.faces
         self.bodies: list[RigidBody] = list(
             dict.fromkeys(
                 [
                     *(contact.body for contact in on_bodies if contact.body is not None),
-                    *(face.body for face in led),
+                    *(face.body for face in coupled),
                 ]
             )
         )
@@ -74,7 +74,7 @@ class RigidBodies(Term):
                 raise InputError(f"two rigid bodies have the name {name!r}", "body")
         self.free = [body for body in self.bodies if body.free]
         self.contacts = {b: [one for one in on_bodies if one.body is b] for b in self.bodies}
-        self.led = {b: [face for face in led if face.body is b] for b in self.bodies}
+        self.coupled = {b: [face for face in coupled if face.body is b] for b in self.bodies}
         self._comm = comm
         self._drives = {body: Drive(body) for body in self.bodies}
         self._scales = {body: self._scale(body) for body in self.bodies}
@@ -228,7 +228,7 @@ class RigidBodies(Term):
             scale = self._scales[body]
             diagonal = np.diag(body.springs / scale**2) * (self._comm.rank == 0)
             stiff = [diagonal]
-            for face in self.led[body]:
+            for face in self.coupled[body]:
                 diagonal = diagonal + face.stiffness() / np.outer(scale, scale)
             for contact in self.contacts[body]:
                 blocks = contact.body_blocks()
@@ -238,7 +238,7 @@ class RigidBodies(Term):
                 diagonal = diagonal + blocks.body / np.outer(scale, scale)
                 stiff.append((blocks.held / scale).reshape(-1, 6))
             found.append((own, own, diagonal[None]))
-            if not self.led[body]:  # else what holds the deformable body is looked at
+            if not self.coupled[body]:  # else what holds the deformable body is looked at
                 self._check_support(body, np.concatenate(stiff))
         return found
 
@@ -314,7 +314,7 @@ class RigidBodies(Term):
     def _frames(self, drives: Mapping[RigidBody, Drive]) -> list[HeldFrame]:
         return [
             HeldFrame(face.nodes, body.reference, drives[body].held | (body.springs > 0.0))
-            for body, faces in self.led.items()
+            for body, faces in self.coupled.items()
             for face in faces
         ]
 
@@ -358,7 +358,7 @@ class RigidBodies(Term):
             for c in self.contacts[body]
         ]
         local += [
-            float(np.linalg.norm(face.arms, axis=1).max(initial=0.0)) for face in self.led[body]
+            float(np.linalg.norm(face.arms, axis=1).max(initial=0.0)) for face in self.coupled[body]
         ]
         reach = max(self._comm.allgather(max(local)))
         return np.repeat([1.0, reach or 1.0], 3)

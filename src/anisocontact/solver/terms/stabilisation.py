@@ -329,7 +329,7 @@ class Stabilisation(Term):
         return bool(max(self._comm.allgather(float(way))) > free.size + explained)
 
     def _prescribed(self, u: Floats) -> float:
-        """Farthest that supports, rigid bodies and springs can have led a body, length.
+        """Farthest that supports, rigid bodies and springs can have moved a body, length.
 
         Since the attempt began; springs by what their anchors have moved and by their stretch.
         """

@@ -19,11 +19,11 @@ _FORCES = ("traction", "force", "body_force")
 # Fields that have one number for each name.
 _PLAIN = ("pressure", "temperature")
 
-#: What a value is led to along a step: a number at its end, or all the way.
+#: What a value is prescribed to be along a step: a number at its end, or all the way.
 Goal = float | Course
 
 
-#: Field of a step, name of what is led, component.
+#: Field of a step, name of what is prescribed, component.
 Place = tuple[str, str, str]
 
 
@@ -50,13 +50,13 @@ class Step:
         pressure: Facet group -> pressure at the end, stress, positive into the body; at finite
             strain on the area and against the normal of now, else of the reference.
         body_force: Body -> axis -> force per reference volume at the end, stress/length.
-        rotation: Facet group "body.group", or rigid body, -> rotation it is led through along the
+        rotation: Facet group "body.group", or rigid body, -> prescribed rotation along the
             step.
         temperature: Body whose material has an expansion -> temperature at the end, over that at
             which it has no stress.
         cylindrical: Facet group -> displacement along radial, tangential and axial directions.
         anchor: Spring -> axis -> displacement of its end on ground at the end, length.
-        until: Event at which the step ends, before its end; what it leads then stays where it is.
+        until: Event at which the step ends, before its end; prescribed values stay as they are.
 
     Raises:
         InputError: A value is out of range or no number.
@@ -64,7 +64,7 @@ class Step:
     Example:
         >>> press = Step("press", 2, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
         >>> pull = Step("pull", 10, {"block.top": {"z": None}}, traction={"block.top": {"z": -1.0}})
-        >>> press.led(), pull.driven()
+        >>> press.prescribed_groups(), pull.driven()
         (['block.top'], ['block.top'])
     """
 
@@ -116,8 +116,8 @@ class Step:
             named: Mapping[str, Mapping[str, Goal | None]] = getattr(self, kind)
             for name, values in named.items():
                 yield from (((kind, name, component), goal) for component, goal in values.items())
-        for name, led in self.cylindrical.items():
-            yield from ((("cylindrical", name, part), goal) for part, goal in led.values.items())
+        for name, given in self.cylindrical.items():
+            yield from ((("cylindrical", name, part), goal) for part, goal in given.values.items())
         for kind in _PLAIN:
             plain: Mapping[str, Goal] = getattr(self, kind)
             yield from (((kind, name, ""), goal) for name, goal in plain.items())
@@ -126,7 +126,7 @@ class Step:
         """Those of the values that follow an amplitude."""
         return {place: goal for place, goal in self.goals() if isinstance(goal, Course)}
 
-    def led(self) -> list[str]:
+    def prescribed_groups(self) -> list[str]:
         """Names of the facet groups with prescribed displacements, each once."""
         return list(dict.fromkeys([*self.displacement, *self.cylindrical, *self.turned_groups()]))
 
@@ -139,12 +139,16 @@ class Step:
         return {name: turn for name, turn in self.rotation.items() if "." not in name}
 
     def driven(self) -> list[str]:
-        """Names of all groups and bodies that are led or loaded, each once."""
+        """Names of all groups and bodies with prescribed motion or loads, each once."""
         loaded = [name for kind in (*_FORCES, "pressure", "anchor") for name in getattr(self, kind)]
-        return list(dict.fromkeys([*self.led(), *loaded, *self.rotation, *self.motion, *self.load]))
+        return list(
+            dict.fromkeys(
+                [*self.prescribed_groups(), *loaded, *self.rotation, *self.motion, *self.load]
+            )
+        )
 
     def _check_once(self) -> None:
-        """Refuse what is led twice."""
+        """Refuse what is prescribed twice."""
         pairs = (
             ("rotation", "displacement", "a displacement of the same group"),
             ("rotation", "cylindrical", "cylindrical of the same group"),
@@ -205,7 +209,7 @@ def check_courses(steps: Sequence[Step]) -> list[str]:
             try:
                 known[place] = after = _end(goal, known.get(place, 0.0), step.duration)
                 if place[0] == "load" and after is None:
-                    raise InputError("counts from what held it, which nobody knows beforehand")
+                    raise InputError("relative to a reaction force, which is not known beforehand")
                 if isinstance(goal, Course) and goal.coarse(step.duration, step.increments):
                     said.append(
                         f"{field}: {step.increments} increments are too few to follow its amplitude"
@@ -225,7 +229,7 @@ def _end(goal: Goal | None, before: float | None, duration: float) -> float | No
         return goal
     if before is not None and (jump := goal.jump(before)):
         raise InputError(
-            f"the amplitude begins at {before + jump:g} where {before:g} is: lead it there in a "
-            "step before, or let it count from there, relative = true"
+            f"the amplitude begins at {before + jump:g} where {before:g} is: prescribe "
+            "that value in a step before, or take relative = true"
         )
     return None if before is None and goal.relative else goal.at(1.0, duration, before or 0.0)

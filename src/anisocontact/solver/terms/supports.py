@@ -20,7 +20,7 @@ Support = tuple[str, int]  # group of facets or nodes, axis
 #: Displacements that count as the same, over the largest coordinate.
 SAME = 1e-13
 
-# What an unknown is led to: a value, along a course or a turn, or nowhere (after these).
+# What is prescribed for an unknown: a value, along a course or a turn, or nowhere (after these).
 Aim = Goal | Turn | None
 
 #: Places along a step at which what follows a course is compared with what else is prescribed.
@@ -124,7 +124,7 @@ class Supports:
         return self._owner
 
     def stop(self) -> None:
-        """The step ends where it is: what it leads stays there."""
+        """The step ends where it is: prescribed values stay there."""
         self._goals = dict.fromkeys(self._goals)
 
     def set_load_factor(self, factor: float) -> None:

@@ -48,7 +48,7 @@ class Term:
         """Add the forces on the bodies at the displacement `u`, force."""
 
     def end_at(self, factor: float) -> None:
-        """The step ends at a fraction of it: what it leads stays where it is."""
+        """The step ends at a fraction of it: prescribed values stay as they are."""
 
     def force(self, u: Floats) -> Floats:
         """The forces on the bodies at the displacement `u`, (nodes, 3), force."""

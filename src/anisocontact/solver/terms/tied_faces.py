@@ -153,8 +153,8 @@ class TiedFaces:
     def repeated(self, nodes: Ints, axis: Sequence[float], point: Sequence[float]) -> Ints:
         """Those of nodes whose motion in cylinder coordinates a sector gives them; collective.
 
-        What is led along radial, tangential and axial directions about the axis of a sector is
-        alike in all sectors: slave nodes of its cut faces have it from the master.
+        Displacements prescribed in cylinder coordinates about the axis of a sector are
+        alike in all sectors: slave nodes of its cut faces have them from the master.
 
         Args:
             nodes: Nodes this rank owns.
@@ -234,7 +234,7 @@ class TiedFaces:
             nodes = self._groups.nodes[np.union1d(*cut.sides)] - first
             shared = len(np.intersect1d(nodes, followers // 3))
             if self._model.mesh.comm.allreduce(shared):
-                text = "faces of a rigid body share nodes with the cut faces: lead them in steps"
+                text = "faces of a rigid body share nodes with the cut faces: take a displacement"
                 raise InputError(text, name)
         eliminated(self._conditions, self._flags(held, followers), self._of_corners)
 

@@ -1,4 +1,4 @@
-"""A rotation that a facet group or a rigid body is led through along a step."""
+"""A rotation prescribed for a facet group or a rigid body along a step."""
 
 from __future__ import annotations
 

@@ -51,9 +51,9 @@ class CondensedStrategy:
             yield "a face follows a rigid body"
         for step in task.steps:
             if step.cylindrical:
-                yield f"step {step.name!r} leads nodes along cylindrical directions"
+                yield f"step {step.name!r} prescribes displacements along cylindrical directions"
             if step.until is not None and step.until.measure is not None:
-                yield f"step {step.name!r} ends on what all displacements are needed for"
+                yield f"the event that ends step {step.name!r} needs all displacements"
         yield from task.asked_solver()
 
     def costs(self, task: Task) -> Iterator[str]:

@@ -1,4 +1,4 @@
-"""Values that the steps lead: to a number, linearly, or along a course."""
+"""Values that steps prescribe: linearly up to a number, or along a course."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from anisocontact.solver.terms.step import Goal
 Floats = npt.NDArray[np.float64]
 
 
-class Led:
-    """A vector whose components the steps lead; what a step does not name is held.
+class Prescribed:
+    """A vector of prescribed components; those that a step does not name stay as they are.
 
     Args:
         size: Number of components, at first 0.
@@ -22,10 +22,10 @@ class Led:
         end: Values at its end, (size,).
 
     Example:
-        >>> force = Led(2)
+        >>> force = Prescribed(2)
         >>> force.begin(1.0)
-        >>> force.lead(0, 4.0)
-        >>> force.lead(1, Course(lambda t: t**2))
+        >>> force.prescribe(0, 4.0)
+        >>> force.prescribe(1, Course(lambda t: t**2))
         >>> force.at(0.5).tolist(), force.end.tolist()
         ([2.0, 0.25], [4.0, 1.0])
     """
@@ -46,8 +46,8 @@ class Led:
         self.end = self.start.copy()
         self._courses, self._duration = {}, duration
 
-    def lead(self, i: int, goal: Goal) -> None:
-        """Lead a component of the step that has begun."""
+    def prescribe(self, i: int, goal: Goal) -> None:
+        """Prescribe a component for the step that has begun."""
         if isinstance(goal, Course):
             self._courses[i] = goal
             self.end[i] = goal.at(1.0, self._duration, self.start[i])
