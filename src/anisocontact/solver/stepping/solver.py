@@ -19,6 +19,7 @@ from anisocontact.solver.stepping.energy_watch import EnergyWatch
 from anisocontact.solver.stepping.events import EventWatch, check_events
 from anisocontact.solver.stepping.overload import too_much_load
 from anisocontact.solver.stepping.pace import Pace
+from anisocontact.solver.stepping.predictor import Predictor
 from anisocontact.solver.stepping.prescribed_turns import prescribed_turns
 from anisocontact.solver.stepping.report import Accepted, Cut, Progress, StoppedError
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch, half_turns
@@ -123,6 +124,7 @@ class Solver:
         self._watch = StatusWatch(problem.contacts)
         self._energy = EnergyWatch(problem)
         self._turns = TurnWatch()
+        self._predictor = Predictor(problem)
 
     def run(
         self,
@@ -152,6 +154,7 @@ class Solver:
         for text in self._doubtful:
             warn(text)
         self._energy.begin()
+        self._predictor.begin()
         strategy = self.choice.strategy
         if not (strategy.reduces and self._kept):
             self.problem.reduction.recover()
@@ -181,7 +184,7 @@ class Solver:
         numbers = asdict(pace)
         del numbers["limits"]
         numbers |= {"step": place.step, "time": place.time, "begun": place.begun}
-        numbers["kink"] = self._turns.kink
+        numbers |= {"kink": self._turns.kink, "travels": self._predictor.travels}
         kept.common["stopped"] = np.array([*place.stopped.items()]).reshape(-1, 2)
         kept.common.update({f"place.{name}": np.array(v) for name, v in numbers.items()})
         if place.events is not None:
@@ -197,6 +200,7 @@ class Solver:
         numbers = {name.removeprefix("place."): v for name, v in numbers.items()}
         step, time, begun = (numbers.pop(name) for name in ("step", "time", "begun"))
         self._turns.kink = numbers.pop("kink")
+        self._predictor.travels = numbers.pop("travels")
         before = None
         stopped = {int(i): float(factor) for i, factor in kept.common["stopped"]}
         self.problem.restore(kept, self.steps[: step + begun], stopped)
@@ -249,6 +253,7 @@ class Solver:
                 continue
             increment, done, part = pace.increment, pace.end, pace.part
             events.accept(done == 1.0)
+            self._predictor.accept()
             accepted = self._accepted(step, increment, done, outcome, events)
             pace.advance(outcome.iterations, outcome.relaxed, outcome.softer)
             if events.happened:
@@ -269,8 +274,7 @@ class Solver:
         self.problem.set_load_factor(whole / step.increments, part)
         first, ratio = last, 0.0
         if before is not None:
-            ratio = pace.part / pace.last
-            first = (1.0 + ratio) * last - ratio * before
+            first, ratio = self._predictor.state(last, before, pace.part / pace.last)
         self._turns.permitted = pace.cuttable
         # where friction cannot hold the loads no smaller part leads to the end of the increment
         overloaded = pace.cuts > 0 and too_much_load(self.problem, whole / step.increments) != ""
