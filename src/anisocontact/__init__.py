@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from anisocontact.base import import_hooks
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import InputError, ModelWarning
 
 if TYPE_CHECKING:
     from anisocontact.anisotropy import *  # noqa: F403
@@ -37,18 +37,21 @@ _PUBLIC = {
     "results": "Results SlavePoints register_quantity",
     "rigid": "MovingSurface Pose RigidBody",
     "mesh": "Axisymmetric Body MeshFile Model Placement PlaneStrain PlaneStress Rotation WholeMesh "
-    "build_mesh make_selector make_shape register_reader register_selector whole_reader",
-    "bulk": "Hill LinearElastic MooneyRivlin NeoHookean NeoHookeanIncompressible Ogden Orthotropic "
-    "Plastic PointLaw StVenantKirchhoff TransverselyIsotropic UserEnergy UserStress Viscoelastic "
-    "Yeoh cauchy_stress deformation_gradient make_material register_material small_strain",
+    "build_mesh make_selector make_shape node_near nodes_along register_reader register_selector "
+    "whole_reader",
+    "bulk": "Expanding Hill LinearElastic LinearElasticIncompressible MooneyRivlin NeoHookean "
+    "NeoHookeanIncompressible Ogden Orthotropic Plastic PointLaw PointResult PointState "
+    "StVenantKirchhoff TransverselyIsotropic UserEnergy UserStress Viscoelastic Yeoh cauchy_stress "
+    "deformation_gradient from_mandel make_material register_material slope_from_mandel "
+    "small_strain to_mandel",
     "contact": "Contact close_gaps facet_directions facet_size",
-    "solver": "Accepted Amplitude ContactProblem CyclicSymmetry Cylindrical ElasticSupport Limits "
-    "Newton Path Problem Solver Spring Step Strategy Tie Turn Until make_amplitude make_path "
-    "register_amplitude register_path register_strategy",
+    "solver": "Accepted Amplitude ContactProblem CoupledFace Course CyclicSymmetry Cylindrical "
+    "ElasticSupport Limits Newton Path Problem Solver Spring Step Strategy Tie Turn "
+    "Until courses_of make_amplitude make_path register_amplitude register_path register_strategy",
 }
 _ROOM_OF = {name: room for room, names in _PUBLIC.items() for name in names.split()}
 
-__all__ = ["InputError", "__version__", *_ROOM_OF]  # noqa: PLE0604 (strings, of the table)
+__all__ = ["InputError", "ModelWarning", "__version__", *_ROOM_OF]  # noqa: PLE0604 (strings, of the table)
 
 
 def __getattr__(name: str) -> Any:

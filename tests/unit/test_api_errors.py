@@ -47,11 +47,11 @@ def model() -> Model:
 WRONG = {
     "another law": (
         lambda m: Interface(PLANE, LAWS[1], LAWS[0], LAWS[2]),
-        "normal: Adhesion given, NormalLaw needed",
+        "normal: Adhesion given, NormalLaw or ContactLaw needed",
     ),
     "a name for a surface": (
         lambda m: Interface("plane", *LAWS),
-        "surface: str given, Surface needed",
+        "surface: 'plane' given, Surface needed",
     ),
     "points of other states": (
         lambda m: INTERFACE.update(START, [[0, 0, 0], [1, 0, 0]]),
@@ -79,15 +79,15 @@ WRONG = {
     ),
     "a group for groups": (
         lambda m: Problem(m, dict.fromkeys(m.body_names(), STEEL), symmetry="block.left"),
-        "symmetry: 'block.left' given, a list of facet groups needed",
+        "symmetry: 'block.left' given, a list of texts needed",
     ),
     "laws without a surface": (
         lambda m: Contact(m, "block.bottom", PAIR, mortar=False),
-        "master: ContactLaw given, a surface, an Interface or a facet group needed",
+        "master: ContactLaw given, a text, Surface, Interface or MovingSurface needed",
     ),
     "laws with a surface": (
         lambda m: Contact(m, "block.bottom", "base.top", law=INTERFACE, mortar=False),
-        "law: Interface given, ContactLaw needed",
+        "law: Interface given, ContactLaw, Friction, AdhesionAndFriction or PythonLaw needed",
     ),
     "no degree on a plane": (
         lambda m: Contact(m, "block.bottom", INTERFACE, degree=0),
@@ -107,7 +107,7 @@ WRONG = {
     ),
     "a word for a gap": (
         lambda m: Contact(m, "block.bottom", INTERFACE, adjust="all", mortar=False),
-        "adjust: 'all' given, a finite number needed",
+        "adjust: 'all' given, a number needed",
     ),
     "half a degree": (
         lambda m: Contact(m, "block.bottom", INTERFACE, degree=2.5),
@@ -119,7 +119,7 @@ WRONG = {
     ),
     "a name for an idealisation": (
         lambda m: Model.of(m.space, {}, "plane-strain"),
-        r"idealisation: 'plane-strain' given, PlaneStrain\(\) or another one needed",
+        "idealisation: 'plane-strain' given, Idealisation needed",
     ),
     "tags of another mesh": (
         lambda m: Model.of(m.space, {"pad.sole": 1}, tags=_tags_of_another_mesh()),

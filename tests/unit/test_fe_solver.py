@@ -32,7 +32,7 @@ def fails_beyond(interface, limit):
     ("values", "line"),
     [
         ({"increments": 0}, "step 'a'.increments: 0 given, must be >= 1"),
-        ({"increments": 2.5}, "step 'a'.increments: 2.5 given, needs a whole number >= 1"),
+        ({"increments": 2.5}, "increments: 2.5 given, a whole number needed"),
         ({"duration": 0.0}, "step 'a'.duration: 0.0 given, must be > 0"),
         (
             {"displacement": {"block.top": {"w": 1.0}}},

@@ -49,7 +49,10 @@ def _interface(shape: str = "plane") -> Interface:
             "pressure: an array of shape (3,)",
         ),
         (lambda: PrescribedPath(PATH, pressure=np.nan), "pressure: a number that is not finite"),
-        (lambda: PrescribedPath([("a", 0), (1, 0)], pressure=1.0), "path: numbers needed"),
+        (
+            lambda: PrescribedPath([("a", 0), (1, 0)], pressure=1.0),
+            "path: [('a', 0), (1, 0)] given, an array of numbers",
+        ),
         (lambda: PrescribedPath([(0, 0, 0)], pressure=1.0), "times: missing"),
         (lambda: PrescribedPath(lambda t: (t, 0, 0), pressure=1.0), "times: missing"),
         (lambda: PrescribedPath(PATH, pressure=1.0, times=[0, 0]), "times: [0.0, 0.0] given"),

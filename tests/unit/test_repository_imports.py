@@ -157,7 +157,7 @@ def test_laws_of_before_are_those_of_today() -> None:
         "from anisocontact.python_pair import PythonPairLaw\n"
         "from anisocontact.laws import Adhesion, Friction, NormalLaw\n"
         "from anisocontact.surfaces import make_surface\n"
-        "class Law:\n    internal = 2\n"
+        "class Law:\n    internal, update = 2, None\n"
         "normal = NormalLaw(penalty=1.0)\n"
         "plane = make_surface('plane', point=(0, 0, 0), normal=(0, 0, 1))\n"
         "print(PairLaw(normal, Adhesion(stiffness=1.0), Friction(coefficients=0.3)).evolution)\n"

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.surfaces import Floats, Surface, points
 
 Pair = Sequence[float]
@@ -58,6 +59,7 @@ class DirectionField:
         return r["e"], r["valid"]
 
 
+@typed
 def make_directions(name: str, **parameters: object) -> DirectionField:
     """A direction field of the registry.
 
@@ -107,6 +109,7 @@ def require_regular(surface: Surface, xi: Floats, valid: npt.NDArray[np.bool_]) 
         )
 
 
+@typed
 def from_callable(
     surface: Surface,
     f: Callable[[Floats], Directions],
@@ -149,6 +152,7 @@ def from_callable(
     return grid.field(f(surface.position(grid.xi)), interpolation)
 
 
+@typed
 def from_reparametrisation(
     surface: Surface,
     jacobian: Callable[[Floats], npt.ArrayLike],

@@ -12,6 +12,7 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.kinds import Kinds
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.typed import typed
 
 __all__ = [
     "Amplitude",
@@ -256,6 +257,7 @@ def amplitudes() -> tuple[Entry, ...]:
     return _AMPLITUDES.entries()
 
 
+@typed
 def make_amplitude(kind: str, *, field: str = "", **parameters: Any) -> Amplitude:
     """Amplitude by name.
 

@@ -13,6 +13,7 @@ from anisocontact.base.amplitudes import Amplitude
 from anisocontact.base.errors import InputError
 from anisocontact.base.paths import Path
 from anisocontact.base.python_file import where_failed
+from anisocontact.base.typed import typed
 
 __all__ = ["Course", "courses_of"]
 
@@ -31,6 +32,7 @@ _WAY = 64
 _COARSE = 0.25
 
 
+@typed
 @dataclass(frozen=True)
 class Course:
     """A value times an amplitude of the time since the beginning of the step.
@@ -106,6 +108,7 @@ class Course:
         return self.value * found
 
 
+@typed
 def courses_of(path: Path) -> dict[str, Course]:
     """A path as what a step takes for the components of a displacement, motion or anchor.
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 
 __all__ = ["FOLLOWED", "Limits"]
 
@@ -14,6 +15,7 @@ __all__ = ["FOLLOWED", "Limits"]
 FOLLOWED = math.radians(15.0)
 
 
+@typed
 @dataclass(frozen=True)
 class Limits:
     """Bounds of the load increments, as shares of the increments that a step asks for.

@@ -6,7 +6,7 @@ import math
 import reprlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, SupportsFloat, TypeGuard
 
 import numpy as np
 
@@ -269,13 +269,13 @@ def _numbers(p: Parameter, given: object, field: str) -> list[float]:
         return [float(given)]
     is_list = _is_list(given)
     if p.alike and not is_list:
-        if isinstance(given, bool) or not hasattr(given, "__float__"):
+        if not _is_number(given):
             raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
         return [float(given) * k for k in p.alike]
     if p.kind in ("axis", "array"):
         return _nested_numbers(p, given, field)
     items: list[Any] = list(given) if is_list else [given]  # type: ignore[call-overload]
-    if any(isinstance(v, bool) or not hasattr(v, "__float__") for v in items):
+    if not all(map(_is_number, items)):
         raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
     numbers = [float(v) for v in items]
     size = _SIZES.get(p.kind, p.count)
@@ -285,6 +285,11 @@ def _numbers(p: Parameter, given: object, field: str) -> list[float]:
     if p.kind in ("integer", "integers") and any(v != int(v) for v in numbers):
         raise InputError(f"{given!r} given, {_form(p)} needed", field=field)
     return numbers
+
+
+def _is_number(given: Any) -> TypeGuard[SupportsFloat]:
+    """Whether something is one number; texts of NumPy and classes have what makes them one, too."""
+    return hasattr(given, "__float__") and not isinstance(given, bool | str | type)
 
 
 def _is_list(given: object) -> bool:

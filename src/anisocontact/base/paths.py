@@ -12,6 +12,7 @@ from anisocontact.base.amplitudes import Amplitude, Table, check_times
 from anisocontact.base.errors import InputError
 from anisocontact.base.kinds import Kinds
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.typed import typed
 
 __all__ = ["Circle", "Path", "Polyline", "TimedPath", "make_path", "paths", "register_path"]
 
@@ -246,6 +247,7 @@ def paths() -> tuple[Entry, ...]:
     return _PATHS.entries()
 
 
+@typed
 def make_path(kind: str, *, field: str = "", **parameters: Any) -> Path:
     """Path by name.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 
 #: What can become of a contact, and the words for it.
 CONTACT_EVENTS = {
@@ -23,6 +24,7 @@ _PLACES = ("contact", "reaction", "displacement", "measure")
 type Measure = Callable[[Any, bool], float]
 
 
+@typed
 @dataclass(frozen=True)
 class Until:
     """An event at which a step ends: something becomes of a contact, or a value is reached.
@@ -78,6 +80,8 @@ class Until:
             raise InputError(f"{self.along!r} given, three numbers, not all 0", "until.along")
         if self.measure is not None and self.along is not None:
             raise InputError("given with a measure, which is a number", "until.along")
+        if self.value is not None and not math.isfinite(self.value):
+            raise InputError(f"{self.value!r} given, a finite number needed", "until.value")
         is_norm = self.along is None and self.measure is None
         if self.value is not None and is_norm and not self.value >= 0.0:
             text = f"{self.value!r} given without along, so that it is a norm: must be >= 0"

@@ -16,12 +16,14 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
+from anisocontact.base.typed import typed
 from anisocontact.bulk.materials import Material, small_strain
 from anisocontact.mesh import Idealisation, Model
 
 Floats = npt.NDArray[np.float64]
 
 
+@typed
 class Expanding:
     """A material that expands with the temperature of its body; see `Step.temperature`.
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from typing import Any
 
+from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.typed import typed
 from anisocontact.bulk.materials import Density, Isotropic, constant, small_strain
 from anisocontact.bulk.volume import Volume, volume_of, volume_ratio
 
@@ -178,6 +181,7 @@ class NeoHookeanIncompressible(Isotropic, Hyperelastic):
         return Volume(constant(u, self.bulk_modulus), volume_ratio)
 
 
+@typed
 class UserEnergy(Hyperelastic):
     """A material by the user's own energy.
 
@@ -193,12 +197,13 @@ class UserEnergy(Hyperelastic):
 
     def __init__(self, energy: Callable[[Any], Any], young: float) -> None:
         self._energy = energy
-        self.young = young
+        self.young = _scale(young)
 
     def _terms(self, u: Any, gradient: Any) -> list[Density]:
         return [(self._energy(gradient), None)]
 
 
+@typed
 class UserStress:
     """A material by the user's own stress; it need not come from an energy.
 
@@ -216,8 +221,15 @@ class UserStress:
 
     def __init__(self, piola: Callable[[Any], Any], young: float) -> None:
         self._piola = piola
-        self.young = young
+        self.young = _scale(young)
 
     def piola(self, u: Any) -> Any:
         """First Piola-Kirchhoff stress, UFL."""
         return self._piola(deformation_gradient(u))
+
+
+def _scale(young: float) -> float:
+    """Young's modulus at rest, of which penalties are made."""
+    if not 0.0 < young < math.inf:
+        raise InputError(f"{young!r} given, Young's modulus at rest needed, > 0", "young")
+    return young

@@ -6,6 +6,7 @@ from typing import Any
 
 from anisocontact.base.kinds import Kinds
 from anisocontact.base.registry import Entry
+from anisocontact.base.typed import typed
 from anisocontact.bulk.hyperelastic import (
     NeoHookean,
     NeoHookeanIncompressible,
@@ -73,6 +74,7 @@ def materials() -> tuple[Entry, ...]:
     return _MATERIALS.entries()
 
 
+@typed
 def make_material(model: str, *, field: str = "", **parameters: Any) -> Material:
     """Material by name.
 

@@ -7,6 +7,7 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.typed import typed
 from anisocontact.contact.defaults import WithoutPenalty, exact
 from anisocontact.contact.making import Before, Options, SurfaceMaster, before_this, parts_of
 from anisocontact.contact.one_pass import Pass
@@ -22,6 +23,7 @@ Ints = npt.NDArray[np.int32]
 Mask = npt.NDArray[np.bool_]
 
 
+@typed
 class Contact(Pass):
     """Contact of a facet group with an analytic surface, one on a rigid body, or other facets.
 

@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from anisocontact.anisotropy import DirectionField, make_directions
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import facet_sides
+from anisocontact.base.fenicsx import facet_sides, fem
+from anisocontact.base.typed import typed
 from anisocontact.contact.quadrature import facet_quadrature
 from anisocontact.mesh import Model
 from anisocontact.surfaces import PROJECTION_STATUS, Surface
@@ -21,10 +22,11 @@ Floats = npt.NDArray[np.float64]
 SAMPLES = 4
 
 
+@typed
 def facet_directions(
     model: Model,
     group: str,
-    f: Callable[[Floats], npt.ArrayLike] | Any,
+    f: Callable[[Floats], npt.ArrayLike] | fem.Function[Any] | DirectionField,
     *,
     surface: Surface | None = None,
     interpolation: str = "smooth",

@@ -63,19 +63,10 @@ class Options:
     mortar: bool | None = None
 
     def __post_init__(self) -> None:
-        for name in ("mortar", "self_contact", "current_area"):
-            given = getattr(self, name)
-            if not (given is None or isinstance(given, bool | np.bool_)):
-                raise InputError(f"{given!r} given, True or False needed", name)
         for name in ("adjust", "reach", "apart"):
             given = getattr(self, name)
-            if given is not None and not (_is_number(given) and np.isfinite(given)):
+            if given is not None and not np.isfinite(given):
                 raise InputError(f"{given!r} given, a finite number needed", name)
-        if self.degree is not None and not isinstance(self.degree, int | np.integer):
-            raise InputError(f"{self.degree!r} given, a whole number needed", "degree")
-        given = self.augmentation
-        if given is not None and not isinstance(given, Augmentation):
-            raise InputError(f"{given!r:.60} given, Augmentation needed", "augmentation")
 
     def decided(self, model: Model, slave: str, master: str | None) -> Options:
         """Options that say where the law is evaluated."""
@@ -96,11 +87,6 @@ class Options:
             "adjust": self.adjust,
             "area_told": self.current_area is not None,
         }
-
-
-def _is_number(given: object) -> bool:
-    kinds = int | float | np.integer | np.floating
-    return isinstance(given, kinds) and not isinstance(given, bool)
 
 
 class Before(TypedDict, total=False):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from anisocontact.base.typed import typed
 from anisocontact.bulk import Material
 from anisocontact.contact.quadrature import facet_quadrature, mean_size
 from anisocontact.mesh import Model
@@ -11,6 +12,7 @@ from anisocontact.mesh import Model
 PENALTY_FACTOR = 10.0
 
 
+@typed
 def facet_size(model: Model, facet_group: str) -> float:
     """Length of a facet of a group: square root of the mean area, or in the plane mean length.
 

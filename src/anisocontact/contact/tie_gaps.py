@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import basix, geometry
+from anisocontact.base.typed import typed
 from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.mesh import Model
@@ -23,6 +24,7 @@ KEPT = 0.1
 _ON, _INTERIOR = 0, 0
 
 
+@typed
 def close_gaps(
     model: Model, slave: str, master: str, tolerance: float | None = None
 ) -> tuple[int, float]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 
 __all__ = ["AUTO", "NEWTON", "SCHEMES", "UZAWA", "Augmentation"]
 
@@ -14,6 +15,7 @@ NEWTON, UZAWA, AUTO = "newton", "uzawa", "auto"
 SCHEMES = (AUTO, NEWTON, UZAWA)
 
 
+@typed
 @dataclass(frozen=True)
 class Augmentation:
     """How exactly a contact is to hold.

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.interface import series
 from anisocontact.interface.python_law import Look, PythonLaw, Update
 from anisocontact.interface.series import History
@@ -22,6 +23,7 @@ from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw, carried
 VECTOR_FORMS = ("transport", "backward-euler")
 
 
+@typed
 class AdhesionAndFriction:
     """The tangential law of the core.
 
@@ -42,8 +44,8 @@ class AdhesionAndFriction:
     dtype = STATE
 
     def __init__(self, adhesion: Adhesion | None, friction: Friction | None) -> None:
-        check_kind("adhesion", adhesion, Adhesion)
-        check_kind("friction", friction, Friction)
+        _check_kind("adhesion", adhesion, Adhesion)
+        _check_kind("friction", friction, Friction)
         assert adhesion is not None and friction is not None
         self.adhesion, self.friction = adhesion, friction
         self.carried: tuple[Carried, ...] = carried(adhesion, friction)
@@ -105,6 +107,7 @@ class AdhesionAndFriction:
         return found | {"state": as_state(found["state"])}
 
 
+@typed
 class ContactLaw:
     """The law of a contact, on an analytic, a moving or a meshed master.
 
@@ -138,7 +141,6 @@ class ContactLaw:
         *,
         evolution: str = "transport",
     ) -> None:
-        check_kind("normal", normal, NormalLaw)
         registry.entry(registry.evolution_forms(), evolution, "evolution")
         if isinstance(adhesion, AdhesionAndFriction | PythonLaw):
             self.tangential = adhesion
@@ -275,7 +277,7 @@ class FacetLaw:
         )
 
 
-def check_kind(name: str, given: object, needed: type) -> None:
+def _check_kind(name: str, given: object, needed: type) -> None:
     """Refuse an argument that is something else.
 
     Raises:

@@ -10,7 +10,8 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.base.errors import InputError
-from anisocontact.interface.contact_law import VECTOR_FORMS, ContactLaw, check_kind
+from anisocontact.base.typed import typed
+from anisocontact.interface.contact_law import VECTOR_FORMS, ContactLaw
 from anisocontact.interface.python_law import PythonLaw
 from anisocontact.interface.series import History
 from anisocontact.interface.states import FAILURE, Response, SlaveSurface, State, as_state
@@ -21,6 +22,7 @@ from anisocontact.surfaces import Surface, default_threads, points
 POINTS_ALONE = SlaveSurface(np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 2, 3)))
 
 
+@typed
 class Interface:
     """A surface with the laws of its contact.
 
@@ -65,7 +67,6 @@ class Interface:
         evolution: str = "transport",
         threads: int | None = None,
     ) -> None:
-        check_kind("surface", surface, Surface)
         law = normal
         if not isinstance(law, ContactLaw):
             law = ContactLaw(law, adhesion, friction, evolution=evolution)

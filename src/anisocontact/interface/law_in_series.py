@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from anisocontact.base.typed import typed
 from anisocontact.interface.tangential_law import (
     LawKinematics,
     LawResult,
@@ -19,6 +20,7 @@ from anisocontact.interface.tangential_law import (
 _SAME, _MOST = 1e-12, 20
 
 
+@typed
 class LawInSeries:
     """A law in Python with a compliant layer behind it: the force T with `T = law(dxi + c T)`.
 

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.anisotropy import DirectionField
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.interface.law_in_series import LawInSeries
 from anisocontact.interface.series import History
 from anisocontact.interface.states import STATE, State, as_state, raw_state
@@ -40,6 +41,7 @@ type Look = Callable[[npt.NDArray[np.uint8]], dict[str, Any]]
 type Update = Callable[[npt.NDArray[np.uint8], Floats | None], dict[str, Any]]
 
 
+@typed
 class PythonLaw:
     """The tangential law of a contact, written in Python.
 

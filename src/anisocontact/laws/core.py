@@ -17,6 +17,7 @@ from anisocontact.anisotropy import (
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry
+from anisocontact.base.typed import typed
 from anisocontact.surfaces import Floats, Surface, points
 
 Named = tuple[str, dict[str, list[float]]]
@@ -32,6 +33,7 @@ def _named(
     return name, registry.values(e, parameters)
 
 
+@typed
 class NormalLaw:
     """Law of the pressure N of the gap.
 
@@ -72,6 +74,7 @@ def _side(given: str, field: str) -> str:
     return given
 
 
+@typed
 class Adhesion:
     """Tangential law inside the yield ellipse.
 
@@ -123,6 +126,7 @@ class Adhesion:
         )
 
 
+@typed
 class Friction:
     """Yield ellipse and sliding rule.
 

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.surfaces import Floats, points
 
 if TYPE_CHECKING:
@@ -142,6 +143,7 @@ class Strip:
         return np.asarray(np.abs(d) <= self.half_width)
 
 
+@typed
 def force_domain(coefficients: Pair | float, beta: float, pressure: float) -> Ellipse:
     """Forces of a sticking point, T.FT <= N^2 [Konyukhov Schweizerhof 2006, eq. (115), (119)].
 
@@ -167,6 +169,7 @@ def force_domain(coefficients: Pair | float, beta: float, pressure: float) -> El
     return Ellipse((m2 * n, m1 * n), _line_angle(beta + 0.5 * math.pi))
 
 
+@typed
 def adhesion_domain(
     stiffness: Pair | float,
     alpha: float,

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.surfaces import Floats, default_threads
 
 
@@ -36,6 +37,7 @@ class Slide:
     converged: npt.NDArray[np.bool_]
 
 
+@typed
 def slide(
     stiffness: npt.ArrayLike,
     friction: npt.ArrayLike,

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
+from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import MeshArrays, face_mesh, rename_bodies
 from anisocontact.mesh.blocks import mesh_blocks
 from anisocontact.mesh.cad import CAD, cad_arrays
@@ -33,6 +34,7 @@ class Source(Protocol):
         ...
 
 
+@typed
 @dataclass(frozen=True)
 class Body:
     """A body of a built-in shape.
@@ -68,6 +70,7 @@ class Body:
         return self.placement.apply(mesh)
 
 
+@typed
 @dataclass(frozen=True)
 class MeshFile:
     """The bodies of a mesh file: gmsh's, or that of another code, by the ending of its name.
@@ -111,6 +114,7 @@ class MeshFile:
 GmshFile = MeshFile
 
 
+@typed
 def build_mesh(
     sources: Iterable[Source],
     groups: Mapping[str, Sequence[Selector]] = MappingProxyType({}),

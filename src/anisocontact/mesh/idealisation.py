@@ -22,6 +22,7 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.typed import typed
 
 Floats = npt.NDArray[np.float64]
 
@@ -205,6 +206,7 @@ class _Sheet(_Plane):
         object.__setattr__(self, "offset", np.array([0.0, 0.0, float(self.thickness)]))
 
 
+@typed
 @dataclass(frozen=True, eq=False)
 class PlaneStrain(_Sheet):
     """Nothing depends on z.
@@ -228,6 +230,7 @@ class PlaneStrain(_Sheet):
     )
 
 
+@typed
 @dataclass(frozen=True, eq=False)
 class PlaneStress(_Sheet):
     """A thin sheet: the stress has no component along z.
@@ -270,6 +273,7 @@ class PlaneStress(_Sheet):
             raise InputError("plane stress does not lock; take linear-elastic", field)
 
 
+@typed
 @dataclass(frozen=True, eq=False)
 class Axisymmetric(_Plane):
     """The half plane x >= 0 turned about the axis x = 0: x is the radius, y the height.

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, create_mesh, fem, locate_entities, vector_space
+from anisocontact.base.typed import typed
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.idealisation import SOLID, Idealisation
@@ -21,6 +22,7 @@ from anisocontact.mesh.own_space import named_facets, own_unknowns
 Ints = npt.NDArray[np.int32]
 
 
+@typed
 class Model:
     """Mesh, names and the displacement space on it.
 
@@ -55,7 +57,6 @@ class Model:
     ) -> None:
         if order not in (1, 2):
             raise InputError(f"order: got {order!r}, allowed: 1, 2", "order")
-        _check_kind(idealisation)
         _check_dimension(mesh, idealisation)
         self.mesh = mesh
         self.idealisation = idealisation
@@ -99,6 +100,7 @@ class Model:
         return model
 
     @classmethod
+    @typed
     def of(
         cls,
         space: Any,
@@ -343,12 +345,6 @@ def _with_two_cells(mesh: Any, facets: Ints) -> int:
     topology.create_connectivity(dim - 1, dim)
     owned = facets[facets < topology.index_map(dim - 1).size_local]
     return int((np.diff(topology.connectivity(dim - 1, dim).offsets)[owned] > 1).sum())
-
-
-def _check_kind(idealisation: object) -> None:
-    if not isinstance(idealisation, Idealisation):
-        text = f"{idealisation!r:.60} given, PlaneStrain() or another one needed"
-        raise InputError(text, "idealisation")
 
 
 def _check_dimension(mesh: Any, idealisation: Idealisation) -> None:

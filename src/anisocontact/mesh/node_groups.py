@@ -9,6 +9,7 @@ import numpy.typing as npt
 import scipy
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 
 __all__ = ["node_near", "nodes_along", "nodes_at"]
 
@@ -21,6 +22,7 @@ ROUNDED = 1e-5
 SAME = 1e-9
 
 
+@typed
 def node_near(model: Any, body: str, point: npt.ArrayLike, field: str = "") -> Ints:
     """The node of a body that is nearest to a point; collective.
 
@@ -54,6 +56,7 @@ def node_near(model: Any, body: str, point: npt.ArrayLike, field: str = "") -> I
     return found
 
 
+@typed
 def nodes_along(
     model: Any, body: str, start: npt.ArrayLike, end: npt.ArrayLike, field: str = ""
 ) -> Ints:

@@ -11,6 +11,7 @@ import numpy as np
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Parameter
+from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import Floats, MeshArrays
 from anisocontact.mesh.quality import check_cells
 
@@ -21,6 +22,7 @@ _ANGLE = Parameter("angle", "scalar", "angle", "angle of a rotation")
 _MISSING = math.nan
 
 
+@typed
 @dataclass(frozen=True)
 class Rotation:
     """A rotation about an axis in space, right-handed.
@@ -90,6 +92,7 @@ class Rotation:
         return np.asarray(centre + (points - centre) @ self.matrix(share).T)
 
 
+@typed
 @dataclass(frozen=True)
 class Placement:
     """First scaled about the origin, then turned, then moved.

@@ -8,6 +8,7 @@ from typing import Any
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
+from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.cad import CAD, cad_arrays
 from anisocontact.mesh.gmsh import gmsh_arrays
@@ -49,6 +50,7 @@ def register_reader(*suffixes: str) -> Callable[[Reader], Reader]:
     return register
 
 
+@typed
 def whole_reader(read: Callable[[Path], WholeMesh]) -> Reader:
     """A reader of a format that every process reads as a whole.
 

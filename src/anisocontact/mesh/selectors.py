@@ -16,6 +16,7 @@ from anisocontact.base.arrays import connected
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_nodes
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.split import Route
 
@@ -102,6 +103,7 @@ type Selector = Callable[[Boundary], Mask]
 _SELECTORS: dict[str, tuple[Entry, Callable[..., Mask]]] = {}
 
 
+@typed
 def register_selector(
     name: str, doc: str, *parameters: Parameter
 ) -> Callable[[Callable[..., Mask]], Callable[..., Mask]]:
@@ -142,6 +144,7 @@ def selectors() -> tuple[Entry, ...]:
     return tuple(entry for entry, _ in _SELECTORS.values())
 
 
+@typed
 def make_selector(name: str, **parameters: Any) -> Selector:
     """A selector of facets by name.
 

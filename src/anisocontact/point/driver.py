@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.interface import State
 from anisocontact.point.balance import (
     Control,
@@ -39,6 +40,7 @@ from anisocontact.surfaces import Floats
 MOST_HALVINGS = 10
 
 
+@typed
 def drive(
     interface: PointInterface,
     load: Load,

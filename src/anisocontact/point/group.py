@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.point.foot import Foot
 from anisocontact.surfaces import Floats
 
@@ -15,6 +16,7 @@ from anisocontact.surfaces import Floats
 ORIENTATIONS = ("held", "surface", "free")
 
 
+@typed
 class Group:
     """Points at fixed places of a rigid body, which is loaded at its reference.
 

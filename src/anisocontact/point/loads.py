@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.point.device import (
     FRAMES,
     Advance,
@@ -91,6 +92,7 @@ class Load(ABC):
         """
 
 
+@typed
 class PrescribedPath(Load):
     """A path of the reference: its foot is prescribed, and the pressure or the gap.
 
@@ -147,6 +149,7 @@ class PrescribedPath(Load):
         return Device(under.position)
 
 
+@typed
 class DraggingSpring(Load):
     """A linear spring from the reference to a free end that moves along a path.
 
@@ -201,6 +204,7 @@ class DraggingSpring(Load):
         return DraggedSpring(self.stiffness, self.end(surface, t))
 
 
+@typed
 class DeadLoad(Load):
     """A tangential force of given size and direction.
 
@@ -268,6 +272,7 @@ class DeadLoad(Load):
         return Dashpot(force, eta, before.position, t - before.time)
 
 
+@typed
 class Push(Load):
     """A force of given direction that moves the point by a given length along this direction.
 

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 
 __all__ = [
     "CELL",
@@ -64,6 +65,7 @@ class OutputQuantity:
     asked: bool = False
 
 
+@typed
 def register_quantity[T: Callable[[Any], Any]](
     name: str, at: str, unit: str, doc: str
 ) -> Callable[[T], T]:

@@ -16,6 +16,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.results.dataset import DataSet, read_data_set
 from anisocontact.results.history import read_history
 
@@ -51,6 +52,7 @@ def _over_time(states: list[npt.NDArray[Any]], of: str) -> tuple[tuple[str, ...]
     return ("time", of, *inner), values
 
 
+@typed
 class Results:
     """Results of a run.
 

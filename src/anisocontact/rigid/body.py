@@ -12,6 +12,7 @@ import numpy.typing as npt
 from anisocontact.base import registry
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
 
 Floats = npt.NDArray[np.float64]
@@ -52,6 +53,7 @@ def at_rest() -> Pose:
     return Pose(np.zeros(3), np.zeros(3), np.eye(3), np.eye(3))
 
 
+@typed
 class RigidBody:
     """A rigid body that carries the surfaces of one or several contacts.
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.typed import typed
 from anisocontact.interface import Interface, Response, SlaveSurface, State
 from anisocontact.rigid.body import RigidBody
 from anisocontact.rigid.rotation import skew
@@ -15,6 +16,7 @@ from anisocontact.surfaces import Surface
 Floats = npt.NDArray[np.float64]
 
 
+@typed
 @dataclass(frozen=True)
 class MovingSurface:
     """A surface that moves with a rigid body, as the master of a `Contact`.

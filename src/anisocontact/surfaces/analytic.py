@@ -12,6 +12,7 @@ from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.arrays import Floats, points
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.surfaces.geometry import Geometry, GeometryDerivatives
 
 __all__ = [
@@ -197,6 +198,7 @@ class Surface:
         return lower, upper, periodic
 
 
+@typed
 def make_surface(name: str, **parameters: object) -> Surface:
     """A surface of the registry.
 

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base.arrays import Floats, points
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.surfaces.analytic import Jet, default_threads
 from anisocontact.surfaces.facet_blocks import TOPOLOGIES, FacetBlocks, Integers, finite
 from anisocontact.surfaces.geometry import PointGeometry
@@ -137,6 +138,7 @@ class FacetSets:
         )
 
 
+@typed
 class FacetSurface:
     """A surface of facets of any of the `TOPOLOGIES`, mixed if need be.
 

@@ -11,6 +11,7 @@ import scipy
 from anisocontact import _core
 from anisocontact.base.arrays import points
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.surfaces.facet_blocks import FacetBlocks, finite
 from anisocontact.surfaces.facets import FacetSurface
 
@@ -18,6 +19,7 @@ from anisocontact.surfaces.facets import FacetSurface
 PATCHES = {"tri3": ("tri6", 6), "quad4": ("quad8", 8)}
 
 
+@typed
 class SmoothSurface(FacetSurface):
     """A surface of quadratic patches through the points of linear facets.
 

@@ -6,6 +6,7 @@ from typing import Any
 
 from anisocontact.base import registry
 from anisocontact.base.registry import Entry
+from anisocontact.base.typed import typed
 from anisocontact.mesh.shapes.annulus import AnnulusSpec
 from anisocontact.mesh.shapes.ball import BallSpec
 from anisocontact.mesh.shapes.box import BoxSpec
@@ -52,6 +53,7 @@ def shapes() -> tuple[Entry, ...]:
     return tuple(shape.entry for shape in _SHAPES.values())
 
 
+@typed
 def make_shape(name: str, *, cell: str = "", order: int = 1, **parameters: Any) -> Shape:
     """Built-in shape by name.
 

@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.base.fenicsx import Mat, Vec
+from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
 from anisocontact.base.limits import Limits
+from anisocontact.base.typed import typed
 from anisocontact.base.whole_files import replacing
 from anisocontact.contact import Contact, warn_of
 from anisocontact.contact.hints import warn_of_overlaps
@@ -43,6 +44,7 @@ NEAR = 1e-6
 LIMITS = Limits()
 
 
+@typed
 class ContactProblem(AssembledSystem):
     """Residual form of the user plus contact, solved by PETSc SNES.
 
@@ -91,12 +93,12 @@ class ContactProblem(AssembledSystem):
 
     def __init__(
         self,
-        F: Any,
-        u: Any,
+        F: ufl.Form,
+        u: fem.Function[Any],
         *,
-        bcs: Sequence[Any] = (),
+        bcs: Sequence[fem.DirichletBC[Any]] = (),
         contacts: Sequence[Contact] = (),
-        J: Any = None,
+        J: ufl.Form | None = None,
         petsc_options_prefix: str = "anisocontact_",
         petsc_options: Mapping[str, OptionValue] | None = None,
     ) -> None:
@@ -129,6 +131,7 @@ class ContactProblem(AssembledSystem):
         options = {**self._fields.options, **(petsc_options or {})}
         self.newton = Newton(self, petsc_options_prefix, options, lambda *_: None)
 
+    @typed
     def solve(self, dt: float = 1.0) -> int:
         """Bring `u` into equilibrium and accept the history of the contacts.
 
@@ -169,6 +172,7 @@ class ContactProblem(AssembledSystem):
             body.commit()
         return result.iterations
 
+    @typed
     def solve_steps(
         self,
         lead: Callable[[float], object],
@@ -218,6 +222,7 @@ class ContactProblem(AssembledSystem):
                 break
         return total
 
+    @typed
     def save(self, path: str | Path) -> None:
         """Write what the next steps depend on: `u` with all its fields, histories of the contacts.
 
@@ -230,6 +235,7 @@ class ContactProblem(AssembledSystem):
         with replacing(self._own_file(path)) as draft, draft.open("wb") as file:
             np.savez(file, allow_pickle=False, **arrays)
 
+    @typed
     def restore(self, path: str | Path) -> None:
         """Go on from what `save` has written, with the same mesh, contacts and processes.
 

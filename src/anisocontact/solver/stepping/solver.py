@@ -11,6 +11,7 @@ import numpy as np
 from anisocontact.base.fenicsx import Vec
 from anisocontact.base.limits import Limits
 from anisocontact.base.strategies import AUTO
+from anisocontact.base.typed import typed
 from anisocontact.contact import warn_of
 from anisocontact.solver.stepping.alarms import Alarms
 from anisocontact.solver.stepping.attempts import Attempts, Outcome
@@ -60,6 +61,7 @@ class RunPosition:
     events: EventWatch | None = None
 
 
+@typed
 class Solver:
     """Runs the steps of a problem.
 

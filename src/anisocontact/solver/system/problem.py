@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
+from anisocontact.base.typed import typed
 from anisocontact.bulk import LinearBulk, Material
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
@@ -39,6 +40,7 @@ from anisocontact.solver.terms.tied_faces import Tie
 Floats = npt.NDArray[np.float64]
 
 
+@typed
 class Problem(ReportedSystem):
     """Equilibrium `K u - contact - loads = 0` with prescribed displacements.
 

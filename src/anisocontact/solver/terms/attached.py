@@ -11,6 +11,7 @@ import numpy.typing as npt
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Parameter
+from anisocontact.base.typed import typed
 from anisocontact.contact import facet_quadrature
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
@@ -47,6 +48,7 @@ class Attached(Term):
         return 0.0
 
 
+@typed
 @dataclass(frozen=True)
 class ElasticSupport:
     """A bed of springs between a facet group and ground.
@@ -100,6 +102,7 @@ class ElasticSupport:
         return _SupportTerm(self, model)
 
 
+@typed
 @dataclass(frozen=True)
 class Spring:
     """A spring between a facet group and ground, or another facet group.

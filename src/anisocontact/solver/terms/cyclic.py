@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.contact.tie_weights import TieConditions
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.contact.turning import Turning
@@ -24,6 +25,7 @@ SAME_PLACE = 1e-6
 SAME = 1e-6
 
 
+@typed
 @dataclass(frozen=True)
 class CyclicSymmetry:
     """Two cut faces of a sector that stands for a whole: `u_slave = Q u_master`, Q a turn.

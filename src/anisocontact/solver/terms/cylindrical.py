@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.mesh.placement import check_vector
 
 Floats = npt.NDArray[np.float64]
@@ -21,6 +22,7 @@ COMPONENTS = ("radial", "tangential", "axial")
 NO_SHARE = 1e-6
 
 
+@typed
 @dataclass(frozen=True)
 class Cylindrical:
     """Displacement of a group along the directions of cylinder coordinates about an axis.

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, Vec, fem
+from anisocontact.base.typed import typed
 from anisocontact.bulk import Material, small_strain
 from anisocontact.contact.facet_mesh import facet_nodes
 from anisocontact.contact.quadrature import Couplings
@@ -25,6 +26,7 @@ Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int64]
 
 
+@typed
 @dataclass(frozen=True)
 class CoupledFace:
     """A facet group whose nodes move with a rigid body.

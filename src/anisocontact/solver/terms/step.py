@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.base.until import Until
 from anisocontact.rigid import turns_in_radian
 from anisocontact.solver.terms.cylindrical import Cylindrical
@@ -27,6 +28,7 @@ Goal = float | Course
 Place = tuple[str, str, str]
 
 
+@typed
 @dataclass(frozen=True)
 class Step:
     """A stretch of loading; every value goes linearly from where it is to the one given.
@@ -85,8 +87,6 @@ class Step:
     until: Until | None = None
 
     def __post_init__(self) -> None:
-        if isinstance(self.increments, bool) or not isinstance(self.increments, int):
-            raise self._error("increments", f"{self.increments!r} given, needs a whole number >= 1")
         if self.increments < 1:
             raise self._error("increments", f"{self.increments} given, must be >= 1")
         if not (math.isfinite(self.duration) and self.duration > 0.0):

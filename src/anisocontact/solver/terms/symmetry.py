@@ -39,8 +39,6 @@ class SymmetryPlanes:
     """
 
     def __init__(self, model: Model, groups: Sequence[str], tied: Ints) -> None:
-        if isinstance(groups, str):
-            raise InputError(f"{groups!r} given, a list of facet groups needed", "symmetry")
         self.groups = list(groups)
         self._guides = [_guide(model, group, tied) for group in groups]
 

@@ -11,6 +11,7 @@ import scipy
 
 from anisocontact.base.errors import InputError, within
 from anisocontact.base.fenicsx import Vec
+from anisocontact.base.typed import typed
 from anisocontact.contact import facet_size
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import check_sides
@@ -34,6 +35,7 @@ TOLERANCE = 0.1
 ALONG = 1.0 - 1e-9
 
 
+@typed
 @dataclass(frozen=True)
 class Tie:
     """Two facet groups glued together; their meshes need not match.

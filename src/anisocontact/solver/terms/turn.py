@@ -11,6 +11,7 @@ import numpy.typing as npt
 from anisocontact.base.amplitudes import Amplitude
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
+from anisocontact.base.typed import typed
 from anisocontact.mesh.placement import Rotation, check_vector
 
 Floats = npt.NDArray[np.float64]
@@ -19,6 +20,7 @@ Floats = npt.NDArray[np.float64]
 _PLACES = 64
 
 
+@typed
 @dataclass(frozen=True)
 class Turn(Rotation):
     """A screw motion: a rotation about an axis that moves along the step.

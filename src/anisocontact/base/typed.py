@@ -1,0 +1,214 @@
+"""Arguments of what scripts call, checked against the types that are written there.
+
+An annotation says what an argument may be; `typed` makes it hold, so that what is something else is
+one line with the name of the argument, before anything is made of it. Of types only is judged:
+what a number may be is checked where it is used.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+import types
+import typing
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, wraps
+from numbers import Integral, Real
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from anisocontact.base.errors import InputError
+
+#: What is said of types that are known by another name, or hold several things.
+_CALLED: Mapping[Any, str] = {
+    str: "a text",
+    bool: "True or False",
+    int: "a whole number",
+    float: "a number",
+    Path: "a path",
+}
+
+
+def typed[F: Callable[..., Any]](made: F) -> F:
+    """Let a function, or the constructor of a class, refuse arguments of other types.
+
+    Args:
+        made: The function or class; with annotations that are not `Any` or `object`.
+
+    Returns:
+        The same class, or a function that does so.
+
+    Example:
+        >>> @typed
+        ... def area(radius: float) -> float:
+        ...     return math.pi * radius**2
+        >>> area("two")
+        Traceback (most recent call last):
+        anisocontact.base.errors.InputError: radius: 'two' given, a number needed
+    """
+    if isinstance(made, type):
+        own: Any = made
+        own.__init__ = _checked(own.__init__)
+        return made
+    return cast(F, _checked(made))
+
+
+def _checked(function: Any) -> Any:
+    @wraps(function)
+    def checked(*args: Any, **kwargs: Any) -> Any:
+        try:
+            given = _signature(function).bind_partial(*args, **kwargs).arguments
+        except TypeError:  # said by Python, of the call itself
+            return function(*args, **kwargs)
+        hints = _hints(function)
+        for name, value in given.items():
+            if name in hints and not _fits(hints[name], value):
+                text = f"{_shown(value)} given, {_needed(hints[name])} needed"
+                raise InputError(" ".join(text.split()), field=name)
+        return function(*args, **kwargs)
+
+    return checked
+
+
+@cache
+def _signature(function: Any) -> inspect.Signature:
+    return inspect.signature(function)
+
+
+@cache
+def _hints(function: Any) -> dict[str, Any]:
+    """Types of the arguments that are given one by one; none where a name is not known here."""
+    own = {parameter.__name__: parameter for parameter in getattr(function, "__type_params__", ())}
+    try:
+        hints = typing.get_type_hints(function, localns=own)
+    except NameError:
+        return {}
+    parameters = _signature(function).parameters.values()
+    single = {p.name for p in parameters if p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}
+    return {name: hint for name, hint in hints.items() if name in single and name != "return"}
+
+
+def _fits(hint: Any, value: Any) -> bool:
+    """Whether a value is of a type; so are values of types that nothing is known of."""
+    if hint is npt.ArrayLike:
+        return _is_array(value)
+    if isinstance(hint, typing.TypeAliasType):
+        return _fits(hint.__value__, value)
+    origin, of = typing.get_origin(hint), typing.get_args(hint)
+    if origin in (typing.Union, types.UnionType):
+        return any(_fits(one, value) for one in of)
+    if isinstance(origin, type):
+        return _fits_generic(origin, of, value)
+    return _fits_class(hint, value) if isinstance(hint, type) else True
+
+
+def _is_array(value: Any) -> bool:
+    try:
+        return np.asarray(value).dtype.kind in "biuf"
+    except (TypeError, ValueError):  # rows of different lengths
+        return False
+
+
+def _fits_class(kind: type[Any], value: Any) -> bool:
+    if kind in (object, Any):
+        return True
+    if kind is bool:
+        return isinstance(value, bool | np.bool_)
+    if kind in (int, float):
+        number = Integral if kind is int else Real
+        value = value[()] if isinstance(value, np.ndarray) and value.ndim == 0 else value
+        is_number = isinstance(value, number) and not isinstance(value, bool | np.bool_)
+        return is_number and not math.isnan(value)
+    if kind is Path:
+        return isinstance(value, str | Path)
+    if getattr(kind, "_is_protocol", False):
+        return all(hasattr(value, name) for name in typing.cast(Any, kind).__protocol_attrs__)
+    return isinstance(value, kind)
+
+
+def _fits_generic(origin: type[Any], of: tuple[Any, ...], value: Any) -> bool:
+    """Containers with what is in them, and what can be called."""
+    if origin is np.ndarray:
+        return isinstance(value, np.ndarray | Sequence) and not isinstance(value, str | bytes)
+    if issubclass(origin, Mapping):
+        return isinstance(value, Mapping) and _fits_items(of, value)
+    if _is_list(origin):
+        return _fits_list(origin, of, value)
+    return callable(value) if origin is cast(Any, Callable) else isinstance(value, origin)
+
+
+def _is_list(origin: type[Any]) -> bool:
+    """Whether a type is a container as such, and not something that can be gone through as well."""
+    return issubclass(origin, Iterable) and origin.__module__ in ("builtins", "collections.abc")
+
+
+def _fits_items(of: tuple[Any, ...], value: Mapping[Any, Any]) -> bool:
+    """Names, and values but for nested ones: of those it is said elsewhere which one is wrong."""
+    inner = typing.get_origin(of[1]) or of[1]
+    plain = isinstance(inner, type) and not issubclass(inner, Mapping)
+    return all(_fits(of[0], k) and (not plain or _fits(of[1], v)) for k, v in value.items())
+
+
+def _fits_list(origin: type[Any], of: tuple[Any, ...], value: Any) -> bool:
+    """Lists with their items, but for those that looking at them uses up."""
+    if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
+        return False
+    if isinstance(value, np.ndarray) and not (value.ndim and of[0] in _CALLED):
+        return False
+    if not isinstance(value, Sequence | np.ndarray):
+        return not issubclass(origin, Sequence)
+    if origin is tuple and Ellipsis not in of:
+        return len(value) == len(of) and all(map(_fits, of, value))
+    return all(_fits(of[0], item) for item in value)
+
+
+def _needed(hint: Any) -> str:
+    """What is needed, in words."""
+    if hint is npt.ArrayLike:
+        return "an array of numbers"
+    if isinstance(hint, typing.TypeAliasType):
+        return _needed(hint.__value__)
+    origin, of = typing.get_origin(hint), typing.get_args(hint)
+    if origin in (typing.Union, types.UnionType):
+        words = [_needed(one) for one in _members(hint) if one is not type(None)]
+        return " or ".join(filter(None, [", ".join(words[:-1]), words[-1]]))
+    if isinstance(origin, type) and (_is_list(origin) or origin is np.ndarray):
+        return _needed_list(origin, of)
+    if getattr(hint, "_is_protocol", False):
+        return f"{hint.__name__}, which has {' and '.join(sorted(hint.__protocol_attrs__))},"
+    named = "a function" if origin is cast(Any, Callable) else getattr(hint, "__name__", str(hint))
+    return str(_CALLED.get(hint, named))
+
+
+def _members(hint: Any) -> list[Any]:
+    """Types of a union, also of those that it takes in by name."""
+    if hint is not npt.ArrayLike and isinstance(hint, typing.TypeAliasType):
+        return _members(hint.__value__)
+    if typing.get_origin(hint) not in (typing.Union, types.UnionType):
+        return [hint]
+    return [member for one in typing.get_args(hint) for member in _members(one)]
+
+
+def _needed_list(origin: type[Any], of: tuple[Any, ...]) -> str:
+    if issubclass(origin, Mapping):
+        return "values by name"
+    if origin is np.ndarray:
+        return "an array"
+    count = f"{len(of)} of" if origin is tuple and Ellipsis not in of else "a list of"
+    return f"{count} {_plain(of[0])}"
+
+
+def _plain(hint: Any) -> str:
+    """Several of a type."""
+    several = {str: "texts", int: "whole numbers", float: "numbers"}
+    return several.get(hint, _needed(hint))
+
+
+def _shown(value: Any) -> str:
+    """A value, or its type where its own text is long or says nothing."""
+    text = repr(value)
+    plain = isinstance(value, str | int | float | complex | Sequence | Mapping | None)
+    return text if plain and len(text) <= 60 else type(value).__name__
