@@ -22,7 +22,7 @@ class System:
         self._residual = residual
         self.contact_term = self
         self.retraceable = self.touching = True
-        self.settled = False
+        self.settled = self.outgrown = False
         self.visited: list[float] = []
         self.shares: list[float] = []
         self.balance: Any = None
@@ -123,6 +123,17 @@ def test_whole_where_points_keep_their_status(until: float, share: float) -> Non
     system.settled = True
     assert search.share(vector(0.0), vector(-1.0), 1.0) == share
     assert system.visited == [0.0, share]
+
+
+def test_leaves_the_reach_when_it_is_wanted_twice() -> None:
+    """Halves of corrections that leave what `condensed` has would creep towards its end."""
+    search, system = begun(lambda x: np.nan if x > 0.6 else 1.0 - x)
+    system.outgrown = True
+    assert search.share(vector(0.0), vector(-1.0), 1.0) == 0.5
+    assert search.share(vector(0.5), vector(-0.5), 1.0) == 1.0
+    search.begin()
+    system.evaluate(vector(0.0))
+    assert search.share(vector(0.0), vector(-1.0), 1.0) == 0.5
 
 
 def test_goes_back_where_another_state_is_asked_for() -> None:

@@ -31,7 +31,9 @@ class Backtracking:
     bend far come to their contact through it. Neither does the balance count where less than half
     would be taken though the whole correction changes the status of no point: slender bodies, whose
     membrane forces rise for one correction, would creep. Where no share will do it is taken whole,
-    if there is an answer: the active set may have to change at once.
+    if there is an answer: the active set may have to change at once. Two whole corrections in turn
+    that leave what `condensed` keeps in reach are no overshoot: the second is taken, so that it
+    widens the reach, in place of halves that would creep towards its end.
 
     Args:
         system: What is solved, a `newton.System`.
@@ -44,6 +46,7 @@ class Backtracking:
         self._system, self.whole = system, False
         self._known: deque[float] = deque(maxlen=MEMORY)
         self._tried: tuple[Marks, Floats, Floats] | None = None
+        self._left = False
 
     @property
     def _contacts(self) -> Contacts:
@@ -53,7 +56,7 @@ class Backtracking:
     def begin(self) -> None:
         """Take it that another iteration begins."""
         self._known.clear()
-        self._tried = None
+        self._tried, self._left = None, False
 
     def share(self, x: Vec, correction: Vec, largest: float) -> float:
         """Share of a correction to take; the multipliers have taken it then.
@@ -75,10 +78,14 @@ class Backtracking:
         while share >= LEAST * largest:
             # a number that is none compares as false
             if self._norm_at(share, x, correction) <= bound:
+                self._left = self._left and share < largest
                 return share
             if share == largest:
                 answers = bool(np.isfinite(self._system.balance.norm))
                 settled = answers and contacts.same(before)
+                left, self._left = self._left, self._system.outgrown
+                if left and self._left:
+                    return share
             contacts.go_back(marks)
             share *= 0.5
             if settled and share < HALF * largest:

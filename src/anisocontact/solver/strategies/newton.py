@@ -62,6 +62,11 @@ class System(Protocol):
         ...
 
     @property
+    def outgrown(self) -> bool:
+        """Whether the last evaluation left what the system keeps in reach."""
+        ...
+
+    @property
     def comm(self) -> Any:
         """Communicator of the unknowns."""
         ...

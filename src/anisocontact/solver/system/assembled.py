@@ -22,8 +22,11 @@ class AssembledSystem:
     Attributes:
         contact_term: Its contacts as one term, with their multipliers.
         balance: Forces of the last evaluation.
+        outgrown: Whether the last evaluation has no answer since a slave point met a facet out of
+            reach, where a system has but some of the unknowns.
     """
 
+    outgrown: bool = False
     contact_term: Contacts
     balance: ForceBalance
     _aid: Stabilisation | None = None

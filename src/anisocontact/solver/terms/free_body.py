@@ -20,6 +20,8 @@ Flags = npt.NDArray[np.bool_]
 TOUCHING = 0.01
 #: Points in contact that can hold all motions of a body.
 ENOUGH = 3
+#: Gap over the size of a facet below which a point touches as far as rounding goes.
+NEAR = 1e-6
 #: Resistance of pressures to the motion that they hold least, over that to the one they hold most.
 PRESSED = 0.01
 
@@ -76,12 +78,12 @@ class FreeBody:
     def may_hold(self) -> bool:
         """Whether contact is likely to hold it without stabilisation, from where it is now.
 
-        Enough points stick, with a known stiffness, or pressures alone hold it; a body on springs
-        may slide as well.
+        Enough points stick, with a known stiffness, or pressures alone hold it, where points just
+        touch as well; a body on springs may slide as well.
         """
         if self.sprung:
             return self._count("stick", "slip") >= ENOUGH
-        return self.sticks() or self._pressed()
+        return self.sticks() or self._pressed(NEAR)
 
     def holds(self) -> bool:
         """Whether contact holds it in the trial, and springs where it has some."""
@@ -96,11 +98,17 @@ class FreeBody:
         """Whether enough points stick in the trial, with a known stiffness, to hold it."""
         return self._count("stick") >= ENOUGH
 
-    def _pressed(self) -> bool:
-        """Whether pressures at closed points resist all its motions, of which none is sliding."""
+    def _pressed(self, near: float = 0.0) -> bool:
+        """Whether pressures at closed points resist all its motions, of which none is sliding.
+
+        Args:
+            near: Gap over the size of a facet that counts as closed.
+        """
         matrix = np.zeros((len(self.left), len(self.left)))
         for contact in self.contacts:
-            closed = contact.trial.status != 0
+            touches = contact.trial.gap - contact.state["offset"] < near * contact.facet_size
+            touches &= contact.master.located(contact.state)
+            closed = (contact.trial.status != 0) | touches
             normal = contact.trial.normal[closed]
             arms = (contact.points[closed] - self.body.centre) / self.body.size
             along = np.concatenate([normal, np.cross(arms, normal)], axis=1) @ self.left.T

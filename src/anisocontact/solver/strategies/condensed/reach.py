@@ -112,7 +112,11 @@ class Reach:
         nearest = np.linalg.norm(surface.project(points).position - points, axis=1)
         able = np.flatnonzero(nearest <= master.reach + motion)
         self.nodes[master.local_names(contact.slave_points.nodes[able])] = True
-        limit = nearest[able] + 2.0 * motion + contact.slave_points.spread
+        spread = contact.slave_points.spread
+        if self._factor > 1.0:
+            # of a master coarser than the slave a facet may be met that has no slave node below it
+            spread += np.sqrt(2.0) * contact.master_size
+        limit = nearest[able] + 2.0 * motion + spread
         for some in _alike(limit):
             near = surface.within(points[able[some]], float(limit[some].max()))
             self.nodes[master.facets[near.facets]] = True
