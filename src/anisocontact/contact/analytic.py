@@ -60,11 +60,8 @@ class AnalyticAnswer:
 
     def couplings(self) -> list[Couplings]:
         """As of `Answer`: a block for each facet, (m, 3 r, 3 k)."""
-        quadrature, now, areas = (
-            self.slave.quadrature,
-            self.snapshot.response,
-            self.snapshot.areas,
-        )
+        quadrature, now = self.slave.quadrature, self.snapshot.response
+        areas = self.snapshot.areas
         blocks = quadrature.facet_matrices(-now.tangent, areas)
         if self.slave.current_area:
             blocks -= self.there.area_matrices(now.traction)
@@ -72,7 +69,7 @@ class AnalyticAnswer:
             blocks -= quadrature.tangent_matrices(now.tangent_slave, areas)
         rows = quadrature.nodes[:, : quadrature.rows]
         columns = self.slave.coupled(quadrature.nodes)
-        return [(rows, columns, blocks[:, : 3 * rows.shape[1]])]
+        return [(rows, columns, blocks)]
 
     def by_derivative(self, other: AnalyticAnswer, stiffness: Floats) -> Self:
         """As of `Answer`."""

@@ -72,7 +72,7 @@ class FacetQuadrature:
     @cached_property
     def interpolation(self) -> scipy.sparse.csr_array:
         """Matrix that takes a nodal field to the points, (m q, local nodes touched)."""
-        basis, nodes = self.basis[:, :, : self.rows], self.nodes[:, : self.rows]
+        basis, nodes = self.row_basis, self.nodes[:, : self.rows]
         m, q, k = basis.shape
         columns = np.broadcast_to(nodes[:, None, :], (m, q, k))
         starts = np.arange(0, m * q * k + 1, k)
@@ -109,6 +109,11 @@ class FacetQuadrature:
         forces = self.interpolation.T @ (weights[:, None] * traction)
         out[: len(forces)] += forces
 
+    @property
+    def row_basis(self) -> Floats:
+        """Basis functions of the nodes that forces act on, (m, q, r)."""
+        return self.basis[:, :, : self.rows]
+
     def facet_matrices(self, point_matrices: Floats, areas: Floats | None = None) -> Floats:
         """`integral of basis_a D basis_b` on each facet.
 
@@ -117,15 +122,16 @@ class FacetQuadrature:
             areas: Area of each point, (m q,), length^2; that of the reference if not given.
 
         Returns:
-            One matrix for each facet, rows and columns node by node, (m, 3 k, 3 k).
+            One matrix for each facet, rows and columns node by node, (m, 3 r, 3 k).
         """
-        m, q, k = self.basis.shape
+        basis, (m, q, k) = self.row_basis, self.basis.shape
+        r = basis.shape[2]
         weights = self.weights if areas is None else areas.reshape(m, q)
         weighted = weights[..., None, None] * point_matrices.reshape(m, q, 3, 3)
-        columns = weighted[:, :, :, None, :] * self.basis[:, :, None, :, None]
-        # (m, k, q) (m, q, 3 k 3): one product of small matrices per facet.
-        blocks = self.basis.swapaxes(1, 2) @ columns.reshape(m, q, 9 * k)
-        return blocks.reshape(m, 3 * k, 3 * k)
+        columns = weighted[:, :, :, None, :] * basis[:, :, None, :, None]
+        # (m, r, q) (m, q, 3 r 3): one product of small matrices per facet.
+        blocks = (basis.swapaxes(1, 2) @ columns.reshape(m, q, 9 * r)).reshape(m, 3 * r, 3 * r)
+        return blocks if r == k else np.pad(blocks, ((0, 0), (0, 0), (0, 3 * (k - r))))
 
     def tangent_matrices(self, by_tangent: Floats, areas: Floats) -> Floats:
         """`integral of basis_a D_i gradient_b,i` on each facet.
@@ -135,17 +141,15 @@ class FacetQuadrature:
             areas: Area of each point, (m q,), length^2.
 
         Returns:
-            One matrix for each facet, rows and columns node by node, (m, 3 k, 3 k).
+            One matrix for each facet, rows and columns node by node, (m, 3 r, 3 k).
         """
-        m, q, k = self.basis.shape
+        basis, (m, q, k) = self.row_basis, self.basis.shape
         weighted = (areas[:, None, None, None] * by_tangent).reshape(m, q, 2, 3, 3)
-        blocks = np.einsum(
-            "mqa,mqdij,mqbd->maibj", self.basis, weighted, self.gradient, optimize=True
-        )
+        blocks = np.einsum("mqa,mqdij,mqbd->maibj", basis, weighted, self.gradient, optimize=True)
         if self.turn is not None:
             across = weighted[:, :, 1] @ self.turn
-            blocks += np.einsum("mqa,mqij,mqb->maibj", self.basis, across, self.across)
-        return np.asarray(blocks.reshape(m, 3 * k, 3 * k))
+            blocks += np.einsum("mqa,mqij,mqb->maibj", basis, across, self.across)
+        return np.asarray(blocks.reshape(m, 3 * basis.shape[2], 3 * k))
 
 
 @dataclass(frozen=True)
@@ -185,12 +189,12 @@ class Surfaced:
             traction: t at each point, (m q, 3), stress.
 
         Returns:
-            One matrix for each facet, rows and columns node by node, (m, 3 k, 3 k).
+            One matrix for each facet, rows and columns node by node, (m, 3 r, 3 k).
         """
         m, q, k = self.quadrature.basis.shape
-        pulls = self.quadrature.basis[..., None] * traction.reshape(m, q, 1, 3)
+        pulls = self.quadrature.row_basis[..., None] * traction.reshape(m, q, 1, 3)
         changes = self.area_changes.reshape(m, q, 3 * k)
-        return np.asarray(pulls.reshape(m, q, 3 * k).swapaxes(1, 2) @ changes)
+        return np.asarray(pulls.reshape(m, q, -1).swapaxes(1, 2) @ changes)
 
     @cached_property
     def area_changes(self) -> Floats:
