@@ -101,6 +101,8 @@ def test_block_on_block() -> None:
     count, _, _, corrections = notes[-1].split()[:4]
     assert int(count) <= 2
     assert int(corrections) > 10
+    # where points change their status, tangents of the bodies of before serve
+    assert int(notes[-1].split()[-1]) < 0.9 * int(corrections)
 
 
 @pytest.mark.parametrize(
@@ -154,6 +156,37 @@ def test_symmetry_plane() -> None:
     top = {"block.top": {"x": 0.0, "z": -0.03}}
     drag = Step("drag", 2, {"block.top": {"x": 0.03}})
     _same(lambda: _on_plane(symmetry=["block.front"]), [Step("press", 2, top), drag])
+
+
+@pytest.mark.parametrize("material", [RUBBER, HARDLY_COMPRESSIBLE], ids=["rubber", "nu=0.499"])
+def test_what_a_tangent_has_missed_is_of_second_order(material: dict[str, Any]) -> None:
+    """Forces less those that the last tangent tells fall with the square of the way from there.
+
+    Requirement: a tangent that is written again is that of the first state, not of the last one,
+    and its sign is that of the forces: order two by halving, within a tenth, and the same matrix
+    to the last bit.
+    """
+    problem = _pair(material=material)
+    x, matrix, once_more = problem.new_vector(), problem.new_tangent(), problem.new_tangent()
+    way = np.random.default_rng(3).standard_normal(x.getLocalSize())
+    start, bodies = 0.01 * way[::-1], problem.assembly.bodies
+    x.array[:] = start
+    problem.tangent(x, matrix)
+    missed = []
+    for step in (2e-3, 1e-3):
+        x.array[:] = start + step * way
+        problem.evaluate(x)
+        missed.append(float(np.linalg.norm(bodies.missed())))
+    assert np.log2(missed[0] / missed[1]) == pytest.approx(2.0, abs=0.1)
+    bodies.again = True
+    bodies.add_tangent(once_more)
+    again = once_more.getValuesCSR()[2]
+    bodies.again = False
+    x.array[:] = start
+    problem.evaluate(x)
+    bodies.add_tangent(once_more)
+    first = once_more.getValuesCSR()[2]
+    assert np.array_equal(first, again)
 
 
 def _corrected(problem: Problem, factor: LaggedFactor, distortion: float) -> tuple[float, float]:

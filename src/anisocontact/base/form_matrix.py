@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.base.fenicsx import Mat, PETSc, assemble_into, create_stiffness, fem, la
+from anisocontact.base.fenicsx import Mat, PETSc, Vec, assemble_into, create_stiffness, fem, la
 
 __all__ = ["FormMatrix", "add_matrix"]
 
@@ -47,17 +47,28 @@ class FormMatrix:
             csr = (*sides, self._rows.data)
             self._wrapped: Mat = PETSc.Mat().createAIJWithArrays(sizes, csr, comm=form.mesh.comm)
 
-    def write(self, out: Mat) -> None:
-        """Write the matrix at the coefficients of now into one that has room for it, assembled."""
+    def write(self, out: Mat, *, again: bool = False) -> None:
+        """Write the matrix into one that has room for it, assembled.
+
+        Args:
+            out: Where to.
+            again: On one process, whether it is that of the last call instead of that at the
+                coefficients of now.
+        """
         out.zeroEntries()
         if self._rows is None:
             assemble_into(out, self._form)
         else:
-            self._rows.data[:] = 0.0
-            fem.assemble_matrix(self._rows, self._form)
-            self._wrapped.assemble()
+            if not again:
+                self._rows.data[:] = 0.0
+                fem.assemble_matrix(self._rows, self._form)
+                self._wrapped.assemble()
             add_matrix(out, self._wrapped)
         out.assemble(PETSc.Mat.AssemblyType.FINAL)
+
+    def times(self, x: Vec, out: Vec) -> None:
+        """The product of what was last written with a vector, on one process."""
+        self._wrapped.mult(x, out)
 
 
 def add_matrix(out: Mat, matrix: Mat) -> None:

@@ -124,15 +124,22 @@ class LinearBulk:
     def commit(self, u: Vec) -> None:
         """Accept a state, which changes nothing."""
 
-    def tangent(self, out: Mat) -> None:
+    def tangent(self, out: Mat, *, again: bool = False) -> None:
         """Write the stiffness into a matrix.
 
         Args:
             out: A matrix that has room for it and may have more unknowns.
+            again: Whether it may be what the last call has written: it is always that.
         """
         out.zeroEntries()
         add_matrix(out, self.stiffness)
         out.assemble()
+
+    def times(self, x: Vec) -> Vec:
+        """The product of the stiffness with a vector."""
+        out = x.duplicate()
+        self.stiffness.mult(x, out)
+        return out
 
 
 def _bilinear_form(model: Model, materials: Mapping[str, Material], dx: Any) -> Any:

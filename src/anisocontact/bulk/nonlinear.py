@@ -153,17 +153,28 @@ class NonlinearBulk:
             return 0.0
         return float(self._comm.allreduce(fem.assemble_scalar(self._dissipated)))
 
-    def tangent(self, out: Mat) -> None:
+    def tangent(self, out: Mat, *, again: bool = False) -> None:
         """Write the tangent of the last `force` into a matrix.
 
         Args:
             out: A matrix that has room for it.
+            again: On one process, whether it is to be what the last call has written instead.
         """
-        for body in self._points:
-            body.write_tangent()
-        with self._pressures.predicted():
-            self._tangent.write(out)
-        self._pressures.add_tangent(out)
+        if again:
+            self._tangent.write(out, again=True)
+        else:
+            for body in self._points:
+                body.write_tangent()
+            with self._pressures.predicted():
+                self._tangent.write(out)
+        self._pressures.add_tangent(out, again=again)
+
+    def times(self, x: Vec) -> Vec:
+        """The product of what `tangent` has written last with a vector, on one process."""
+        out = x.duplicate()
+        self._tangent.times(x, out)
+        self._pressures.add_product(x, out)
+        return out
 
     def follow(self, u: Vec | None) -> bool:
         """Let pressures in tangents follow the corrections from a state on, where volume is kept.

@@ -149,14 +149,25 @@ class Pressures:
         rows = self._pressure.function_space.dofmap.list[:count, 0] // self._width
         return np.asarray(by_block[rows])
 
-    def add_tangent(self, out: Mat) -> None:
-        """Add what the pressures change by to a matrix: `K <P de, P de>`; collective."""
+    def add_tangent(self, out: Mat, *, again: bool = False) -> None:
+        """Add what the pressures change by to a matrix: `K <P de, P de>`; collective.
+
+        Args:
+            out: The matrix.
+            again: Whether it is to be what the last call has added.
+        """
         if not self.of:
             return
-        self._assemble_slope()
-        self._inverse.ptap(self._slope, result=self._stiffness)
+        if not again:
+            self._assemble_slope()
+            self._inverse.ptap(self._slope, result=self._stiffness)
         add_matrix(out, self._stiffness)
         out.assemble()
+
+    def add_product(self, x: Vec, out: Vec) -> None:
+        """Add the product of what `add_tangent` has added last with a vector; collective."""
+        if self.of:
+            self._stiffness.multAdd(x, out, out)
 
     def yielding(self, diagonal: Vec) -> Vec:
         """How stiff bodies are that may give way by shear, where their change of volume is held.

@@ -50,6 +50,7 @@ class Bodies(Term):
     Attributes:
         unknowns: As given.
         scale: Mean diagonal of the tangent at rest, force/length.
+        again: On one process, whether `add_tangent` writes once more what it has written last.
     """
 
     def __init__(self, bulk: Bulk, unknowns: NodeUnknowns) -> None:
@@ -58,6 +59,10 @@ class Bodies(Term):
         self.scale = mean_diagonal(diagonal, unknowns.comm)
         self._u = bulk.stiffness.createVecRight()
         self._temperatures = {name: Prescribed(1) for name in bulk.heated}
+        self.again = False
+        self._inner = np.zeros(0)
+        #: Displacement and forces at the last tangent.
+        self._written: tuple[Vec, Floats] | None = None
 
     @override
     def add_force(self, u: Floats, out: Floats) -> None:
@@ -66,7 +71,17 @@ class Bodies(Term):
 
     def inner(self, u: Floats) -> Floats:
         """The same of all unknowns this rank owns: those of other fields have a residual, too."""
-        return -np.asarray(self.bulk.force(self._owned(u)).array_r)
+        self._inner = -np.asarray(self.bulk.force(self._owned(u)).array_r)
+        return self._inner
+
+    def missed(self) -> Floats:
+        """What forces have changed by since the last tangent, beyond what it says.
+
+        Of the last evaluation, of all unknowns; on one process.
+        """
+        assert self._written is not None, "`add_tangent` comes first"
+        u, inner = self._written
+        return np.asarray(self._inner - inner + self.bulk.times(self._u - u).array_r)
 
     def check(self, step: Step) -> None:
         """Refuse temperatures of bodies that do not expand.
@@ -100,7 +115,9 @@ class Bodies(Term):
 
     @override
     def add_tangent(self, matrix: Mat) -> None:
-        self.bulk.tangent(matrix)
+        self.bulk.tangent(matrix, again=self.again)
+        if not self.again:
+            self._written = self._u.copy(), self._inner
 
     def energy(self, u: Floats) -> float:
         """Elastic energy over all ranks, force times length."""

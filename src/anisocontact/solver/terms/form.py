@@ -82,9 +82,15 @@ class FormBulk:
     def commit(self, u: Vec) -> None:
         """Nothing: what the form remembers is the user's."""
 
-    def tangent(self, out: Mat) -> None:
-        """Write the derivative at the values of the function."""
-        self._tangent.write(out)
+    def tangent(self, out: Mat, *, again: bool = False) -> None:
+        """Write the derivative at the values of the function, or what was written last."""
+        self._tangent.write(out, again=again)
+
+    def times(self, x: Vec) -> Vec:
+        """The product of what `tangent` has written last with a vector, on one process."""
+        out = x.duplicate()
+        self._tangent.times(x, out)
+        return out
 
 
 class Dirichlet:

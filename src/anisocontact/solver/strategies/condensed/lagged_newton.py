@@ -7,7 +7,8 @@ from typing import Any, override
 
 import numpy as np
 
-from anisocontact.base.fenicsx import PETSc, Vec
+from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
+from anisocontact.solver.strategies.condensed.kept_stiffness import KeptStiffness
 from anisocontact.solver.strategies.condensed.lagged import LaggedFactor
 from anisocontact.solver.strategies.forcing import Forcing
 from anisocontact.solver.strategies.newton import Newton, NewtonResult, OptionValue
@@ -46,6 +47,7 @@ class LaggedNewton(Newton):
     ) -> None:
         super().__init__(problem, prefix, dict(options) | LINEAR, on_iteration)
         self._note = note
+        self._system, self._stiffness = problem, KeptStiffness(problem)
         self._factor = LaggedFactor(problem, note, kept)
         self._forcing = Forcing(self.snes.getTolerances()[0], ROUGH)
         pc = self.snes.getKSP().getPC()
@@ -57,6 +59,7 @@ class LaggedNewton(Newton):
         self, x: Vec, full_steps: bool = False, damping: Callable[[], float] | None = None
     ) -> NewtonResult:
         self._forcing.begin()
+        self._stiffness.begin()
         return super().solve(x, full_steps, damping)
 
     @override
@@ -70,7 +73,7 @@ class LaggedNewton(Newton):
             self._note(
                 f"{self._factor.factors} factorisations for {len(krylov)} corrections; Krylov "
                 f"iterations of a correction: {np.mean(krylov):.1f} on average, at most "
-                f"{max(krylov)}"
+                f"{max(krylov)}; tangents of the bodies: {self._stiffness.made}"
             )
         self._factor.close()
         super().close()
@@ -85,6 +88,12 @@ class LaggedNewton(Newton):
             pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
             found = np.zeros(len(right))
         x.array[:] = found
+
+    @override
+    def _jacobian(self, snes: SNES, x: Vec, matrix: Mat, again: Mat) -> None:
+        self._system.evaluate_at(x)
+        with self._stiffness.chosen(lasting=not self._search.whole):
+            super()._jacobian(snes, x, matrix, again)
 
     @override
     def _outgrow(self) -> None:
