@@ -15,7 +15,8 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.case.from_deck import case_of_deck
 from anisocontact.mesh import GmshFile, build_mesh
-from anisocontact.mesh.deck_contents import Deck, read_deck
+from anisocontact.mesh.deck_contents import Deck
+from anisocontact.mesh.deck_reader import read_deck
 from anisocontact.surfaces import make_surface
 
 CUBE = """*NODE

@@ -12,7 +12,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import dolfinx, fem, ufl
 from anisocontact.mesh import GmshFile, Placement, Rotation, build_mesh
-from anisocontact.mesh.deck_contents import read_deck
+from anisocontact.mesh.deck_reader import read_deck
 from anisocontact.mesh.readers import file_arrays
 
 CUBE = """\
@@ -257,7 +257,7 @@ MISTAKES = [
     (CUBE.replace("cube, S2", "cube, S7"), "face 'S7' given, S1 to S6 are read"),
     (CUBE.replace("cube, S2", "cube, SPOS"), "face 'SPOS' given, S1 to S6 are read"),
     (CUBE.replace("TYPE=C3D8R, ", ""), "*ELEMENT needs the option TYPE"),
-    (CUBE.replace("1, 2, 30, 4,\n 5, 6, 7, 8", "5, 6, 7, 8, 1, 2, 30, 4"), "flat or inverted"),
+    (CUBE.replace("1, 2, 30, 4,\n 5, 6, 7, 8", "1, 2, 4, 30, 5, 6, 7, 8"), "flat or inverted"),
 ]
 
 

@@ -18,7 +18,8 @@ from anisocontact.case.deck_steps import Steps
 from anisocontact.case.deck_tools import Tools
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
-from anisocontact.mesh.deck_contents import PLANE, Deck, read_deck
+from anisocontact.mesh.deck_contents import PLANE, Deck
+from anisocontact.mesh.deck_reader import read_deck
 from anisocontact.mesh.deck_supports import key_of, written
 from anisocontact.mesh.inp import ideals, named_in
 from anisocontact.mesh.readers import file_arrays

@@ -6,17 +6,14 @@ Parts are put where their instances are. What is no mesh is kept as it is writte
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from anisocontact.base.errors import InputError
-from anisocontact.mesh.deck import Card, read_cards, real
-from anisocontact.mesh.deck_generated import GENERATORS, NOT_READ
-from anisocontact.mesh.deck_instances import begun, numbered, own_numbers, place
+from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_profiles import ANALYTIC, Profile, profile_of
 from anisocontact.mesh.deck_supports import held_nodes
 
@@ -36,8 +33,6 @@ IDEAL = {"CPE": "plane-strain", "CPS": "plane-stress", "CAX": "axisymmetric"}
 #: Cells of these by the number of their nodes.
 _IN_PLANE = {3: "triangle", 6: "triangle", 4: "quadrilateral", 8: "quadrilateral"}
 PLANE = {f"{kind}{n}": (cell, n) for kind in IDEAL for n, cell in _IN_PLANE.items()}
-#: Keywords of a part that every instance of it has under its own names.
-OF_PARTS = ("RIGIDBODY", "COUPLING", "KINEMATIC", "DISTRIBUTING", "TIE", "EQUATION", "MPC")
 #: All of them.
 KNOWN = SOLIDS | PLANE
 
@@ -54,68 +49,6 @@ def solid(element: str) -> str:
     name = element.upper().replace("CGAX", "CAX")
     kind = name.rstrip("".join(set("RIHTMSEP")))
     return kind if kind in KNOWN else ""
-
-
-def read_deck(path: Path) -> Deck:
-    """What is in an input file, parts where their instances are.
-
-    Args:
-        path: The file.
-
-    Raises:
-        InputError: As of `read_inp`.
-        OSError: It cannot be read.
-    """
-    cards = read_cards(path)
-    reader = _Reader(Deck(own=own_numbers(cards)))
-    for card in cards:
-        try:
-            reader.take(card)
-        except InputError as error:
-            raise InputError(f"line {card.line}: *{card.name}: {error}") from None
-        except (ValueError, IndexError):
-            raise InputError(f"line {card.line}: *{card.name}: its data cannot be read") from None
-    return reader.whole
-
-
-class _Reader:
-    """Takes the cards of a file one after the other.
-
-    Args:
-        whole: What is filled.
-    """
-
-    def __init__(self, whole: Deck) -> None:
-        self.whole = self._current = whole
-        self._parts: dict[str, Deck] = {}
-        self._instance: Card | None = None
-        self._step = 0
-
-    def take(self, card: Card) -> None:
-        """Take a card.
-
-        Raises:
-            InputError: It cannot be read.
-        """
-        if card.name in NOT_READ:
-            raise InputError("is not read; write nodes and elements out")
-        card = numbered(card, self.whole.offsets)
-        if card.name == "PART":
-            self._current = self._parts.setdefault(card.option("NAME").upper(), Deck())
-        elif card.name == "INSTANCE":
-            self._instance, self._current = card, begun(card, self._parts)
-        elif card.name in ("ENDPART", "ENDINSTANCE"):
-            if self._instance is not None:
-                place(self.whole, self._instance, self._current)
-            self._instance, self._current = None, self.whole
-        elif card.name in _READERS:
-            _READERS[card.name](self._current, card)
-        elif card.name in GENERATORS:
-            GENERATORS[card.name](self._current, card)
-        else:
-            self._step += card.name == "STEP"
-            inside = card.name in OF_PARTS and self._current is not self.whole
-            (self._current if inside else self.whole).add_card(self._step, card)
 
 
 @dataclass(frozen=True)
@@ -323,16 +256,6 @@ class Deck:
     def _of(entry: str, known: dict[str, list[int]], more: int = 0) -> list[int]:
         """Members of a set by its name, or a number; empty for a set that is not there."""
         return [more + int(entry)] if entry.isdigit() else known.get(entry.upper(), [])
-
-
-_READERS: dict[str, Callable[[Deck, Card], None]] = {
-    "NODE": Deck.read_nodes,
-    "ELEMENT": Deck.read_elements,
-    "NSET": Deck.read_node_set,
-    "ELSET": Deck.read_element_set,
-    "SURFACE": Deck.read_surface,
-    "SOLIDSECTION": Deck.read_section,
-}
 
 
 def pressed_face(label: str) -> str:

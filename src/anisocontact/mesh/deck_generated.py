@@ -6,17 +6,14 @@ As the manual of Abaqus has them. `BIAS` is the length of an interval over that 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, real
+from anisocontact.mesh.deck_contents import Deck
 from anisocontact.mesh.placement import Rotation
-
-if TYPE_CHECKING:
-    from anisocontact.mesh.deck_contents import Deck
 
 __all__ = ["GENERATORS", "NOT_READ"]
 

@@ -8,17 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, real
+from anisocontact.mesh.deck_contents import Deck
 from anisocontact.mesh.placement import Rotation
-
-if TYPE_CHECKING:
-    from anisocontact.mesh.deck_contents import Deck
 
 __all__ = ["begun", "numbered", "own_numbers", "place"]
 

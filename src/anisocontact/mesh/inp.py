@@ -13,7 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
-from anisocontact.mesh.deck_contents import IDEAL, KNOWN, PLANE, SOLIDS, Deck, Section, read_deck
+from anisocontact.mesh.deck_contents import IDEAL, KNOWN, PLANE, SOLIDS, Deck, Section
+from anisocontact.mesh.deck_reader import read_deck
 from anisocontact.mesh.deck_supports import support_lines
 from anisocontact.mesh.tetrahedra import EDGES, FACES
 from anisocontact.mesh.whole import WholeMesh
@@ -84,6 +85,7 @@ def _whole_mesh(deck: Deck) -> WholeMesh:
     for number, (kind, _) in deck.elements.items():
         by_kind.setdefault(kind, []).append(number)
     mesh = WholeMesh(np.array(list(deck.nodes.values()), dtype=np.float64).reshape(-1, 3)[order])
+    elements_of_faces = _beside_solids(by_kind)
     mesh.notes = _notes(by_kind)
     bodies = bodies_of(deck)
     for kind, elements in by_kind.items():
@@ -103,8 +105,42 @@ def _whole_mesh(deck: Deck) -> WholeMesh:
     at = dict(zip(numbers[order].tolist(), range(len(numbers)), strict=True))
     for name, faces in _once(deck, deck.surfaces):
         mesh.surfaces[plain(name)] = _faces(deck, faces, at)
+    mesh.surfaces |= _of_faces(deck, mesh, elements_of_faces, at)
     mesh.left_out = deck.left_out
     return mesh
+
+
+def _beside_solids(by_kind: dict[str, list[int]]) -> list[int]:
+    """Elements of a plane that are beside solids, taken out: a mesher writes named faces so."""
+    if not set(by_kind) & set(SOLIDS):
+        return []
+    return [number for kind in set(by_kind) & set(PLANE) for number in by_kind.pop(kind)]
+
+
+def _of_faces(
+    deck: Deck, mesh: WholeMesh, elements: list[int], at: Mapping[int, int]
+) -> dict[str, list[Nodes]]:
+    """Sets of elements of a plane that are faces of solids, as surfaces."""
+    found: dict[str, list[Nodes]] = {}
+    if not elements:
+        return found
+    known: dict[int, set[tuple[int, ...]]] = {3: set(), 4: set()}
+    for cell, nodes in mesh.cells:
+        for side in FACES[cell]:
+            known[len(side)].update(map(tuple, np.sort(nodes[:, side], axis=1).tolist()))
+    of_face = {
+        number: [at[node] for node in deck.elements[number][1][: 3 + (kind in "48")]]
+        for number in elements
+        for kind in (deck.elements[number][0][-1],)
+    }
+    for name, members in deck.element_sets.items():
+        rows = [of_face[number] for number in members if number in of_face]
+        whole = rows and len(rows) == len(members) and plain(name) not in mesh.surfaces
+        if whole and all(tuple(sorted(row)) in known[len(row)] for row in rows):
+            sizes = sorted({len(row) for row in rows})
+            found[plain(name)] = [np.array([r for r in rows if len(r) == n]) for n in sizes]
+    mesh.notes = (*mesh.notes, f"{len(elements)} elements of a plane are named faces of solids")
+    return found
 
 
 def _once[T](deck: Deck, sets: Mapping[str, T]) -> Iterator[tuple[str, T]]:
@@ -122,7 +158,7 @@ def ideals(kinds: Iterable[str]) -> set[str]:
 
 
 def _notes(by_kind: dict[str, list[int]]) -> tuple[str, ...]:
-    """What elements of a mesh in the plane ask a case file for; solids beside them are alone taken.
+    """What elements of a mesh in the plane ask a case file for.
 
     Raises:
         InputError: They are of several kinds.
@@ -130,10 +166,6 @@ def _notes(by_kind: dict[str, list[int]]) -> tuple[str, ...]:
     in_plane = ideals(by_kind)
     if not in_plane:
         return ()
-    if set(by_kind) & set(SOLIDS):
-        for kind in set(by_kind) & set(PLANE):
-            del by_kind[kind]
-        return ("elements of a plane beside solids are left out",)
     if len(in_plane) > 1:
         text = f"elements of {' and '.join(sorted(in_plane))}: a mesh in the plane is one of them"
         raise InputError(text)
@@ -143,13 +175,29 @@ def _notes(by_kind: dict[str, list[int]]) -> tuple[str, ...]:
 
 def bodies_of(deck: Deck) -> dict[int, str]:
     """Body of each element: of the last section that names it."""
-    sections = deck.sections or {"body": Section("")}
+    sections = deck.sections or _apart(deck) or {"body": Section("")}
     found: dict[int, str] = {}
     for body, section in sections.items():
         key = section.elements
         members = deck.element_sets.get(key, list(deck.elements) if not key else [])
         found |= dict.fromkeys(members, plain(body))
     return found
+
+
+def _apart(deck: Deck) -> dict[str, Section]:
+    """Sets that have every solid once and share no node: bodies where there are no sections."""
+    solids = {number for number, (kind, _) in deck.elements.items() if kind in SOLIDS}
+    left, found = set(solids), []
+    taken: set[int] = set()
+    for name, members in reversed(deck.element_sets.items()):
+        own = set(members)
+        if own and own <= left and own != solids:
+            nodes = {node for number in own for node in deck.elements[number][1]}
+            if taken & nodes:
+                return {}
+            left, taken = left - own, taken | nodes
+            found.append(name)
+    return {} if left else {name: Section(name) for name in reversed(found)}
 
 
 def plain(name: str) -> str:

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.mesh.meshio_patches import names_of_med, nastran
 from anisocontact.mesh.whole import WholeMesh
 
 Nodes = npt.NDArray[np.int64]
@@ -22,6 +23,8 @@ SUFFIXES: tuple[str, ...] = (
     *(".mesh", ".meshb", ".cgns", ".h5m", ".hmf", ".avs", ".su2", ".ugrid", ".f3grid"),
     *(".vol", ".mdpa"),
 )
+#: Those of Nastran.
+NASTRAN = (".bdf", ".nas", ".fem")
 #: Beginning of the names of arrays that say which cells are in a group: 1 there, else 0.
 GROUP = "group:"
 #: Cells of meshio -> cell here; nodes are in the order of VTK.
@@ -132,8 +135,10 @@ def _read(path: Path) -> Any:
     meshio = needed(path)
     said = io.StringIO()
     try:
-        with redirect_stdout(said), redirect_stderr(said):
-            return meshio.read(path)
+        with redirect_stdout(said), redirect_stderr(said), names_of_med():
+            return nastran(path) if path.suffix.lower() in NASTRAN else meshio.read(path)
+    except InputError:
+        raise
     except (Exception, SystemExit) as problem:
         words = f"{said.getvalue()} {problem if isinstance(problem, Exception) else ''}"
         text = " ".join(words.split()) or type(problem).__name__
@@ -178,7 +183,7 @@ def _tags(mesh: Any, of_bodies: int) -> Iterator[list[str]]:
             continue
         dim = 3 if block.type in SOLIDS else LOWER.get(block.type, 2)
         word = ("edge", "surface", "body")[max(dim - of_bodies, -2) + 2]
-        numbers = np.asarray(mesh.cell_data[key][k]).astype(np.int64).tolist()
+        numbers = np.asarray(mesh.cell_data[key][k]).astype(np.int64).ravel().tolist()
         yield [
             of_med.get(n) or known.get((dim, n)) or (f"{word}{n}" if n or dim == of_bodies else "")
             for n in numbers

@@ -17,6 +17,7 @@ from anisocontact.base.fenicsx import cell_nodes, facet_nodes, middle_nodes
 from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.merge import merge
+from anisocontact.mesh.mirrored import turned
 from anisocontact.mesh.quality import check_cells
 from anisocontact.mesh.tetrahedra import COUNT, EDGES, Middles, tetrahedra, triangles
 
@@ -94,6 +95,12 @@ class WholeMesh:
         joined = self._by_kind(wanted)
         if not joined:
             raise InputError("no element is in a body")
+        wrong = 0
+        for kind, (given, labels) in joined.items():
+            nodes, count = turned(kind[0], given, self.points, FACES)
+            joined[kind], wrong = (nodes, labels), wrong + count
+        if wrong:
+            self.notes = (*self.notes, f"{wrong} cells are numbered the other way round, turned")
         cells = {cell for cell, _ in joined}
         if cells <= set(COUNT) and (len(cells) > 1 or cells & {"prism", "pyramid"}):
             return self._cut(joined).arrays(wanted)
