@@ -17,6 +17,7 @@ from anisocontact.base.limits import Limits
 from anisocontact.solver import Solver, Step, StoppedError
 from anisocontact.solver.stepping.culprits import NAMED
 from anisocontact.solver.stepping.pace import Pace
+from anisocontact.solver.stepping.turned import TurnWatch
 from anisocontact.solver.stepping.watch import StatusWatch
 
 PRESS = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}}
@@ -247,3 +248,31 @@ def test_chattering_is_named_and_damped(fe, monkeypatch):
     assert culprit.kind == "flipping"
     assert set(culprit.statuses) > {"open"}
     assert "the status alternates between" in str(culprit)
+
+
+def _refuses(watch, size, degrees):
+    """Whether a part in which a point in contact turns by an angle is to be cut."""
+    trial = SimpleNamespace(state={"turn": np.radians([degrees])}, status=np.array([1]))
+    contact = SimpleNamespace(trial=trial, name="touch", extreme=np.max)
+    return watch.objection(SimpleNamespace(contacts=[contact], dt=size)) is not None
+
+
+def test_an_angle_between_facets_is_cut_once():
+    """Requirement: what does not get smaller in smaller parts is no reason to cut another time.
+
+    A point passes an edge of the master in the last quarter of a part that was cut, where it turns
+    by as much as in the whole part: each part that had it in was cut, nine times in an increment
+    of a block on coarser facets. A turn that goes on along the way still is.
+    """
+    watch = TurnWatch()
+    assert [_refuses(watch, *part) for part in ((1.0, 29.0), (0.25, 7.0), (0.25, 22.0))] == [
+        True,
+        False,
+        False,
+    ]
+    watch.begin()
+    assert [_refuses(watch, *part) for part in ((1.0, 29.0), (0.25, 7.0), (0.5, 16.0))] == [
+        True,
+        False,
+        True,
+    ]

@@ -187,6 +187,7 @@ class Solver:
         del numbers["limits"]
         numbers |= {"step": place.step, "time": place.time, "begun": place.begun}
         numbers |= {"kink": self._turns.kink, "travels": self._predictor.travels}
+        numbers["refused_angle"], numbers["refused_size"] = self._turns.refused
         kept.common["stopped"] = np.array([*place.stopped.items()]).reshape(-1, 2)
         kept.common.update({f"place.{name}": np.array(v) for name, v in numbers.items()})
         if place.events is not None:
@@ -202,6 +203,7 @@ class Solver:
         numbers = {name.removeprefix("place."): v for name, v in numbers.items()}
         step, time, begun = (numbers.pop(name) for name in ("step", "time", "begun"))
         self._turns.kink = numbers.pop("kink")
+        self._turns.refused = numbers.pop("refused_angle"), numbers.pop("refused_size")
         self._predictor.travels = numbers.pop("travels")
         before = None
         stopped = {int(i): float(factor) for i, factor in kept.common["stopped"]}

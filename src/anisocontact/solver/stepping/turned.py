@@ -17,9 +17,10 @@ from anisocontact.solver.system.problem import Problem
 MARGIN = 1.05
 #: Prescribed rotation along a part at most: more could pass for another one, radian.
 PRESCRIBED = math.radians(45.0)
-#: Share of its angle that a part cut to a quarter keeps at least where it does not depend on the
-#: size of the part: where a point passes from one facet to another one at an angle.
-_KINK = 0.7
+#: Share of its angle that a part of at most a share of the size of one that was refused keeps at
+#: least where it does not depend on the size: where a point passes from one facet to another one at
+#: an angle, in this part of what was cut or in a later one.
+_KINK, _SMALLER = 0.6, 0.5
 
 
 @dataclass(frozen=True)
@@ -80,28 +81,28 @@ class TurnWatch:
         permitted: Whether parts may be cut: not at the limits of the cuts.
         objects: Whether the last part was objected to.
         kink: Angle up to which turns did not depend on the size of the parts of this step, radian.
+        refused: Angle, radian, and time increment of the last part of this step that was refused.
     """
 
     def __init__(self) -> None:
         self.permitted, self.objects = True, False
-        self._cut_at = 0.0
-        self.kink = 0.0
-        self._angle = 0.0
+        self.begin()
 
     def begin(self) -> None:
         """Forget what another step has shown."""
-        self._cut_at = self.kink = self._angle = 0.0
+        self.kink, self._angle = 0.0, 0.0
+        self.refused = (0.0, 0.0)
 
     def objection(self, problem: Problem) -> Refusal | None:
         """Why the trial of a part is to be cut; None where it may be accepted. Collective."""
         turned = largest_turn(problem)
         self._angle = turned.angle
-        if self._cut_at > 0.0 and turned.angle > _KINK * self._cut_at:
+        angle, size = self.refused
+        if turned.angle > _KINK * angle and problem.dt <= _SMALLER * size:
             self.kink = max(self.kink, 1.1 * turned.angle)  # cutting does not make it smaller
-        self._cut_at = 0.0
         if not self.permitted or turned.angle <= max(MARGIN * FOLLOWED, self.kink):
             return None
-        self._cut_at, self.objects = turned.angle, True
+        self.refused, self.objects = (turned.angle, problem.dt), True
         return Refusal(turned.reason)
 
     def allowed(self, part: float) -> float:
