@@ -24,6 +24,8 @@ type _Measure = Callable[[Vec | None], float]
 _BESIDE = 0.02
 #: Parts below this share of an increment are rounding.
 _ROUNDING = 1e-9
+#: What is measured where friction cannot hold the loads.
+_SLID = np.inf
 
 
 @dataclass(frozen=True)
@@ -43,7 +45,8 @@ class EventWatch:
     """Looks for the event of a step in the trials of its parts, and says where parts are to end.
 
     A value is found by secants, with every second part half of what is left; what becomes of a
-    contact by halves.
+    contact by halves. Sliding has come as well where loads are met that friction holds no longer,
+    see `overload`: there is no equilibrium beyond, and the step ends before them.
 
     Args:
         problem: The problem, where the step begins.
@@ -62,10 +65,14 @@ class EventWatch:
         self.happened = self.objects = False
         self._part = self._end = 1.0
         self._until = until = step.until
-        self._least = max(smallest, _ROUNDING)
+        self._finest = max(smallest, _ROUNDING)
         if until is None:
             return
-        self._measure = _measure(problem, until, f"step {step.name!r}.until")
+        if until.event is not None:
+            self._finest = max(self._finest, until.tolerance)
+        field = f"step {step.name!r}.until"
+        self._measure = _measure(problem, until, field)
+        self._contact = None if until.event is None else _contact(problem, until, field)
         self._last = self._trial = self._measure(None)
         self._wanted = 0.0 if until.value is None else until.value
         scale = max(abs(self._wanted), abs(self._wanted - self._last))
@@ -108,11 +115,26 @@ class EventWatch:
         """
         if self._until is None or self._beyond is None:
             return 0.0
-        share, self._halved = 0.5, not self._halved
-        if self._until.event is None and self._halved is False:
+        left, self._halved = self._beyond.end - done, not self._halved
+        share = 0.5
+        if self._until.event is not None:
+            # smaller parts have led to another history, in which it has not happened yet
+            share = 1.0 if left < 0.5 * self._finest and self._beyond.value != _SLID else 0.5
+        elif not self._halved:
             way = self._beyond.value - self._last
             share = float(np.clip((self._wanted - self._last) / way, _BESIDE, 1.0 - _BESIDE))
-        return done + share * (self._beyond.end - done)
+        return done + share * left
+
+    def slides(self) -> Contact | None:
+        """The contact whose sliding is waited for, if it is."""
+        until = self._until
+        if until is None or until.event != "sliding" or self.happened or self._side == 0.0:
+            return None
+        return self._contact
+
+    def overload(self) -> None:
+        """Friction does not hold the loads at the end of the part: the event comes before it."""
+        self.objects, self._beyond = True, _Beyond(self._end, _SLID)
 
     def begin(self, part: float, end: float) -> None:
         """A part is tried.
@@ -134,12 +156,7 @@ class EventWatch:
             return None
         self._trial = self._measure(x)
         over = self._side * (self._trial - self._wanted)
-        fine = self._part <= self._least
-        if self._until.event is not None:
-            fine |= self._part <= self._until.tolerance
-            self.objects = over > 0.0 and not fine
-        else:
-            self.objects = over > self._near and not fine
+        self.objects = over > self._near and self._part > self._finest
         if not self.objects:
             return None
         self._beyond = _Beyond(self._end, self._trial)
@@ -155,11 +172,17 @@ class EventWatch:
             return
         self._last = self._trial
         self.happened = self._side != 0.0 and (
-            self._side * (self._last - self._wanted) >= -self._near
+            self._side * (self._last - self._wanted) >= -self._near or self._at_limit()
         )
         self._side = self._side or self._arm()
-        if ends:
+        if ends or (self._beyond is not None and self._end >= self._beyond.end):
             self._beyond, self._halved = None, True
+
+    def _at_limit(self) -> bool:
+        """Whether friction cannot hold the loads from the tolerance on beyond the accepted part."""
+        if self._until is None or self._beyond is None or self._beyond.value != _SLID:
+            return False
+        return self._beyond.end - self._end <= self._finest
 
     def _arm(self) -> float:
         """From which side the event can come: 0 where the value is there already."""

@@ -45,24 +45,30 @@ class _Carried:
     pairs: Sequence[tuple[Contact, float]]
 
 
-def too_much_load(problem: Problem, fraction: float) -> str:
+def too_much_load(
+    problem: Problem, fraction: float, over: float = TOO_MUCH, by: Contact | None = None
+) -> str:
     """Which loads on a free body friction cannot hold; empty if there are none, on all ranks.
 
     Args:
         problem: The problem, in the last accepted state.
         fraction: Fraction of the step whose loads are looked at.
+        over: Load over the limit of friction that is too much.
+        by: Contact that has to be the only one that holds the body; any if left out.
     """
     if not problem.stabilisation.loose:
         return ""
     problem.loads.set_load_factor(fraction, problem.dt)
     load = problem.loads.force(problem.u.x.array.reshape(-1, 3))
     problem.loads.set_load_factor(problem.load_factor, problem.dt)
-    found = list(_found(problem, problem.layout.assembled(load).reshape(-1, 3)))
+    found = list(_found(problem, problem.layout.assembled(load).reshape(-1, 3), over, by))
     return "; ".join(found)
 
 
-def _found(problem: Problem, load: Floats) -> Iterator[str]:
+def _found(problem: Problem, load: Floats, over: float, by: Contact | None) -> Iterator[str]:
     for free in problem.stabilisation.loose:
+        if by is not None and any(contact is not by for contact in free.contacts):
+            continue
         force = problem.comm.allreduce(load[free.body.nodes].sum(axis=0))
         held = _holding(problem, free)
         if held is None:
@@ -77,7 +83,7 @@ def _found(problem: Problem, load: Floats) -> Iterator[str]:
             continue
         along = tangential / size
         share = sum(part * _limit(problem, contact, along) for contact, part in held.pairs)
-        if free.moves_along(along) > FREE and size > TOO_MUCH * share * pressed:
+        if free.moves_along(along) > FREE and size > over * share * pressed:
             yield (
                 f"the loads on body {free.body.name!r} come to {size:.4g} along {_shown(along)}, "
                 f"and friction holds {share * pressed:.4g} there at most, {share:.4g} of the "

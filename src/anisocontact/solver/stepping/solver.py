@@ -249,6 +249,10 @@ class Solver:
             last = self.problem.accepted()
             pace.goal = events.goal(pace.done)
             events.begin(pace.part, pace.end)
+            slides, end = events.slides(), _whole(pace.increment, pace.end) / step.increments
+            if slides is not None and too_much_load(self.problem, end, 1.0, slides):
+                events.overload()
+                continue
             outcome = self._part(attempts, step, last)
             place.spent += outcome.result.iterations
             if outcome.result.reason:
