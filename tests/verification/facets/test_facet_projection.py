@@ -214,3 +214,27 @@ def test_centre_of_a_cap(meshes: SimpleNamespace) -> None:
                 assert p.status[0] != 3
                 bound = sampled_distance(meshes, topology, nodes, x[None])
                 assert np.linalg.norm(x - p.position[0]) <= bound[0] * (1.0 + 1e-9)
+
+
+@pytest.mark.parametrize("slope", [-0.1, -0.04, 0.0, 0.04, 0.1])
+def test_pole(slope: float) -> None:
+    """A facet of revolution whose side on the axis is a point, as near from all over that side.
+
+    Requirement: a point on the axis, above or below, finds a place at least as near as 2001 of the
+    generator, to 1e-9 of the distance and rounding of a facet of 0.1: where the pole was nearer
+    than 1e-7 of a facet its parts were told apart by rounding, and the search failed.
+    """
+    radius, width = np.array([0.0, 0.13, 0.065]), 0.5 / (2.0 * np.pi)
+    generator = np.column_stack((radius, slope * radius + radius**2 / 1.76))
+    across = width * (2.0 * np.pi * radius + 1e-12)
+    rows = ((0, -1), (1, -1), (0, 1), (1, 1), (2, -1), (0, 0), (1, 0), (2, 1), (2, 0))
+    nodes = [(*generator[e], side * across[e]) for e, side in rows]
+    t = np.linspace(0.0, 0.13, 2001)
+    line = np.column_stack((t, slope * t + t**2 / 1.76))
+    surface = FacetSurface(np.array(nodes), [range(9)], "quad9")
+    gaps = 10.0 ** -np.arange(3.0, 13.0)
+    for y in np.concatenate([gaps, -gaps]):
+        p = surface.project(np.array([[-2e-17, y, 0.0]]))
+        assert p.status[0] in (0, 1)
+        away = np.linalg.norm(p.position[0] - [0.0, y, 0.0])
+        assert away <= np.linalg.norm(line - [0.0, y], axis=1).min() * (1.0 + 1e-9) + 1e-15

@@ -68,13 +68,15 @@ void branch_and_bound(const RelativeFacet& facet, const Polynomial& whole, doubl
   waiting[count++] = whole;
   for (std::size_t parts = 0; count > 0; ++parts) {
     Polynomial p = waiting[--count];
-    const double share = best.search == Search::found || parts >= many_parts ? drop : 0.0;
-    if (p.lower() - slack >= 2.0 * best.f * (1.0 - share)) continue;
+    const bool many = parts >= many_parts;
+    const double share = best.search == Search::found || many ? drop : 0.0;
+    // around a pole, a side that is a point, all parts are as near to within rounding
+    if (p.lower() + (many ? slack : -slack) >= 2.0 * best.f * (1.0 - share)) continue;
     const bool last = parts >= most_parts || count + 2 > most_waiting;
     if (last || p.single()) {
       const Minimum m = minimise(facet, p.part, p.lowest());
       best.take(m, p.part);
-      doubt = doubt || (last && p.lower() - slack < 2.0 * best.f * (1.0 - coarse_drop));
+      doubt = doubt || (last && p.lower() + slack < 2.0 * best.f * (1.0 - coarse_drop));
       if (last || m.converged) continue;
     }
     Polynomial q = p.halve();
