@@ -19,10 +19,10 @@ run: setup ## run the main example and say where its pictures are
 	@$(IN_VENV) anisocontact run examples/$(EXAMPLE)/case.toml -o results/$(EXAMPLE) --overwrite
 	@echo "pictures: results/$(EXAMPLE)/report.html   fields for ParaView: results/$(EXAMPLE)/*.pvd"
 
-# Lint and tests at once; what lint has to say comes last. Durations are kept in build.
+# Lint and tests at once; what lint has to say comes last. Tests of a file share what they solve. Durations are kept in build.
 define tested
   mkdir -p build; $(MAKE) --no-print-directory lint >build/lint.log 2>&1 & lint=$$!; tests=; \
-  $(IN_VENV) pytest -n auto --durations=10 --junitxml=build/durations.xml $(1) && tests=good; \
+  $(IN_VENV) pytest -n auto --dist loadfile --durations=10 --junitxml=build/durations.xml $(1) && tests=good; \
   wait $$lint || { cat build/lint.log >&2; exit 1; }; [ "$$tests" ]
 endef
 

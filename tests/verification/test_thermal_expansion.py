@@ -70,7 +70,14 @@ def test_every_material_expands() -> None:
     assert {name for name, _ in MATERIALS.values()} == {one.name for one in materials()}
 
 
-@pytest.mark.parametrize("name", MATERIALS)
+#: Materials that share how they expand with another one here.
+ALIKE = {"wood": "fibres", "st. venant": "neo-hooke", "mooney": "ogden", "yeoh": "ogden"}
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(one, marks=pytest.mark.slow if one in ALIKE else []) for one in MATERIALS],
+)
 def test_free_expansion(name: str) -> None:
     """A body that is free to expand does so by `a dT` in all directions and has no stress.
 

@@ -123,7 +123,7 @@ def _out_of_balance(run) -> float:
     ("mu", "angle", "penalty"),
     [
         ("[1.5, 1.0]", 20, ""),
-        ("3", 20, ""),
+        pytest.param("3", 20, "", marks=pytest.mark.slow),
         ("[1.5, 1.0]", 10, ""),
         ("[1.5, 1.0]", 30, ""),
         ("[1.5, 1.0]", 20, "normal = { penalty = 1000 }"),
