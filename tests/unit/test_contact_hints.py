@@ -227,3 +227,62 @@ def test_stabilisation_is_told_over_the_work_there_is(work: float, said: str) ->
     """Without work from outside a share of it says nothing: both are told."""
     (line,) = at_end([], [], {"external": -work, "stabilisation": 6.0, "flow": 0.0})
     assert line.startswith(f"stabilisation took up {said} the work from outside")
+
+
+PUNCH = """
+[idealisation]
+kind = "axisymmetric"
+
+[mesh.rectangle.block]
+origin = [0, -2]
+size = [2, 2]
+cells = [8, 8]
+cell = "triangle"
+
+[material.block]
+model = "linear-elastic"
+E = 1000
+nu = 0.3
+
+[surface.punch]
+shape = "revolution"
+point = [0, 0, 0]
+axis = [0, 1, 0]
+profile = [[0, 0], [1.01, 0], [1.01, 2]]
+rounding = {rounding}
+
+[rigid.punch]
+reference = [0, 0, 0]
+
+[[contact]]
+slave = "block.top"
+master = "punch"
+friction = {{ coefficients = 0 }}
+
+[[step]]
+name = "press"
+increments = 1
+displacement."block.bottom" = {{ x = 0, y = 0 }}
+motion.punch = {{ y = -0.05 }}
+
+[output]
+pictures = false
+"""
+
+
+@pytest.mark.parametrize("rounding", [0.0, 0.25])
+def test_nodes_that_a_sharp_edge_pushes_aside_are_told(rounding: float, tmp_path: Path) -> None:
+    """A node 0.01 within the edge of a punch that is pressed in by 0.05 meets its side."""
+    told = _summary(tmp_path, PUNCH.format(rounding=rounding))["warnings"]
+    aside = [line for line in told if "presses its points (1) aside" in line]
+    assert len(aside) == (rounding == 0.0)
+
+
+def test_check_says_what_tetrahedra_of_order_one_do(tmp_path, capsys) -> None:
+    """A line, and none for hexahedra."""
+    path = tmp_path / "case.toml"
+    for cell, said in (("tetrahedron", True), ("hexahedron", False)):
+        text = PAIR.replace('pass = "single"\n', "")
+        path.write_text(text.replace("cells =", f'cell = "{cell}"\ncells ='))
+        assert main(["check", str(path)]) == 0
+        assert ("note      pressures at single nodes" in capsys.readouterr().out) is said

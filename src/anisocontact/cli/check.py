@@ -66,6 +66,7 @@ def _is_mesh(path: Path) -> bool:
 def contents(built: Built) -> list[str]:
     """What a case contains, in a few lines."""
     from anisocontact.contact import doubtful_sides
+    from anisocontact.contact.hints import uneven
 
     case, problem = built.file.case, built.problem
     model = problem.model
@@ -102,6 +103,7 @@ def contents(built: Built) -> list[str]:
     for step in built.steps:
         driven = ", ".join(step.driven()) or "nothing new"
         lines.append(f"step      {step.name}: {step.increments} increments, {driven}")
+    lines += [f"note      {text}" for text in uneven(problem.contacts)]
     lines += [f"warning   {text}" for text in (*built.doubts(), *built.solver.cautions)]
     return [*lines, *(f"warning   {line}" for line in doubtful_sides(problem.contacts))]
 

@@ -203,6 +203,11 @@ class AnalyticMaster(Master):
         return None if turned is None else self.into_frame(turned.tangents)
 
     @override
+    def facing(self, normal: Floats) -> Floats:
+        outward = self._slave.outward_of(self._there)
+        return np.asarray(-np.einsum("ni,ni->n", normal, outward))
+
+    @override
     def stiffness(self, diagonal: Floats) -> float:
         nodes = self.couplable()
         nodes = nodes[nodes < len(diagonal)]

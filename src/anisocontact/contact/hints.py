@@ -9,6 +9,7 @@ from anisocontact.base.errors import ModelWarning
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.defaults import FINER, STIFF
 from anisocontact.contact.initial import initial_overlap
+from anisocontact.contact.sharp_edges import SMOOTH
 
 __all__ = ["COARSE", "coarse_slaves", "doubtful_sides", "warn_of"]
 
@@ -98,6 +99,57 @@ def doubtful_sides(contacts: Sequence[Contact]) -> list[str]:
         A line for each of them.
     """
     return [*coarse_slaves(contacts), *stiff_slaves(contacts)]
+
+
+#: What tetrahedra of order 1 do to pressures, docs/verification/mortar.md.
+UNEVEN = (
+    "pressures at single nodes of tetrahedra of order 1 scatter as forces of these elements do, in "
+    "a Hertz contact with 7 facets across the radius by 12% of the peak; means over facets by 5%, "
+    "order 2 by 3%"
+)
+
+
+def uneven(contacts: Sequence[Contact]) -> list[str]:
+    """What to know of pressures where slave nodes are those of tetrahedra of order 1.
+
+    Args:
+        contacts: The contacts.
+
+    Returns:
+        A line, or none.
+    """
+    found = [
+        one.slave_points.at_nodes and one.space.mesh.topology.cell_name() == "tetrahedron"
+        for one in contacts
+    ]
+    plain = any(found) and contacts[0].space.element.basix_element.degree == 1
+    return [UNEVEN] if plain else []
+
+
+def pressed_aside(contacts: Sequence[Contact]) -> list[str]:
+    """Contacts with a surface of which points are pressed by a face that does not face them.
+
+    At a sharp edge of a profile the closest point of a node that has got into the tool by more than
+    its distance from the edge is on the other face, which pushes it aside: by how much depends on
+    the increments. Collective.
+
+    Args:
+        contacts: The contacts, in their accepted state.
+
+    Returns:
+        A line for each of them.
+    """
+    found = []
+    for one in contacts:
+        aside = (one.last.pressure > 0.0) & (one.master.facing(one.last.normal) < SMOOTH)
+        count = one.space.mesh.comm.allreduce(int(aside.sum()))
+        if count:
+            found.append(
+                f"contact of {one.name}: at a sharp edge the face of the master that stands across "
+                f"the slave presses its points ({count}) aside, and what they carry depends on the "
+                "increments; round the edge by a facet or so (`rounding` of a profile)"
+            )
+    return found
 
 
 def overlapping(pairs: Iterable[tuple[Contact, str, float]], cure: str) -> list[str]:

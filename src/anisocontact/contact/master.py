@@ -255,6 +255,15 @@ class Master(Protocol):
         """Hold points on the facet that they are on until the trial is kept or forgotten, (n,)."""
         return
 
+    def facing(self, normal: Floats) -> Floats:
+        """How much slave points face the master where they are, 1 for wholly, (n,).
+
+        Args:
+            normal: Outward normals of the master there, (n, 3). Facets that do not face each other
+                do not meet.
+        """
+        return np.ones(len(normal))
+
     def strayed(self, count: int) -> Floats:
         """How wrong the gaps of held points are: against those of the closest points, (n,), length.
 
