@@ -285,6 +285,24 @@ def test_wrong_courses_are_one_line(goal, says):
     assert caught.value.field == "step 'b'.force.bar.top.x"
 
 
+@pytest.mark.parametrize(
+    ("increments", "lost"), [(3, "3 increments cut off 10 % of the way"), (4, ""), (30, "")]
+)
+def test_corners_that_increments_cut_off_are_said(increments, lost):
+    """Requirement: a path whose corner lies within an increment is shorter than it was drawn.
+
+    Source: an L of two equal legs in three increments, 2/3 + sqrt(2)/6 of its length, 10 % less;
+    in four they meet the corner, in thirty nothing is lost.
+    """
+    from anisocontact.solver import Solver, Step
+
+    way = courses_of(make_path("polyline", x=(0, 0.01, 0.01), y=(0, 0, 0.01), duration=1.0))
+    held = {"bar.bottom": NOTHING, "bar.top": way}
+    said = Solver(bar(), [Step("a", increments, held)]).cautions
+    assert [line for line in said if "cut off" in line] == said
+    assert lost in "".join(said) and bool(said) == bool(lost)
+
+
 def test_too_few_increments_are_said():
     """Requirement: ten cycles in ten increments look like nothing at all, and that is said."""
     from anisocontact.solver import Solver, Step

@@ -11,7 +11,8 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import LinearBulk, LinearElastic, NonlinearBulk, make_material
-from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh
+from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh, node_near
+from anisocontact.results.paraview import Bodies
 from anisocontact.solver import Problem, Solver, Step
 
 #: Spruce, N/mm2: E along the grain, outwards, around.
@@ -28,6 +29,8 @@ FIBRE: dict[str, Any] = {
     "G_along": 5e3,
 }
 PAIRS = ((0, 1), (0, 2), (1, 2))
+#: Young's modulus of a bar.
+E_BAR = 100.0
 
 
 def tensor(moduli: Any, ratios: Any, shears: Any, axes: Any) -> Any:
@@ -212,6 +215,7 @@ def test_tangent_by_order(name: str, given: dict[str, Any]) -> None:
         ({"second": (2.0, 0.0, 0.0)}, "parallel"),
         ({"first": (0.0, 0.0, 0.0)}, "must not be zero"),
         ({"around": ((0, 0, 0), (0, 0, 0))}, "must not be zero"),
+        ({"around": ((0, 0, 0), (0, 0, 1)), "second": (0, 1, 0)}, "second: given with around"),
         ({"strain": "large"}, "small, green-lagrange"),
     ],
 )
@@ -223,3 +227,28 @@ def test_what_cannot_be_is_said(given: dict[str, Any], said: str) -> None:
 def test_a_ratio_that_no_stable_fibre_has_is_refused() -> None:
     with pytest.raises(InputError, match="scaled compliance"):
         make_material("transversely-isotropic", **FIBRE | {"nu_across": 0.999, "nu_along": 0.9})
+
+
+@pytest.mark.parametrize("name", ["orthotropic", "hill"])
+def test_stress_on_the_axis_of_the_directions(name: str) -> None:
+    """Requirement: a node on the axis, where nothing is outwards, has a stress.
+
+    A bar with equal constants is isotropic whatever its axes: the stress `E e` of tension, at every
+    node, to Newton's tolerance.
+    """
+    equal = {
+        "orthotropic": {"E": (E_BAR,) * 3, "nu": (0.3,) * 3, "G": (E_BAR / 2.6,) * 3},
+        "hill": {"E": E_BAR, "nu": 0.3, "yield_stress": 1e9, "ratios": (1.0,) * 6},
+    }
+    bar = make_material(name, **equal[name], around=((0, 0, 0), (0, 0, 1)))
+    model = build_box({"bar": BoxSpec((-1, -1, 0), (2, 2, 1), (2, 2, 1))})
+    held = {"bar.bottom": {"z": 0.0}, "bar.top": {"z": 1e-3}}
+    corners = {"a": (-1, -1, 0), "b": (1, -1, 0)}
+    for node, place in corners.items():
+        model.name_nodes(f"bar.{node}", node_near(model, "bar", place))
+    problem = Problem(model, {"bar": bar})
+    held |= {"bar.a": {"x": 0.0, "y": 0.0}, "bar.b": {"y": 0.0}}
+    for _ in Solver(problem, [Step("pull", 1, held)]).run():
+        pass
+    exact = 1e-3 * E_BAR * (np.arange(6) == 2)
+    assert np.abs(Bodies(problem).stress() - exact).max() < 1e-8 * exact.max()

@@ -257,6 +257,9 @@ def test_objective_at_finite_strain() -> None:
     ("model", "wrong", "said"),
     [
         ("plastic", {"yield_stress": None}, "yield_stress: missing; or a flow_curve"),
+        ("plastic", {"saturation": 0.5}, "saturation: given without saturation_rate"),
+        ("plastic", {"saturation_rate": 0.5}, "saturation_rate: given without saturation"),
+        ("plastic", {"recovery": 3.0}, "recovery: given without kinematic"),
         ("plastic", {"flow_curve": [[0, 1]]}, "yield_stress: given with flow_curve"),
         ("hill", {}, "ratios: either ratios or lankford is needed"),
         ("hill", {"lankford": [1, 1]}, "lankford: 2 numbers given, 3 needed"),

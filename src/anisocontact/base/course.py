@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -91,12 +92,16 @@ class Course:
 
     def coarse(self, duration: float, increments: int) -> bool:
         """Whether increments are too few to follow the amplitude."""
+        values, seen = self._seen(duration, increments)
+        return bool(np.abs(values - seen).max() > _COARSE * np.ptp(values))
+
+    def _seen(self, duration: float, increments: int) -> tuple[Floats, Floats]:
+        """Values at many places of a step, and what straight increments make of them."""
         places = min(_PLACES * increments, _MOST)
         times = duration * np.arange(places + 1) / places
         values = np.array([self._number(t) for t in times])
         ends = duration * np.arange(increments + 1) / increments
-        seen = np.interp(times, ends, np.interp(ends, times, values))
-        return bool(np.abs(values - seen).max() > _COARSE * np.ptp(values))
+        return values, np.interp(times, ends, np.interp(ends, times, values))
 
     def _number(self, time: float) -> float:
         try:
@@ -125,3 +130,22 @@ def courses_of(path: Path) -> dict[str, Course]:
         3.0
     """
     return {axis: Course(way, relative=True) for axis, way in path.components().items()}
+
+
+def way_cut_off(courses: Sequence[Course], duration: float, increments: int) -> float:
+    """Share of the way along several axes that straight increments cut off, 0 to 1.
+
+    Args:
+        courses: What is prescribed along each axis.
+        duration: Time the step takes.
+        increments: How many it has.
+
+    Example:
+        >>> from anisocontact.base.paths import make_path
+        >>> circle = courses_of(make_path("circle", radius=2.0)).values()
+        >>> round(way_cut_off(list(circle), 1.0, 4), 2)  # 1 - 4 sqrt(2) / (2 pi)
+        0.1
+    """
+    both = zip(*(course._seen(duration, increments) for course in courses), strict=True)
+    way, seen = (np.linalg.norm(np.diff(axes, axis=1), axis=0).sum() for axes in both)
+    return float(1.0 - seen / way) if way > 0.0 else 0.0

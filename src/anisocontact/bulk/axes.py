@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,22 @@ def first_axis(name: str, doc: str) -> Parameter:
     return Parameter(name, "vector", "1", doc, "nonzero", False, (1.0, 0.0, 0.0))
 
 
+def check_axes(given: Mapping[str, Any], field: str = "") -> None:
+    """Refuse axes that are given twice, by name and around a line.
+
+    Args:
+        given: Parameters of a material as the user wrote them.
+        field: Where it was written, for messages.
+
+    Raises:
+        InputError: They are.
+    """
+    twice = [name for name in ("first", "second", "along") if given.get(name) is not None]
+    if twice and given.get("around") is not None:
+        path = f"{field}.{twice[0]}" if field else twice[0]
+        raise InputError("given with around, one of the two is allowed", path)
+
+
 class MaterialAxes:
     """Axes of a material, in the reference configuration.
 
@@ -45,7 +62,7 @@ class MaterialAxes:
         first: First axis, of any length.
         second: Second axis, made orthogonal to the first.
         around: A point and a direction: axes outwards from this line, around it and along it;
-            nothing for those of before.
+            nothing for those of before. On the line itself one of these directions is taken.
         field: Where the material was written, for messages.
 
     Raises:
@@ -74,7 +91,9 @@ class MaterialAxes:
         point, axis = self._around
         along = fem.Constant(domain, axis / np.linalg.norm(axis))
         arm = ufl.SpatialCoordinate(domain) - fem.Constant(domain, point)
-        out = arm - ufl.dot(arm, along) * along
+        away = arm - ufl.dot(arm, along) * along
+        on_axis = ufl.eq(ufl.dot(away, away), 0.0)
+        out = ufl.conditional(on_axis, fem.Constant(domain, _across(axis)), away)
         out = out / ufl.sqrt(ufl.dot(out, out))
         around = ufl.cross(along, out)
         return ufl.as_matrix([[out[i], around[i], along[i]] for i in range(3)])
@@ -87,5 +106,12 @@ class MaterialAxes:
         along = np.broadcast_to(axis / np.linalg.norm(axis), places.shape)
         arm = places - point
         out = arm - np.sum(arm * along, axis=1, keepdims=True) * along
+        out[~out.any(axis=1)] = _across(axis)
         out = out / np.linalg.norm(out, axis=1, keepdims=True)
         return np.stack([out, np.cross(along, out), along], axis=-1)
+
+
+def _across(axis: Floats) -> Floats:
+    """Direction for points on the axis, where none is outwards: one of those that are."""
+    found = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    return np.asarray(found / np.linalg.norm(found))

@@ -116,6 +116,7 @@ def make_hardening(given: Mapping[str, list[float]], field: str = "") -> Hardeni
     if not curve.size:
         if not given["yield_stress"]:
             raise InputError("missing; or a flow_curve", f"{place}yield_stress")
+        _check_pair(given, "saturation", "saturation_rate", place)
         return Voce(*(given[name][0] for name in numbers))
     twice = [name for name in numbers if any(given[name])]
     if twice:
@@ -130,3 +131,21 @@ def make_hardening(given: Mapping[str, list[float]], field: str = "") -> Hardeni
         text = "stresses have to be > 0 and must not fall"
         raise InputError(text, f"{place}flow_curve")
     return FlowCurve(strains, stresses)
+
+
+def check_recovery(given: Mapping[str, list[float]], field: str = "") -> None:
+    """Refuse a back stress that is forgotten and never grows.
+
+    Raises:
+        InputError: It is so.
+    """
+    if given["recovery"][0] and not given["kinematic"][0]:
+        path = f"{field}.recovery" if field else "recovery"
+        raise InputError("given without kinematic, it does nothing", path)
+
+
+def _check_pair(given: Mapping[str, list[float]], one: str, other: str, place: str) -> None:
+    """Refuse one of two parameters that do something together alone."""
+    for name, missing in ((one, other), (other, one)):
+        if given[name][0] and not given[missing][0]:
+            raise InputError(f"given without {missing}, it does nothing", f"{place}{name}")

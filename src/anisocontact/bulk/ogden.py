@@ -82,6 +82,11 @@ class Ogden(ElasticVolume):
         """`J - 1`."""
         return Volume(constant(u, self.bulk), volume_ratio)
 
+    def curvature(self, logs: Floats) -> Floats:
+        """As of `stability.Rubber`."""
+        powers = np.exp(np.multiply.outer(self._alpha, logs))
+        return np.diag((self._mu * self._alpha) @ powers)
+
     def update(self, state: PointState) -> PointResult:
         """Stress, tangent and energy of the distortion; see `PointLaw`."""
         values, axes = _axes(state.strain)

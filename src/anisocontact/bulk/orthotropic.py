@@ -17,7 +17,7 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.bulk.axes import AROUND, SECOND, MaterialAxes, first_axis
+from anisocontact.bulk.axes import AROUND, SECOND, MaterialAxes, check_axes, first_axis
 from anisocontact.bulk.hyperelastic import Hyperelastic
 from anisocontact.bulk.materials import Density
 
@@ -87,6 +87,7 @@ class _Directed(Hyperelastic):
         self.young = float(1.0 / np.linalg.inv(self._stiffness).diagonal()[:3].min())
         self.linear = _STRAINS[int(given["strain"][0])] == "small"
         first, second = self._directions(given)
+        check_axes(parameters, field)
         self._axes = MaterialAxes(first, second, given["around"], field)
 
     @abstractmethod

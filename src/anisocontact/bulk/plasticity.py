@@ -19,8 +19,8 @@ import numpy as np
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.bulk.at_points import Floats
-from anisocontact.bulk.axes import AROUND, SECOND, MaterialAxes, first_axis
-from anisocontact.bulk.hardening import HARDENING, make_hardening
+from anisocontact.bulk.axes import AROUND, SECOND, MaterialAxes, check_axes, first_axis
+from anisocontact.bulk.hardening import HARDENING, check_recovery, make_hardening
 from anisocontact.bulk.materials import Isotropic
 from anisocontact.bulk.point_law import ElasticVolume, PointResult, PointState
 from anisocontact.bulk.strain import STRAIN, STRAINS
@@ -106,6 +106,7 @@ class Plastic(ElasticVolume, Isotropic):
         self.bulk = self.bulk_modulus
         self.strain = tuple(STRAINS)[int(given["strain"][0])]
         self._yield = make_hardening(given, field)
+        check_recovery(given, field)
         (self._prager,), (self._recovery,) = given["kinematic"], given["recovery"]
         # without the change of volume, which does nothing
         weights, vectors = np.linalg.eigh(self._condition(field))
@@ -266,6 +267,7 @@ class Hill(Plastic):
     def __init__(self, *, E: float, nu: float, field: str = "", **others: Any) -> None:
         super().__init__(E=E, nu=nu, field=field, **others)
         given = self._given
+        check_axes(others, field)
         self._axes = MaterialAxes(given["first"], given["second"], given["around"], field)
 
     def _condition(self, field: str) -> Floats:

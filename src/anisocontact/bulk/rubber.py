@@ -9,10 +9,13 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import Any
 
+import numpy as np
+
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
+from anisocontact.bulk.at_points import Floats
 from anisocontact.bulk.hyperelastic import Hyperelastic
 from anisocontact.bulk.materials import Density, constant
 from anisocontact.bulk.volume import Volume, volume_ratio
@@ -92,6 +95,11 @@ class MooneyRivlin(_Rubber):
     def _shear_at_rest(self) -> float:
         return 2.0 * (self._values[0] + self._values[1])
 
+    def curvature(self, logs: Floats) -> Floats:
+        """As of `stability.Rubber`."""
+        c10, c01, _ = self._values
+        return np.diag(4.0 * (c10 * np.exp(2.0 * logs) + c01 * np.exp(-2.0 * logs)))
+
     def _distortion(self, constants: list[Any], first: Any, second: Any) -> Any:
         c10, c01 = constants
         return c10 * (first - 3.0) + c01 * (second - 3.0)
@@ -126,6 +134,14 @@ class Yeoh(_Rubber):
             BULK,
         ),
     )
+
+    def curvature(self, logs: Floats) -> Floats:
+        """As of `stability.Rubber`."""
+        squares = np.exp(2.0 * logs)
+        c10, c20, c30, _ = self._values
+        over = squares.sum() - 3.0
+        slope, bend = c10 + 2.0 * c20 * over + 3.0 * c30 * over**2, 2.0 * c20 + 6.0 * c30 * over
+        return np.asarray(4.0 * (slope * np.diag(squares) + bend * np.outer(squares, squares)))
 
     def _distortion(self, constants: list[Any], first: Any, second: Any) -> Any:
         return sum(c * (first - 3.0) ** k for k, c in enumerate(constants, 1))

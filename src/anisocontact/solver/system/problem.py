@@ -13,6 +13,7 @@ from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
 from anisocontact.base.typed import typed
 from anisocontact.bulk import LinearBulk, Material
+from anisocontact.bulk.stability import unstable_rubbers
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
 from anisocontact.solver.system.accepted import AcceptedState
@@ -219,6 +220,7 @@ class Problem(ReportedSystem):
         """
         ties = self.constraints.ties
         doubtful = check_courses(steps) + ([] if ties is None else ties.left_out())
+        doubtful += unstable_rubbers(self.materials)
         check_steps(self._parts, steps)
         for step in steps:
             self.attached.check(step)

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
-from anisocontact.base.course import Course
+from anisocontact.base.course import Course, way_cut_off
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.base.until import Until
@@ -20,6 +20,8 @@ _FORCES = ("traction", "force", "body_force")
 # Fields that have one number for each name.
 _PLAIN = ("pressure", "temperature")
 
+#: Share of the way along a path above which it is said that increments cut it off.
+_CUT_OFF = 0.05
 #: What a value is prescribed to be along a step: a number at its end, or all the way.
 Goal = float | Course
 
@@ -220,6 +222,24 @@ def check_courses(steps: Sequence[Step]) -> list[str]:
                 known[place] = None
             if place[0] == "motion":  # a load on what is freed begins with what held it
                 known["load", *place[1:]] = None if goal is None else 0.0
+        said += _shortened(step)
+    return said
+
+
+def _shortened(step: Step) -> list[str]:
+    """Warnings of paths whose corners and arcs the increments of a step cut off."""
+    along: dict[tuple[str, str], list[Course]] = {}
+    for (kind, name, axis), course in step.courses().items():
+        if axis in AXES and kind not in _FORCES:
+            along.setdefault((kind, name), []).append(course)
+    said = []
+    for (kind, name), courses in along.items():
+        lost = way_cut_off(courses, step.duration, step.increments) if len(courses) > 1 else 0.0
+        if lost > _CUT_OFF:
+            said.append(
+                f"step {step.name!r}.{kind}.{name}: {step.increments} increments cut off "
+                f"{100.0 * lost:.0f} % of the way along its path, at corners or as chords of arcs"
+            )
     return said
 
 
