@@ -30,6 +30,8 @@ Floats = npt.NDArray[np.float64]
 SHARE = 1e-5
 #: What the penalties are multiplied with in the derivative of multipliers that follow.
 RATIO = 1e4
+#: The same at points that are slaves of several contacts: what makes their multipliers unique.
+SHARED_RATIO = 3e2
 #: Tractions that are none, as a share of what the tolerance stands for: 1e-9 of the stiffness of
 #: the bodies times the facet size.
 ROUNDING = 1e-3
@@ -177,10 +179,11 @@ class ContactTrial:
     def kept(self) -> Floats:
         """What multipliers are of the tractions, (n, 1): a little less where points are shared.
 
-        Several contacts would say more of one node than it can do: compliance, `RATIO` times as
-        stiff as the penalties, makes their multipliers unique.
+        Several contacts would say more of one node than it can do: compliance, `SHARED_RATIO` times
+        as stiff as the penalties, makes their multipliers unique. Where it is hardly felt, which of
+        the contacts sticks is a matter of rounding, and corrections find no end.
         """
-        return np.where(self.shared, 1.0 - 1.0 / RATIO, 1.0)[:, None]
+        return np.where(self.shared, 1.0 - self.covered / SHARED_RATIO, 1.0)[:, None]
 
     @property
     def remembers(self) -> npt.NDArray[np.bool_]:

@@ -25,6 +25,7 @@ from anisocontact.contact.multipliers import (
     OPEN,
     RATIO,
     SHARE,
+    SHARED_RATIO,
     STICK,
     ContactTrial,
     Frames,
@@ -188,9 +189,11 @@ class Semismooth(Multipliers):
         """What penalties are multiplied with at the points, normal and tangential, (n, 2).
 
         The force of a node changes as much where little of its weight is covered; where supports
-        hold a point along the normal its penalty is what it is.
+        hold a point along the normal its penalty is what it is. At shared points it is that of
+        their compliance, see `ContactTrial.kept`.
         """
-        ratio = np.repeat(self.ratio / step.covered[:, None], 2, axis=1)
+        most = np.where(step.shared, SHARED_RATIO, self.ratio)
+        ratio = np.repeat((most / step.covered)[:, None], 2, axis=1)
         ratio[step.immovable, 0] = 1.0
         if not self.tangential:
             ratio[:, 1] = self.ratio
