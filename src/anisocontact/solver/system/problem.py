@@ -13,6 +13,7 @@ from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
 from anisocontact.base.typed import typed
 from anisocontact.bulk import LinearBulk, Material
+from anisocontact.bulk.locking import locking_bodies
 from anisocontact.bulk.stability import unstable_rubbers
 from anisocontact.contact import Contact
 from anisocontact.mesh import Model
@@ -220,7 +221,7 @@ class Problem(ReportedSystem):
         """
         ties = self.constraints.ties
         doubtful = check_courses(steps) + ([] if ties is None else ties.left_out())
-        doubtful += unstable_rubbers(self.materials)
+        doubtful += unstable_rubbers(self.materials) + locking_bodies(self.model, self.materials)
         check_steps(self._parts, steps)
         for step in steps:
             self.attached.check(step)
