@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
+from mpi4py import MPI
+
 from anisocontact.base.errors import InputError
-from anisocontact.bulk import make_material
+from anisocontact.base.fenicsx import fem, ufl
+from anisocontact.bulk import UserEnergy, make_material
 from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, Model, build_box
 from anisocontact.point import PrescribedPath
 from anisocontact.rigid import RigidBody
-from anisocontact.solver import Problem, Step
+from anisocontact.solver import ContactProblem, Problem, Step, Until
 from anisocontact.surfaces import make_surface
 
-from dolfinx.mesh import meshtags
+from dolfinx.mesh import create_unit_cube, meshtags
 
 PLANE = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
 LAWS = (
@@ -36,6 +41,20 @@ def _tags_of_another_mesh() -> object:
     other = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))}).mesh
     one = np.ones(1, dtype=np.int32)
     return meshtags(other, 2, one, one)
+
+
+def _space(kind: type = np.float64) -> Any:
+    return fem.functionspace(create_unit_cube(MPI.COMM_WORLD, 1, 1, 1, dtype=kind), ("P", 1, (3,)))
+
+
+def _finer(u: Any) -> Any:
+    return fem.functionspace(u.function_space.mesh, ("P", 2, (3,)))
+
+
+def _script(residual: Any, with_j: bool = False) -> object:
+    u = fem.Function(_space())
+    form = residual(u, ufl.TestFunction(u.function_space))
+    return ContactProblem(form, u, J=form if with_j else None)
 
 
 @pytest.fixture(scope="module")
@@ -128,6 +147,38 @@ WRONG = {
     "a facet too far": (
         lambda m: Model.of(m.space, {"pad.sole": np.array([0, 9999], dtype=np.int32)}),
         r"pad.sole: facet 9999 given, the mesh has 0 to \d+",
+    ),
+    "single precision": (
+        lambda m: Model.of(_space(np.float32), {}),
+        "space: a mesh of float32 given, float64 needed",
+    ),
+    "an energy for a residual": (
+        lambda m: _script(lambda u, v: ufl.inner(u, u) * ufl.dx),
+        "F: a form with 0 arguments given, one with a test function needed",
+    ),
+    "a stiffness for a residual": (
+        lambda m: _script(lambda u, v: ufl.inner(ufl.TrialFunction(u.function_space), v) * ufl.dx),
+        "F: a form with 2 arguments given, one with a test function needed",
+    ),
+    "a residual of something else": (
+        lambda m: _script(lambda u, v: ufl.inner(fem.Function(u.function_space), v) * ufl.dx),
+        "F: does not depend on u: the residual at the function u needed",
+    ),
+    "a test function of another space": (
+        lambda m: _script(lambda u, v: ufl.inner(u, ufl.TestFunction(_finer(u))) * ufl.dx),
+        "F: its test function is of another space than u",
+    ),
+    "a residual for its derivative": (
+        lambda m: _script(lambda u, v: ufl.inner(u, v) * ufl.dx, with_j=True),
+        "J: a form with 1 arguments given, one with a test function and a trial function needed",
+    ),
+    "an energy of a negative modulus": (
+        lambda m: UserEnergy(lambda F: ufl.inner(F, F), young=-1.0),
+        "young: -1.0 given, Young's modulus at rest needed, > 0",
+    ),
+    "an event that is never reached": (
+        lambda m: Until(reaction="block.top", value=np.inf),
+        "until.value: inf given, a finite number needed",
     ),
     "no number for a motion": (
         lambda m: RigidBody("die", reference=(0, 0, 0)).move(x=float("nan")),

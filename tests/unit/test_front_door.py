@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import importlib
+import pickle
 import subprocess
 import sys
 
@@ -156,3 +158,32 @@ def test_goes_on_from_a_file(pad, tmp_path):
         other.restore(path)
     with pytest.raises(InputError, match="cannot be read"):
         other.restore(tmp_path / "none.npz")
+
+
+@pytest.mark.parametrize("content", [b"", b"PK\x03\x04junk", b"\x93NUMPY"])
+def test_a_file_that_is_none_is_one_line(pad, tmp_path, content):
+    """Requirement: a state that was cut off, or is none, and a folder that is not there."""
+    problem = pad()[0]
+    (tmp_path / "state.npz").write_bytes(content)
+    with pytest.raises(InputError, match=r"path: '.*state.npz' cannot be read"):
+        problem.restore(tmp_path / "state.npz")
+    with pytest.raises(InputError, match=r"path: '.*state.npz' cannot be written: No such file"):
+        problem.save(tmp_path / "none" / "state.npz")
+
+
+def test_laws_and_surfaces_go_to_other_processes():
+    """Requirement: what a study hands to its workers can be copied and pickled, and answers alike.
+
+    Source: the traction of a sliding point, the same bits.
+    """
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+    plane = anisocontact.make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+    marks = anisocontact.make_directions("constant", vector=(1, 1, 0))
+    friction = anisocontact.Friction(coefficients=(0.3, 0.1), directions=marks)
+    adhesion = anisocontact.Adhesion(stiffness=50.0)
+    made = anisocontact.Interface(plane, anisocontact.NormalLaw(penalty=100.0), adhesion, friction)
+    answers = []
+    for interface in (made, copy.deepcopy(made), pickle.loads(pickle.dumps(made))):
+        start = interface.initial_state([[0.0, 0.0, -0.01]])
+        answers.append(interface.update(start, [[0.1, 0.05, -0.01]]).traction.tobytes())
+    assert len(set(answers)) == 1

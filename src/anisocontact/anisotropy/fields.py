@@ -10,6 +10,7 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
+from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import Floats, Surface, points
 
@@ -21,7 +22,7 @@ Directions = npt.ArrayLike | tuple[npt.ArrayLike, npt.ArrayLike]
 BY_COORDINATES = frozenset({"coordinate-lines", "tabulated-grid"})
 
 
-class DirectionField:
+class DirectionField(Remade):
     """A direction field; make one with `make_directions`, `from_callable`, ...
 
     Args:

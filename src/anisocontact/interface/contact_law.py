@@ -11,6 +11,7 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
+from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.interface import series
 from anisocontact.interface.python_law import Look, PythonLaw, Update
@@ -24,7 +25,7 @@ VECTOR_FORMS = ("transport", "backward-euler")
 
 
 @typed
-class AdhesionAndFriction:
+class AdhesionAndFriction(Remade):
     """The tangential law of the core.
 
     Args:
@@ -108,7 +109,7 @@ class AdhesionAndFriction:
 
 
 @typed
-class ContactLaw:
+class ContactLaw(Remade):
     """The law of a contact, on an analytic, a moving or a meshed master.
 
     Args:

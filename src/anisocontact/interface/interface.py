@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.base.errors import InputError
+from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.interface.contact_law import VECTOR_FORMS, ContactLaw
 from anisocontact.interface.python_law import PythonLaw
@@ -23,7 +24,7 @@ POINTS_ALONE = SlaveSurface(np.zeros((0, 3)), np.zeros((0, 2, 3)), np.zeros((0, 
 
 
 @typed
-class Interface:
+class Interface(Remade):
     """A surface with the laws of its contact.
 
     Args:

@@ -17,6 +17,7 @@ from anisocontact.anisotropy import (
 from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry
+from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.surfaces import Floats, Surface, points
 
@@ -127,7 +128,7 @@ class Adhesion:
 
 
 @typed
-class Friction:
+class Friction(Remade):
     """Yield ellipse and sliding rule.
 
     Args:

@@ -35,6 +35,9 @@ def own_unknowns(space: Any) -> NodeUnknowns:
     """
     if not (hasattr(space, "element") and hasattr(space, "dofmap")):
         raise InputError(f"{type(space).__name__} given, a function space, {_NEEDED}", "space")
+    if space.mesh.geometry.x.dtype != np.float64:
+        text = f"a mesh of {space.mesh.geometry.x.dtype} given, float64 needed"
+        raise InputError(text, "space")
     types = [cell.name for cell in space.mesh.topology.entity_types[-1]]
     if len(types) != 1 or types[0] not in _CELLS:
         text = f"a mesh of {' and '.join(types)} cells given, {' or '.join(_CELLS)} needed"

@@ -12,6 +12,7 @@ from anisocontact import _core
 from anisocontact.base import registry
 from anisocontact.base.arrays import Floats, points
 from anisocontact.base.errors import InputError
+from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.surfaces.geometry import Geometry, GeometryDerivatives
 
@@ -85,7 +86,7 @@ def default_threads() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-class Surface:
+class Surface(Remade):
     """An analytic surface; make one with `make_surface`.
 
     Args:

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from anisocontact import _core
 from anisocontact.base.arrays import Floats, points
 from anisocontact.base.errors import InputError
+from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.surfaces.analytic import Jet, default_threads
 from anisocontact.surfaces.facet_blocks import TOPOLOGIES, FacetBlocks, Integers, finite
@@ -139,7 +140,7 @@ class FacetSets:
 
 
 @typed
-class FacetSurface:
+class FacetSurface(Remade):
     """A surface of facets of any of the `TOPOLOGIES`, mixed if need be.
 
     The mesh has to conform: facets are neighbours where they name the same points.

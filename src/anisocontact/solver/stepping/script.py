@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import zipfile
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, override
@@ -228,12 +230,20 @@ class ContactProblem(AssembledSystem):
 
         Args:
             path: The file (.npz); each of several processes writes one with its number.
+
+        Raises:
+            InputError: It cannot be written.
         """
         arrays = {"u": self.u.x.array}
         for i, history in enumerate(self._assembly.terms.histories()):
             arrays |= {f"{i}/{name}": values for name, values in history.items()}
-        with replacing(self._own_file(path)) as draft, draft.open("wb") as file:
-            np.savez(file, allow_pickle=False, **arrays)
+        own = self._own_file(path)
+        try:
+            with replacing(own) as draft, draft.open("wb") as file:
+                np.savez(file, allow_pickle=False, **arrays)
+        except OSError as problem:
+            text = f"'{own}' cannot be written: {problem.strerror or problem}"
+            raise InputError(text, "path") from None
 
     @typed
     def restore(self, path: str | Path) -> None:
@@ -247,9 +257,16 @@ class ContactProblem(AssembledSystem):
         """
         file = self._own_file(path)
         try:
-            with np.load(file) as found:
-                kept = dict(found)
-        except (OSError, ValueError) as problem:
+            with file.open("rb") as stream:
+                kept = dict(np.load(stream))
+        except (
+            OSError,
+            EOFError,
+            TypeError,
+            ValueError,
+            zipfile.BadZipFile,
+            zlib.error,
+        ) as problem:
             raise InputError(f"'{file}' cannot be read: {problem}", "path") from None
         now = self._assembly.terms.histories()
         histories = [under(f"{i}/", kept) for i in range(len(now))]

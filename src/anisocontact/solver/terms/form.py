@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import (
     Mat,
     Vec,
@@ -33,6 +34,9 @@ class FormBulk:
         u: The displacement; forces are those at its values.
         J: Derivative of F; made by UFL if left out.
 
+    Raises:
+        InputError: F is no residual of `u`, or J no derivative of one.
+
     Attributes:
         finite: Whether J depends on `u`.
     """
@@ -48,6 +52,9 @@ class FormBulk:
 
     def __init__(self, F: Any, u: Any, J: Any = None) -> None:
         space = u.function_space
+        _check_form("F", F, u, ("test function",))
+        if J is not None:
+            _check_form("J", J, u, ("test function", "trial function"))
         tangent = ufl.derivative(F, u, ufl.TrialFunction(space)) if J is None else J
         self._residual = compiled(F, space.mesh.comm)
         self._tangent = FormMatrix(compiled(tangent, space.mesh.comm))
@@ -115,3 +122,21 @@ class Dirichlet:
         found = np.array(off.array_r[self.unknowns])
         off.destroy()
         return found
+
+
+def _check_form(name: str, form: Any, u: Any, needed: Sequence[str]) -> None:
+    """Refuse a form that has other arguments than a residual of u, or its derivative.
+
+    Raises:
+        InputError: It has.
+    """
+    arguments, own = form.arguments(), u.function_space
+    if len(arguments) != len(needed):
+        text = f"a form with {len(arguments)} arguments given, one with a {' and a '.join(needed)}"
+        raise InputError(f"{text} needed", name)
+    for argument, what in zip(arguments, needed, strict=True):
+        space = argument.ufl_function_space()
+        if (space.ufl_element(), space.ufl_domain()) != (own.ufl_element(), own.ufl_domain()):
+            raise InputError(f"its {what} is of another space than u", name)
+    if name == "F" and u not in form.coefficients():
+        raise InputError("does not depend on u: the residual at the function u needed", name)
