@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
 
-__all__ = ["ContactView", "Frame"]
+__all__ = ["ContactView", "Frame", "axis_name"]
 
 Floats = npt.NDArray[np.float64]
 
@@ -33,6 +33,8 @@ CLOSED = 0.1
 PIXELS = 500
 #: Half the width of the strip that points on a line are seen as, over their length.
 STRIP = 0.05
+#: Share of the length of a line that parts two places on it.
+SAME = 1e-9
 
 
 @dataclass(frozen=True)
@@ -61,13 +63,13 @@ class Frame:
 
     def names(self) -> tuple[str, str]:
         """What the axes are called: x, y, z where they are those, else their components."""
-        first, second = (_axis_name(axis) for axis in self.axes)
+        first, second = (axis_name(axis) for axis in self.axes)
         return first, second
 
     @property
     def normal_name(self) -> str:
         """What the normal is called."""
-        return _axis_name(self.normal)
+        return axis_name(self.normal)
 
     def of(self, vectors: Floats) -> Floats:
         """Components of vectors along the axes, (..., 2)."""
@@ -161,6 +163,13 @@ class ContactView:
         first, second = np.ptp(self.flat, axis=0)
         return bool(second < STRIP * first)
 
+    @cached_property
+    def one_curve(self) -> bool:
+        """Whether the points lie on a line, each at its own place: values over it are a curve."""
+        places = np.sort(self.flat[:, 0])
+        apart = np.diff(places).min(initial=np.inf)
+        return bool(self.on_line and apart > SAME * (places[-1] - places[0]))
+
     @property
     def aspect(self) -> float:
         """Height of a map over its width."""
@@ -238,7 +247,8 @@ def _straight(normal: Floats) -> Floats:
     return np.sign(normal[main]) * np.eye(3)[main] if abs(normal[main]) > NEARLY else normal
 
 
-def _axis_name(axis: Floats) -> str:
+def axis_name(axis: Floats) -> str:
+    """Letter of a direction along an axis of space, or its components."""
     for letter, unit in zip("xyz", np.eye(3), strict=True):
         if abs(axis @ unit) > 1.0 - ALIKE:
             return letter if axis @ unit > 0.0 else f"-{letter}"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,6 +10,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from anisocontact.base.figure_style import STATUS_COLOURS, new_figure, plain
+from anisocontact.results.report.along import pressure_along, traction_along
 from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import Moment, RunData
 
@@ -23,6 +25,10 @@ __all__ = ["pressure", "status", "traction"]
 MOST = 3
 #: Height of a map over its width below which the scale of colours lies under it, to be long enough.
 FLAT = 0.5
+#: Share of the pressure below which a traction is rounding, which the colours do not show.
+NOISE = 1e-6
+#: Letters of a line of the title of a panel.
+LETTERS = 34
 #: Size of a map in which panels can share their axes, over that of the points.
 ROOM = 1.5
 
@@ -30,10 +36,13 @@ ROOM = 1.5
 def pressure(run: RunData, contact: int) -> Figure:
     """Pressure at the end of each step, one scale for all."""
     moments = run.ends()[-MOST:]
+    views = [run.view(moment.index, contact) for moment in moments]
+    if views and all(view.one_curve for view in views):
+        return pressure_along(list(zip(views, moments, strict=True)))
     figure, panels = _panels(run, contact, moments)
     top = max(float(view.data["pressure"][view.touching].max(initial=0.0)) for _, view, _ in panels)
     for axes, view, moment in panels:
-        axes.set_title(plain(moment.title))
+        axes.set_title(_title(moment))
         image = view.draw_touching(
             axes, view.data["pressure"], cmap="viridis", vmin=0.0, vmax=top or 1.0
         )
@@ -48,7 +57,7 @@ def status(run: RunData, contact: int) -> Figure:
     colours = ListedColormap(STATUS_COLOURS)
     for axes, view, moment in panels:
         view.draw(axes, view.data["status"], cmap=colours, norm=BoundaryNorm([0, 1, 2, 3], 3))
-        axes.set_title(plain(moment.title))
+        axes.set_title(_title(moment))
     _legend(figure, ["open", "stick", "slip"])
     return figure
 
@@ -56,10 +65,13 @@ def status(run: RunData, contact: int) -> Figure:
 def traction(run: RunData, contact: int) -> Figure:
     """Tangential traction on the slave along the first and the second friction axis, at the end."""
     view = run.view(run.moments[-1].index, contact)
+    values = view.data["traction_principal"]
+    limit = float(np.abs(values[view.touching]).max(initial=0.0))
+    limit = max(limit, NOISE * float(view.data["pressure"].max(initial=0.0))) or 1.0
+    if view.one_curve:
+        return traction_along(view, run.moments[-1], limit)
     figure = new_figure(10.0, 4.2 * view.aspect + _margin(view))
     left, right = figure.subplots(1, 2, sharex=True, sharey=True)
-    values = view.data["traction_principal"]
-    limit = float(np.abs(values[view.touching]).max(initial=0.0)) or 1.0
     for axes, i, name in ((left, 0, "first"), (right, 1, "second")):
         image = view.draw_touching(axes, values[:, i], cmap="RdBu_r", vmin=-limit, vmax=limit)
         axes.set_title(f"along the {name} axis of friction")
@@ -68,6 +80,11 @@ def traction(run: RunData, contact: int) -> Figure:
     figure.suptitle(f"{plain(run.moments[-1].title)}; arrows: direction of the axis")
     _legend(figure, ["open"])
     return figure
+
+
+def _title(moment: Moment) -> str:
+    """Title of a panel, in lines that are no wider than it."""
+    return "\n".join(wrap(plain(moment.title), LETTERS))
 
 
 def _panels(
