@@ -22,7 +22,7 @@ from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.poles import without_poles
 from anisocontact.contact.quadrature import chosen_degree, facet_quadrature, inward
-from anisocontact.contact.sharp_edges import Towards, towards_facets
+from anisocontact.contact.sharp_edges import Towards, towards_facets, towards_itself
 from anisocontact.contact.sides import check_sides, make_sides
 from anisocontact.contact.slave_edges import SlaveEdges
 from anisocontact.contact.slave_nodes import (
@@ -273,7 +273,7 @@ def _on_facets(
     check_sides(model, slave, master, options.apart)
     current, nodes = options.current_area is not False, None
     if options.mortar:
-        towards = None if options.self_contact else towards_facets(model, master)
+        towards = (towards_itself if options.self_contact else towards_facets)(model, master)
         facets = model.facets(slave)
         order = None if options.self_contact else _order(model, facets)
         nodes = _slave_nodes(model, facets, current, SlaveEdges.in_space, towards, order)

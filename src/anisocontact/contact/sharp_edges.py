@@ -4,6 +4,8 @@ Where a slave goes around a sharp edge, the mean of both faces is the normal of 
 that one face presses on the master would be pushed aside as much. Of the facets around a node those
 count that face the master nearest to it in the reference configuration, or else the one that faces
 it most and what goes on smoothly from there. A wedge that stands on its edge has both of its faces.
+Where a surface meets itself its master is what faces one of the facets from in front; a node that
+nothing faces has all of them.
 
 A facet that does not count stands across what its neighbour meets: beside a block that has sunk
 into its base their projections overlap where nothing touches. It meets what faces it within 60
@@ -27,8 +29,9 @@ Numbers = npt.NDArray[np.int64]
 Floats = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
 
-#: Places, (n, 3), to outward unit normals of the master nearest to them, (n, 3).
-type Towards = Callable[[Floats], Floats]
+#: Places, (n, 3), and the normals of facets there with their place, (pairs, 3) and (pairs,), to
+#: outward unit normals of the master nearest to the places, (n, 3); not a number where none is.
+type Towards = Callable[[Floats, Floats, Numbers], Floats]
 
 
 class Around(Protocol):
@@ -53,6 +56,8 @@ class Around(Protocol):
 
 #: Cosine of the angle between normals up to which facets go on smoothly, or face each other.
 SMOOTH = 0.5
+#: How far behind a facet what faces it may lie, over the distance: rounding of a closed slit.
+BEHIND = 0.02
 #: That between a facet and the mean of those around a node, below which it has an edge: 30 degrees.
 SHARP = np.sqrt(0.75)
 
@@ -88,10 +93,17 @@ def counting(around: Around, normals: Floats, x: Floats, towards: Towards | None
     total = np.zeros((n, 3))
     np.add.at(total, owner, own)
     mean = total / np.linalg.norm(total, axis=1)[:, None]
-    sharp = np.einsum("pi,pi->p", own, mean[owner]) < SHARP
+    counts = np.ones(len(owner))
+    sharp = np.zeros(n, dtype=bool)
+    sharp[owner[np.einsum("pi,pi->p", own, mean[owner]) < SHARP]] = True
     if towards is None or not sharp.any():
-        return np.ones(len(owner))
-    return np.where(facing_facets(owner, own, towards(x[around.nodes[:, 0]])), 1.0, 0.0)
+        return counts
+    at = np.flatnonzero(sharp[owner])
+    nodes, place = np.unique(owner[at], return_inverse=True)
+    master = towards(x[around.nodes[nodes, 0]], own[at], place)
+    faced = ~np.isnan(master[place, 0])
+    counts[at] = ~faced | facing_facets(place, own[at], np.nan_to_num(master))
+    return counts
 
 
 def beside_edges(around: Around, keys: Numbers, comm: Any) -> Mask:
@@ -108,16 +120,39 @@ def beside_edges(around: Around, keys: Numbers, comm: Any) -> Mask:
 
 def towards_facets(model: Model, group: str) -> Towards:
     """Normals of the facets of a group; collective, and it has those of all processes."""
-    facets, comm = model.facets(group), model.mesh.comm
-    quadrature = facet_quadrature(model.space, facets, 1, model.idealisation)
-    flip = inward(model.space, facets, quadrature)
-    points: Any = SlavePoints(quadrature, flip, current_area=False, comm=comm)
-    places = np.concatenate(comm.allgather(quadrature.reference))
-    normals = np.concatenate(comm.allgather(points.outward))
+    places, normals = _middles(model, group)
 
-    def towards(x: Floats) -> Floats:
+    def towards(x: Floats, *_: object) -> Floats:
         from scipy.spatial import cKDTree  # slow to import, and smooth slaves do without
 
         return np.asarray(normals[cKDTree(places).query(x)[1]])
 
     return towards
+
+
+def towards_itself(model: Model, group: str) -> Towards:
+    """The same of a group that meets itself: of those facets that face one at the place."""
+    places, normals = _middles(model, group)
+
+    def towards(x: Floats, own: Floats, owner: Numbers) -> Floats:
+        found = np.full_like(x, np.nan)
+        for i, place in enumerate(x):
+            there, way = own[owner == i], places - place
+            away = np.linalg.norm(way, axis=1)
+            faces = (normals @ there.T < -SMOOTH) & (way @ there.T > -BEHIND * away[:, None])
+            if faces.any():
+                found[i] = normals[np.where(faces.any(axis=1), away, np.inf).argmin()]
+        return found
+
+    return towards
+
+
+def _middles(model: Model, group: str) -> tuple[Floats, Floats]:
+    """Middles of the facets of a group on all processes, and outward unit normals there."""
+    facets, comm = model.facets(group), model.mesh.comm
+    quadrature = facet_quadrature(model.space, facets, 1, model.idealisation)
+    flip = inward(model.space, facets, quadrature)
+    points: Any = SlavePoints(quadrature, flip, current_area=False, comm=comm)
+    gathered = (comm.allgather(found) for found in (quadrature.reference, points.outward))
+    places, normals = (np.concatenate(found) for found in gathered)
+    return places, normals
