@@ -26,6 +26,7 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, Problem, Solver, Spring, Step
+from anisocontact.solver.strategies.iterative import coarse
 from anisocontact.surfaces import make_surface
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
@@ -151,6 +152,23 @@ def test_finite_strain() -> None:
     far = Step("press", 2, {**CLAMP, "block.top": {"x": 0.0, "y": 0.0, "z": -0.05}})
     notes = _same(lambda: _pair(material=rubber), [far, DRAG])
     assert sum("two levels" in note for note in notes) < 4
+
+
+def test_a_coarse_factor_in_single_precision_that_is_not_enough(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Where it does not find a known solution all later factors are in double precision.
+
+    Requirement: with one of no use the same answers and counts; it is said once. Without that
+    nothing is said: single precision does for a penalty of 1e5, a hundred times the stiffness.
+    """
+    told = "the factor of the coarse level is in double precision from now on"
+    usual = _same(_pair, [PRESS])
+    assert told not in usual
+    monkeypatch.setattr(coarse, "TRUSTED", 0.0)
+    notes = _same(_pair, [PRESS])
+    assert notes.count(told) == 1
+    assert _counts(notes) == _counts(usual)
 
 
 def test_free_rigid_body() -> None:

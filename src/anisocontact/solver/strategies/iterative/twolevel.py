@@ -46,7 +46,7 @@ class TwoLevel:
         self._coarse: CoarseLevel | None = None
         self._bulk: object = None
         self._fresh = 0
-        self._worn = False
+        self._worn, self._single = False, True
 
     def count(self, iterations: int) -> None:
         """Take the number of Krylov iterations of a correction."""
@@ -66,7 +66,11 @@ class TwoLevel:
             self._renew(tangent)
         self._bulk = bulk
         assert self._coarse is not None
-        if not self._coarse.factorise(tangent):
+        found = self._coarse.factorise(tangent)
+        if self._single and not self._coarse.single:
+            self._single = False
+            self._note("the factor of the coarse level is in double precision from now on")
+        if not found:
             pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
 
     def apply(self, pc: PETSc.PC, b: Vec, x: Vec) -> None:
@@ -103,7 +107,8 @@ class TwoLevel:
         self._split = split = Split(problem, self._patch.select())
         self._interior = interior = interior_matrix(tangent, split, scale)
         prolong = interpolation(problem, tangent, split, interior, f"{self._prefix}aggregates_")
-        self._coarse = CoarseLevel(tangent, prolong, split, scale, f"{self._prefix}coarse_")
+        prefix = f"{self._prefix}coarse_"
+        self._coarse = CoarseLevel(tangent, prolong, split, scale, prefix, self._single)
         self._smoother = self._new_smoother()
         self._fresh, self._worn = 0, False
         inside, kept = split.interior.getSize(), split.patch.getSize()
