@@ -215,7 +215,7 @@ def test_tangent_by_order(name: str, given: dict[str, Any]) -> None:
         ({"second": (2.0, 0.0, 0.0)}, "parallel"),
         ({"first": (0.0, 0.0, 0.0)}, "must not be zero"),
         ({"around": ((0, 0, 0), (0, 0, 0))}, "must not be zero"),
-        ({"around": ((0, 0, 0), (0, 0, 1)), "second": (0, 1, 0)}, "second: given with around"),
+        ({"around": ((0, 0, 0), (0, 0, 1)), "second": (0, 1, 1)}, "second: given with around"),
         ({"strain": "large"}, "small, green-lagrange"),
     ],
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -39,17 +39,24 @@ def first_axis(name: str, doc: str) -> Parameter:
     return Parameter(name, "vector", "1", doc, "nonzero", False, (1.0, 0.0, 0.0))
 
 
-def check_axes(given: Mapping[str, Any], field: str = "") -> None:
+def check_axes(parameters: Sequence[Parameter], given: Mapping[str, Any], field: str = "") -> None:
     """Refuse axes that are given twice, by name and around a line.
 
     Args:
-        given: Parameters of a material as the user wrote them.
+        parameters: Parameters of the material.
+        given: Their values as the user wrote them; those of the case file have the defaults too.
         field: Where it was written, for messages.
 
     Raises:
         InputError: They are.
     """
-    twice = [name for name in ("first", "second", "along") if given.get(name) is not None]
+    twice = [
+        p.name
+        for p in parameters
+        if p.name in ("first", "second", "along")
+        and given.get(p.name) is not None
+        and tuple(given[p.name]) != p.default
+    ]
     if twice and given.get("around") is not None:
         path = f"{field}.{twice[0]}" if field else twice[0]
         raise InputError("given with around, one of the two is allowed", path)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import (
     Mat,
     Vec,
@@ -38,6 +39,9 @@ class NonlinearBulk:
         model: Mesh with its bodies.
         materials: Body name -> material, for each body that has a stiffness; linear ones may be
             among them.
+
+    Raises:
+        InputError: A material has no stiffness at rest.
 
     Attributes:
         histories: What bodies whose material has a history have gone through, by body name.
@@ -79,6 +83,7 @@ class NonlinearBulk:
         self.rest_length = cell_size(model.mesh)
         #: Diagonal of the tangent at rest: the scale of forces that displacements of one unit make.
         self.diagonal = self.stiffness.getDiagonal()
+        _check_stiff(model, materials, self.diagonal)
         #: The same for surfaces that give way by shear, as of `Pressures`.
         self.yielding = self._pressures.yielding(self.diagonal)
 
@@ -215,6 +220,23 @@ class NonlinearBulk:
     def _set(self, u: Vec) -> None:
         self._u.x.array[: len(u.array_r)] = u.array_r
         self._u.x.scatter_forward()
+
+
+def _check_stiff(model: Model, materials: Mapping[str, Material], diagonal: Vec) -> None:
+    """Refuse a body that has no stiffness at rest; collective.
+
+    Raises:
+        InputError: A node of it can be moved without a force, or by one that pulls back.
+    """
+    rows, space = diagonal.array_r, model.space
+    for name in model.body_names():
+        nodes = np.unique(space.dofmap.list[model.cells(name)])
+        own = nodes[nodes < space.dofmap.index_map.size_local, None] * space.dofmap.bs
+        here = float(rows[own + np.arange(space.dofmap.bs)].min(initial=np.inf))
+        least = min(model.mesh.comm.allgather(here))
+        if name in materials and not least > 0.0:
+            text = f"no stiffness at rest: that of a node is {least:.3g}, must be > 0"
+            raise InputError(text, f"material.{name}")
 
 
 def _cells(model: Model) -> int:

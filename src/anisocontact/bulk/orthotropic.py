@@ -87,7 +87,7 @@ class _Directed(Hyperelastic):
         self.young = float(1.0 / np.linalg.inv(self._stiffness).diagonal()[:3].min())
         self.linear = _STRAINS[int(given["strain"][0])] == "small"
         first, second = self._directions(given)
-        check_axes(parameters, field)
+        check_axes(self.entry.parameters, parameters, field)
         self._axes = MaterialAxes(first, second, given["around"], field)
 
     @abstractmethod

@@ -267,7 +267,7 @@ class Hill(Plastic):
     def __init__(self, *, E: float, nu: float, field: str = "", **others: Any) -> None:
         super().__init__(E=E, nu=nu, field=field, **others)
         given = self._given
-        check_axes(others, field)
+        check_axes(self.entry.parameters, others, field)
         self._axes = MaterialAxes(given["first"], given["second"], given["around"], field)
 
     def _condition(self, field: str) -> Floats:

@@ -18,6 +18,9 @@ from anisocontact.bulk.materials import Material
 from anisocontact.bulk.point_law import PointLaw, PointResult, PointState
 from anisocontact.bulk.strain import STRAINS
 
+#: Difference of components that have to be the same, over the largest one.
+_SYMMETRIC = 1e-8
+
 
 class UserLaw:
     """A law of points of the user's, whose answers are looked at.
@@ -39,9 +42,12 @@ class UserLaw:
         if self.strain not in STRAINS:
             text = f"{self.strain!r} given, allowed: {', '.join(STRAINS)}"
             raise InputError(text, f"{type(law).__name__}.strain")
-        self.history: Mapping[str, tuple[int, ...]] = dict(getattr(law, "history", {}))
+        self.history = _checked_history(getattr(law, "history", {}), type(law).__name__)
         before = {name: np.zeros((2, *shape)) for name, shape in self.history.items()}
-        self.update(PointState(np.zeros((2, 3, 3)), before, 0.0, np.zeros((2, 3))))
+        rest = self.update(PointState(np.zeros((2, 3, 3)), before, 0.0, np.zeros((2, 3))))
+        if not np.isfinite(rest.stress).all():
+            text = f"the law {type(law).__name__} returned numbers that are not finite at rest"
+            raise InputError(text, "stress")
 
     def update(self, state: PointState) -> PointResult:
         """As of `PointLaw`.
@@ -68,12 +74,43 @@ class UserLaw:
             for part in ("stored", "dissipated")
             if getattr(result, part) is not None
         }
-        return PointResult(
+        found = PointResult(
             right(result.stress, (n, 3, 3), part="stress"),
             right(result.tangent, (n, 3, 3, 3, 3), part="tangent"),
             {v: right(result.after[v], (n, *s), part=v) for v, s in self.history.items()},
             **energies,
         )
+        _check_answer(found, state, f"the law {name}")
+        return found
+
+
+def _checked_history(given: Any, name: str) -> Mapping[str, tuple[int, ...]]:
+    """Variables of a law with their shapes."""
+    shapes = given.values() if isinstance(given, Mapping) else [None]
+    for shape in shapes:
+        if not (isinstance(shape, tuple | list) and all(type(k) is int and k > 0 for k in shape)):
+            text = f"{given!r:.60} given, shapes by name needed, () of a number"
+            raise InputError(text, f"{name}.history")
+    return {str(variable): tuple(shape) for variable, shape in given.items()}
+
+
+def _check_answer(found: PointResult, state: PointState, who: str) -> None:
+    """Refuse answers that can be no law, at points whose strain and stress are numbers.
+
+    A stress that is none is that of a trial which went too far: the increment is cut.
+    """
+    flat = len(found.stress), -1
+    known = np.isfinite(state.strain).all(axis=(1, 2)) & np.isfinite(found.stress).all(axis=(1, 2))
+    for part, values in {"tangent": found.tangent, **found.after}.items():
+        if not np.isfinite(values.reshape(flat)[known]).all():
+            raise InputError(f"{who} returned numbers that are not finite", part)
+    pairs = (("stress", found.stress, (0, 2, 1)), ("tangent", found.tangent, (0, 1, 2, 4, 3)))
+    for part, values, other in pairs:
+        kept = values[known]
+        apart = np.abs(kept - kept.transpose(other)).max(initial=0.0)
+        if apart > _SYMMETRIC * np.abs(kept).max(initial=0.0):
+            what = "symmetric" if part == "stress" else "symmetric in its last two indices"
+            raise InputError(f"{who} returned one that is not {what}", part)
 
 
 def user_material(given: Any) -> Material:

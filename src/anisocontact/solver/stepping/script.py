@@ -44,6 +44,8 @@ Floats = npt.NDArray[np.float64]
 #: Gap over the facet size up to which a point counts as touching: rounding of a mesh.
 NEAR = 1e-6
 LIMITS = Limits()
+#: What NumPy says of a file that is no state, or half of one.
+_UNREADABLE = (OSError, EOFError, TypeError, ValueError, zipfile.BadZipFile, zlib.error)
 
 
 @typed
@@ -259,14 +261,7 @@ class ContactProblem(AssembledSystem):
         try:
             with file.open("rb") as stream:
                 kept = dict(np.load(stream))
-        except (
-            OSError,
-            EOFError,
-            TypeError,
-            ValueError,
-            zipfile.BadZipFile,
-            zlib.error,
-        ) as problem:
+        except _UNREADABLE as problem:
             raise InputError(f"'{file}' cannot be read: {problem}", "path") from None
         now = self._assembly.terms.histories()
         histories = [under(f"{i}/", kept) for i in range(len(now))]

@@ -1,0 +1,108 @@
+"""Answers of a law of the user's that can be no law: one line that says which and what."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from anisocontact.base.errors import InputError
+from anisocontact.bulk import NonlinearBulk, PointResult, PointState, UserLaw, user_material
+from anisocontact.mesh import BoxSpec, build_box
+
+ONE = np.eye(9).reshape(3, 3, 3, 3)
+
+
+class Spring:
+    """`2 G e`; `spoil` changes its answer at strains that are not zero."""
+
+    young = 3.0
+
+    def __init__(self, spoil: Any = None, history: Any = None) -> None:
+        self.history = {"p": ()} if history is None else history
+        self._spoil = spoil
+
+    def update(self, state: PointState) -> PointResult:
+        """Stress, tangent and what was remembered."""
+        answer = {
+            "stress": 2.0 * state.strain,
+            "tangent": np.stack([ONE + ONE.swapaxes(2, 3)] * len(state.strain)),
+            "after": {name: 1.0 * values for name, values in state.before.items()},
+        }
+        if self._spoil is not None and state.strain.any():
+            self._spoil(answer)
+        return PointResult(**answer)
+
+
+def _lost(answer: Any, part: str) -> None:
+    values = answer["after"]["p"] if part == "p" else answer[part]
+    values[0] = np.nan
+
+
+def _skew(answer: Any) -> None:
+    answer["stress"][:, 0, 1] += 0.01
+
+
+def _one_sided(answer: Any) -> None:
+    answer["tangent"][:, 0, 1, 0, 1] += 0.01
+
+
+def _state(strain: float = 0.1) -> PointState:
+    before = {"p": np.zeros(2)}
+    return PointState(np.full((2, 3, 3), strain), before, 1.0, np.zeros((2, 3)))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "says"),
+    [
+        (lambda a: _lost(a, "tangent"), "tangent: the law Spring returned numbers that are not"),
+        (lambda a: _lost(a, "p"), "p: the law Spring returned numbers that are not finite"),
+        (_skew, "stress: the law Spring returned one that is not symmetric"),
+        (_one_sided, "tangent: .* one that is not symmetric in its last two indices"),
+    ],
+)
+def test_answers_that_can_be_none(spoil: Any, says: str) -> None:
+    """Requirement: a tangent or a variable that is no number where the stress is one, and what
+    has to be symmetric and is not, end a run with the name of the law and of the part."""
+    with pytest.raises(InputError, match=says):
+        UserLaw(Spring(spoil)).update(_state())
+
+
+def test_a_trial_that_went_too_far_is_no_mistake() -> None:
+    """A stress that is no number cuts the increment, whatever else is none there."""
+
+    def spoil(answer: Any) -> None:
+        for part in ("stress", "tangent", "p"):
+            _lost(answer, part)
+
+    found = UserLaw(Spring(spoil)).update(_state())
+    assert np.isnan(found.stress[0]).all() and np.isfinite(found.stress[1]).all()
+
+
+@pytest.mark.parametrize("history", [["p"], {"p": "3"}, {"p": (3, 1.5)}, {"p": (-1,)}, {"p": 3}])
+def test_shapes_of_variables(history: Any) -> None:
+    """Requirement: shapes that are none are one line, before anything is made of them."""
+    with pytest.raises(InputError, match=r"Spring.history: .* given, shapes by name needed"):
+        UserLaw(Spring(history=history))
+
+
+@pytest.mark.parametrize("power", [0, 2])
+def test_a_body_without_stiffness_is_named(power: int) -> None:
+    """Requirement: an energy that holds nothing at rest is said of its body, not of a penalty that
+    was made of its stiffness."""
+
+    class Loose:
+        young = 1.0
+
+        def energy(self, gradient: Any) -> Any:
+            from anisocontact.base.fenicsx import ufl
+
+            moved = gradient - ufl.Identity(3)
+            return ufl.tr(gradient) - power * ufl.inner(moved, moved)
+
+    model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 1), (1, 1, 1))})
+    with pytest.raises(InputError, match=r"material.block: no stiffness at rest: that of a node"):
+        NonlinearBulk(model, {"block": user_material(Loose())})
