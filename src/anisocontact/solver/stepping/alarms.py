@@ -39,6 +39,8 @@ def _found(accepted: Accepted) -> Iterator[tuple[str, str]]:
     for name, turned in accepted.turned.items():
         if turned.angle > WARNED:
             yield f"turned {name}", f"body {name!r}, at small strain, {turned}; {CURE}"
+    for behind in accepted.behind:
+        yield f"behind {behind.body} {behind.master}", str(behind)
     if accepted.imbalance.large:
         yield "energy", str(accepted.imbalance)
     if accepted.missed:

@@ -12,6 +12,7 @@ from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.rotations import Turned
+from anisocontact.solver.system.sides_kept import Behind
 
 Floats = npt.NDArray[np.float64]
 
@@ -57,6 +58,7 @@ class Accepted:
             (k, 3), length; contacts without any are left out.
         turned: How far each body at small strain has turned, by name.
         imbalance: What is left open in the balance of energy.
+        behind: Bodies of which a part lies behind their masters.
         relaxed: Whether penalties hold in it, as no multipliers were found.
         event: What has happened where an event ends the step here, in words.
         missed: What has not, where a step that waits for an event ends without it.
@@ -89,6 +91,7 @@ class Accepted:
     ran_off: dict[str, Floats]
     turned: dict[str, Turned]
     imbalance: Imbalance
+    behind: tuple[Behind, ...] = ()
     relaxed: bool = False
     event: str = ""
     missed: str = ""

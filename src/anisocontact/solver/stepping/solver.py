@@ -360,6 +360,7 @@ class Solver:
             ran_off=ran_off,
             turned=self.problem.rotations.accepted,
             imbalance=self._energy.after(energies, bool(ran_off)),
+            behind=tuple(self.problem.sides.partly),
             relaxed=outcome.relaxed,
             event=events.text if events.happened else "",
             missed=events.text if last and events.waits else "",

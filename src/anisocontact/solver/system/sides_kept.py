@@ -30,11 +30,38 @@ MOST_BEHIND = 0.5
 HANGING = 0.3
 #: Depth over the size of the body that is not penetration of a penalty.
 DEEP = 0.05
+#: Share of a body that deep behind its master that is worth a word.
+WORTH_A_WORD = 0.03
+
+
+@dataclass(frozen=True)
+class Behind:
+    """A body of which a part lies behind its master, where faces that are no slaves have got to.
+
+    Attributes:
+        body: Its name.
+        share: Part of its nodes.
+        depth: How far the farthest of them is behind, length.
+        master: What is meant to stop it.
+    """
+
+    body: str
+    share: float
+    depth: float
+    master: str
+
+    def __str__(self) -> str:
+        """In a line, with what may be the cause."""
+        return (
+            f"{self.share:.0%} of body {self.body!r} lies behind its master {self.master!r}, up to "
+            f"{self.depth:.3g}: only its slave meets it, other faces go through; let all faces "
+            "that may come to it be slaves, unless the way there leads around it"
+        )
 
 
 @dataclass(frozen=True)
 class _Watched:
-    """Nodes of a slave's body that were in front of the master at first.
+    """Nodes of a slave's body that were not behind the master at first.
 
     Attributes:
         one: The contact.
@@ -78,9 +105,13 @@ class SidesKept:
     Args:
         contacts: The contacts, in the reference configuration.
         groups: Bodies in which slaves and masters are looked for; a slave of several is of all.
+
+    Attributes:
+        partly: Bodies of which a part was behind their masters in the state looked at last.
     """
 
     def __init__(self, contacts: Sequence[Contact], groups: Sequence[ConnectedBody]) -> None:
+        self.partly: list[Behind] = []
         self._watched = [one for contact in contacts for one in _watched(contact, groups)]
 
     def objection(self, u: Floats, whole: bool = True) -> Culprit | None:
@@ -90,6 +121,7 @@ class SidesKept:
             u: Displacement of the local nodes in the state evaluated last, (nodes, 3), length.
             whole: Whether it is true for all nodes, not for those that can be touched alone.
         """
+        self.partly = []
         for watched in self._watched:
             found = list(self._objections(watched, u, whole))
             if found:
@@ -102,6 +134,8 @@ class SidesKept:
         comm = where.comm
         name = watched.one.slave.partition(".")[0]
         behind, depth, place = self._behind(watched, u, whole)
+        if behind > WORTH_A_WORD:
+            self.partly.append(Behind(name, behind, depth, watched.one.name.split(" on ")[-1]))
         pressed = where.from_behind()
         gone, below = where.through()
         far = f", the farthest of it {depth:.3g} behind" if depth > 0.0 else ""
@@ -121,7 +155,7 @@ class SidesKept:
             yield Culprit("behind", place, text + far, watched.one.name)
 
     def _behind(self, watched: _Watched, u: Floats, whole: bool) -> tuple[float, float, Point]:
-        """Share of a body behind the master that was in front of it, how far at most, and where."""
+        """Share of a body behind the master that was not at first, how far at most, and where."""
         if watched.body is None:
             return 0.0, 0.0, (0.0, 0.0, 0.0)
         comm = watched.one.space.mesh.comm
@@ -174,6 +208,6 @@ def _body(one: Contact, body: ConnectedBody) -> _Watched:
     places = np.asarray(one.space.tabulate_dof_coordinates())
     nodes = body.nodes[:: max(1, len(body.nodes) // MOST_NODES)]
     seen = one.master.look(places[nodes])
-    nodes = nodes[seen.on & (seen.gap > -DEEP * body.size)]
+    nodes = nodes[~seen.on | (seen.gap > -DEEP * body.size)]
     touchable = np.isin(body.nodes, one.couplable())
     return _Watched(one, body, nodes, places[nodes], body.nodes[touchable], body.arms[touchable])
