@@ -116,3 +116,12 @@ def test_bulk_data_alone_and_other_coordinate_systems(tmp_path: Path) -> None:
     path.write_text(long + text)
     with pytest.raises(InputError, match="GRID\\* 1 is in the coordinate system 5"):
         file_arrays(path)
+
+
+@pytest.mark.parametrize(("name", "of"), [("part.cdb", "Ansys"), ("part.k", "LS-DYNA")])
+def test_files_that_are_not_read_say_so(tmp_path: Path, name: str, of: str) -> None:
+    """Requirement: a file of a code whose meshes are not read is told with what to write."""
+    path = tmp_path / name
+    path.write_text("/PREP7\n")
+    with pytest.raises(InputError, match=f"files of {of} are not read; have it write .inp"):
+        file_arrays(path)

@@ -12,6 +12,8 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base.errors import InputError
+from anisocontact.mesh import exodus
+from anisocontact.mesh.exodus import read_exodus
 from anisocontact.mesh.meshio_patches import names_of_med, nastran
 from anisocontact.mesh.whole import WholeMesh
 
@@ -19,7 +21,7 @@ Nodes = npt.NDArray[np.int64]
 
 #: Endings of names; gmsh's and Abaqus's have readers of their own.
 SUFFIXES: tuple[str, ...] = (
-    *(".bdf", ".nas", ".fem", ".e", ".exo", ".ex2", ".med", ".vtk", ".vtu", ".xdmf", ".xmf"),
+    *(".bdf", ".nas", ".fem", *exodus.SUFFIXES, ".med", ".vtk", ".vtu", ".xdmf", ".xmf"),
     *(".mesh", ".meshb", ".cgns", ".h5m", ".hmf", ".avs", ".su2", ".ugrid", ".f3grid"),
     *(".vol", ".mdpa"),
 )
@@ -94,6 +96,8 @@ def read_by_meshio(path: Path) -> WholeMesh:
             for name in dict.fromkeys(label for label in labels if label):
                 own = corners[[label == name for label in labels]]
                 mesh.surfaces.setdefault(name, []).append(own)
+    for name, parts in getattr(given, "sides", {}).items():
+        mesh.surfaces.setdefault(_plain(name), []).extend(parts)
     if not mesh.cells:
         found = ", ".join(f"{len(b.data)} {b.type}" for b in given.cells) or "none at all"
         kinds = {block.type for block in given.cells}
@@ -132,6 +136,11 @@ def needed(path: Path) -> Any:
 
 def _read(path: Path) -> Any:
     """The mesh of meshio; what it prints and where it exits becomes one line."""
+    if path.suffix.lower() in exodus.SUFFIXES:
+        try:
+            return read_exodus(path)
+        except (AttributeError, IndexError, KeyError, ValueError) as problem:
+            raise InputError(f"it is no Exodus file that can be read: {problem}") from None
     meshio = needed(path)
     said = io.StringIO()
     try:

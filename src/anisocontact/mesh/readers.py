@@ -22,6 +22,17 @@ from anisocontact.mesh.whole import WholeMesh
 type Reader = Callable[[Path, Sequence[str] | None, str, Any], MeshArrays]
 
 _READERS: dict[str, Reader] = {}
+#: Endings of names of files that users come with and that are not read -> what they are of.
+FOREIGN = {
+    **dict.fromkeys((".cdb", ".ans", ".rst", ".db"), "Ansys"),
+    **dict.fromkeys((".k", ".key", ".dyn"), "LS-DYNA"),
+    **dict.fromkeys((".cae", ".odb"), "Abaqus beside its input"),
+    ".frd": "CalculiX beside its input",
+    ".mail": "Code_Aster beside MED",
+    ".rad": "Radioss",
+    ".hm": "HyperMesh",
+    ".op2": "Nastran beside its input",
+}
 
 
 def register_reader(*suffixes: str) -> Callable[[Reader], Reader]:
@@ -118,7 +129,18 @@ def file_arrays(
     return _READERS.get(path.suffix.lower(), gmsh_arrays)(path, bodies, field, comm)
 
 
+def _refuse(path: Path) -> WholeMesh:
+    """Say what to do with a file of a code whose meshes are not read.
+
+    Raises:
+        InputError: Always.
+    """
+    of = FOREIGN[path.suffix.lower()]
+    raise InputError(f"files of {of} are not read; have it write .inp, .bdf, .med, .unv or .msh")
+
+
 register_reader(".msh")(gmsh_arrays)
+register_reader(*FOREIGN)(whole_reader(_refuse))
 register_reader(*CAD)(cad_arrays)
 register_reader(".inp")(whole_reader(read_inp))
 register_reader(".unv")(whole_reader(read_unv))
