@@ -53,7 +53,9 @@ def material(section: Registered, place: str) -> Material:
     from anisocontact.bulk import make_material
 
     with within(place):
-        return make_material(section.chosen["model"], **section.parameters())
+        # what is left out has its default there; a default of here would count as given
+        given = {k: v for k, v in section.parameters().items() if k in section.model_fields_set}
+        return make_material(section.chosen["model"], **given)
 
 
 def idealisation(case: Any) -> Idealisation:
