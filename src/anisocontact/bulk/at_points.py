@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import partial
 from typing import Any
 
 import numpy as np
@@ -38,8 +37,6 @@ class AtPoints:
     linear = False
     #: Whether the material says what it stores.
     stores: bool
-    #: Expression of the true stress at the points, of the displacement now.
-    _true_stress: Any
 
     def __init__(
         self,
@@ -69,9 +66,12 @@ class AtPoints:
         Args:
             trial: Whether it is that of the last trial; else of the last accepted increment.
         """
-        now = partial(self._true_stress.eval, self._mesh, self._cells)
-        values = now() if trial else self._read(self._stress)
+        values = self._trial_stress() if trial else self._read(self._stress)
         return self._cells, values.reshape(len(self._cells), len(self.points), 3, 3)
+
+    def _trial_stress(self) -> Floats:
+        """True stress at the points, of the displacement now."""
+        raise NotImplementedError
 
     def means(self, name: str) -> tuple[npt.NDArray[np.int32], Floats]:
         """Cells of the body on this rank, (n,), and means over their points of a number."""

@@ -7,8 +7,11 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Protocol
 
+import numpy as np
+
 from anisocontact.base.errors import InputError
-from anisocontact.bulk.at_points import AtPoints
+from anisocontact.base.fenicsx import ufl
+from anisocontact.bulk.at_points import AtPoints, Floats
 from anisocontact.bulk.hyperelastic import cauchy_stress
 from anisocontact.mesh import Idealisation, Model
 
@@ -92,18 +95,18 @@ class BodyHistory(AtPoints):
             raise InputError(text, f"material.{body}")
         # in the plane grad(u) has more than the derivatives along it
         seen = partial(self._ideal.seen, u=u)
-        self._updates = [
-            (v, self._at_points(seen(after[name]))) for name, v in self.variables.items()
-        ]
-        self._true_stress = self._at_points(seen(cauchy_stress(self, u)))
-        self._updates.append((self._stress, self._true_stress))
+        parts = [(v, seen(after[name])) for name, v in self.variables.items()]
+        parts.append((self._stress, seen(cauchy_stress(self, u))))
         told: Any = material
         self.stores = hasattr(told, "stored")
         if self.stores:
             lost = self.dissipated + seen(told.dissipated(u, self.before))
             stored = seen(told.stored(u, self.before))
-            self._updates.append((self.stored, self._at_points(stored)))
-            self._updates.append((self.dissipated, self._at_points(lost)))
+            parts += [(self.stored, stored), (self.dissipated, lost)]
+        self._kept = [variable for variable, _ in parts]
+        # one expression: what the parts share is compiled and evaluated once
+        components = [one for _, part in parts for one in _components(part)]
+        self._after = self._at_points(ufl.as_vector(components))
 
     def piola(self, u: Any) -> Any:
         """First Piola-Kirchhoff stress, (3, 3), UFL, stress."""
@@ -111,7 +114,20 @@ class BodyHistory(AtPoints):
 
     def commit(self) -> None:
         """Accept the increment: the displacement and the time increment are those of its end."""
-        # all are evaluated from what was before, and then kept
-        found = [expression.eval(self._mesh, self._cells) for _, expression in self._updates]
-        for (variable, _), values in zip(self._updates, found, strict=True):
+        for variable, values in zip(self._kept, self._now(), strict=True):
             self._write(variable, values)
+
+    def _trial_stress(self) -> Floats:
+        return self._now()[self._kept.index(self._stress)]
+
+    def _now(self) -> list[Floats]:
+        """What is kept of an accepted increment, of the displacement now, each (points, ...)."""
+        found = np.asarray(self._after.eval(self._mesh, self._cells), dtype=np.float64)
+        widths = [variable.function_space.dofmap.bs for variable in self._kept]
+        return np.split(found.reshape(-1, sum(widths)), np.cumsum(widths)[:-1], axis=1)
+
+
+def _components(part: Any) -> list[Any]:
+    """Components of a number or a tensor in UFL, row by row."""
+    part = ufl.as_ufl(part)
+    return [part[i] for i in np.ndindex(part.ufl_shape)] if part.ufl_shape else [part]

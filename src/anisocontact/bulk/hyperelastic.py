@@ -12,7 +12,7 @@ from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.typed import typed
 from anisocontact.bulk.materials import Density, Isotropic, constant, small_strain
-from anisocontact.bulk.volume import Volume, volume_of, volume_ratio
+from anisocontact.bulk.volume import Volume, derivative_at, volume_of, volume_ratio
 
 _MODULI = (
     Parameter("E", "scalar", "stress", "Young's modulus at rest", "positive"),
@@ -75,8 +75,9 @@ class Hyperelastic(ABC):
 
     def piola(self, u: Any) -> Any:
         """First Piola-Kirchhoff stress, the derivative of the energy with respect to F, UFL."""
-        gradient = ufl.variable(deformation_gradient(u))
-        stress = ufl.diff(sum(w for w, _ in self._terms(u, gradient)), gradient)
+        stress = derivative_at(
+            lambda gradient: sum(w for w, _ in self._terms(u, gradient)), deformation_gradient(u)
+        )
         volume = volume_of(self, u)
         return stress if volume is None else stress + volume.stress(u)
 

@@ -182,6 +182,9 @@ class BodyPoints(AtPoints):
             self._write(self._piola, strain.piola(result.stress))
         self._last = strain, result
 
+    def _trial_stress(self) -> Floats:
+        return np.asarray(self._true_stress.eval(self._mesh, self._cells), dtype=np.float64)
+
     def write_tangent(self) -> None:
         """Bring the tangent to where the stress is."""
         strain, result = self._last
@@ -192,7 +195,7 @@ class BodyPoints(AtPoints):
         """Accept the increment: the displacement and the time increment are those of its end."""
         self.evaluate()
         _, result = self._last
-        self._write(self._stress, self._true_stress.eval(self._mesh, self._cells))
+        self._write(self._stress, self._trial_stress())
         for name, variable in self.variables.items():
             self._write(variable, np.asarray(result.after[name]))
         if result.stored is not None:

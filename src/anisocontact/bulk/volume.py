@@ -28,9 +28,31 @@ class Volume:
             u: Displacement, UFL.
             pressure: p, tension positive; `K e` at every point if left out.
         """
-        gradient = ufl.variable(ufl.grad(u))
-        e = self.change(gradient)
-        return (self.bulk * e if pressure is None else pressure) * ufl.diff(e, gradient)
+        gradient = ufl.grad(u)
+        tension = self.bulk * self.change(gradient) if pressure is None else pressure
+        return tension * derivative_at(self.change, gradient)
+
+
+def derivative_at(function: Callable[[Any], Any], gradient: Any) -> Any:
+    """Derivative of a number by a tensor, UFL.
+
+    UFL numbers variables, and these numbers are in the name under which a compiled form is kept: it
+    would be compiled anew in every run. So the derivative is taken here, and has no variable.
+
+    Args:
+        function: Takes the tensor to the number.
+        gradient: The tensor, UFL.
+
+    Example:
+        >>> derivative_at(lambda b: ufl.inner(b, b), ufl.Identity(3)).ufl_shape
+        (3, 3)
+    """
+    variable = ufl.variable(gradient)
+    ways: Any = ufl.algorithms
+    found = ways.apply_algebra_lowering.apply_algebra_lowering(
+        ufl.diff(function(variable), variable)
+    )
+    return ways.strip_variables(ways.apply_derivatives.apply_derivatives(found))
 
 
 def volume_ratio(gradient: Any) -> Any:
