@@ -67,7 +67,7 @@ def files(where: str) -> list[Path]:
         pytest.importorskip("anisocontact.contact", exc_type=ImportError)
         module, _, last = name.rpartition(".")
         named = getattr(importlib.import_module(module), last)
-        file = inspect.getsourcefile(named)
+        file = inspect.getsourcefile(inspect.unwrap(named))
         assert file is not None
         found.append(Path(file))
     return found

@@ -123,7 +123,7 @@ def test_states_with_strayed_points_are_refused(by, refuses):
     assert (found is not None) == refuses
     if found is not None:
         assert "1 slave points" in found.reason
-        assert "the gap is wrong by 0.1 of it" in str(found.culprits[0])
+        assert "the error of the gap is 0.1 of the facet size" in str(found.culprits[0])
 
 
 def _contact(codes: list[int]) -> Any:
@@ -174,4 +174,4 @@ def test_a_point_that_hops_is_named_with_its_facets():
     )
     (culprit,) = find_culprits(problem, watch, np.zeros(3))
     assert culprit.kind == "hopping"
-    assert "hops between facets 0 and 1 of the other side" in str(culprit)
+    assert "alternates between the facets 0 and 1 of the master" in str(culprit)

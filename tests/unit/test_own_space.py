@@ -187,7 +187,9 @@ def test_a_mixed_problem_has_its_contact_on_its_own_displacement(given):
     form = ufl.inner(w, test) * ufl.dx
     model = Model.of(spaces[1].sub(0), {"pad.sole": given.bottom})
     contact = Contact(model, "pad.sole", _interface(), mortar=False)
-    with pytest.raises(InputError, match=r"contacts: contact .pad\.sole. lives on another space"):
+    with pytest.raises(
+        InputError, match=r"contacts: contact .pad\.sole. is defined on another space"
+    ):
         ContactProblem(form, w, contacts=[contact])
     with pytest.raises(InputError, match=r"space: a mixed element given, .*name its displacement"):
         ContactProblem(form, w)

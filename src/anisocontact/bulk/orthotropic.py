@@ -64,9 +64,9 @@ def stiffness(moduli: Floats, ratios: Floats, shears: Floats) -> Floats:
     least = float(np.linalg.eigvalsh(scaled)[0])
     if least <= 1e-12:
         raise InputError(
-            "the Poisson's ratios make work without end: |nu_ij| < sqrt(E_i / E_j) for each pair, "
-            "and all together, see the smallest eigenvalue of the scaled compliance, "
-            f"{least:.3g}, which has to be > 0"
+            "the Poisson's ratios make the elastic energy indefinite: |nu_ij| < sqrt(E_i / E_j) is "
+            "needed for each pair, and together the smallest eigenvalue of the scaled compliance, "
+            f"{least:.3g}, has to be > 0"
         )
     found: Floats = np.linalg.inv(compliance)
     return found

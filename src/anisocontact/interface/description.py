@@ -150,7 +150,7 @@ def _object(module: str, file: str, name: str, attributes: dict[str, Any]) -> An
         for part in name.split("."):
             kind = getattr(kind, part)
     except (Exception, SystemExit) as error:
-        text = f"the class {name} is not to be had: {type(error).__name__}: {error}"
+        text = f"the class {name} cannot be imported: {type(error).__name__}: {error}"
         raise InputError(text) from error
     found = object.__new__(kind)
     found.__dict__.update(attributes)

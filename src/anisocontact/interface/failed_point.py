@@ -182,7 +182,7 @@ def read_failed_point(path: Path) -> FailedPoint:
         path: The file.
 
     Raises:
-        InputError: It cannot be read, is no such file, or its law is not to be had.
+        InputError: It cannot be read, is no such file, or its law cannot be imported.
     """
     try:
         text = json.loads(path.read_text(encoding="utf-8"))

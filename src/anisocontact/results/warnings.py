@@ -115,7 +115,7 @@ def of_models(summary: Mapping[str, Any]) -> list[str]:
     if relaxed := summary.get("relaxed"):
         found.append(
             f"penalties held in {len(relaxed)} increments or parts, from time {relaxed[0]:.4g} on, "
-            "as no multipliers were found: bodies overlap there by the penetrations of contacts"
+            "as multipliers did not converge: bodies overlap there by the penetrations of contacts"
         )
     return found
 
@@ -205,15 +205,15 @@ def soft(
 def _cure(contact: Contact, stiffer: str) -> str:
     """What helps against a penetration, or elastic slip, of penalties."""
     if _exact(contact):  # penalties held where no multipliers were found
-        return "smaller increments, in which multipliers are found, take it away"
-    return f'{stiffer} makes it smaller, method = "augmented" takes it away'
+        return "smaller increments, in which multipliers converge, remove it"
+    return f'{stiffer} makes it smaller, method = "augmented" removes it'
 
 
 #: Energies that are no part of what was to be computed, and what is said of them.
 _TAKEN = {
     "stabilisation": "stabilisation took up {} of the work from outside: bodies moved while "
     "nothing held them; let them touch at the start, or support them",
-    "flow": "jumps set free {} of the work from outside: inertia, which is left out, would "
+    "flow": "jumps released {} of the work from outside: inertia, which is left out, would "
     "decide where the bodies come to rest",
 }
 

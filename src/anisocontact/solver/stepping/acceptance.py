@@ -64,7 +64,7 @@ def rigid_body_whirls(problem: Problem, _: Vec) -> Refusal | None:
 def held_points_stray(problem: Problem, _: Vec) -> Refusal | None:
     """Refuse states in which points are held on a facet that is not the one below them."""
     found = strayed(problem, STRAYED)
-    text = f"{len(found)} slave points at a rim of facets have left the facet they were held on"
+    text = f"{len(found)} slave points are fixed to a facet that is not the closest any more"
     return Refusal(text, tuple(found)) if found else None
 
 

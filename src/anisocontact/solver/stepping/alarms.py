@@ -9,8 +9,8 @@ from anisocontact.solver.system.rotations import CURE, WARNED
 
 #: What is said where penalties hold instead of multipliers.
 RELAXED = (
-    "no multipliers were found that hold the contacts exactly, so penalties do in this increment "
-    "and later ones like it; the summary has the penetration"
+    "the multipliers of the contacts did not converge, so this increment, and later ones like it, "
+    "have penalties instead; the summary has the penetration"
 )
 
 

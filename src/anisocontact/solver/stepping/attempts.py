@@ -276,5 +276,5 @@ def _reason(reason: str, culprits: list[Culprit]) -> str:
     if kind == "flipping":
         return f"{reason}; the status of {len(culprits)} slave points alternates (chattering)"
     if kind == "hopping":
-        return f"{reason}; {len(culprits)} slave points hop between facets"
+        return f"{reason}; {len(culprits)} slave points alternate between facets"
     return reason

@@ -85,9 +85,11 @@ def _hopping(problem: Problem, watch: StatusWatch) -> Iterator[Culprit]:
         for point in np.flatnonzero(flags):
             facets = np.unique(facet_of(watch.feet(i)[:, point]))
             names = " and ".join(str(facet) for facet in facets)
-            why = f"the point hops between facets {names} of the other side"
+            why = f"the closest point alternates between the facets {names} of the master"
             if len(facets) == 1:
-                why = f"the point hops between facet {names} of the other side and its rim"
+                why = (
+                    f"the closest point alternates between facet {names} of the master and its edge"
+                )
             yield _slave_point(problem, watch, i, int(point), "hopping", why)
 
 
@@ -106,7 +108,8 @@ def strayed(problem: Problem, far: float) -> list[Culprit]:
     for i, (contact, wrong) in enumerate(zip(problem.contacts, every, strict=True)):
         size = facet_size(problem.model, contact.slave)
         for point in np.flatnonzero(wrong > far * size):
-            why = f"held on a facet at its rim: the gap is wrong by {wrong[point] / size:.1g} of it"
+            share = f"{wrong[point] / size:.1g} of the facet size"
+            why = f"fixed to a facet beyond its edge: the error of the gap is {share}"
             found.append(_slave_point(problem, watch, i, int(point), "hopping", why))
     return _everywhere(problem, found)
 

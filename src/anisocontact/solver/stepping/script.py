@@ -379,7 +379,9 @@ def _unknowns(contacts: Sequence[Contact], space: Any) -> NodeUnknowns:
     """Where the displacement is among the unknowns of a script."""
     for contact in contacts:
         if not (contact.unknowns.among(space) and contact.unknowns.same(contacts[0].unknowns)):
-            raise InputError(f"contact {contact.name!r} lives on another space than u", "contacts")
+            raise InputError(
+                f"contact {contact.name!r} is defined on another space than u", "contacts"
+            )
     if contacts:
         return contacts[0].unknowns
     return own_unknowns(space)
