@@ -66,6 +66,12 @@ def bare(material: Material) -> Any:
 
     Returns:
         What it is made of; the material itself if it does not expand.
+
+    Example:
+        >>> from anisocontact.bulk import make_material
+        >>> steel = make_material("linear-elastic", E=210e3, nu=0.3)
+        >>> bare(Expanding(steel, 1.2e-5)) is steel
+        True
     """
     return material.material if isinstance(material, Expanding) else material
 

@@ -252,6 +252,12 @@ def cell_size(mesh: Any) -> float:
 
     Returns:
         Its length.
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+        >>> round(cell_size(model.mesh), 12)
+        0.5
     """
     comm, cells = mesh.comm, mesh.topology.index_map(mesh.topology.dim)
     one = compiled(fem.Constant(mesh, 1.0) * ufl.dx(domain=mesh), comm)

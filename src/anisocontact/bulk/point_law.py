@@ -31,6 +31,11 @@ class PointState:
         before: Internal variables at its begin by name, (n, ...).
         dt: Time increment; 0 where the stiffness at rest is asked for.
         place: Positions in the reference configuration, (n, 3), length.
+
+    Example:
+        >>> state = PointState(np.zeros((2, 3, 3)), {"damage": np.zeros(2)}, 0.1, np.zeros((2, 3)))
+        >>> state.before["damage"].tolist()
+        [0.0, 0.0]
     """
 
     strain: Floats
@@ -50,6 +55,11 @@ class PointResult:
         stored: Energy per reference volume that is stored then, (n,), energy/volume; without it
             a run has no balance of energy.
         dissipated: What was dissipated in the increment, (n,), energy/volume; nothing if left out.
+
+    Example:
+        >>> none = PointResult(stress=np.zeros((2, 3, 3)), tangent=np.zeros((2, 3, 3, 3, 3)))
+        >>> none.after, none.stored is None
+        ({}, True)
     """
 
     stress: Floats

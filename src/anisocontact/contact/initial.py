@@ -79,6 +79,18 @@ def initial_overlap(contact: Placed, size: float) -> Overlap | None:
 
     Returns:
         The overlap, None if there is none worth a word.
+
+    Example:
+        >>> from anisocontact import Adhesion, Contact, ContactLaw, Friction, NormalLaw
+        >>> from anisocontact import make_surface
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+        >>> plane = make_surface("plane", point=(0, 0, 0.1), normal=(0, 0, 1))
+        >>> friction = Friction(coefficients=(0.3, 0.3))
+        >>> law = ContactLaw(NormalLaw(penalty=1e3), Adhesion(stiffness=(100, 100)), friction)
+        >>> contact = Contact(model, "bar.bottom", plane, law)
+        >>> round(initial_overlap(contact, 0.5).depth, 12)
+        0.1
     """
     depth = -contact.state["gap"]
     deepest = int(np.argmax(depth)) if len(depth) else -1

@@ -316,6 +316,13 @@ def facet_quadrature(
 
     Returns:
         Points, areas and basis.
+
+    Example:
+        >>> from anisocontact.mesh import BoxSpec, build_box
+        >>> model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
+        >>> found = facet_quadrature(model.space, model.facets("bar.top"), 2)
+        >>> round(float(found.areas.sum()), 12)
+        1.0
     """
     dim = space.mesh.topology.dim
     if idealisation.dim != dim:

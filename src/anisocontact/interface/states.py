@@ -151,6 +151,11 @@ def as_state(raw: npt.NDArray[np.uint8], dtype: np.dtype[np.void] = STATE) -> St
 
     Returns:
         The states, (n,).
+
+    Example:
+        >>> rows = raw_state(np.zeros(3, dtype=STATE))
+        >>> as_state(rows)["pressure"].tolist()
+        [0.0, 0.0, 0.0]
     """
     if dtype == STATE:
         return raw.reshape(-1).view(STATE)
@@ -170,6 +175,10 @@ def raw_state(state: State) -> npt.NDArray[np.uint8]:
 
     Raises:
         InputError: It is no array of states.
+
+    Example:
+        >>> raw_state(np.zeros(3, dtype=STATE)).shape == (3, STATE.itemsize)
+        True
     """
     fields = getattr(getattr(state, "dtype", None), "fields", None) or {}
     if any(fields.get(name) != place for name, place in (STATE.fields or {}).items()):

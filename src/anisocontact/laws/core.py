@@ -313,6 +313,11 @@ def carried(adhesion: Adhesion, friction: Friction) -> tuple[Carried, Carried, C
 
     Returns:
         Those of adhesion, of friction, and of the second surface of friction.
+
+    Example:
+        >>> both = carried(Adhesion(stiffness=(5, 5)), Friction(coefficients=(0.3, 0.3)))
+        >>> [one.field is None for one in both]
+        [True, True, True]
     """
     return (
         Carried("adhesion.directions", adhesion.directions, adhesion.directions_on),

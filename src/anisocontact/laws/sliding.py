@@ -26,6 +26,12 @@ class Slide:
         d_pressure: dT_i/dN, (n, 2); empty where it was not asked for.
         slides: Whether the trial force was outside the ellipse, (n,).
         converged: Whether the rule found its force, (n,).
+
+    Example:
+        >>> stiffness, friction = 10.0 * np.eye(2)[None], np.eye(2)[None] / 0.3**2
+        >>> found = slide(stiffness, friction, [[-1.0, 0.0]], [2.0])
+        >>> bool(found.slides[0]), found.traction.round(9).tolist()
+        (True, [[-0.6, 0.0]])
     """
 
     traction: Floats

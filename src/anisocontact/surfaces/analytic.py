@@ -38,6 +38,12 @@ class Jet:
         position: rho, (n, 3) [length].
         d1: rho_i, (n, 2, 3).
         d2: rho_11, rho_12, rho_22, (n, 3, 3).
+
+    Example:
+        >>> plane = make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1))
+        >>> at = plane.jet([[0.5, 0.2]])
+        >>> at.position.shape, at.d1.shape, float(abs(at.d2).max())
+        ((1, 3), (1, 2, 3), 0.0)
     """
 
     position: Floats
@@ -82,6 +88,10 @@ def default_threads() -> int:
 
     Returns:
         Their number, at least 1.
+
+    Example:
+        >>> default_threads() >= 1
+        True
     """
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 

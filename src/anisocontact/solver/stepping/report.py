@@ -28,6 +28,11 @@ class Progress:
         residual: Residual over the forces at work, or over those whose rounding is a hundred
             millionth of them where next to none are.
         contacts: Number of "open", "stick" and "slip" points of each contact, by name.
+
+    Example:
+        >>> now = Progress("press", 1, 3, 1e-9, {"sole": {"open": 0, "stick": 9, "slip": 0}})
+        >>> now.residual < 1e-8
+        True
     """
 
     step: str

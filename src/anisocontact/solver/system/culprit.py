@@ -20,6 +20,11 @@ class Culprit:
         point: Number of the slave point in its contact, from 0; -1 for cells and nodes.
         facet: Number of its facet in the facet group, from 0; -1 for cells and nodes.
         statuses: Status of a slave point in the last Newton iterations, the latest at the end.
+
+    Example:
+        >>> node = Culprit("residual", (0.0, 0.5, 1.0), "the largest residual, 1e-3")
+        >>> node.point
+        -1
     """
 
     kind: str

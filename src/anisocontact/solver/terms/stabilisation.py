@@ -344,10 +344,6 @@ class Stabilisation(Term):
             ways.append(self._attached.way())
         return float(np.sqrt(3.0) * max(self._comm.allgather(float(max(ways, default=0.0)))))
 
-    def untouched(self) -> bool:
-        """Whether a free body is touched by nothing in the trial."""
-        return not all([free.touched() for free in self._free])
-
     @override
     def accept(self, u: Floats) -> float:
         self.energy += self._spent
