@@ -62,10 +62,8 @@ LOADED = """[step.pressure]
 "base.bottom" = {{ x = 0, y = 0, z = 0 }}"""
 
 
-def member(
-    seed: int, method: str = "augmented", model: str = "linear-elastic"
-) -> tuple[str, float]:
-    """Case file of a member, and its larger coefficient of friction.
+def member(seed: int, method: str = "augmented", model: str = "linear-elastic") -> str:
+    """Case file of a member.
 
     Facets, their ratio and offset, cells, order, stiffness, friction, tilt and load are random; the
     softer body is the slave.
@@ -109,10 +107,10 @@ def member(
         press=press,
         drag=drag,
     )
-    return text, mu
+    return text
 
 
-def _asked(run, mu: float) -> None:
+def _asked(run) -> None:
     """What every member has to have: multipliers that hold, and friction within its cone."""
     contact = run.problem.contacts[0]
     last, size = contact.last, contact.slave_points.size
@@ -120,9 +118,10 @@ def _asked(run, mu: float) -> None:
     touches = last.status != 0
     assert touches.any()
     assert np.abs(covered * contact.state["gap"])[touches].max() < 1e-6 * size
-    normal = np.einsum("nd,nd->n", last.traction, last.normal)
-    tangential = np.linalg.norm(last.traction - normal[:, None] * last.normal, axis=1)
-    assert (tangential <= (1.0 + 1e-8) * mu * np.abs(normal)).all()
+    # the texture shears with its body: what counts are the axes of now, not the larger coefficient
+    coefficients = contact.interface.tangential.friction.named[1]["coefficients"]
+    yields = np.linalg.norm(last.traction_principal / np.array(coefficients), axis=1)
+    assert (yields <= (1.0 + 1e-12) * last.pressure + 1e-12 * last.pressure.max()).all()
 
 
 def _members(fast: int, count: int) -> list:
@@ -137,12 +136,12 @@ def test_pairs(to_the_end, seed):
 
     Requirement: multipliers at slave nodes are as safe as penalties. At most one cut, as one member
     has in whose contact three nodes are covered to some 1e-4; penetration weighted with what is
-    covered below 1e-6 of a facet, the default tolerance; friction within the cone to rounding.
+    covered below 1e-6 of a facet, the default tolerance; friction within its ellipse to rounding.
     """
-    text, mu = member(seed)
+    text = member(seed)
     run = to_the_end(text, most=MOST)
     assert not run.cuts
-    _asked(run, mu)
+    _asked(run)
 
 
 @pytest.mark.parametrize("seed", [5, 16, 198])
@@ -153,7 +152,7 @@ def test_blocks_that_lie_there(to_the_end, seed):
     which of them are held: 8 iterations, as increments of a block that is led take; a block that
     begins on one or two of its nodes falls over on the way, and takes 13 to 21.
     """
-    run = to_the_end(member(seed)[0])
+    run = to_the_end(member(seed))
     assert run.accepted[0].iterations <= 8
 
 
@@ -165,11 +164,11 @@ def test_nodes_of_slivers(to_the_end, seed):
     multiplier that closes the gap pushes the sliver away, and without it the gap is open again: 160
     to 200 iterations and a cut.
     """
-    text, mu = member(seed)
+    text = member(seed)
     run = to_the_end(text)
     assert not run.cuts
     assert max(accepted.iterations for accepted in run.accepted) <= 12
-    _asked(run, mu)
+    _asked(run)
 
 
 def test_springs_follow_where_contact_alone_does_not_hold(to_the_end):
@@ -177,7 +176,7 @@ def test_springs_follow_where_contact_alone_does_not_hold(to_the_end):
 
     Requirement: no second attempt without them, 7 iterations of 19.
     """
-    run = to_the_end(member(59)[0])
+    run = to_the_end(member(59))
     assert run.accepted[0].iterations <= 12
 
 
@@ -189,11 +188,11 @@ def test_strategies(to_the_end, seed, strategy):
     Both leave violations of 1e-6 of a facet, which are forces of 1e-6 E h; bodies are pressed in
     by some hundredths of a facet and more.
     """
-    text, mu = member(seed)
+    text = member(seed)
     run, direct = to_the_end(text, f'strategy = "{strategy}"'), to_the_end(text)
     assert run.strategy == strategy
     assert not run.cuts
-    _asked(run, mu)
+    _asked(run)
     ours, theirs = (one.force("drag") for one in (run, direct))
     assert np.linalg.norm(ours - theirs) < 1e-5 * np.linalg.norm(theirs)
 
@@ -202,7 +201,7 @@ def test_strategies(to_the_end, seed, strategy):
 @pytest.mark.parametrize("seed", range(20))
 def test_finite_strain(to_the_end, seed):
     """The first members with bodies at finite strain."""
-    text, mu = member(seed, model="neo-hookean")
+    text = member(seed, model="neo-hookean")
     run = to_the_end(text)
     assert not run.cuts
-    _asked(run, mu)
+    _asked(run)

@@ -124,6 +124,17 @@ def test_pressed_with_friction(line: Any, share: float, n: int, bound: float) ->
 
 
 @pytest.mark.slow
+def test_few_increments(line: Any) -> None:
+    """From 4 to 16 increments the mean error falls at first order at least, to a quarter.
+
+    Source: with multipliers a node carries no friction in the increment in which it closes its gap,
+    which is of first order. Measured 0.22 and 0.04 of mu p0.
+    """
+    few, more = (pressed(line, 8, BETA, increments).mean for increments in (4, 16))
+    assert more < 0.25 * few
+
+
+@pytest.mark.slow
 def test_error_falls(line: Any) -> None:
     """From 4 to 16 facets and 32 to 128 increments the mean error falls with h^0.8 at least.
 
