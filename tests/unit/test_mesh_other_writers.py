@@ -13,6 +13,7 @@ pytest.importorskip("meshio")
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.mesh import GmshFile, build_mesh
+from anisocontact.mesh.described import described
 from anisocontact.mesh.mirrored import AXES, turned
 from anisocontact.mesh.readers import file_arrays
 from anisocontact.mesh.tetrahedra import EDGES
@@ -124,4 +125,27 @@ def test_files_that_are_not_read_say_so(tmp_path: Path, name: str, of: str) -> N
     path = tmp_path / name
     path.write_text("/PREP7\n")
     with pytest.raises(InputError, match=f"files of {of} are not read; have it write .inp"):
+        file_arrays(path)
+
+
+def test_bodies_that_fall_apart_and_degenerate_cells(tmp_path: Path) -> None:
+    """Requirement: a body of pieces that share no node is told, with nodes that were not joined;
+    cells that name a node twice are told, open surfaces of STL too."""
+    import meshio
+
+    cube = np.array([(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], float)
+    points = np.vstack([cube, cube + np.array([1.0, 0, 0]), cube + np.array([5.0, 0, 0])])
+    rows = np.arange(24).reshape(3, 8)
+    path = tmp_path / "part.vtu"
+    meshio.Mesh(points, [("hexahedron", rows)]).write(path)
+    lines = described(file_arrays(path))
+    joined = "4 nodes are at places of others: they were not joined"
+    assert f"pieces    body: 3 that share no node, {joined}" in lines
+    rows[0, 6] = rows[0, 7]
+    meshio.Mesh(points, [("hexahedron", rows)]).write(path)
+    with pytest.raises(InputError, match="1 of 3 hexahedrons name a node twice; degenerate cells"):
+        file_arrays(path)
+    path = tmp_path / "open.stl"
+    meshio.Mesh(cube, [("triangle", np.array([[0, 1, 2], [0, 2, 3], [0, 1, 5]]))]).write(path)
+    with pytest.raises(InputError, match="does not enclose a volume; a closed one is needed"):
         file_arrays(path)

@@ -74,6 +74,8 @@ def _meshed(path: Path, size: float | None) -> bytes:
             _name(gmsh)
             _choose_sizes(gmsh, size)
             gmsh.model.mesh.generate(3)
+            if any(not gmsh.model.mesh.getElements(*v)[0].size for v in gmsh.model.getEntities(3)):
+                raise InputError("its surface does not enclose a volume; a closed one is needed")
         except InputError:
             raise
         except Exception as error:  # gmsh raises this alone

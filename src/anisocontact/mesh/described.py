@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import numpy.typing as npt
 
@@ -11,6 +13,10 @@ from anisocontact.mesh.quality import scaled_jacobian
 __all__ = ["described"]
 
 Floats = npt.NDArray[np.float64]
+Nodes = npt.NDArray[np.int64]
+
+#: Distance of nodes at the same place, over the size of a body.
+SAME = 1e-9
 
 
 def described(mesh: MeshArrays) -> list[str]:
@@ -43,6 +49,7 @@ def described(mesh: MeshArrays) -> list[str]:
             f"body      {name}: {len(cells)} {many} of order {order}, box {low} to {high}, "
             f"edges {own.min():.4g} to {own.max():.4g}",
             f"quality   {name}: worst {shape.min():.3g}, mean {shape.mean():.3g}",
+            *_pieces(mesh, name, cells),
         ]
     for name, facets in mesh.facets.items():
         area = _area(mesh.points[facets[:, : mesh.vertices_per_facet]])
@@ -53,6 +60,25 @@ def described(mesh: MeshArrays) -> list[str]:
         more = " beside its facets" if name in mesh.facets else ""
         lines.append(f"nodes     {name}: {len(places)}{more}, box {low} to {high}")
     return [*lines, *(f"cells     {note}" for note in mesh.notes)]
+
+
+def _pieces(mesh: MeshArrays, name: str, cells: Nodes) -> Iterator[str]:
+    """A line on a body that is not one: several parts, or cells whose nodes were not joined."""
+    from scipy.sparse import bmat, csr_matrix
+    from scipy.sparse.csgraph import connected_components
+
+    nodes, own = np.unique(mesh.cells[cells], return_inverse=True)
+    rows = np.repeat(np.arange(len(cells)), mesh.cells.shape[1])
+    shape = (len(cells), len(nodes))
+    of_cells = csr_matrix((np.ones(own.size, dtype=np.int8), (rows, own.ravel())), shape=shape)
+    links = bmat([[None, of_cells], [of_cells.T, None]])
+    count = connected_components(links, directed=False)[0]
+    if count > 1:
+        places = mesh.points[nodes]
+        size = np.ptp(places, axis=0).max()
+        same = len(places) - len(np.unique(np.round(places / (SAME * size)), axis=0))
+        joined = f", {same} nodes are at places of others: they were not joined" if same else ""
+        yield f"pieces    {name}: {count} that share no node{joined}"
 
 
 def _place(x: Floats) -> str:

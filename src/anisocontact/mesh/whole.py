@@ -107,6 +107,7 @@ class WholeMesh:
         if cells == {"triangle", "quadrilateral"}:
             return in_triangles(self, joined).arrays(wanted)
         self._check_apart(joined)
+        _check_degenerate(joined)
         mesh = merge([self._of_kind(cell, *part) for (cell, _), part in joined.items()])
         return replace(mesh, notes=self.notes)
 
@@ -199,6 +200,15 @@ class WholeMesh:
                 if len(there):
                     found[key] = mesh.points[there]
         return found
+
+
+def _check_degenerate(kinds: Mapping[Kind, Elements]) -> None:
+    """Refuse cells that name a node twice."""
+    for (cell, _), (nodes, _) in kinds.items():
+        twice = int((np.diff(np.sort(nodes, axis=1), axis=1) == 0).any(axis=1).sum())
+        if twice:
+            text = f"{twice} of {len(nodes)} {cell}s name a node twice"
+            raise InputError(f"{text}; degenerate cells have to be wedges, pyramids, tetrahedra")
 
 
 def in_triangles(mesh: WholeMesh, kinds: Mapping[Kind, Elements]) -> WholeMesh:
