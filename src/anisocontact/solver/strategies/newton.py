@@ -169,6 +169,7 @@ class Newton:
         self._on_iteration = on_iteration
         self._residuals: list[float] = []
         self._touching: list[int] = []
+        self._sticking: list[int] = []
         self._damping: Callable[[], float] | None = None
         self._search = Backtracking(problem)
         self.snes = PETSc.SNES().create(problem.comm)
@@ -244,7 +245,7 @@ class Newton:
 
     def _equilibrium(self, x: Vec) -> NewtonResult:
         """Newton's method with the multipliers as they are."""
-        self._residuals, self._touching = [], []
+        self._residuals, self._touching, self._sticking = [], [], []
         self._search.begin()
         # PETSc leaves the iterate locked where a callback raises: that is not to be the caller's.
         iterate = x.copy()
@@ -322,13 +323,20 @@ class Newton:
         """Whether the last corrections, with multipliers that follow, have gained too little."""
         if not self._problem.contact_term.follows:
             return False
-        self._touching.append(self._problem.contact_term.touching())
+        contacts = self._problem.contact_term
+        self._touching.append(contacts.touching())
+        self._sticking.append(contacts.sticking())
         known, touching = self._residuals, self._touching
         if len(known) < IDLE_OVER + 3:
             return False
         before, lately = max(touching[1:-IDLE_OVER]), max(touching[-IDLE_OVER:])
-        searches = lately == 0 or lately > before
+        searches = lately == 0 or lately > before or self._slips_on()
         return not searches and min(known[-IDLE_OVER:]) > IDLE * min(known[1:-IDLE_OVER])
+
+    def _slips_on(self) -> bool:
+        """Whether the edge of what sticks moves on, by a point in nearly every correction."""
+        change = np.diff(self._sticking[-IDLE_OVER - 1 :])
+        return bool(np.all(change <= 0) and np.sum(change < 0) >= IDLE_OVER - 2)
 
     def _cycles(self) -> bool:
         """Whether full steps go to and fro between two states: nothing will end that."""

@@ -153,6 +153,10 @@ class Contacts(Term):
         counts = [one.counts() for one in self._all]
         return sum(sum(each.values()) - each["open"] for each in counts)
 
+    def sticking(self) -> int:
+        """Points that stuck in the last evaluation; collective."""
+        return sum(one.counts()["stick"] for one in self._all)
+
     def statuses(self) -> Ints:
         """Status of the slave points of this rank in the last evaluation."""
         return np.concatenate([one.trial.status for one in self._all]).astype(np.int32)
