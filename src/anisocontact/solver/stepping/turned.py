@@ -19,8 +19,8 @@ MARGIN = 1.05
 PRESCRIBED = math.radians(45.0)
 #: Share of its angle that a part of at most a share of the size of one that was refused keeps at
 #: least where it does not depend on the size: where a point passes from one facet to another one at
-#: an angle, in this part of what was cut or in a later one.
-_KINK, _SMALLER = 0.6, 0.5
+#: an angle, in this part of what was cut or in a later one. On surfaces, which have none, more.
+_KINK, _ON_SURFACES, _SMALLER = 0.6, 0.75, 0.5
 
 
 @dataclass(frozen=True)
@@ -30,10 +30,12 @@ class PathTurn:
     Attributes:
         angle: Of normal, axes or slave, radian.
         contact: Name of the contact.
+        meshed: Whether its master is facets.
     """
 
     angle: float
     contact: str
+    meshed: bool = False
 
     @property
     def reason(self) -> str:
@@ -70,7 +72,7 @@ def largest_turn(problem: Problem) -> PathTurn:
         trial = contact.trial
         angle = contact.extreme(trial.state["turn"][trial.status > 0])
         if angle > found.angle:
-            found = PathTurn(angle, contact.name)
+            found = PathTurn(angle, contact.name, contact.meshed)
     return found
 
 
@@ -98,7 +100,8 @@ class TurnWatch:
         turned = largest_turn(problem)
         self._angle = turned.angle
         angle, size = self.refused
-        if turned.angle > _KINK * angle and problem.dt <= _SMALLER * size:
+        kept = _KINK if turned.meshed else _ON_SURFACES
+        if turned.angle > kept * angle and problem.dt <= _SMALLER * size:
             self.kink = max(self.kink, 1.1 * turned.angle)  # cutting does not make it smaller
         if not self.permitted or turned.angle <= max(MARGIN * FOLLOWED, self.kink):
             return None
