@@ -194,6 +194,25 @@ pictures = false
 """
 
 
+@pytest.mark.parametrize(("angle", "said"), [(0, False), (10, False), (50, True)])
+def test_a_slip_ellipse_that_makes_points_jump_is_told(tmp_path, capsys, angle, said):
+    """Where the symmetric part of F K has a negative eigenvalue, docs/theory/sliding-rules.md.
+
+    With coefficients 0.4 and 0.1 the lesser one is 6.25, 5.5 and -6.1.
+    """
+    axes = "[1.0, 4.0]" if angle == 50 else "[1.0, 1.5]"
+    rule = (
+        f'coefficients = [0.4, 0.1], sliding_rule = "slip-ellipse", slip_axes = {axes}, '
+        f"slip_angle_deg = {angle}, "
+        'directions = {{ kind = "constant", vector = [1, 0, 0] }}'
+    )
+    case = tmp_path / "case.toml"
+    text = BLOCK.replace("coefficients = 0", rule).format(gap=0.0, penalty=1e4, way=-0.006)
+    case.write_text(text)
+    assert main(["check", str(case)]) == 0
+    assert ("points stick there and jump" in capsys.readouterr().out) is said
+
+
 @pytest.mark.parametrize("gap", [0.0, 0.5])
 def test_a_penetration_is_held_against_the_approach(tmp_path, gap):
     """Springs in series, E/L and eps: the penetration is 1/(1 + eps L/E) of the approach.

@@ -5,6 +5,8 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterable, Sequence
 
+import numpy as np
+
 from anisocontact.base.errors import ModelWarning
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.defaults import FINER, STIFF
@@ -150,6 +152,43 @@ def pressed_aside(contacts: Sequence[Contact]) -> list[str]:
                 "increments; round the edge by a facet or so (`rounding` of a profile)"
             )
     return found
+
+
+def jumping_rules(contacts: Sequence[Contact]) -> list[str]:
+    """Contacts whose slip ellipse leaves directions in which no steady slip is possible.
+
+    With isotropic stiffness slip relieves the yield function everywhere where the symmetric part of
+    F K is positive definite, docs/theory/sliding-rules.md.
+
+    Args:
+        contacts: The contacts.
+
+    Returns:
+        A line for each of them.
+    """
+    return [f"contact of {' with '.join(one.groups)}: {_JUMPS}" for one in contacts if _jumps(one)]
+
+
+#: What such a rule does.
+_JUMPS = (
+    "slip_axes and slip_angle are so far from the ellipse of friction that slip in some directions "
+    "raises the tangential force it should relieve: points stick there and jump, and increments "
+    "may not converge, least of all with penalties at slave nodes"
+)
+
+
+def _jumps(contact: Contact) -> bool:
+    law = contact.interface.tangential
+    if law.in_python or law.sliding_rule != "slip-ellipse":
+        return False
+    if len(set(law.adhesion.named[1].get("stiffness", ()))) > 1:
+        return False
+    mu = np.array(law.friction.named[1].get("coefficients", (1.0, 1.0)))
+    rule = law.friction.rule[1]
+    (angle,), axes = rule["slip_angle"], np.array(rule["slip_axes"])
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    slope = (turn * axes**-2.0) @ turn.T * mu[::-1, None] ** 2  # F K times the squares of both
+    return bool(mu.all() and np.linalg.eigvalsh(slope + slope.T)[0] <= 0.0)
 
 
 def overlapping(pairs: Iterable[tuple[Contact, str, float]], cure: str) -> list[str]:

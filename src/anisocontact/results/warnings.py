@@ -8,7 +8,7 @@ from typing import Any
 
 from anisocontact.base.limits import FOLLOWED
 from anisocontact.contact import Contact, coarse_slaves, doubtful_sides
-from anisocontact.contact.hints import MISSED, overlapping, pressed_aside
+from anisocontact.contact.hints import MISSED, jumping_rules, overlapping, pressed_aside
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
 from anisocontact.solver.stepping.turned import MARGIN
@@ -40,7 +40,8 @@ def at_start(contacts: Sequence[Contact], shown: Sequence[dict[str, Any]]) -> li
         (contact, _pair(entry), entry["facet_size"])
         for contact, entry in zip(contacts, shown, strict=True)
     )
-    return [*doubtful_sides(contacts), *overlapping(pairs, "adjust = true")]
+    lines = [*doubtful_sides(contacts), *jumping_rules(contacts)]
+    return [*lines, *overlapping(pairs, "adjust = true")]
 
 
 def worst(entry: Mapping[str, Any], before: Mapping[str, Any], time: float) -> dict[str, float]:
