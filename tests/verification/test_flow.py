@@ -85,7 +85,7 @@ def test_flow_is_told_and_switched_off(fe: Any, monkeypatch: pytest.MonkeyPatch)
     block = fe.block(fe.interface(), cells=(2, 2, 1))
     springs = block.problem.stabilisation
     for _ in Solver(block.problem, STEPS[:1], strategy="direct").run():
-        (line,) = springs.told()
+        (line,) = springs.take_notes()
         assert line.startswith("equilibrium was lost: ")
         assert not springs
         assert springs.flow.stiffness == 0.0

@@ -72,7 +72,7 @@ class BodyHistory(AtPoints):
         InputError: The material advances other variables than it has.
 
     Attributes:
-        before: Accepted state, as the material is told of it.
+        before: Accepted state, as the material sees it.
         stores: Whether the material says what it stores and dissipates.
     """
 

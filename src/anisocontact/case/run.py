@@ -79,7 +79,7 @@ def run(
     Args:
         built: The case with its problem.
         folder: Results folder; an earlier run in it is replaced, or goes on.
-        listener: Is told of iterations and increments.
+        listener: Called for every iteration and increment.
         checkpoint: Where to go on; from the beginning if not given.
         reporter: Writes the report.
 
@@ -296,7 +296,7 @@ class _Asked:
     """Whether a run has been asked to stop, by a signal or because nobody listens any more.
 
     Args:
-        listener: Is told, once.
+        listener: Called once.
     """
 
     listener: Listener

@@ -1,4 +1,4 @@
-"""What a contact is that is not told more: the same in case files and in scripts."""
+"""What a contact is by default: the same in case files and in scripts."""
 
 from __future__ import annotations
 

@@ -6,13 +6,13 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-__all__ = ["NO_ENERGY", "told"]
+__all__ = ["NO_ENERGY", "energies_by_name"]
 
 #: What stands for an energy that there is not.
 NO_ENERGY = "no energy"
 
 
-def told(energy: Mapping[str, Any]) -> dict[str, Any]:
+def energies_by_name(energy: Mapping[str, Any]) -> dict[str, Any]:
     """Energies by name, where a law of adhesion may store none.
 
     Args:
@@ -23,7 +23,7 @@ def told(energy: Mapping[str, Any]) -> dict[str, Any]:
         The same, with the words "no energy" there.
 
     Example:
-        >>> told({"friction": 2.0, "adhesion": float("nan")})
+        >>> energies_by_name({"friction": 2.0, "adhesion": float("nan")})
         {'friction': 2.0, 'adhesion': 'no energy'}
     """
     return {name: NO_ENERGY if _none(value) else value for name, value in energy.items()}

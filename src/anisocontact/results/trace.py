@@ -12,7 +12,7 @@ from anisocontact import __version__
 from anisocontact.point import History
 from anisocontact.point.balance import PointInterface
 from anisocontact.results.files import clear, replacing, write_text
-from anisocontact.results.no_energy import told
+from anisocontact.results.no_energy import energies_by_name
 
 __all__ = ["write_trace"]
 
@@ -92,7 +92,9 @@ def write_trace(
 
 def _told(history: History) -> dict[str, Any]:
     summary = history.summary()
-    return summary | ({"energy": told(summary["energy"])} if "energy" in summary else {})
+    return summary | (
+        {"energy": energies_by_name(summary["energy"])} if "energy" in summary else {}
+    )
 
 
 def _joined(runs: dict[str, History]) -> str:

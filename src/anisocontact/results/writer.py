@@ -23,7 +23,7 @@ from anisocontact.results.dataset import DataSet
 from anisocontact.results.fields import FieldFiles
 from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
 from anisocontact.results.history import History
-from anisocontact.results.no_energy import told
+from anisocontact.results.no_energy import energies_by_name
 from anisocontact.results.paraview import Bodies, slave_points
 from anisocontact.results.probes import Probe, ProbeTable
 from anisocontact.results.read import Results
@@ -217,7 +217,7 @@ class Writer:
         Raises:
             WriteError: Something cannot be written.
         """
-        for note in self._problem.stabilisation.told():
+        for note in self._problem.stabilisation.take_notes():
             self.log(note)
         numbers = self._observer.numbers(accepted)
         row = {
@@ -354,7 +354,7 @@ class Writer:
         self._disk.write(lambda: write_text(self.folder / "summary.json", text))
 
     def _text(self) -> str:
-        energy = told(self.summary.get("energy", {}))
+        energy = energies_by_name(self.summary.get("energy", {}))
         content = _finite(self.summary | {"energy": energy})
         return json.dumps(content, indent=2, allow_nan=False) + "\n"
 

@@ -58,7 +58,7 @@ def to_the_end(tmp_path) -> Callable[..., Run]:
         times = [a.time for a in accepted]
         assert times == sorted(times)
         assert times[-1] == pytest.approx(sum(s.duration for s in built.steps), rel=1e-14)
-        notes = built.problem.stabilisation.told()
+        notes = built.problem.stabilisation.take_notes()
         return Run(accepted, cuts, built.problem, built.solver.choice.name, notes)
 
     return run

@@ -11,7 +11,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.figure_style import save
 from anisocontact.results.deformed import SHOWN
 from anisocontact.results.files import write_text
-from anisocontact.results.no_energy import told
+from anisocontact.results.no_energy import energies_by_name
 from anisocontact.results.report import curves, maps, shape
 from anisocontact.results.report.halves import attempts
 from anisocontact.results.report.labels import labelled
@@ -219,5 +219,5 @@ def step_rows(run: RunData) -> list[dict[str, Any]]:
             where = f"on {contact['slave']} at the end [force]"
             row |= {f"force {axis} {where}": float(v) for axis, v in end.items()}
         residual = float(run.history["energy.residual"][at[-1]])
-        rows.append(row | told({"residual of the energies [force length]": residual}))
+        rows.append(row | energies_by_name({"residual of the energies [force length]": residual}))
     return rows

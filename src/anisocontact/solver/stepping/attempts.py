@@ -97,7 +97,7 @@ class Attempts:
     Args:
         problem: The problem.
         newton: Its solver.
-        watch: Is told of every iteration.
+        watch: Called in every iteration.
         turns: Judges how far points in contact turn.
     """
 

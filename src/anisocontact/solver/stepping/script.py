@@ -63,7 +63,7 @@ class ContactProblem(AssembledSystem):
         bcs: Dirichlet conditions; their values may change between solutions.
         contacts: Contacts on a `Model.of` the space of `u`, or its displacement. A rigid body that
             carries a surface is where `RigidBody.move` has brought it. Where J depends on `u`
-            tractions act on the area of now unless a contact was told otherwise.
+            tractions act on the area of now unless a contact has been made otherwise.
         J: Derivative of F; made by UFL if left out.
         petsc_options_prefix: Prefix of the options in the PETSc database.
         petsc_options: PETSc options without prefix.
@@ -193,7 +193,7 @@ class ContactProblem(AssembledSystem):
             increments: How many; the end of each is met exactly.
             duration: Time the step takes.
             limits: How far increments may be cut.
-            callback: Is told of each accepted part: the share of the step that is done, and its
+            callback: Called for each accepted part: the share of the step that is done, and its
                 Newton iterations; what it returns, if true, ends the step.
 
         Returns:

@@ -115,7 +115,7 @@ class Strategy(Protocol):
         Args:
             task: What is to be solved.
             on_iteration: Called with the number of the iteration and the residual.
-            note: Told what is worth a line in the log.
+            note: Called with lines for the log.
             kept: What `IncrementSolver.persistent` gave in the run that goes on; empty for a new
                 one.
         """

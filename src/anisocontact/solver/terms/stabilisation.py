@@ -159,7 +159,7 @@ class Stabilisation(Term):
         for free in self._unheld.found(held, step, load, frames):
             self._add(free, step, now)
 
-    def told(self) -> list[str]:
+    def take_notes(self) -> list[str]:
         """`notes`, each of them once."""
         notes, self.notes = self.notes, []
         return notes

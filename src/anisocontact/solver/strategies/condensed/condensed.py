@@ -33,7 +33,7 @@ class Condensed:
     Args:
         problem: The problem, on one process, with linear bulk.
         steps: What will be done: tells what can be touched.
-        note: Told what is done, line by line.
+        note: Called with a line for all that is done.
         kept: What `persistent` gave of a run that goes on; nothing for one that begins.
     """
 

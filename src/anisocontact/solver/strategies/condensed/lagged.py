@@ -42,7 +42,7 @@ class LaggedFactor:
 
     Args:
         problem: The problem, on one process.
-        note: Told of every factorisation, in a line.
+        note: Called with a line for every factorisation.
         kept: What `persistent` gave of a run that goes on; nothing for one that begins.
 
     Attributes:

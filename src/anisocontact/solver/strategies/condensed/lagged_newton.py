@@ -32,7 +32,7 @@ class LaggedNewton(Newton):
         prefix: Prefix of the PETSc options.
         options: PETSc options of SNES without prefix.
         on_iteration: Called with the number of the iteration and the residual.
-        note: Told what is worth a line in the log.
+        note: Called with lines for the log.
         kept: What `persistent` gave of a run that goes on; nothing for one that begins.
     """
 

@@ -47,7 +47,7 @@ class Condensation:
         touched: Whether an unknown may be touched, (n,).
         prescribed: Whether it is prescribed, (n,); these are not contact unknowns.
         before: An earlier condensation of the same stiffness, which is used up.
-        note: Told of every factorisation, in a line.
+        note: Called with a line for every factorisation.
 
     Attributes:
         contact: Numbers of the contact unknowns, part by part, (c,).

@@ -50,7 +50,7 @@ class IterativeNewton(Newton):
         prefix: Prefix of the PETSc options.
         options: PETSc options without prefix; those already in the PETSc database come first.
         on_iteration: Called with the number of the iteration and the residual.
-        note: Told what is worth a line in the log.
+        note: Called with lines for the log.
 
     Attributes:
         krylov: Krylov iterations of every correction so far.

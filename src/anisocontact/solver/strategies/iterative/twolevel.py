@@ -33,7 +33,7 @@ class TwoLevel:
         problem: The problem.
         patch: Nodes that contact can couple.
         prefix: Prefix of the options of its parts.
-        note: Told when the interpolation is made, in a line.
+        note: Called with a line when the interpolation is made.
     """
 
     def __init__(
