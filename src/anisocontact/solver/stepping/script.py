@@ -179,7 +179,7 @@ class ContactProblem(AssembledSystem):
     @typed
     def solve_steps(
         self,
-        lead: Callable[[float], object],
+        prescribe: Callable[[float], object],
         increments: int = 1,
         *,
         duration: float = 1.0,
@@ -189,7 +189,7 @@ class ContactProblem(AssembledSystem):
         """Go along a step in increments; one that fails is cut into parts, which grow again.
 
         Args:
-            lead: Sets conditions, loads and rigid bodies for a share of the step, 0 to 1.
+            prescribe: Sets conditions, loads and rigid bodies for a share of the step, 0 to 1.
             increments: How many; the end of each is met exactly.
             duration: Time the step takes.
             limits: How far increments may be cut.
@@ -200,7 +200,7 @@ class ContactProblem(AssembledSystem):
             Newton iterations of the accepted parts.
 
         Raises:
-            RuntimeError: The smallest part failed; `u`, the history and what `lead` sets are as
+            RuntimeError: The smallest part failed; `u`, the history and what is prescribed are as
                 after the last accepted one.
             InputError: No increments, or as of `solve`.
 
@@ -212,13 +212,13 @@ class ContactProblem(AssembledSystem):
         pace, total = Pace(limits, limits.largest), 0
         while pace.increment <= increments:
             before, share = ((pace.increment - 1 + s) / increments for s in (pace.done, pace.end))
-            lead(share)
+            prescribe(share)
             try:
                 iterations = self.solve(duration * (share - before))
             except RuntimeError:
                 if pace.cut():
                     continue
-                lead(before)
+                prescribe(before)
                 raise
             pace.advance(iterations)
             total += iterations
