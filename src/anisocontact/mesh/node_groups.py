@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from anisocontact.base.arrays import points
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 
@@ -20,6 +21,8 @@ Ints = npt.NDArray[np.int32]
 ROUNDED = 1e-5
 #: Difference of two distances over the size of the body below which both are the nearest.
 SAME = 1e-9
+#: Distance over the size of the body from which on a point is none of it: of other units, say.
+FAR = 0.5
 
 
 @typed
@@ -36,7 +39,7 @@ def node_near(model: Any, body: str, point: npt.ArrayLike, field: str = "") -> I
         Its local number on the rank that owns it, nothing on others.
 
     Raises:
-        InputError: No such body, or several nodes at the same distance.
+        InputError: No such body, a point far from it, or several nodes at the same distance.
 
     Example:
         >>> from anisocontact.mesh import BoxSpec, build_box
@@ -46,8 +49,11 @@ def node_near(model: Any, body: str, point: npt.ArrayLike, field: str = "") -> I
         [[0.5, 0.0, 1.0]]
     """
     nodes, x, size = _nodes_of(model, body, field)
-    away = np.linalg.norm(x - np.asarray(point, dtype=float), axis=1)
+    away = np.linalg.norm(x - points(point, 3, field or "point", rows=1), axis=1)
     least = min(model.mesh.comm.allgather(float(away.min(initial=np.inf))))
+    if least > FAR * size:
+        text = f"the nearest node of {body!r} is {least:.4g} off, the body {size:.4g} large"
+        raise InputError(f"{text}: a point at the body needed", field)
     found: Ints = nodes[away <= least + SAME * size]
     count = model.mesh.comm.allreduce(len(found))
     if count > 1:
@@ -82,7 +88,11 @@ def nodes_along(
         3
     """
     nodes, x, size = _nodes_of(model, body, field)
-    first, last = np.asarray(start, dtype=float), np.asarray(end, dtype=float)
+    place = f"{field}." if field else ""
+    (first,), (last,) = (
+        points(given, 3, f"{place}{name}", rows=1)
+        for name, given in (("start", start), ("end", end))
+    )
     way = last - first
     length = float(np.linalg.norm(way))
     if not length > ROUNDED * size:
