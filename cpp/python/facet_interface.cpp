@@ -151,17 +151,18 @@ nb::dict update(const FacetInterface& h, const Input& q) {
   const std::size_t ks = q.batch.slave.width, km = q.batch.mesh.width, n = q.points;
   const std::size_t rows = 3 * (ks + km), columns = rows + 3 * km;
   Output out(n, q.batch);
-  Array<double> residual({n, rows}), matrix({tangent ? n : 0, rows, columns});
-  Array<std::int32_t> nodes({n, ks + 2 * km});
-  std::fill_n(residual.data, n * rows, 0.0);
-  std::fill_n(matrix.data, tangent ? n * rows * columns : 0, 0.0);
+  Array<double> residual({n, rows}), matrix({tangent ? n : 0, rows, columns}, h.pool);
+  Array<std::int32_t> nodes({n, ks + 2 * km}, unset);
   std::fill_n(nodes.data, n * (ks + 2 * km), -1);
   const auto put = [&](std::size_t p, const kernel::PairResult& r,
                        [[maybe_unused]] const kernel::PairSlopes& d, const Seen& s,
                        std::int64_t committed) {
     std::int32_t* const id = nodes.data + p * (ks + 2 * km);
     std::copy_n(q.batch.slave.nodes + p * ks, ks, id);
-    if (!touches(r)) return;
+    if (!touches(r)) {
+      if constexpr (tangent) std::fill_n(matrix.data + p * rows * columns, rows * columns, 0.0);
+      return;
+    }
     q.batch.mesh.copy_nodes(s.point.facet, id + ks);
     if (committed >= 0) q.batch.mesh.copy_nodes(committed, id + ks + km);
     kernel::add_residual(r, s.shapes, residual.data + p * rows);

@@ -78,7 +78,8 @@ class MortarWeights {
     std::fill_n(nodes.data, n * most, -1);
     Array<double> area({n}), weight({n, most});
     counts_.resize(n);
-    nodal_ = {most, nodes.data, area.data, weight.data, counts_.data()};
+    nodal_ = {most,        nodes.data,     area.data,
+              weight.data, counts_.data(), std::vector<std::vector<std::int32_t>>(n)};
     {
       nb::gil_scoped_release free;
       kernel::parallel_for(n, threads, [&](std::size_t i) {
@@ -129,8 +130,8 @@ class MortarWeights {
   nb::ndarray<nb::numpy, double> area_, weight_;
 };
 
-/// Derivative of the tractions of some slave nodes, (p, columns, 3, 3), and blocks of the tangent of the
-/// forces: rows, columns, (k, 3, 3).
+/// Derivative of the tractions of some slave nodes, (p, 3, columns, 4), of which the last numbers do not count,
+/// and blocks of the tangent of the forces: rows, columns, (k, 3, 3).
 nb::tuple MortarWeights::tangent(const Indices& which, const Cube& by, const Cube& lift,
                                  const Points& traction, const std::vector<Part>& moving,
                                  std::size_t threads) const {
@@ -142,38 +143,39 @@ nb::tuple MortarWeights::tangent(const Indices& which, const Cube& by, const Cub
   for (const auto& [first, named, values] : moving)
     parts.push_back(
         {first, values.shape(1), values.shape(2), named ? named->data() : nullptr, values.data()});
-  std::vector<std::size_t> start{0};
-  for (const auto& one : facets_)
-    start.push_back(start.back() + mortar::FacetBlocks::size(slaves, one.masters.size()));
-  Array<double> of_facets({start.back()}, given_.pool), slopes({p, n.columns(), 3, 3}, given_.pool);
-  std::vector<mortar::FacetBlocks> blocks(facets_.size());
+  mortar::FacetRows of_facets(facets_, slaves);
+  mortar::NodeRows of_nodes(n, chosen);
+  const Array<double> by_facet({of_facets.size()}, given_.pool),
+      by_node({of_nodes.size()}, given_.pool);
+  Array<double> slopes({p, 3, n.columns(), mortar::column_size}, given_.pool);
+  of_facets.use(by_facet.data);
+  of_nodes.use(by_node.data, slopes.data);
+  std::vector<std::int32_t> chosen_at(facets_.size() * slaves, -1);
   std::vector<std::vector<std::int32_t>> columns;
   std::optional<mortar::ForceRows> rows;
   std::vector<std::size_t> offset{0};
   {
     nb::gil_scoped_release free;
-    std::vector<std::int32_t> place(facets_.size() * slaves, -1);
-    for (std::size_t q = 0; q < p; ++q) {
-      const auto i = static_cast<std::size_t>(which.data()[q]);
-      for (std::size_t e = 0; e < patches_.facet.size(i); ++e)
-        place[static_cast<std::size_t>(patches_.facet.begin(i)[e]) * slaves +
-              static_cast<std::size_t>(patches_.local.begin(i)[e])] = static_cast<std::int32_t>(q);
-    }
+    for (std::size_t q = 0; q < p; ++q)
+      for (std::size_t e = 0, i = chosen.node(q); e < patches_.facet.size(i); ++e)
+        chosen_at[static_cast<std::size_t>(patches_.facet.begin(i)[e]) * slaves +
+                  static_cast<std::size_t>(patches_.local.begin(i)[e])] =
+            static_cast<std::int32_t>(q);
     kernel::parallel_pieces(facets_.size(), threads, [&](std::size_t first, std::size_t last) {
       mortar::WeightMemory memory;
       mortar::DualWeights one;
       for (std::size_t f = first; f < last; ++f) {
-        const std::int32_t* const own = place.data() + f * slaves;
-        if (std::none_of(own, own + slaves, [](std::int32_t q) { return q >= 0; })) continue;
+        const std::int32_t* const own = chosen_at.data() + f * slaves;
+        if (std::all_of(own, own + slaves, [](std::int32_t q) { return q < 0; })) continue;
         find(f, true, memory, one);
-        blocks[f] = mortar::facet_blocks(n, chosen, f, one, own, of_facets.data + start[f]);
+        of_facets.put(f, one);
       }
     });
-    kernel::parallel_for(p, threads, [&](std::size_t q) {
-      mortar::traction_slopes(n, blocks, parts, chosen, q,
-                              slopes.data + q * n.columns() * mortar::block_size);
+    kernel::parallel_pieces(p, threads, [&](std::size_t first, std::size_t last) {
+      mortar::RowMemory memory(nodes);
+      for (std::size_t q = first; q < last; ++q) of_nodes.find(q, of_facets, parts, memory);
     });
-    rows.emplace(n, chosen, slopes.data, blocks, nodes);
+    rows.emplace(n, chosen, chosen_at, of_nodes, of_facets, nodes);
     columns.resize(rows->nodes().size());
     kernel::parallel_pieces(columns.size(), threads, [&](std::size_t first, std::size_t last) {
       std::vector<std::int32_t> seen(nodes, -1), found;
@@ -189,11 +191,11 @@ nb::tuple MortarWeights::tangent(const Indices& which, const Cube& by, const Cub
   {
     nb::gil_scoped_release free;
     kernel::parallel_pieces(columns.size(), threads, [&](std::size_t first, std::size_t last) {
-      std::vector<std::int32_t> place(nodes, -1);
+      mortar::RowMemory memory(nodes);
       for (std::size_t r = first; r < last; ++r) {
         std::fill_n(row.data + offset[r], columns[r].size(), rows->nodes()[r]);
         std::copy(columns[r].begin(), columns[r].end(), column.data + offset[r]);
-        rows->write(rows->nodes()[r], columns[r], place,
+        rows->write(rows->nodes()[r], columns[r], memory,
                     values.data + offset[r] * mortar::block_size);
       }
     });

@@ -7,7 +7,7 @@ import numpy.typing as npt
 import pytest
 
 from anisocontact.contact.facet_mesh import FacetMesh
-from anisocontact.contact.surface_gradient import VERTICES, SurfaceGradient, vertex_functions
+from anisocontact.contact.surface_gradient import VERTICES, SurfaceGradient
 from anisocontact.surfaces.facets import FacetSurface
 
 Floats = npt.NDArray[np.float64]
@@ -41,6 +41,11 @@ def patch(topology: str, n: int = 3) -> tuple[FacetMesh, Floats]:
     return FacetMesh(topology, connectivity, np.zeros(len(grid), dtype=bool)), x
 
 
+def _bilinear(s: Floats, t: Floats) -> list[Floats]:
+    """Functions of the vertices of a quadrilateral."""
+    return [(1 - s) * (1 - t), s * (1 - t), (1 - s) * t, s * t]
+
+
 def _straight(x: Floats, grid: Floats, nodes: Floats, topology: str) -> Floats:
     """Facets of order 2 whose sides are straight between their vertices."""
     out, corners = x.copy(), 3 if topology == "tri6" else 4
@@ -48,7 +53,9 @@ def _straight(x: Floats, grid: Floats, nodes: Floats, topology: str) -> Floats:
         local = (places - places[:corners].min(axis=0)) / 2.0
         if corners == 3 and not np.array_equal(places[0], places.min(axis=0)):
             local = 1.0 - local
-        share, _ = vertex_functions(local, corners)
+        s, t = local[:, :1], local[:, 1:]
+        shares = [1 - s - t, s, t] if corners == 3 else _bilinear(s, t)
+        share = np.concatenate(shares, axis=1)
         out[own] = share @ x[own[:corners]]
     return out
 

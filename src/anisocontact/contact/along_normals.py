@@ -116,6 +116,8 @@ def _stay(sides: Sides, x: Floats, normal: Floats, places: Places, before: Place
         one.edge.any(axis=1) & ~np.isnan(one.edge[:, 0]) for one in (places, before)
     )
     moved = (places.facet >= 0) & (before.facet >= 0) & (places.facet != before.facet) & on_edge
+    if not moved.any():
+        return
     stayed = _kept(sides, x, normal, places, before, np.flatnonzero(moved & was_on_edge))
     for start, along in _BORDERS[sides.master.topology.rstrip("0123456789")]:
         n = len(before.facet)
@@ -171,8 +173,9 @@ def _met(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple
         first, second = _across(jet.d1[:, 0], normal), _across(jet.d1[:, 1], normal)
         rest = _across(x - jet.position, normal)
         metric = _dot(first, first), _dot(first, second), _dot(second, second)
-        area = np.cross(jet.d1[:, 0], jet.d1[:, 1])
-        flat |= metric[0] * metric[2] - metric[1] ** 2 <= OPPOSED**2 * _dot(area, area)
+        own = [_dot(jet.d1[:, a], jet.d1[:, b]) for a, b in ((0, 0), (0, 1), (1, 1))]
+        area, below = (one[0] * one[2] - one[1] ** 2 for one in (own, metric))
+        flat |= below <= OPPOSED**2 * area
         p, q, r = (one - _dot(jet.d2[:, k], rest) for k, one in enumerate(metric))
         right = _dot(first, rest), _dot(second, rest)
         with np.errstate(divide="ignore", invalid="ignore"):

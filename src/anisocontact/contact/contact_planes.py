@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
-from anisocontact.contact.plane_axes import Carried, Turned, in_tangents, unit_normal
+from anisocontact.contact.plane_axes import Carried, Turned, dual, in_tangents, unit_normal
 
 Mask = npt.NDArray[np.bool_]
 Ints = npt.NDArray[np.int32]
@@ -110,16 +110,34 @@ class Opposite:
         return Opposite(**rows)
 
     def in_order(self, names: Ints | None = None) -> Opposite:
-        """The same with the nodes that have a share alone, in ascending order.
+        """The same with the nodes that have a share alone, all in ascending order.
+
+        So sums over them have the same bits in a run that goes on.
 
         Args:
-            names: Other names of them, (n, k).
+            names: Other names of those that have a share, (n, k).
         """
         names = np.where(self.shares != 0.0, self.masters if names is None else names, -1)
         count = max(int((names >= 0).sum(axis=1).max(initial=0)), 1)
         order = np.argsort(np.where(names < 0, np.iinfo(np.int32).max, names), axis=1)[:, :count]
         masters = np.take_along_axis(names, order, axis=1).astype(np.int32)
-        return replace(self, masters=masters, shares=np.take_along_axis(self.shares, order, axis=1))
+        shares = np.take_along_axis(self.shares, order, axis=1)
+        return replace(self, masters=masters, shares=shares).around_in_order(self.around)
+
+    def around_in_order(self, names: Ints) -> Opposite:
+        """The same with the nodes around in ascending order of names, (n, i), -1 for none."""
+        count = max(int((names >= 0).sum(axis=1).max(initial=0)), 1)
+        order = np.argsort(np.where(names < 0, np.iinfo(np.int32).max, names), axis=1)[:, :count]
+        around = np.take_along_axis(names, order, axis=1).astype(np.int32)
+        there = around[:, None] >= 0
+        along = np.take_along_axis(self.along, order[:, None], axis=2)
+        bending = np.take_along_axis(self.bending, order[:, None, None], axis=3)
+        return replace(
+            self,
+            around=around,
+            along=np.where(there, along, 0.0),
+            bending=np.where(there[:, None], bending, 0.0),
+        )
 
     def as_wide(self, masters: int, around: int) -> Opposite:
         """The same with places for so many masters and nodes around."""
@@ -193,7 +211,7 @@ class ContactPlanes:
         """
         normal = across(held, averaged_normal(tangents))
         means = (one.mean(now) for one in opposite)
-        mean, mean_then = (y + (held @ (slave - y)[..., None])[..., 0] for y in means)
+        mean, mean_then = (y + along(held, slave - y) for y in means)
         turned = Turned(opposite[0].tangents(now), normal)
         carried = Carried(opposite[1].tangents(now), opposite[1].carried)
         return cls(slave, tangents, mean, turned, mean_then, carried, held)
@@ -211,9 +229,8 @@ class ContactPlanes:
     @cached_property
     def xi(self) -> Floats:
         """Coordinates of the slave point in the axes of the plane, (n, 2)."""
-        axes = self.now.axes
-        right = np.einsum("nai,ni->na", axes, self.slave - self.mean)
-        return np.asarray(np.linalg.solve(axes @ axes.swapaxes(1, 2), right[..., None])[..., 0])
+        away = self.slave - self.mean
+        return np.asarray(np.einsum("nai,ni->na", dual(self.now.axes), away, order="C"))
 
     def points(self, facet: Ints, xi: Floats) -> tuple[Floats, Floats]:
         """Points in the planes, (n, 3), length, and the axes of these, (n, 2, 3).
@@ -252,14 +269,13 @@ class ContactPlanes:
         """
         axes = self.then.axes
         normal, away = unit_normal(axes), np.einsum("na,nai->ni", xi, axes)
-        upright, along = across(self.held, normal), (self.held @ away[..., None])[..., 0]
-        far = np.linalg.norm(along, axis=1) > ROUNDING * size
+        upright, kept = across(self.held, normal), along(self.held, away)
+        far = np.linalg.norm(kept, axis=1) > ROUNDING * size
         new = far | (np.linalg.norm(upright - normal, axis=1) > ROUNDING)
         if not new.any():
             return None
         axes = Turned(axes, upright).axes
-        right = axes @ (away - along)[..., None]
-        coordinates = np.linalg.solve(axes @ axes.swapaxes(1, 2), right)[..., 0]
+        coordinates = np.einsum("nai,ni->na", dual(axes), away - kept)
         by_master = np.where(
             new[:, None, None], in_tangents(self.then.tangents, axes), self.then.by_master
         )
@@ -312,11 +328,15 @@ def held_directions(
 
 def averaged_normal(tangents: Floats) -> Floats:
     """Normal towards the slave from its tangents, which turn about the outward one, (n, 3)."""
-    cross = np.cross(tangents[:, 0], tangents[:, 1])
-    return np.asarray(-cross / np.linalg.norm(cross, axis=1)[:, None])
+    return -unit_normal(tangents)
 
 
 def across(held: Floats, normal: Floats) -> Floats:
     """Normals without what is along held directions, (n, 3): by symmetry nothing is there."""
-    rest = normal - (held @ normal[..., None])[..., 0]
+    rest = normal - along(held, normal)
     return np.asarray(rest / np.linalg.norm(rest, axis=1)[:, None])
+
+
+def along(held: Floats, vectors: Floats) -> Floats:
+    """What of vectors, (n, 3), is along held directions, (n, 3)."""
+    return np.asarray(np.einsum("nij,nj->ni", held, vectors))

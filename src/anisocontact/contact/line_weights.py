@@ -284,7 +284,7 @@ class LineNodes:
         rates = np.concatenate([own.reshape(*support.shape, c, 3), d_weight], axis=1)
         blocks = weights[:, :, None, None, None] * slopes[:, None]
         blocks += traction[:, None, None, :, None] * rates[:, :, :, None]
-        return slopes, rows, columns, blocks
+        return slopes.swapaxes(1, 2), rows, columns, blocks
 
 
 def line_weights(

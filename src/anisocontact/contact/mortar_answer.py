@@ -92,7 +92,7 @@ class MortarState:
             traction: The tractions, (p, 3).
 
         Returns:
-            That of the tractions by the nodes of the columns, (p, c, 3, 3), and couplings.
+            That of the tractions by the nodes of the columns, (p, 3, c, 3), and couplings.
         """
         planes, now = self.planes, self.opposite[0]
         by, lift = _core.plane_slopes(
@@ -102,6 +102,8 @@ class MortarState:
             held=planes.held,
             now=self.now,
             reference=self.reference,
+            then=planes.then.tangents,
+            carried=planes.then.by_master,
             area=self.weights.area,
             masters=now.masters,
             shares=now.shares,
@@ -115,13 +117,14 @@ class MortarState:
             along=now.along,
             bending=now.bending,
             which=which,
-            by_nodes=planes.then.pulled_back(by_nodes, which),
+            by_nodes=by_nodes,
             threads=default_threads(),
         )
-        found: tuple[Floats, Ints, Ints, Floats] = self.weights.core.tangent(
+        slopes, *couplings = self.weights.core.tangent(
             which, by, lift, traction, self._moving, default_threads()
         )
-        return found
+        rows, columns, blocks = couplings
+        return slopes[..., :3], rows, columns, blocks
 
 
 @dataclass(frozen=True)
@@ -154,7 +157,7 @@ class MortarAnswer:
 
     @property
     def by_columns(self) -> Floats:
-        """Derivative of the tractions by the nodes of the columns, (p, c, 3, 3)."""
+        """Derivative of the tractions by the nodes of the columns, (p, 3, c, 3)."""
         return self._tangent[0]
 
     def add_force(self, out: Floats) -> None:
@@ -164,10 +167,8 @@ class MortarAnswer:
     def add_traction(self, which: Ints, traction: Floats, out: Floats) -> None:
         """Add the forces of tractions on the slave, (p, 3), of some slave nodes, (p,)."""
         rows, weights = self.at.rows[which], self.at.row_weights[which]
-        there, forces = rows >= 0, self.at.gathered.zeros(out)
-        found = (weights[:, :, None] * traction[:, None])[there]
-        for i in range(3):
-            forces[:, i] += np.bincount(rows[there], found[:, i], len(forces))
+        forces = self.at.gathered.zeros(out)
+        _core.add_at_nodes(rows, weights, traction, forces)
         self.at.gathered.hand_back(forces, out)
 
     def couplings(self) -> list[Couplings]:
@@ -206,7 +207,7 @@ class MortarLinear:
         # the tangent is so stiff that the rounding of positions would be felt in the difference
         way = (now - self._then)[np.maximum(columns, 0)]
         way[columns < 0] = 0.0
-        change = np.einsum("pcij,pcj->pi", answer.by_columns, way)
+        change = np.einsum("picj,pcj->pi", answer.by_columns, way)
         return self._everywhere(change + self._supported())
 
     def slipped(self, slip: Floats) -> Floats:

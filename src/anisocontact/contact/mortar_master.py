@@ -14,6 +14,7 @@ from anisocontact.contact.contact_planes import (
     ContactPlanes,
     Opposite,
     across,
+    along,
     averaged_normal,
     held_directions,
 )
@@ -212,8 +213,8 @@ class MortarMaster(MeshedMaster):
         found = found_on_all(self._comm, law, state, dt, batch)
         failed = self._hint.status == FACET_STATUS.index("failed")
         # supports carry what there is along directions that they hold
-        free = np.eye(3) - at.planes.held
-        traction = (free @ found["traction"][..., None])[..., 0]
+        held = at.planes.held
+        traction = found["traction"] - along(held, found["traction"])
         response = response_of(found | {"traction": traction}, failed)
         which = np.flatnonzero(response.status != 0).astype(np.int32)
         snapshot = Snapshot(at.planes.slave, at.weights.area, response)
@@ -223,9 +224,8 @@ class MortarMaster(MeshedMaster):
             sliding = response.status[which] == SLIP
             by_held[sliding] = found["by_held"][which[sliding]]
         stiffness = found["stiffness"] * at.weights.area
-        return MortarAnswer(
-            at, snapshot, stiffness, which, free[which] @ by_nodes, by_nodes, by_held
-        )
+        free = by_nodes - held[which] @ by_nodes if held[which].any() else by_nodes
+        return MortarAnswer(at, snapshot, stiffness, which, free, by_nodes, by_held)
 
     def _batch(self, state: State, tangent: bool = True) -> FacetBatch:
         """Slave nodes and planes as the core takes them."""

@@ -56,7 +56,8 @@ class Differentiated(Protocol):
             threads: Threads of the kernel.
 
         Returns:
-            Of the tractions, (p, columns, 3, 3); rows, columns and blocks of that of the forces.
+            Of the tractions, (p, 3, columns, 3 or more); rows, columns and blocks of that of
+            the forces.
         """
 
 

@@ -18,22 +18,12 @@ def names_of(then: Opposite, gathered: MasterSurface) -> Opposite:
         gathered: The master as this process has it.
     """
     kept = {name: getattr(then, name).copy() for name in ("shape", "gradient", "second", "edge")}
-    named = replace(then, **kept).in_order(gathered.names(then.masters))
-    around = np.where(then.facet[:, None] >= 0, gathered.names(then.around), -1)
-    count = max(int((around >= 0).sum(axis=1).max(initial=0)), 1)
-    order = np.argsort(np.where(around < 0, np.iinfo(np.int32).max, around), axis=1)[:, :count]
-    around = np.take_along_axis(around, order, axis=1)
-    along = np.take_along_axis(then.along, order[:, None], axis=2)
-    bending = np.take_along_axis(then.bending, order[:, None, None], axis=3)
-    there, none = around[:, None] >= 0, then.facet < 0
+    around = np.where(then.facet[:, None] >= 0, gathered.names(then.around), np.int32(-1))
+    named = replace(then, **kept).around_in_order(around)
     for values in kept.values():
-        values[none] = 0.0
-    return replace(
-        named,
-        facet=gathered.globally(then.facet),
-        around=around,
-        along=np.where(there, along, 0.0),
-        bending=np.where(there[:, None], bending, 0.0),
+        values[then.facet < 0] = 0.0
+    return replace(named, facet=gathered.globally(then.facet)).in_order(
+        gathered.names(then.masters)
     )
 
 

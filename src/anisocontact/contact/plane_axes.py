@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 import numpy.typing as npt
 
-Ints = npt.NDArray[np.int32]
+from anisocontact import _core
+
 Floats = npt.NDArray[np.float64]
 
 
@@ -78,50 +79,26 @@ class Carried:
     def axes(self) -> Floats:
         """e, (n, 2, 3), length."""
         normal = unit_normal(self.tangents)[:, None]
-        return np.asarray(self.by_master @ np.concatenate([self.tangents, normal], axis=1))
-
-    def pulled_back(self, by_nodes: Floats, which: Ints) -> Floats:
-        """Derivatives by the plane that d span, at its place, from those by the plane of e.
-
-        Args:
-            by_nodes: Rows of some numbers, by the nodes of `ContactPlanes.nodes`, (p, r, 27).
-            which: Slave nodes, (p,).
-
-        Returns:
-            The same, the last three nodes being the place, and it with d_1 and d_2 added.
-        """
-        by = by_nodes.reshape(*by_nodes.shape[:2], 9, 3).copy()
-        tangents, by_axes = self.tangents[which], by[:, :, 7:]
-        found = self.by_master[which].swapaxes(1, 2)[:, None] @ by_axes
-        by_d = found[:, :, :2] + by_tangents(tangents, found[:, :, 2])
-        by[:, :, 6] += (by_axes - by_d).sum(axis=2)
-        by[:, :, 7:] = by_d
-        return by.reshape(by_nodes.shape)
+        both = np.concatenate([self.tangents, normal], axis=1)
+        return np.asarray(np.einsum("nab,nbi->nai", self.by_master, both, order="C"))
 
 
 def in_tangents(tangents: Floats, axes: Floats) -> Floats:
     """Vectors e, (n, 2, 3), in two tangents d and their normal, (n, 2, 3), see `Carried`."""
-    d, e = tangents, axes
-    along = np.linalg.solve(d @ d.swapaxes(1, 2), d @ e.swapaxes(1, 2)).swapaxes(1, 2)
-    return np.concatenate([along, e @ unit_normal(d)[..., None]], axis=2)
+    both = np.concatenate([dual(tangents), unit_normal(tangents)[:, None]], axis=1)
+    return np.asarray(np.einsum("nai,nbi->nab", axes, both, order="C"))
 
 
 def unit_normal(tangents: Floats) -> Floats:
     """Normal of two tangents, (n, 3)."""
-    cross = np.cross(tangents[:, 0], tangents[:, 1])
-    return np.asarray(cross / np.linalg.norm(cross, axis=1)[:, None])
+    return _core.unit_normals(np.ascontiguousarray(tangents))
 
 
-def by_tangents(tangents: Floats, by_normal: Floats) -> Floats:
-    """Derivatives by two tangents from those by their normal, dm = - d^a (m . dd_a).
-
-    Args:
-        tangents: d, (n, 2, 3), length.
-        by_normal: Rows of some numbers, (n, r, 3).
-
-    Returns:
-        By d, (n, r, 2, 3).
-    """
-    dual = np.linalg.solve(tangents @ tangents.swapaxes(1, 2), tangents)
-    stretch = by_normal @ dual.swapaxes(1, 2)
-    return np.asarray(-stretch[..., None] * unit_normal(tangents)[:, None, None])
+def dual(tangents: Floats) -> Floats:
+    """Dual tangents d^a of two tangents, d^a . d_b = delta_ab, in their plane, (n, 2, 3)."""
+    first, second = tangents[:, 0], tangents[:, 1]
+    a, b, c = (
+        np.einsum("ni,ni->n", *pair) for pair in ((first, first), (first, second), (second, second))
+    )
+    rows = [c[:, None] * first - b[:, None] * second, a[:, None] * second - b[:, None] * first]
+    return np.asarray(np.stack(rows, axis=1) / (a * c - b * b)[:, None, None])

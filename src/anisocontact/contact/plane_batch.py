@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
+from typing import TypedDict
+
 import numpy as np
 import numpy.typing as npt
 
@@ -30,29 +33,49 @@ def plane_batch(
     Returns:
         The batch; facets of now come before those of the accepted increment.
     """
-    n = len(located)
+    return {
+        **_triangles(len(located)),
+        "current_area": False,
+        "now": at.planes.nodes(),
+        "reference": _reference_nodes(at),
+        "xi": np.where(located[:, None], at.planes.xi, 0.0),
+        "feature": np.where(located, np.int8(0), np.int8(OFF)),
+        "held": at.planes.held,
+        "near": near,
+        "tangent": tangent,
+        "threads": threads,
+    }
+
+
+class _Triangles(TypedDict):
+    """Part of `FacetBatch`."""
+
+    slave_nodes: npt.NDArray[np.int32]
+    slave_shape: Floats
+    slave_gradient: Floats
+    weight: Floats
+    connectivity: npt.NDArray[np.int32]
+    topology: npt.NDArray[np.int8]
+    flip: Mask
+    facet: npt.NDArray[np.int32]
+    edge: Floats
+
+
+@lru_cache(maxsize=8)
+def _triangles(n: int) -> _Triangles:
+    """What is the same of so many slave nodes wherever they are."""
     first = NODES * np.arange(n, dtype=np.int32)[:, None]
     three = np.arange(3, dtype=np.int32)
-    kinds = np.full(2 * n, list(TOPOLOGIES).index("tri3"), dtype=np.int8)
     return {
         "slave_nodes": first + three,
         "slave_shape": np.tile([1.0, 0.0, 0.0], (n, 1)),
         "slave_gradient": np.tile([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]], (n, 1, 1)),
         "weight": np.ones(n),
-        "current_area": False,
-        "now": at.planes.nodes(),
-        "reference": _reference_nodes(at),
         "connectivity": np.concatenate([first + 3 + three, first + 6 + three]),
-        "topology": kinds,
+        "topology": np.full(2 * n, list(TOPOLOGIES).index("tri3"), dtype=np.int8),
         "flip": np.zeros(2 * n, dtype=bool),
         "facet": np.arange(n, dtype=np.int32),
-        "xi": np.where(located[:, None], at.planes.xi, 0.0),
-        "feature": np.where(located, np.int8(0), np.int8(OFF)),
         "edge": np.zeros((n, 2)),
-        "held": at.planes.held,
-        "near": near,
-        "tangent": tangent,
-        "threads": threads,
     }
 
 

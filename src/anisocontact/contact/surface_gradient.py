@@ -13,7 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact import _core
 from anisocontact.contact.facet_mesh import FacetMesh, facet_corners
+from anisocontact.surfaces import default_threads
 from anisocontact.surfaces.facets import FacetSurface
 
 Ints = npt.NDArray[np.int32]
@@ -99,27 +101,10 @@ class SurfaceGradient:
         Returns:
             B_m . T_a, (n, 2, j), and its derivatives by the coordinates, (n, 2, 2, j).
         """
-        share, slope = vertex_functions(xi, self.normals.shape[1])
-        corner = self.normals[facet]
-        mean = np.einsum("nc,nci->ni", share, corner)
-        size = np.linalg.norm(mean, axis=1)[:, None]
-        unit = mean / size
-        turn = np.einsum("ncb,nci->nbi", slope, corner) / size[:, None]
-        turn -= np.einsum("nbi,ni->nb", turn, unit)[..., None] * unit[:, None]
-        along = np.einsum("nai,ni->na", own, unit)
-        flat = own - along[..., None] * unit[:, None]
-        rise = np.einsum("nabi,ni->nab", bend, unit) + np.einsum("nai,nbi->nab", own, turn)
-        d_flat = bend - rise[..., None] * unit[:, None, None]
-        d_flat -= along[:, :, None, None] * turn[:, None]
-        # the gradient and its rates, (n, 3, j, 3), as products of matrices, which are quick
-        functions = np.concatenate([share[:, None], slope.swapaxes(1, 2)], axis=1)
-        at = self.at_vertices[facet]
-        found = (functions @ at.reshape(*at.shape[:2], -1)).reshape(-1, 3, *at.shape[2:])
-        gradient, rate = found[:, 0].swapaxes(1, 2), found[:, 1:].swapaxes(2, 3)
-        values = flat @ gradient
-        rates = (d_flat.reshape(-1, 4, 3) @ gradient).reshape(-1, 2, 2, gradient.shape[2])
-        rates += (flat[:, None] @ rate).swapaxes(1, 2)
-        return values, rates
+        found: tuple[Floats, Floats] = _core.surface_tangents(
+            self.at_vertices, self.normals, facet, xi, own, bend, default_threads()
+        )
+        return found
 
 
 @dataclass(frozen=True)
@@ -150,18 +135,6 @@ class _Slots:
         ends = _sides(reference[vertices], mesh.topology).reshape(-1, 2, 3)
         cosine = np.einsum("si,si->s", ends[:, 0], ends[:, 1])
         return cls(gradients, cross / size[:, None], np.arccos(np.clip(cosine, -1.0, 1.0)))
-
-
-def vertex_functions(xi: Floats, corners: int) -> tuple[Floats, Floats]:
-    """Functions that are one at a vertex and linear along edges, (n, c), and slopes, (n, c, 2)."""
-    x, y = xi[:, :1], xi[:, 1:]
-    if corners == 3:
-        slope = np.tile([[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]], (len(xi), 1, 1))
-        return np.concatenate([1.0 - x - y, x, y], axis=1), slope
-    shares = np.concatenate([(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y], axis=1)
-    by_x = np.concatenate([y - 1, 1 - y, -y, y], axis=1)
-    by_y = np.concatenate([x - 1, -x, 1 - x, x], axis=1)
-    return shares, np.stack([by_x, by_y], axis=2)
 
 
 def _sides(x: Floats, topology: str) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact import _core
 from anisocontact.contact.along_normals import Places, along_normals
 from anisocontact.contact.contact_planes import Opposite
 from anisocontact.contact.facet_mesh import node_coordinates
@@ -102,7 +103,8 @@ def _material(
     nodes = sides.master.nodes[facet]
     if sides.master.sweep is not None:  # facets in a row, which have no width on an axis
         return nodes, gradient, np.ascontiguousarray(second)
-    x = sides.reference[nodes]
-    own, bend = gradient @ x, np.einsum("nabk,nki->nabi", second, x)
+    both = np.concatenate([gradient, second.reshape(-1, 4, second.shape[3])], axis=1)
+    found = _core.node_sums(nodes, both, sides.reference)
+    own, bend = found[:, :2], found[:, 2:].reshape(-1, 2, 2, 3)
     smooth = sides.surface_gradient
     return smooth.nodes[facet], *smooth.tangents(facet, xi, own, bend)

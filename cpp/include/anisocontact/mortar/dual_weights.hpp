@@ -48,66 +48,96 @@ namespace detail {
 using Eigen::Index;
 
 /// The inverse of m, column by column; whether there is one. Rows and columns are scaled to a diagonal
-/// of one, so that the size of what is covered does not matter.
+/// of one, so that the size of what is covered does not matter, and no row has to change places.
 template <std::size_t L>
 ANISOCONTACT_ONCE bool invert(const Integrals<L>& in, std::size_t n, std::array<Lanes<L>, L>& out) {
-  constexpr int most = static_cast<int>(L);
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, most, most>;
-  Square m = Square::Zero(static_cast<Index>(n), static_cast<Index>(n));
+  constexpr double least = 1e-13;
+  std::array<double, L> unit{};
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!(in.value[i][i] > 0.0)) return false;
+    unit[i] = 1.0 / std::sqrt(in.value[i][i]);
+  }
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j)
-      m(static_cast<Index>(i), static_cast<Index>(j)) = in.value[j][i];
-  if (!(m.diagonal().minCoeff() > 0.0)) return false;
-  const Eigen::Matrix<double, Eigen::Dynamic, 1, 0, most, 1> unit =
-      m.diagonal().cwiseSqrt().cwiseInverse();
-  const Eigen::LDLT<Square> factor(unit.asDiagonal() * m * unit.asDiagonal());
-  if (factor.info() != Eigen::Success || !(factor.vectorD().minCoeff() > 1e-13)) return false;
-  const Square inverse = unit.asDiagonal() * factor.solve(Square(unit.asDiagonal()));
+    for (std::size_t j = 0; j < n; ++j) out[i].set(j, unit[i] * unit[j] * in.value[j][i]);
+  for (std::size_t k = 0; k < n; ++k) {
+    const double pivot = out[k][k];
+    if (!(pivot > least)) return false;
+    out[k].set(k, 1.0);
+    out[k] = (1.0 / pivot) * out[k];
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i == k) continue;
+      const double share = out[i][k];
+      out[i].set(k, 0.0);
+      out[i].add(-share, out[k]);
+    }
+  }
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j)
-      out[j].set(i, inverse(static_cast<Index>(i), static_cast<Index>(j)));
+    for (std::size_t j = 0; j < n; ++j) out[i].set(j, unit[i] * unit[j] * out[i][j]);
   return true;
+}
+
+/// A matrix of columns side by side, times x.
+template <std::size_t L>
+ANISOCONTACT_INLINE Lanes<L> times(const std::array<Lanes<L>, L>& m, const Lanes<L>& x) {
+  Lanes<L> product;
+  each<L>([&](std::size_t j) ANISOCONTACT_INLINE_LAMBDA { product.add(x[j], m[j]); });
+  return product;
+}
+
+/// Derivatives of W = D z, z = m^-1 c, where P = D m^-1: dW = P (dc - dm z) + z dD. `memory` is for P dm and
+/// dD.
+template <std::size_t L>
+ANISOCONTACT_INLINE void put_slopes(const Integrals<L>& in, std::size_t n,
+                                    const std::array<Lanes<L>, L>& p,
+                                    const std::vector<Lanes<L>>& z, std::vector<Lanes<L>>& memory,
+                                    DualWeights& out) {
+  const std::size_t count = in.rows - n, columns = in.columns;
+  out.d_area.resize(static_cast<Index>(n), static_cast<Index>(columns));
+  out.d_weight.resize(static_cast<Index>(n * count), static_cast<Index>(columns));
+  memory.resize((L + 1) * columns);  // functions that are not there give zero
+  for (std::size_t c = 0; c < columns; ++c) {
+    Lanes<L> grown;
+    for (std::size_t j = 0; j < L; ++j) {
+      const Lanes<L> slope = j < n ? in.slope[j * columns + c] : Lanes<L>();
+      grown.add(1.0, slope);
+      memory[(L + 1) * c + j] = times(p, slope);
+    }
+    memory[(L + 1) * c + L] = grown;
+    for (std::size_t i = 0; i < n; ++i) out.d_area.data()[i * columns + c] = grown[i];
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    double* const to = out.d_weight.data() + k * columns;
+    const Lanes<L> own = z[k], minus = -own;
+    for (std::size_t c = 0; c < columns; ++c) {
+      const Lanes<L>* const moved = memory.data() + (L + 1) * c;
+      Lanes<L> slope = times(p, in.slope[(n + k) * columns + c]) + own * moved[L];
+      each<L>([&](std::size_t j) ANISOCONTACT_INLINE_LAMBDA { slope.add(minus[j], moved[j]); });
+      for (std::size_t i = 0; i < n; ++i) to[i * count * columns + c] = slope[i];
+    }
+  }
 }
 
 /// W = D m^-1 c with its derivatives; whether m can be inverted.
 template <std::size_t L>
 ANISOCONTACT_INLINE bool put_weights(const Integrals<L>& in, std::size_t n,
-                                     std::vector<Lanes<L>>& z, DualWeights& out) {
-  const std::size_t count = in.rows - n, columns = in.columns;
-  std::array<Lanes<L>, L> inverse;
+                                     std::vector<Lanes<L>>& z, std::vector<Lanes<L>>& memory,
+                                     DualWeights& out) {
+  const std::size_t count = in.rows - n;
+  std::array<Lanes<L>, L> inverse;  // zero from n on
   if (!invert(in, n, inverse)) return false;
-  const auto times = [&](const auto& x) ANISOCONTACT_INLINE_LAMBDA {
-    Lanes<L> product;
-    each<L>([&](std::size_t j)
-                ANISOCONTACT_INLINE_LAMBDA { product.add(x[j], inverse[j]); });  // zero from n on
-    return product;
-  };
   Lanes<L> area;
   for (std::size_t j = 0; j < n; ++j) area.add(1.0, in.value[j]);
   z.resize(count);
   out.area.resize(static_cast<Index>(n));
   out.weight.resize(static_cast<Index>(n), static_cast<Index>(count));
-  for (std::size_t k = 0; k < count; ++k) z[k] = times(in.value[n + k]);
+  for (std::size_t k = 0; k < count; ++k) z[k] = times(inverse, in.value[n + k]);
   for (std::size_t i = 0; i < n; ++i) {
     out.area[static_cast<Index>(i)] = area[i];
     for (std::size_t k = 0; k < count; ++k) out.weight.data()[i * count + k] = area[i] * z[k][i];
   }
   if (in.slope.empty()) return true;
-  out.d_area.resize(static_cast<Index>(n), static_cast<Index>(columns));
-  out.d_weight.resize(static_cast<Index>(n * count), static_cast<Index>(columns));
-  for (std::size_t c = 0; c < columns; ++c) {
-    Lanes<L> grown;
-    for (std::size_t j = 0; j < n; ++j) grown.add(1.0, in.slope[j * columns + c]);
-    for (std::size_t i = 0; i < n; ++i) out.d_area.data()[i * columns + c] = grown[i];
-    for (std::size_t k = 0; k < count; ++k) {
-      // dz = m^-1 (dc - dm z)
-      Lanes<L> right = in.slope[(n + k) * columns + c];
-      for (std::size_t j = 0; j < n; ++j) right.add(-z[k][j], in.slope[j * columns + c]);
-      const Lanes<L> slope = z[k] * grown + area * times(right);
-      for (std::size_t i = 0; i < n; ++i)
-        out.d_weight.data()[(i * count + k) * columns + c] = slope[i];
-    }
-  }
+  for (Lanes<L>& one : inverse) one = area * one;
+  put_slopes(in, n, inverse, z, memory, out);
   return true;
 }
 
@@ -154,9 +184,21 @@ inline std::array<DualWeights::Matrix, 2> slopes_handed_over(const Eigen::Vector
   return {gives, gets};
 }
 
+/// Whether any node of a facet gives anything away.
+inline bool any_gives(std::span<const double> whole, const Eigen::VectorXd& area) {
+  double least = std::numeric_limits<double>::infinity(), largest = -least;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const double covered = area[static_cast<Index>(i)] / whole[i];
+    least = std::min(least, covered);
+    largest = std::max(largest, covered);
+  }
+  return !(least >= kept * largest);
+}
+
 /// Gives the weights of nodes that would be extrapolated to the other nodes of the facet, so that a
 /// uniform traction is still handed over exactly; `whole` are the weights where all is covered.
 inline void hand_over(std::span<const double> whole, DualWeights& out) {
+  if (!any_gives(whole, out.area)) return;
   const auto n = static_cast<Index>(whole.size()), columns = out.d_area.cols();
   const Eigen::VectorXd per_whole =
       Eigen::Map<const Eigen::VectorXd>(whole.data(), n).cwiseInverse();
@@ -205,7 +247,7 @@ class WeightMemory {
   struct Of {
     Integrals<L> total;
     IntegratorMemory<L> integrator;
-    std::vector<Lanes<L>> solved;
+    std::vector<Lanes<L>> solved, moved;
   };
   template <std::size_t L>
   Of<L>& of() {
@@ -247,6 +289,7 @@ inline void dual_weights(const MortarInput& in, std::size_t f,
   const Facet slave = in.slave.at(f, in.now);
   detail::find_overlaps(in, slave, f, candidates, memory);
   out.masters.clear();
+  out.masters.reserve(memory.found.size() * in.master.width());
   for (const Overlap& o : memory.found)
     for (std::size_t a = 0; a < in.master.width(); ++a)
       out.masters.push_back(in.master.node(o.facet, a));
@@ -271,7 +314,7 @@ inline void dual_weights(const MortarInput& in, std::size_t f,
         integrator.add(memory.parts[static_cast<std::size_t>(o.slave - first)], o,
                        in.master.at(o.facet, in.now), column);
       }
-      good = detail::put_weights(own.total, slave.nodes(), own.solved, out);
+      good = detail::put_weights(own.total, slave.nodes(), own.solved, own.moved, out);
     });
     return good;
   });

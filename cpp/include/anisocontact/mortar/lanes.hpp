@@ -22,8 +22,10 @@ template <std::size_t W>
 struct RegisterOf {
 #if defined(__GNUC__)
   using type [[gnu::vector_size(W * sizeof(double))]] = double;
+  using anywhere [[gnu::vector_size(W * sizeof(double)), gnu::aligned(8), gnu::may_alias]] = double;
 #else
   using type = double;
+  using anywhere = double;
 #endif
 };
 }  // namespace detail
@@ -35,6 +37,18 @@ class alignas(W * sizeof(double)) Lanes {
   ANISOCONTACT_INLINE Lanes() : Lanes(0.0) {}
   ANISOCONTACT_INLINE explicit Lanes(double x) {
     for (auto& one : r_) one = Register{} + x;
+  }
+  /// Numbers in memory, registers `stride` apart. They are read as a whole: the halves of a register that
+  /// were copied apart would have to wait for each other.
+  ANISOCONTACT_INLINE static Lanes from(const double* p, std::size_t stride = W) {
+    Lanes out;
+    for (std::size_t c = 0; c < count; ++c)
+      out.r_[c] = *reinterpret_cast<const Anywhere*>(p + c * stride);
+    return out;
+  }
+  /// Writes them there.
+  ANISOCONTACT_INLINE void to(double* p, std::size_t stride = W) const {
+    for (std::size_t c = 0; c < count; ++c) *reinterpret_cast<Anywhere*>(p + c * stride) = r_[c];
   }
   ANISOCONTACT_INLINE double operator[](std::size_t l) const {
     double x;
@@ -68,6 +82,7 @@ class alignas(W * sizeof(double)) Lanes {
 
  private:
   using Register = typename detail::RegisterOf<W>::type;
+  using Anywhere = typename detail::RegisterOf<W>::anywhere;
   static constexpr std::size_t count = L * sizeof(double) / sizeof(Register);
 
   template <class F>
@@ -93,23 +108,11 @@ class Twins : public Lanes<2 * L, 8> {
   }
   /// A component.
   ANISOCONTACT_INLINE Lanes<L> part(std::size_t d) const {
-    Lanes<L> out;
-    for (std::size_t l = 0; l < L; l += 4)
-      std::memcpy(reinterpret_cast<char*>(&out) + l * size, at(d, l), 4 * size);
-    return out;
+    return Lanes<L>::from(reinterpret_cast<const double*>(this) + place(d, 0), 8);
   }
   /// Adds to a component, in registers of half the width: a whole one waits for both halves.
   ANISOCONTACT_INLINE void add_part(std::size_t d, const Lanes<L>& x) {
-    const Lanes<L> sum = part(d) + x;
-    for (std::size_t l = 0; l < L; l += 4)
-      std::memcpy(const_cast<char*>(at(d, l)), reinterpret_cast<const char*>(&sum) + l * size,
-                  4 * size);
-  }
-
- private:
-  static constexpr std::size_t size = sizeof(double);
-  const char* at(std::size_t d, std::size_t l) const {
-    return reinterpret_cast<const char*>(this) + place(d, l) * size;
+    (part(d) + x).to(reinterpret_cast<double*>(this) + place(d, 0), 8);
   }
 };
 

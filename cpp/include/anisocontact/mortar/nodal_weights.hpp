@@ -30,6 +30,8 @@ struct NodalWeights {
   std::int32_t* masters;  ///< (n, most), ascending
   double *area, *weight;  ///< (n,), (n, most)
   std::int32_t* count;    ///< masters of each, (n,)
+  /// Which of them are nodes of the facets that it overlaps, ascending: others have no weight.
+  std::vector<std::vector<std::int32_t>> reached;
 
   /// Number of a node among the masters of a slave node.
   std::size_t place(std::size_t i, std::int32_t node) const {
@@ -58,19 +60,23 @@ inline std::vector<std::int32_t> masters_of(const std::vector<DualWeights>& face
 
 /// Writes the weights of a node; what is written to is zero before.
 inline void collect(const std::vector<DualWeights>& facets, const Patches& p,
-                    const std::vector<std::int32_t>& masters, std::size_t i,
-                    const NodalWeights& out) {
+                    const std::vector<std::int32_t>& masters, std::size_t i, NodalWeights& out) {
   std::copy(masters.begin(), masters.end(), out.masters + i * out.most);
   out.count[i] = static_cast<std::int32_t>(masters.size());
+  std::vector<char> reached(masters.size(), 0);
   for (std::size_t e = 0; e < p.facet.size(i); ++e) {
     const DualWeights& own = facets[static_cast<std::size_t>(p.facet.begin(i)[e])];
     if (own.masters.empty()) continue;
     const auto row = static_cast<Eigen::Index>(p.local.begin(i)[e]);
     out.area[i] += own.area[row];
-    for (std::size_t k = 0; k < own.masters.size(); ++k)
-      out.weight[i * out.most + out.place(i, own.masters[k])] +=
-          own.weight(row, static_cast<Eigen::Index>(k));
+    for (std::size_t k = 0; k < own.masters.size(); ++k) {
+      const std::size_t there = out.place(i, own.masters[k]);
+      out.weight[i * out.most + there] += own.weight(row, static_cast<Eigen::Index>(k));
+      reached[there] = 1;
+    }
   }
+  for (std::size_t k = 0; k < masters.size(); ++k)
+    if (reached[k] != 0) out.reached[i].push_back(static_cast<std::int32_t>(k));
 }
 
 }  // namespace anisocontact::mortar

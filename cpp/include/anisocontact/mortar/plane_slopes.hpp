@@ -70,6 +70,7 @@ struct PlanesView {
   const double *slave, *tangents;  ///< positions (n, 3), tangents of the slave (n, 2, 3)
   const double *normal, *held;     ///< (n, 3), (n, 3, 3)
   const double *now, *reference;   ///< positions of the nodes of both bodies
+  const double *then, *carried;    ///< planes of the accepted increment, see `CarriedAxes`
   const double* area;              ///< weights of the slave nodes, (n,)
   OppositeView opposite;
 };
@@ -123,6 +124,30 @@ class TurnedTangents {
   Vec3<double> n_, m_;
   double share_;
   Eigen::Vector2d fall_;
+};
+
+/// Axes of a plane that are carried along with material tangents, e_a = A_ab d_b + B_a m, m the normal of
+/// d_1, d_2: A, and B in the last column.
+class CarriedAxes {
+ public:
+  CarriedAxes(const Tangents& d, const Tangents& by) : by_(by) {
+    m_ = d.row(0).transpose().cross(d.row(1).transpose()).normalized();
+    const Matrix2 metric = d * d.transpose();
+    dual_ = metric.inverse() * d;
+  }
+
+  /// Derivatives by d in place of those by e.
+  void pull_back(Vec3<double>& first, Vec3<double>& second) const {
+    const Tangents e = (Tangents() << first.transpose(), second.transpose()).finished();
+    const Matrix3 by = by_.transpose() * e;
+    const Vec3<double> by_m = by.row(2).transpose();
+    first = by.row(0).transpose() - dual_.row(0).dot(by_m) * m_;
+    second = by.row(1).transpose() - dual_.row(1).dot(by_m) * m_;
+  }
+
+ private:
+  Tangents by_, dual_;
+  Vec3<double> m_;
 };
 
 /// How the normal of a plane follows the tangents of the slave, but along held directions.
@@ -215,6 +240,8 @@ inline void plane_slopes(const PlanesView& p, std::size_t i, const double* by_no
   const detail::Matrix3 held = detail::matrix3(p.held + 9 * i);
   const detail::AveragedNormal normal(Eigen::Map<const Tangents>(p.tangents + 6 * i), held);
   const detail::PlaceSlopes place(p, i, d, dual);
+  const detail::CarriedAxes carried(Eigen::Map<const Tangents>(p.then + 6 * i),
+                                    Eigen::Map<const Tangents>(p.carried + 6 * i));
   detail::Matrix3 by_mean;
   for (std::size_t r = 0; r < 3; ++r) {
     std::array<std::array<Vec3<double>, 3>, 3> g;  // by part and node of it
@@ -223,6 +250,7 @@ inline void plane_slopes(const PlanesView& p, std::size_t i, const double* by_no
         g[part][k] = Vec3<double>(by_nodes + 27 * r + 9 * part + 3 * k);
       g[part][0] += g[part][1] + g[part][2];
     }
+    carried.pull_back(g[2][1], g[2][2]);
     Tangents axes;
     axes << g[1][1].transpose(), g[1][2].transpose();
     Vec3<double> by_normal = turned.pull_back(axes);
