@@ -356,6 +356,22 @@ class MortarWeights:
 def node_sums(
     nodes: NDArray[numpy.int32], values: NDArray[numpy.float64], x: NDArray[numpy.float64]
 ) -> NDArray[numpy.float64]: ...
+def add_at_nodes(
+    nodes: NDArray[numpy.int32],
+    weights: NDArray[numpy.float64],
+    vectors: NDArray[numpy.float64],
+    out: NDArray[numpy.float64],
+) -> None: ...
+def unit_normals(tangents: NDArray[numpy.float64]) -> NDArray[numpy.float64]: ...
+def surface_tangents(
+    gradients: NDArray[numpy.float64],
+    normals: NDArray[numpy.float64],
+    facet: NDArray[numpy.int32],
+    xi: NDArray[numpy.float64],
+    own: NDArray[numpy.float64],
+    bend: NDArray[numpy.float64],
+    threads: int,
+) -> Any: ...
 def plane_slopes(
     slave: NDArray[numpy.float64],
     tangents: NDArray[numpy.float64],
@@ -363,6 +379,8 @@ def plane_slopes(
     held: NDArray[numpy.float64],
     now: NDArray[numpy.float64],
     reference: NDArray[numpy.float64],
+    then: NDArray[numpy.float64],
+    carried: NDArray[numpy.float64],
     area: NDArray[numpy.float64],
     masters: NDArray[numpy.int32],
     shares: NDArray[numpy.float64],

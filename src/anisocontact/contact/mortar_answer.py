@@ -120,10 +120,9 @@ class MortarState:
             by_nodes=by_nodes,
             threads=default_threads(),
         )
-        slopes, *couplings = self.weights.core.tangent(
+        slopes, rows, columns, blocks = self.weights.core.tangent(
             which, by, lift, traction, self._moving, default_threads()
         )
-        rows, columns, blocks = couplings
         return slopes[..., :3], rows, columns, blocks
 
 
