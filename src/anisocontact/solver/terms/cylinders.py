@@ -56,7 +56,7 @@ class Guide:
                 f"nodes along {self.component}, by {off:.3g}"
             )
         if self.component == ACROSS:
-            return f"moves nodes off the cylinder {self.group}, by {off:.3g}"
+            return f"moves nodes off {self.group}, by {off:.3g}"
         return f"moves nodes out of the symmetry plane {self.group!r}, by {off:.3g}"
 
 
