@@ -53,7 +53,7 @@ def small(material="linear-elastic", **held):
         (lambda: ElasticSupport("b.c", 0.0), "elastic_support.b.c: both stiffnesses are 0"),
         (lambda: Spring("s", "b.c", (1, -1, 0)), "spring.s.stiffness: (1, -1, 0) given, must be >"),
         (lambda: Spring("s", "b.c", (0, 0, 0)), "spring.s.stiffness: all components are 0"),
-        (lambda: Spring("s", "b.c", (1, 1)), "spring.s.stiffness: (1, 1) given, three numbers"),
+        (lambda: Spring("s", "b.c", (1, 1)), "stiffness: (1, 1) given, 3 numbers needed"),
         (
             lambda: Spring("s", "b.c", (1, 1, 1), "b.c"),
             "spring.s.to: 'b.c' given, the group itself",

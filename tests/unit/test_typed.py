@@ -118,7 +118,7 @@ def test_what_fits_is_taken(given: dict[str, Any]) -> None:
         ("vector", [[1], [2, 3]], "[[1], [2, 3]] given, a list of numbers needed"),
         ("vector", (v for v in (1, 2)), "generator given, a list of numbers needed"),
         ("vector", np.array(1.0), "ndarray given, a list of numbers needed"),
-        ("three", (1, 2), "(1, 2) given, 3 of numbers needed"),
+        ("three", (1, 2), "(1, 2) given, 3 numbers needed"),
         ("names", "ab", "'ab' given, a list of texts needed"),
         ("table", [("a", ["b"])], "[('a', ['b'])] given, values by name needed"),
         ("table", {"a": "b"}, "{'a': 'b'} given, values by name needed"),

@@ -197,7 +197,7 @@ def _needed_list(origin: type[Any], of: tuple[Any, ...]) -> str:
         return "values by name"
     if origin is np.ndarray:
         return "an array"
-    count = f"{len(of)} of" if origin is tuple and Ellipsis not in of else "a list of"
+    count = str(len(of)) if origin is tuple and Ellipsis not in of else "a list of"
     return f"{count} {_plain(of[0])}"
 
 

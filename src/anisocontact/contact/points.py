@@ -48,7 +48,7 @@ class SlavePoints:
         >>> law = ContactLaw(NormalLaw(penalty=100.0), adhesion, friction)
         >>> points = Contact(model, "block.bottom", plane, law).slave_points
         >>> len(points.facet), round(points.size, 12), points.at_nodes
-        (16, 0.5, False)
+        (9, 0.5, True)
     """
 
     spread = beside = 0.0
