@@ -93,7 +93,7 @@ def changed(data: dict[str, Any], path: str, value: Any) -> dict[str, Any]:
         ("load.kind", None, "load.kind: missing; allowed: path, spring, dead-load, push"),
         ("load.path", None, "load.path: missing; knots"),
         ("load.path", [0, 0, 0], "load.path: [0, 0, 0] given, a list of lists of numbers needed"),
-        ("load.path", [[0, 0, 0], [1]], "load.path: numbers needed"),
+        ("load.path", [[0, 0, 0], [1]], "load.path: [[0, 0, 0], [1]] given, an array of numbers"),
         ("load.path", [[0, 0, "x"]], "load.path: [[0, 0, 'x']] given"),
         ("load.path", [[0, 0, float("nan")]], "load.path: [[0, 0, nan]] given"),
         ("load.pressure", True, "load.pressure: True given, a number or a list"),
