@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,40 @@ def test_a_script_does_not_accept_it_either(monkeypatch: pytest.MonkeyPatch) -> 
     script.close()
     assert not u.x.array.any()
     assert not contact.state["pressure"].any()
+
+
+@pytest.mark.parametrize("angle", [60.0, 120.0])
+def test_a_script_tells_of_faces_that_go_through(
+    monkeypatch: pytest.MonkeyPatch, angle: float
+) -> None:
+    """Requirement: a state with a face below the plane that is no slave is accepted with a warning
+    once, as in a case file. A block turned by 120 degrees about a point 0.45 above the plane has
+    an upper edge below it, one turned by 60 degrees about a point 1.2 above it has none."""
+    from anisocontact.base.fenicsx import fem, ufl
+
+    problem = _problem("plane")
+    c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+    turn, pivot = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]), np.array([0.5, 0.0, 0.45])
+    rise = 0.0 if angle > 90.0 else 0.75
+    turned = _state(problem, lambda x: (x - pivot) @ turn.T + pivot + [0, 0, rise]).array.copy()
+    space = problem.model.space
+    u, v = fem.Function(space), ufl.TestFunction(space)
+    form = ufl.inner(make_material("linear-elastic", E=1e3, nu=0.3).stress(u), ufl.grad(v)) * ufl.dx
+    script = ContactProblem(form, u, contacts=[problem.contacts[0]])
+
+    def thrown(self: Newton, x: Vec, *_: Any) -> NewtonResult:
+        x.array[:] = turned
+        return NewtonResult(1, [0.0], "")
+
+    monkeypatch.setattr(Newton, "solve", thrown)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        for _ in range(2):
+            script.solve()
+            u.x.array[:] = 0.0
+    script.close()
+    about = [str(w.message) for w in told if "lies behind its master" in str(w.message)]
+    assert len(about) == (1 if angle > 90.0 else 0)
 
 
 @pytest.mark.parametrize("master", ["plane", "plate"])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 import zipfile
 import zlib
 from collections.abc import Callable, Mapping, Sequence
@@ -11,7 +12,7 @@ from typing import Any, override
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import InputError, ModelWarning
 from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
 from anisocontact.base.limits import Limits
 from anisocontact.base.typed import typed
@@ -132,6 +133,7 @@ class ContactProblem(AssembledSystem):
         self._parts = parts(unknowns.nodes)
         bodies_of = [connected_body(unknowns.nodes, (), [part.nodes]) for part in self._parts]
         self._sides = SidesKept(contacts, bodies_of)
+        self._warned: set[tuple[str, str]] = set()
         options = {**self._fields.options, **(petsc_options or {})}
         self.newton = Newton(self, petsc_options_prefix, options, lambda *_: None)
 
@@ -174,7 +176,15 @@ class ContactProblem(AssembledSystem):
         terms.accept(self.nodal)
         for body in self._bodies:
             body.commit()
+        self._warn_of_faces_behind()
         return result.iterations
+
+    def _warn_of_faces_behind(self) -> None:
+        """Tell once of each body of which a part has got behind its master."""
+        for behind in self._sides.partly:
+            if (pair := (behind.body, behind.master)) not in self._warned:
+                self._warned.add(pair)
+                warnings.warn(str(behind), ModelWarning, stacklevel=3)
 
     @typed
     def solve_steps(
