@@ -17,6 +17,10 @@ from anisocontact.solver.strategies.newton import Database
 IDLE = 1e-13
 #: Error of a known solution, over it, up to which a factor in single precision is trusted.
 TRUSTED = 0.05
+#: Stiffness against motions of the aggregates that depend on each other, over the largest one.
+SHIFT = 1e-9
+#: Share of such a motion that is left of it in the bodies, up to which they are at rest.
+AT_REST = 1e-3
 
 
 class CoarseLevel:
@@ -88,7 +92,7 @@ class CoarseLevel:
             self._solver.destroy()
             self._solver = self._new_solver(tangent.getComm())
             found = self._factorised()
-        return found
+        return found or self._factorised_with_shift()
 
     def solve(self, rest: Vec) -> Vec:
         """Correction of all unknowns for a residual; overwritten by the next call."""
@@ -121,12 +125,30 @@ class CoarseLevel:
             self._solver.reset()
         return not failed
 
+    def _factorised_with_shift(self) -> bool:
+        """Factorise where motions of aggregates depend on each other, as those of few nodes may.
+
+        Their combination moves nothing, so that any stiffness serves for it.
+
+        Returns:
+            Whether there are such motions alone that nothing holds.
+        """
+        assert self._matrix is not None
+        diagonal = self._matrix.getDiagonal()
+        diagonal.abs()
+        self._matrix.shift(SHIFT * diagonal.max()[1])
+        if not self._factorised():
+            return False
+        _set_any(self._right)
+        self._solver.solve(self._right, self._left)
+        self._prolong.mult(self._left, self._correction)
+        return bool(self._correction.norm() <= AT_REST * self._left.norm())
+
     def _trusted(self) -> bool:
         """Whether the factor finds a known solution: of pivots that are rounding nothing tells."""
         assert self._matrix is not None
         known = self._left.duplicate()
-        first, last = known.getOwnershipRange()
-        known.array[:] = np.modf(np.arange(first, last) * 0.754877666)[0] - 0.5
+        _set_any(known)
         self._matrix.mult(known, self._right)
         self._solver.solve(self._right, self._left)
         self._left.axpy(-1.0, known)
@@ -162,3 +184,9 @@ class CoarseLevel:
             whole.axpy(factor, part, structure=different)
         unit.destroy()
         return whole
+
+
+def _set_any(vector: Vec) -> None:
+    """Any numbers without symmetry, the same on any number of processes."""
+    first, last = vector.getOwnershipRange()
+    vector.array[:] = np.modf(np.arange(first, last) * 0.754877666)[0] - 0.5
