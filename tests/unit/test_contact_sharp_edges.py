@@ -40,6 +40,6 @@ def test_facets_that_count(degrees: tuple[float, ...], kept: list[int]) -> None:
         nodes=np.zeros((1, 1), dtype=np.int32),
     )
     x = np.zeros((1, 3))
-    found = counting(around, _normals(*degrees), x, lambda x: np.tile(UP, (len(x), 1)))
+    found = counting(around, _normals(*degrees), x, lambda x, *_: np.tile(UP, (len(x), 1)))
     assert found.tolist() == kept
     assert counting(around, _normals(*degrees), x, None).tolist() == [1] * len(degrees)

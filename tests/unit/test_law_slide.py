@@ -19,7 +19,7 @@ S, F, T, N = np.eye(2)[None] * 50.0, np.eye(2)[None] / 0.09, [[1.0, 0.5]], [1.0]
         ({"friction": np.ones((1, 3))}, "friction: an array of shape (1, 3) given"),
         ({"trial": [1.0, 0.5]}, "trial: an array of shape (2,) given, (1, 2) needed"),
         ({"pressure": [[1.0]]}, "pressure: an array of shape (1, 1) given, (1,) needed"),
-        ({"trial": [["a", "b"]]}, "trial: an array of numbers is needed"),
+        ({"trial": [["a", "b"]]}, "trial: [['a', 'b']] given, an array of numbers needed"),
         ({"metric": np.eye(2)}, "metric: an array of shape (2, 2) given"),
         ({"axes": [[1.0, 0.0]]}, "axes: an array of shape (1, 2) given"),
         ({"increment": [0.0, 0.0]}, "increment: an array of shape (2,) given"),

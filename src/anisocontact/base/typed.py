@@ -66,8 +66,9 @@ def _checked(function: Any) -> Any:
         hints = _hints(function)
         for name, value in given.items():
             if name in hints and not _fits(hints[name], value):
-                text = f"{_shown(value)} given, {_needed(hints[name])} needed"
-                raise InputError(" ".join(text.split()), field=name)
+                place, part, hint = _wrong_part(name, value, hints[name])
+                text = f"{_shown(part)} given, {_needed(hint)} needed"
+                raise InputError(" ".join(text.split()), field=place)
         return function(*args, **kwargs)
 
     return checked
@@ -150,6 +151,17 @@ def _fits_items(of: tuple[Any, ...], value: Mapping[Any, Any]) -> bool:
     inner = typing.get_origin(of[1]) or of[1]
     plain = isinstance(inner, type) and not issubclass(inner, Mapping)
     return all(_fits(of[0], k) and (not plain or _fits(of[1], v)) for k, v in value.items())
+
+
+def _wrong_part(place: str, value: Any, hint: Any) -> tuple[str, Any, Any]:
+    """Where a value is wrong, what is there and what is needed: one of several by name, or all."""
+    origin, of = typing.get_origin(hint), typing.get_args(hint)
+    if not (isinstance(origin, type) and issubclass(origin, Mapping)):
+        return place, value, hint
+    if not isinstance(value, Mapping) or not all(_fits(of[0], key) for key in value):
+        return place, value, hint
+    name = next(key for key, one in value.items() if not _fits(of[1], one))
+    return f"{place}.{name}", value[name], of[1]
 
 
 def _fits_list(origin: type[Any], of: tuple[Any, ...], value: Any) -> bool:

@@ -107,10 +107,7 @@ def slide(
 
 
 def _checked(given: npt.ArrayLike, name: str, shape: tuple[int, ...]) -> Floats:
-    try:
-        a = np.ascontiguousarray(given, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise InputError("an array of numbers is needed", field=name) from None
+    a = np.ascontiguousarray(given, dtype=np.float64)
     if a.shape != shape:
         raise InputError(f"an array of shape {a.shape} given, {shape} needed", field=name)
     return a
