@@ -12,11 +12,12 @@ from matplotlib.text import Text
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.figure_style import new_figure
+from anisocontact.cli.main import main
 from anisocontact.results.dataset import DataSet, polygons, vertices
 from anisocontact.results.deformed import SHOWN, surfaces
 from anisocontact.results.report import curves, maps
 from anisocontact.results.report.frame import ContactView
-from anisocontact.results.report.run_data import Moment
+from anisocontact.results.report.run_data import Moment, RunData
 from anisocontact.results.solids import Solid
 
 
@@ -123,3 +124,49 @@ def test_no_text_of_a_map_is_cut_off(height):
             inside = [figure.bbox.x0 - 1 <= box.x0, box.x1 <= figure.bbox.x1 + 1]
             inside += [figure.bbox.y0 - 1 <= box.y0, box.y1 <= figure.bbox.y1 + 1]
             assert all(inside), text.get_text()
+
+
+AROUND = """
+[idealisation]
+kind = "KIND"
+lateral = true
+[mesh.rectangle.disc]
+origin = [0.5, 0]
+size = [1, 0.5]
+cells = [4, 2]
+[material.disc]
+model = "linear-elastic"
+E = 1000
+nu = 0.3
+[surface.floor]
+shape = "plane"
+point = [0, 0, 0]
+normal = [0, 1, 0]
+[[contact]]
+slave = "disc.bottom"
+master = "floor"
+friction = { coefficients = 0.2 }
+[[step]]
+name = "press"
+increments = 1
+displacement."disc.top" = { x = 0, y = -0.01, z = 0.001 }
+[output]
+pictures = false
+"""
+
+
+@pytest.mark.parametrize(
+    ("kind", "named"),
+    [("axisymmetric", ["along z", "size"]), ("plane-strain", ["along x", "along z", "size"])],
+)
+def test_radial_forces_have_no_resultant(tmp_path, kind, named):
+    """Around an axis they balance each other, so the picture of the force leaves their sum out."""
+    case = tmp_path / "case.toml"
+    case.write_text(AROUND.replace("KIND", kind))
+    assert main(["run", str(case), "-o", str(tmp_path / "out")]) == 0
+    run = RunData(tmp_path / "out")
+    upper = curves.force(run, 0).axes[0]
+    shown = {line.get_label(): line.get_ydata() for line in upper.lines}
+    assert [name for name in shown if not name.startswith("_")] == named
+    across = np.linalg.norm([shown[name] for name in named[:-1]], axis=0)
+    np.testing.assert_allclose(shown["size"], across, rtol=1e-12)

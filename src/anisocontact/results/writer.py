@@ -331,6 +331,7 @@ class Writer:
             "nodes": model.space.dofmap.index_map.size_global,
             "cells": topology.index_map(topology.dim).size_global,
             "bodies": model.body_names(),
+            "idealisation": model.idealisation.entry.name,
             "ranks": model.mesh.comm.size,
             "steps": 0,
             "newton_iterations": 0,

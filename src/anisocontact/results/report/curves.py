@@ -30,14 +30,16 @@ def force(run: RunData, contact: int) -> Figure:
     view = run.view(-1, contact)
     frame = view.frame
     forces = np.vstack([np.zeros(3), run.vectors(f"contacts.{contact}.force")])
-    tangential = frame.of(forces)
+    shown = [run.is_resultant(axis) for axis in frame.axes]
+    tangential = frame.of(forces) * shown
     label, distance = run.path_length()
     at = np.append(0.0, distance)
     figure = new_figure(9.0, 6.0)
     upper, lower = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-    first, second = frame.names()
-    upper.plot(at, tangential[:, 0], "-", color="#1d4ed8", label=f"along {first}")
-    upper.plot(at, tangential[:, 1], "--", color="#c2410c", label=f"along {second}")
+    for i, (line, colour) in enumerate((("-", "#1d4ed8"), ("--", "#c2410c"))):
+        if shown[i]:
+            name = f"along {frame.names()[i]}"
+            upper.plot(at, tangential[:, i], line, color=colour, label=name)
     size = np.linalg.norm(tangential, axis=1)
     upper.plot(at, size, "-", color="black", lw=1.0, label="size")
     kind = "" if view.closed else "tangential "

@@ -20,6 +20,9 @@ __all__ = ["Moment", "RunData"]
 Floats = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 
+#: Component along x of an axis from which on it is the radial one.
+RADIAL = 0.5
+
 
 @dataclass(frozen=True)
 class Moment:
@@ -96,6 +99,10 @@ class RunData:
     def vectors(self, name: str) -> Floats:
         """A vector column of the history, (rows, 3)."""
         return np.column_stack([self.history[f"{name}.{axis}"] for axis in "xyz"])
+
+    def is_resultant(self, axis: Floats) -> bool:
+        """Whether forces along an axis have a resultant: around an axis radial ones have none."""
+        return self.summary.get("idealisation") != "axisymmetric" or abs(axis[0]) < RADIAL
 
     @cache  # noqa: B019 (one object for one report)
     def view(self, index: int, contact: int) -> ContactView:
