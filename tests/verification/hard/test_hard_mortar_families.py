@@ -156,6 +156,22 @@ def test_blocks_that_lie_there(to_the_end, seed):
     assert run.accepted[0].iterations <= 8
 
 
+@pytest.mark.parametrize("gap", [-1e-9, 1e-9, 1e-7])
+def test_gaps_within_the_tolerance(to_the_end, gap):
+    """The same block a little above or within its base: its springs are no stiffer.
+
+    Requirement: what multipliers hold from the start counts as touched, whichever the sign of its
+    gap. It takes 8 iterations of the first increment, and at most 2 of the second, which goes on in
+    proportion; 11 and 4 where the block counts as one that has yet to fall onto its base.
+    """
+    text, flat = member(198), "0]\nsize = [1, 1, 0.6]"
+    assert flat in text
+    run = to_the_end(text.replace(flat, flat.replace("0]", f"{gap}]", 1)))
+    first, second, *_ = run.accepted
+    assert first.iterations <= 8
+    assert second.iterations <= 2
+
+
 @pytest.mark.parametrize("seed", [68, 135])
 def test_nodes_of_slivers(to_the_end, seed):
     """A corner that digs in comes over a millionth of a node whose gap, extrapolated, is -0.02.

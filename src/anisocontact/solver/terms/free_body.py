@@ -20,8 +20,6 @@ Flags = npt.NDArray[np.bool_]
 TOUCHING = 0.01
 #: Points in contact that can hold all motions of a body.
 ENOUGH = 3
-#: Gap over the size of a facet below which a point touches as far as rounding goes.
-NEAR = 1e-6
 #: Resistance of pressures to the motion that they hold least, over that to the one they hold most.
 PRESSED = 0.01
 
@@ -83,7 +81,7 @@ class FreeBody:
         """
         if self.sprung:
             return self._count("stick", "slip") >= ENOUGH
-        return self.sticks() or self._pressed(NEAR)
+        return self.sticks() or self._pressed(at_start=True)
 
     def holds(self) -> bool:
         """Whether contact holds it in the trial, and springs where it has some."""
@@ -98,17 +96,15 @@ class FreeBody:
         """Whether enough points stick in the trial, with a known stiffness, to hold it."""
         return self._count("stick") >= ENOUGH
 
-    def _pressed(self, near: float = 0.0) -> bool:
+    def _pressed(self, at_start: bool = False) -> bool:
         """Whether pressures at closed points resist all its motions, of which none is sliding.
 
         Args:
-            near: Gap over the size of a facet that counts as closed.
+            at_start: As of `touched`.
         """
         matrix = np.zeros((len(self.left), len(self.left)))
         for contact in self.contacts:
-            touches = contact.trial.gap - contact.state["offset"] < near * contact.facet_size
-            touches &= contact.master.located(contact.state)
-            closed = (contact.trial.status != 0) | touches
+            closed = _closed(contact, at_start)
             normal = contact.trial.normal[closed]
             arms = (contact.points[closed] - self.body.centre) / self.body.size
             along = np.concatenate([normal, np.cross(arms, normal)], axis=1) @ self.left.T
@@ -116,14 +112,17 @@ class FreeBody:
         sizes = np.linalg.eigvalsh(self.contacts[0].space.mesh.comm.allreduce(matrix))
         return bool(sizes[0] > PRESSED * sizes[-1])
 
-    def reach(self) -> float:
+    def reach(self, at_start: bool = False) -> float:
         """How far stabilisation lets it move at once, length.
 
         A facet; one that nothing touches no farther than it takes, or curved cells would be thrown
         into each other, and one on springs neither: beside stiff springs that hold some of its
         motions it would turn in the others.
+
+        Args:
+            at_start: As of `touched`.
         """
-        if not self.sprung and self.touched():
+        if not self.sprung and self.touched(at_start):
             return self.size
         near = [
             np.abs(c.trial.gap[c.master.located(c.state)]).min(initial=np.inf)
@@ -145,9 +144,15 @@ class FreeBody:
         work = self.contacts[0].space.mesh.comm.allreduce(work)
         return float(np.linalg.norm(self.left @ work) / (self.count * stiffness))
 
-    def touched(self) -> bool:
-        """Whether one of its contacts is closed in the trial."""
-        return any(c.counts()["stick"] + c.counts()["slip"] > 0 for c in self.contacts)
+    def touched(self, at_start: bool = False) -> bool:
+        """Whether one of its contacts is closed in the trial.
+
+        Args:
+            at_start: Whether an attempt starts here: points count as well that multipliers are to
+                hold in its first correction, since the rounding of their gap has no say.
+        """
+        closed = any(bool(_closed(contact, at_start).any()) for contact in self.contacts)
+        return any(self.contacts[0].space.mesh.comm.allgather(closed))
 
     def _count(self, *statuses: str) -> int:
         laws = ((c, c.interface) for c in self.contacts)
@@ -185,3 +190,11 @@ class FreeBody:
                 len(rows), here.shape[2], there.shape[2]
             )
         return np.asarray(np.einsum("ipr,prc,jpc->ij", here, blocks, there, optimize=True))
+
+
+def _closed(contact: Contact, at_start: bool) -> Flags:
+    """Points of a contact that are closed in the trial, see `FreeBody.touched`, (n,)."""
+    closed = contact.trial.status != 0
+    if at_start:
+        closed |= contact.trials.start["multiplier"] > 0.0
+    return np.asarray(closed)

@@ -175,13 +175,13 @@ class Stabilisation(Term):
         self._spent, self._count = 0.0, 0
         self._carried = np.zeros_like(u)
         self._falling = [free for free in self._free if not free.touched()]
-        self._fell = bool(self._falling)
+        self._fell = any([not free.touched(at_start=True) for free in self._free])
         for free in self._loose:
             free.act_on(self._where)
             total = self._comm.allreduce(load[free.body.nodes].sum(axis=0))
             free.load = float(np.linalg.norm(total))
         for free in self._free:
-            needed = free.load / (free.count * free.reach())
+            needed = free.load / (free.count * free.reach(at_start=True))
             free.trusted = not self.careful and free.may_hold()
             free.stiffness = 0.0 if free.trusted else max(needed, WITHOUT_LOADS * self._scale)
 
@@ -374,7 +374,7 @@ class Stabilisation(Term):
         text = f"body {free.body.name!r} is free to move: {free.modes}"
         self._loose.append(free)
         if not self.enabled:
-            if now and not free.touched():
+            if now and not free.touched(at_start=True):
                 text += "; nothing touches it and stabilisation is off"
                 raise InputError(text, f"step {step!r}")
             return
