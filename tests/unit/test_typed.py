@@ -121,7 +121,7 @@ def test_what_fits_is_taken(given: dict[str, Any]) -> None:
         ("three", (1, 2), "(1, 2) given, 3 numbers needed"),
         ("names", "ab", "'ab' given, a list of texts needed"),
         ("table", [("a", ["b"])], "[('a', ['b'])] given, values by name needed"),
-        ("table", {"a": "b"}, "{'a': 'b'} given, values by name needed"),
+        ("table", {3: ["b"]}, "{3: ['b']} given, values by name needed"),
         ("function", 3, "3 given, a function needed"),
         ("kind", 3, "3 given, type needed"),
     ],
@@ -131,6 +131,13 @@ def test_what_does_not_fit_is_one_line(argument: str, given: Any, says: str) -> 
     with pytest.raises(InputError) as caught:
         _takes(**{argument: given})
     assert str(caught.value) == f"{argument}: {says}"
+
+
+def test_a_value_by_name_that_does_not_fit_is_named() -> None:
+    """Requirement: which of several values by name is wrong, and what it has to be."""
+    with pytest.raises(InputError) as caught:
+        _takes(table={"right": ["b"], "wrong": "b"})
+    assert str(caught.value) == "table.wrong: 'b' given, a list of texts needed"
 
 
 def test_a_call_that_python_refuses_is_for_python() -> None:
