@@ -47,7 +47,7 @@ increments = 4
 {supports}
 """
 #: Unknowns that no member has.
-MOST = 12000
+MOST = 12500
 
 
 @dataclass(frozen=True)
