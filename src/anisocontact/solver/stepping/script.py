@@ -133,7 +133,6 @@ class ContactProblem(AssembledSystem):
         self._parts = parts(unknowns.nodes)
         bodies_of = [connected_body(unknowns.nodes, (), [part.nodes]) for part in self._parts]
         self._sides = SidesKept(contacts, bodies_of)
-        self._warned: set[tuple[str, str]] = set()
         options = {**self._fields.options, **(petsc_options or {})}
         self.newton = Newton(self, petsc_options_prefix, options, lambda *_: None)
 
@@ -176,15 +175,9 @@ class ContactProblem(AssembledSystem):
         terms.accept(self.nodal)
         for body in self._bodies:
             body.commit()
-        self._warn_of_faces_behind()
+        for behind in self._sides.fresh():
+            warnings.warn(str(behind), ModelWarning, stacklevel=3)
         return result.iterations
-
-    def _warn_of_faces_behind(self) -> None:
-        """Tell once of each body of which a part has got behind its master."""
-        for behind in self._sides.partly:
-            if (pair := (behind.body, behind.master)) not in self._warned:
-                self._warned.add(pair)
-                warnings.warn(str(behind), ModelWarning, stacklevel=3)
 
     @typed
     def solve_steps(
