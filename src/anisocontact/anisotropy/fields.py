@@ -9,10 +9,11 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.base import registry
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
-from anisocontact.surfaces import Floats, Surface, points
+from anisocontact.surfaces import Surface, points
 
 Pair = Sequence[float]
 
@@ -46,7 +47,7 @@ class DirectionField(Remade):
     def __repr__(self) -> str:
         return f"DirectionField({self.name!r})"
 
-    def axes(self, surface: Surface, xi: npt.ArrayLike) -> tuple[Floats, npt.NDArray[np.bool_]]:
+    def axes(self, surface: Surface, xi: npt.ArrayLike) -> tuple[Floats, Flags]:
         """Unit axes at coordinates of a surface.
 
         Args:
@@ -89,7 +90,7 @@ def make_directions(name: str, **parameters: object) -> DirectionField:
         raise InputError(f"direction field {name!r}: {error}") from None
 
 
-def require_regular(surface: Surface, xi: Floats, valid: npt.NDArray[np.bool_]) -> None:
+def require_regular(surface: Surface, xi: Floats, valid: Flags) -> None:
     """Refuse points at which a field has no direction.
 
     Args:

@@ -8,8 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.anisotropy.fields import DirectionField, require_regular
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.surfaces import Floats, Surface, points
+from anisocontact.surfaces import Surface, points
 
 Pair = Sequence[float]
 
@@ -157,9 +158,7 @@ def _semidefinite(eigenvalues: Pair) -> tuple[float, float]:
     return float(e[0]), float(e[1])
 
 
-def oblique_principal(
-    values: npt.ArrayLike, angles: npt.ArrayLike
-) -> tuple[Floats, npt.NDArray[np.float64]]:
+def oblique_principal(values: npt.ArrayLike, angles: npt.ArrayLike) -> tuple[Floats, Floats]:
     """Eigenvalues of l_1 r_1 (x) r_1 + l_2 r_2 (x) r_2 on oblique unit vectors.
 
     The sum of two directions is an orthotropic tensor again, with the eigenvalues

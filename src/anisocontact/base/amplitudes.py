@@ -14,18 +14,6 @@ from anisocontact.base.kinds import Kinds
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.typed import typed
 
-__all__ = [
-    "Amplitude",
-    "Cycles",
-    "Ramp",
-    "Sine",
-    "Table",
-    "amplitudes",
-    "check_times",
-    "make_amplitude",
-    "register_amplitude",
-]
-
 #: A number at a time, such as `lambda t: 1.0 - math.exp(-t)`, or one of `amplitudes`.
 Amplitude = Callable[[float], float]
 """A number at a time: any function of one, or what `make_amplitude` gives.

@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
-
-Floats = npt.NDArray[np.float64]
 
 #: Kinds of NumPy's types that are real numbers, or objects that may be.
 _REAL = "biufO"
@@ -101,7 +100,7 @@ def read_only(x: npt.NDArray[Any]) -> npt.NDArray[Any]:
     return seen
 
 
-def connected(count: int, *links: npt.NDArray[np.integer]) -> npt.NDArray[np.int64]:
+def connected(count: int, *links: npt.NDArray[np.integer]) -> Ints:
     """Number of the connected part each of some things belongs to.
 
     Args:

@@ -15,8 +15,6 @@ from pathlib import Path
 
 from anisocontact.base.errors import MachineError
 
-__all__ = ["FAST", "lack_of_compiler", "machine_key"]
-
 #: Arguments for code of this machine alone whose sums may be in any order, and in which what is not
 #: a number stays none: an iterate far off is judged by that.
 FAST = ("-O2", "-march=native", "-ffast-math", "-fno-finite-math-only", "-g0")

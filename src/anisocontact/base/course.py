@@ -8,17 +8,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact.base.amplitudes import Amplitude
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.paths import Path
 from anisocontact.base.python_file import where_failed
 from anisocontact.base.typed import typed
-
-__all__ = ["Course", "courses_of"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Difference between where something is and where its amplitude begins that is round-off, over
 #: the largest of the numbers.

@@ -15,7 +15,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
+
+from anisocontact.base.array_types import Floats, Ints, Locals
 
 try:
     from mpi4py import MPI  # isort: skip
@@ -88,10 +89,6 @@ PETSc: Any = _PETSc
 type Mat = Any
 type Vec = Any
 type SNES = Any
-
-Ints = npt.NDArray[np.int32]
-Nodes = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 
 #: Seconds after which nobody is taken to compile a form any more.
@@ -180,7 +177,7 @@ def _not_compiled(error: Exception) -> Exception:
     return lack_of_compiler(Path(dolfinx.jit.get_options()["cache_dir"])) or error
 
 
-def create_mesh(comm: MPI.Comm, cell: str, degree: int, cells: Nodes, points: Floats) -> Any:
+def create_mesh(comm: MPI.Comm, cell: str, degree: int, cells: Ints, points: Floats) -> Any:
     """Distributed DOLFINx mesh of Lagrange cells.
 
     Args:
@@ -199,12 +196,12 @@ def create_mesh(comm: MPI.Comm, cell: str, degree: int, cells: Nodes, points: Fl
     return dmesh.create_mesh(comm, cells, ufl.Mesh(element), points)
 
 
-def cell_permutation(cell: str, nodes: int) -> Nodes:
+def cell_permutation(cell: str, nodes: int) -> Ints:
     """Order `p` that takes a gmsh cell to DOLFINx: `dolfinx = gmsh[:, p]`."""
     return np.asarray(cpp.io.perm_gmsh(cpp.mesh.to_type(cell), nodes), dtype=np.int64)
 
 
-def middle_nodes(cell: str) -> list[tuple[Nodes, Nodes]]:
+def middle_nodes(cell: str) -> list[tuple[Ints, Ints]]:
     """Corners and middle node of the edges, and of the faces that have one, of a quadratic cell."""
     element = _lagrange(cell, 2)
     topology = basix.topology(basix.CellType[cell])
@@ -215,13 +212,13 @@ def middle_nodes(cell: str) -> list[tuple[Nodes, Nodes]]:
     return out
 
 
-def cell_nodes(cell: str, degree: int) -> Nodes:
+def cell_nodes(cell: str, degree: int) -> Ints:
     """Places of the nodes of a Lagrange cell in the reference cell, times the degree."""
     places = np.rint(degree * _lagrange(cell, degree).points)
     return np.asarray(places, dtype=np.int64)
 
 
-def facet_nodes(cell: str, degree: int) -> Nodes:
+def facet_nodes(cell: str, degree: int) -> Ints:
     """Local nodes of each facet of a Lagrange cell, vertices first, (facets, nodes)."""
     return np.array(_lagrange(cell, degree).entity_closure_dofs[-2], dtype=np.int64)
 
@@ -238,7 +235,7 @@ def _lagrange(cell: str, degree: int) -> Any:
     return basix.create_element(basix.ElementFamily.P, basix.CellType[cell], degree, variant)
 
 
-def locate_entities(mesh: Any, dim: int, nodes: Nodes, values: Ints) -> tuple[Ints, Ints]:
+def locate_entities(mesh: Any, dim: int, nodes: Ints, values: Locals) -> tuple[Locals, Locals]:
     """Local entities with the given nodes and the value of each.
 
     Args:
@@ -258,7 +255,7 @@ def locate_entities(mesh: Any, dim: int, nodes: Nodes, values: Ints) -> tuple[In
     return tags.indices, tags.values
 
 
-def closest_cells(mesh: Any, points: Floats) -> tuple[Ints, Floats]:
+def closest_cells(mesh: Any, points: Floats) -> tuple[Locals, Floats]:
     """The local cell nearest to each point and its distance, infinite on a rank without cells.
 
     Args:
@@ -283,7 +280,7 @@ def reference_place(mesh: Any, cell: int, point: Floats) -> Floats:
     return np.asarray(geometry.cmaps[0].pull_back(point[None], corners))
 
 
-def facet_sides(mesh: Any, facets: Ints) -> tuple[Ints, Ints]:
+def facet_sides(mesh: Any, facets: Locals) -> tuple[Locals, Locals]:
     """Cell and local number of each boundary facet this rank owns, in the order given."""
     topology = mesh.topology
     dim = topology.dim
@@ -294,7 +291,7 @@ def facet_sides(mesh: Any, facets: Ints) -> tuple[Ints, Ints]:
     return sides[:, 0], sides[:, 1]
 
 
-def facet_keys(mesh: Any, facets: Ints) -> Nodes:
+def facet_keys(mesh: Any, facets: Locals) -> Ints:
     """A number for each facet of `facet_sides` that does not depend on the distribution.
 
     It tells the cell by its place in the input, and the side of the cell.
@@ -305,7 +302,7 @@ def facet_keys(mesh: Any, facets: Ints) -> Nodes:
     return np.asarray(original[cells] * sides + local)
 
 
-def geometry(mesh: Any) -> tuple[Any, Ints, Floats]:
+def geometry(mesh: Any) -> tuple[Any, Locals, Floats]:
     """Basix element, node numbers of every cell and node coordinates of the geometry."""
     element = mesh.ufl_domain().ufl_coordinate_element().basix_element
     return element, mesh.geometry.dofmaps[0], mesh.geometry.x
@@ -332,7 +329,7 @@ def scalar_element(space: Any) -> Any:
     return space.element.basix_element
 
 
-def body_shares(space: Any, cells: Ints, weight: Any = 1.0) -> Floats:
+def body_shares(space: Any, cells: Locals, weight: Any = 1.0) -> Floats:
     """Integral of the basis function of each local node over cells, (nodes,), length^3.
 
     Args:
@@ -345,7 +342,7 @@ def body_shares(space: Any, cells: Ints, weight: Any = 1.0) -> Floats:
     return np.array(fem.assemble_vector(form).array[::3])
 
 
-def corner_weights(space: Any) -> tuple[Nodes, Floats]:
+def corner_weights(space: Any) -> tuple[Ints, Floats]:
     """Local nodes of a cell of order 2 that are no corners, and weights of the corners there.
 
     Returns:
@@ -393,7 +390,7 @@ def prescribe(residual: Vec, bcs: Sequence[Any], x: Vec) -> None:
     fem_petsc.set_bc(residual, bcs, x, -1.0)
 
 
-def prescribed_rows(bcs: Sequence[Any]) -> Ints:
+def prescribed_rows(bcs: Sequence[Any]) -> Locals:
     """Owned unknowns that Dirichlet conditions prescribe, local numbers."""
     rows = [dofs[:owned] for dofs, owned in (bc.dof_indices() for bc in bcs)]
     return np.unique(np.concatenate([np.empty(0, dtype=np.int32), *rows])).astype(np.int32)

@@ -13,8 +13,6 @@ from anisocontact.base.whole_files import replacing
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["ACCENT", "GREY", "STATUS_COLOURS", "STEP_COLOURS", "new_figure", "plain", "png", "save"]
-
 GREY = "#6b7280"
 ACCENT = "#b91c1c"
 #: Open, stick, slip; told apart without colour vision as well.

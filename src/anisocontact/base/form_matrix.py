@@ -8,8 +8,6 @@ import numpy as np
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec, assemble_into, create_stiffness, fem, la
 
-__all__ = ["FormMatrix", "add_matrix"]
-
 
 class FormMatrix:
     """A bilinear form, assembled anew wherever its coefficients have changed.

@@ -12,8 +12,6 @@ from importlib.abc import Loader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 
-__all__ = ["install", "when_used"]
-
 #: Modules that have moved into a package: their path of before and that of today. An import by the
 #: path of before works for one more version.
 MOVED = {

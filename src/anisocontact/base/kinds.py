@@ -9,8 +9,6 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry
 
-__all__ = ["Kinds"]
-
 
 class Kinds:
     """A registry of classes with an `entry`, whose constructors take its parameters by name.

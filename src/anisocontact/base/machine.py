@@ -6,8 +6,6 @@ import errno
 
 from anisocontact.base.errors import MachineError
 
-__all__ = ["MEMORY", "lack", "out_of_memory"]
-
 #: What makes a run need less memory.
 MEMORY = 'take a coarser mesh, strategy = "iterative", or processes on several machines'
 #: Modules of the extra `fem`.

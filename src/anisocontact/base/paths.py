@@ -14,8 +14,6 @@ from anisocontact.base.kinds import Kinds
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.typed import typed
 
-__all__ = ["Circle", "Path", "Polyline", "TimedPath", "make_path", "paths", "register_path"]
-
 _KIND = "path"
 _AXES = ("x", "y", "z")
 #: Share of a unit vector that is round-off.

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["PEAK"]
-
 #: Share of its weight that has to be covered for the traction of a node to count among peaks: of
 #: less the forces are next to nothing [Popp Seitz Gee Wall 2013].
 PEAK = 0.05

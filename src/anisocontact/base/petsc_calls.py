@@ -9,8 +9,6 @@ from anisocontact.base.errors import MachineError
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.base.machine import MEMORY
 
-__all__ = ["call_petsc", "check_memory", "has_petsc"]
-
 #: What MUMPS calls INFOG(1) where it could allocate no memory, or no more than it was allowed to.
 _NO_MEMORY = (-5, -7, -13, -19)
 #: ... and where the workspace that it had estimated was too small.

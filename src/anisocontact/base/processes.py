@@ -8,8 +8,6 @@ import time
 from io import StringIO
 from typing import Any
 
-__all__ = ["Together", "started_together"]
-
 #: What launchers tell each of several processes: MPICH and Slurm, PMIx, Open MPI.
 _TOLD = ("PMI_RANK", "PMI_FD", "PMIX_RANK", "OMPI_COMM_WORLD_RANK")
 #: How long a process that has failed waits for the others, s: they may be stuck in an exchange.

@@ -11,8 +11,6 @@ from contextlib import contextmanager
 from pathlib import Path
 from types import ModuleType
 
-__all__ = ["imported_beside", "module_of", "where_failed"]
-
 
 def module_of(path: Path) -> ModuleType:
     """Run a Python file as a module, with all rights of whoever runs the program.

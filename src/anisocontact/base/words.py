@@ -5,8 +5,6 @@ from __future__ import annotations
 import difflib
 from collections.abc import Collection, Iterable
 
-__all__ = ["elsewhere", "hint", "meant"]
-
 #: Name here -> words of Abaqus, Ansys, CalculiX, FEniCS and the literature for it, in small letters
 #: and with one underscore between them.
 _SAME = {

@@ -6,12 +6,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.fenicsx import basix, compiled_expression, fem, ufl
 from anisocontact.mesh import Idealisation, Model
-
-Floats = npt.NDArray[np.float64]
 
 #: In front of the names of internal variables among arrays that are kept.
 _VARIABLE = "history/"
@@ -60,7 +58,7 @@ class AtPoints:
         places = self._at_points(ufl.SpatialCoordinate(self._mesh))
         self.places: Floats = places.eval(self._mesh, self._cells).reshape(-1, 3)
 
-    def stress(self, trial: bool = False) -> tuple[npt.NDArray[np.int32], Floats]:
+    def stress(self, trial: bool = False) -> tuple[Locals, Floats]:
         """Cells of the body on this rank, (n,), and true stress at their points, (n, points, 3, 3).
 
         Args:
@@ -73,7 +71,7 @@ class AtPoints:
         """True stress at the points, of the displacement now."""
         raise NotImplementedError
 
-    def means(self, name: str) -> tuple[npt.NDArray[np.int32], Floats]:
+    def means(self, name: str) -> tuple[Locals, Floats]:
         """Cells of the body on this rank, (n,), and means over their points of a number."""
         values = self._read(self.variables[name])
         return self._cells, values.reshape(len(self._cells), len(self.points)).mean(axis=1)
@@ -106,7 +104,7 @@ class AtPoints:
     def _at_points(self, expression: Any) -> Any:
         return compiled_expression(expression, self.points, self._mesh.comm)
 
-    def _rows(self, variable: Any, cells: int) -> npt.NDArray[np.int32]:
+    def _rows(self, variable: Any, cells: int) -> Locals:
         """Places of the points of the first cells of the body in the array of a variable."""
         return np.asarray(variable.function_space.dofmap.list[self._cells[:cells]].reshape(-1))
 

@@ -5,12 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import compiled, fem, ufl
 from anisocontact.mesh import Model
-
-Floats = npt.NDArray[np.float64]
 
 
 class CellIntegrals:

@@ -11,16 +11,12 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.base.typed import typed
 from anisocontact.bulk.materials import Material, small_strain
 from anisocontact.mesh import Idealisation, Model
-
-Floats = npt.NDArray[np.float64]
 
 
 @typed

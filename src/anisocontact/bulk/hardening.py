@@ -7,9 +7,9 @@ from typing import Protocol
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Parameter
-from anisocontact.bulk.at_points import Floats
 
 _FIRST = Parameter(
     "yield_stress", "scalar", "stress", "first yield stress; or a flow_curve", "positive", False

@@ -9,9 +9,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
-from anisocontact.bulk.at_points import AtPoints, Floats
+from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.hyperelastic import cauchy_stress
 from anisocontact.mesh import Idealisation, Model
 

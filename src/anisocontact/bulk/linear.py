@@ -7,9 +7,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Mat, Vec, compiled, create_stiffness, fem, ufl
 from anisocontact.base.form_matrix import add_matrix
 from anisocontact.bulk.at_points import AtPoints
@@ -18,8 +16,6 @@ from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.materials import Material, body_measure, linear_parts
 from anisocontact.bulk.pressures import Pressures
 from anisocontact.mesh import Model
-
-Floats = npt.NDArray[np.float64]
 
 
 class LinearBulk:

@@ -8,11 +8,8 @@ behaviours have their strains, stresses and tangents in it.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-__all__ = ["from_mandel", "slope_from_mandel", "to_mandel"]
-
-Floats = npt.NDArray[np.float64]
+from anisocontact.base.array_types import Floats
 
 
 def _basis() -> Floats:

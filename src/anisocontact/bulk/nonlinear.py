@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import (
     Mat,
@@ -28,8 +28,6 @@ from anisocontact.bulk.materials import Density, Material, body_measure, linear_
 from anisocontact.bulk.point_law import BodyPoints
 from anisocontact.bulk.pressures import Pressures
 from anisocontact.mesh import Idealisation, Model
-
-Floats = npt.NDArray[np.float64]
 
 
 class NonlinearBulk:

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base import registry
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.bulk.at_points import Floats
 from anisocontact.bulk.materials import constant
 from anisocontact.bulk.point_law import ElasticVolume, PointResult, PointState
 from anisocontact.bulk.rubber import BULK

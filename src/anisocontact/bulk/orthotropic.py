@@ -11,17 +11,15 @@ from abc import abstractmethod
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact.base import registry
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem, ufl
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.bulk.axes import AROUND, SECOND, MaterialAxes, check_axes, first_axis
 from anisocontact.bulk.hyperelastic import Hyperelastic
 from anisocontact.bulk.materials import Density
-
-Floats = npt.NDArray[np.float64]
 
 #: Pairs of axes of the shear components, after the three normal ones.
 _SHEARS = ((0, 1), (0, 2), (1, 2))

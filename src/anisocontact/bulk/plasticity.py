@@ -16,9 +16,9 @@ from typing import Any
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.bulk.at_points import Floats
 from anisocontact.bulk.axes import AROUND, SECOND, MaterialAxes, check_axes, first_axis
 from anisocontact.bulk.hardening import HARDENING, check_recovery, make_hardening
 from anisocontact.bulk.materials import Isotropic

@@ -13,8 +13,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import ufl
-from anisocontact.bulk.at_points import AtPoints, Floats
+from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.hyperelastic import cauchy_stress
 from anisocontact.bulk.materials import constant, small_strain
 from anisocontact.bulk.strain import STRAINS, Strain

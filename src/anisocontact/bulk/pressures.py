@@ -21,8 +21,8 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import (
     Mat,
     Vec,
@@ -37,9 +37,6 @@ from anisocontact.base.form_matrix import add_matrix
 from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.volume import volume_of
 from anisocontact.mesh import Model
-
-Floats = npt.NDArray[np.float64]
-
 
 #: What the stiffness of a node against changes of volume counts for, over that against changes of
 #: shape at most, where what is asked is how far a surface gives way: a half space of nu = 1/2 is

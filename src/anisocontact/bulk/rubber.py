@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base import registry
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.bulk.at_points import Floats
 from anisocontact.bulk.hyperelastic import Hyperelastic
 from anisocontact.bulk.materials import Density, constant
 from anisocontact.bulk.volume import Volume, volume_ratio

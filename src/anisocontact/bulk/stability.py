@@ -13,7 +13,7 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from anisocontact.bulk.at_points import Floats
+from anisocontact.base.array_types import Floats
 from anisocontact.bulk.expansion import bare
 
 #: Stretches that are looked at lie within this factor of 1.

@@ -13,12 +13,10 @@ from collections.abc import Callable, Mapping
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Parameter
-
-Floats = npt.NDArray[np.float64]
 
 #: Spread of three arguments over their middle below which a series is the more exact.
 _NEAR = 0.05

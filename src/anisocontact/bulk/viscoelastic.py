@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.bulk.at_points import Floats
 from anisocontact.bulk.materials import Isotropic
 from anisocontact.bulk.point_law import ElasticVolume, PointResult, PointState
 from anisocontact.bulk.strain import STRAIN, STRAINS

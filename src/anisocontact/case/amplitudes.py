@@ -12,17 +12,6 @@ from anisocontact.case.quantity import Quantity, number, word
 from anisocontact.case.registered import Key, OneOf, Registered
 from anisocontact.case.section import Section
 
-__all__ = [
-    "PATH",
-    "PYTHON",
-    "FunctionTable",
-    "Scheduled",
-    "amplitude_table",
-    "path_table",
-    "prescribed",
-    "times",
-]
-
 #: Kind of an amplitude that is a function in a Python file.
 PYTHON = Entry("python", "amplitude", "a function of time in a Python file of yours", ())
 #: The key of a path among prescribed components.

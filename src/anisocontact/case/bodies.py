@@ -12,18 +12,6 @@ from anisocontact.case.quantity import line, number, word
 from anisocontact.case.registered import Registered, table_of
 from anisocontact.case.section import Section
 
-__all__ = [
-    "Mesh",
-    "MeshFile",
-    "NodeGroup",
-    "Placed",
-    "Point",
-    "Rotate",
-    "Shaped",
-    "Weighed",
-    "mesh_type",
-]
-
 Point = tuple[float, float, float]
 
 

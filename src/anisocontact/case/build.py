@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.base.errors import InputError, ModelWarning
+from anisocontact.base.errors import InputError, ModelWarning, within
 from anisocontact.base.fenicsx import MPI, PETSc
 from anisocontact.base.limits import Limits
 from anisocontact.bulk import materials
@@ -46,8 +46,6 @@ from anisocontact.solver import (
     Turn,
     Until,
 )
-
-__all__ = ["Built", "build", "mesh_of"]
 
 #: Supports and loads that points and edges have as well as facet groups.
 ON_NODES = ("displacement", "cylindrical", "rotation", "force")
@@ -169,7 +167,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
 
 def _solver(case: Case, problem: Problem, steps: list[Step]) -> Solver:
     given = case.solver
-    with objects.within("solver"):
+    with within("solver"):
         limits = Limits(given.smallest_increment, given.largest_increment, given.cuts)
     try:
         with warnings.catch_warnings():  # runs and `check` say the same as lines
@@ -180,7 +178,7 @@ def _solver(case: Case, problem: Problem, steps: list[Step]) -> Solver:
     except InputError as error:
         if error.field.startswith("step "):  # a step is no part of the table of the solver
             raise
-        with objects.within("solver"):
+        with within("solver"):
             raise
 
 
@@ -210,7 +208,7 @@ def _arrays(file: CaseFile, comm: MPI.Comm) -> MeshArrays:
     for name, section in mesh.files.items():
         place = f"mesh.files.{name}"
         path, there = file.resolve(section.path), objects.placement(section)
-        with objects.within(place):
+        with within(place):
             source = GmshFile(
                 path, section.bodies, section.rename, there, "path", section.cell_size
             )
@@ -219,7 +217,7 @@ def _arrays(file: CaseFile, comm: MPI.Comm) -> MeshArrays:
         for name, table in bodies.items():
             place = f"mesh.{shape}.{name}"
             body = objects.body(table, name, place)
-            with objects.within(place):
+            with within(place):
                 parts.append(body.arrays(comm))
     return _grouped(file.case, merge(parts))
 
@@ -230,9 +228,9 @@ def _grouped(case: Case, mesh: MeshArrays) -> MeshArrays:
         name: [objects.selector(table, f'group."{name}"') for table in tables]
         for name, tables in case.group.items()
     }
-    with objects.within("group"):
+    with within("group"):
         mesh = with_groups(mesh, chosen)
-    with objects.within("join"):
+    with within("join"):
         return with_joined(mesh, case.join)
 
 
@@ -260,7 +258,7 @@ def _name_nodes(case: Case, model: Model) -> None:
             start: Any = table.start
             end: Any = table.end
             found = nodes_along(model, body, start, end, place)
-        with objects.within(place):
+        with within(place):
             model.name_nodes(name, found)
 
 
@@ -302,7 +300,7 @@ def _rigid_bodies(case: Case) -> dict[str, RigidBody]:
     bodies = {}
     for name, section in case.rigid.items():
         free = name in freed or bool(section.faces)
-        with objects.within(f"rigid.{name}"):
+        with within(f"rigid.{name}"):
             springs = section.springs.given()
             bodies[name] = RigidBody(name, section.reference, free=free, springs=springs)
     return bodies
@@ -310,7 +308,7 @@ def _rigid_bodies(case: Case) -> dict[str, RigidBody]:
 
 def _sector(section: CyclicSection, place: str) -> CyclicSymmetry:
     """Cut faces of a sector."""
-    with objects.within(place):
+    with within(place):
         return CyclicSymmetry(**dict(section))
 
 
@@ -331,7 +329,7 @@ def _steps(case: Case, model: Model, schedule: Schedule) -> list[Step]:
         for what, group in section.groups():
             known = model.nodes if what in ON_NODES else model.facets
             known(group, f"{place}.{what}")
-        with objects.within(place):
+        with within(place):
             event, probes = section.until, case.output.probe
             until = None if event is None else event.made(section.name, probes)
             steps.append(_step(section, schedule, begun, _weights(case, section), until))
@@ -354,7 +352,7 @@ def _cylinders(section: StepSection, schedule: Schedule, begun: float) -> dict[s
     """Displacements prescribed along cylindrical directions."""
     found = {}
     for name, given in section.cylindrical.items():
-        with objects.within(f"cylindrical.{name}"):
+        with within(f"cylindrical.{name}"):
             values = schedule.values(given.given(), None, begun)
             found[name] = Cylindrical(values, given.axis, given.point)
     return found
@@ -378,7 +376,7 @@ def _step(
         given = dict(table)
         if table.amplitude is not None:
             given["amplitude"] = schedule.amplitude(table.amplitude, begun)
-        with objects.within(f"rotation.{name}"):
+        with within(f"rotation.{name}"):
             turns[name] = Turn(**given)
     kinds = ("displacement", "motion", "load", "traction", "force", "anchor")
     weights = {name: schedule.values(given, None, begun) for name, given in weights.items()}

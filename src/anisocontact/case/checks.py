@@ -26,8 +26,6 @@ from anisocontact.case.units import check_units
 from anisocontact.interface.augmentation import AUTO as AUTO_MULTIPLIERS
 from anisocontact.surfaces import Surface
 
-__all__ = ["check"]
-
 
 def check(case: Case) -> Iterator[InputError]:
     """Mistakes that can be found without a mesh, each as an error that is not raised."""

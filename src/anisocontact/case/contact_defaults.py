@@ -14,8 +14,6 @@ from anisocontact.interface import ContactLaw
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model
 
-__all__ = ["chosen", "physical_adhesion"]
-
 
 def chosen(
     section: ContactSection, model: Model, materials: Sequence[Material], law: ContactLaw

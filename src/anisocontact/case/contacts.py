@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from anisocontact.base.errors import within
 from anisocontact.bulk import Material
 from anisocontact.case import law_file, objects
 from anisocontact.case.contact_defaults import chosen, physical_adhesion
@@ -13,8 +14,6 @@ from anisocontact.interface import ContactLaw, TangentialLaw
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model
 from anisocontact.rigid import MovingSurface, RigidBody
-
-__all__ = ["contact"]
 
 #: What a slave meets.
 type AnyMaster = str | MovingSurface
@@ -76,7 +75,7 @@ def _made(
     augmentation: Augmentation | None,
 ) -> Contact:
     on = "itself" if section.self_contact else section.master
-    with objects.within(place):
+    with within(place):
         return Contact(
             model,
             section.slave,

@@ -9,16 +9,13 @@ from typing import Any
 
 from anisocontact.base.amplitudes import Amplitude, make_amplitude
 from anisocontact.base.course import Course, courses_of
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import InputError, within
 from anisocontact.base.paths import make_path
 from anisocontact.case.amplitudes import FunctionTable, Scheduled
 from anisocontact.case.law_file import module_at
 from anisocontact.case.model import Case, StepSection
-from anisocontact.case.objects import within
 from anisocontact.case.quantity import FREE
 from anisocontact.case.section import near
-
-__all__ = ["Schedule", "check_courses", "led_axes"]
 
 
 class Schedule:

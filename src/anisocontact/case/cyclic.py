@@ -9,8 +9,6 @@ from pydantic import Field
 from anisocontact.case.quantity import number
 from anisocontact.case.section import Section
 
-__all__ = ["CyclicSection"]
-
 
 class CyclicSection(Section):
     """Cyclic symmetry: cut faces of a sector that stands for a whole; meshes need not match."""

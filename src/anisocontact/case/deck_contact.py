@@ -14,9 +14,8 @@ from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_supports import key_of, written
 
 if TYPE_CHECKING:
-    from anisocontact.mesh.arrays import MeshArrays, Nodes
-
-__all__ = ["Contacts", "table_lines"]
+    from anisocontact.base.array_types import Ints
+    from anisocontact.mesh.arrays import MeshArrays
 
 #: Options of `*FRICTION` with which its numbers are no coefficients of all slips.
 OTHER_FRICTION = {
@@ -217,7 +216,7 @@ class Contacts:
         found: np.ndarray = self._mesh.points[np.unique(self._cells(body))]
         return found
 
-    def _cells(self, body: str) -> Nodes:
+    def _cells(self, body: str) -> Ints:
         return self._mesh.cells[self._mesh.bodies[body]]
 
     def _cell_size(self, body: str) -> float:

@@ -19,8 +19,6 @@ from anisocontact.mesh.deck_contents import Deck
 from anisocontact.mesh.deck_supports import check_options
 from anisocontact.mesh.inp import bodies_of
 
-__all__ = ["Couplings", "of_ideal"]
-
 #: Components of a motion and of a load by the number of their direction, from 1 on.
 MOTION = ("x", "y", "z", "rx_deg", "ry_deg", "rz_deg")
 LOAD = ("x", "y", "z", "rx", "ry", "rz")

@@ -6,13 +6,11 @@ import math
 from collections.abc import Callable, Iterator
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card
-
-__all__ = ["Sectors"]
 
 #: Difference of the angle between cut faces to that of a sector, radian, that is none.
 SAME = 1e-3
@@ -87,8 +85,8 @@ class Sectors:
         self,
         start: str,
         end: str,
-        point: npt.NDArray[np.float64],
-        axis: npt.NDArray[np.float64],
+        point: Floats,
+        axis: Floats,
     ) -> float:
         """Turn about the axis from the middle of one face to that of another, radian."""
         along = axis / np.linalg.norm(axis)

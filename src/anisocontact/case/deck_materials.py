@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck
 from anisocontact.mesh.deck_supports import key_of
 from anisocontact.mesh.inp import bodies_of, plain
 from anisocontact.mesh.placement import Rotation
-
-__all__ = ["Materials", "Temperatures"]
 
 #: Kind of `*ELASTIC` -> how many of its numbers are at one temperature.
 _SIZES = {"ISOTROPIC": 2, "ISO": 2, "ORTHO": 9, "ORTHOTROPIC": 9, "ENGINEERINGCONSTANTS": 9}
@@ -186,17 +184,17 @@ class Materials:
         self._directions[card.option("NAME").upper()] = found
 
 
-def _axes(a: npt.NDArray[np.float64], b: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _axes(a: Floats, b: Floats) -> Floats:
     """Unit vectors along the first vector, across it towards the second, and normal to both."""
     first, third = a / np.linalg.norm(a), np.cross(a, b) / np.linalg.norm(np.cross(a, b))
     return np.array([first, np.cross(third, first), third])
 
 
-def _listed(vector: npt.NDArray[np.float64]) -> list[float]:
+def _listed(vector: Floats) -> list[float]:
     return [round(float(v), 12) + 0.0 for v in vector]
 
 
-def _engineering(d: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def _engineering(d: Floats) -> Floats:
     """E, nu12 nu13 nu23 and G12 G13 G23 of D1111, D1122, D2222, D1133, D2233, D3333 and shears."""
     stiffness = np.array([[d[0], d[1], d[3]], [d[1], d[2], d[4]], [d[3], d[4], d[5]]])
     compliance = np.linalg.inv(stiffness)

@@ -12,8 +12,6 @@ from dataclasses import replace
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card
 
-__all__ = ["STATIC", "static_steps"]
-
 #: Keywords of steps that are solved; viscous ones are static steps of materials that know time.
 STATIC = ("STATIC", "VISCO")
 #: Keywords of those that are not.

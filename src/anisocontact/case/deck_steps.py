@@ -19,8 +19,6 @@ from anisocontact.mesh.deck_contents import Deck, pressed_face, pressures
 from anisocontact.mesh.deck_supports import Support, Unread, check_options, led, supports_of
 from anisocontact.mesh.inp import bodies_of
 
-__all__ = ["Steps"]
-
 #: Most increments that are taken over of a step.
 MOST = 1000
 

@@ -11,15 +11,11 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck_profiles import Piece, Profile
 from anisocontact.mesh.inp import plain
-
-__all__ = ["Tools"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Length of a patch across its profile, over the size of the mesh.
 ACROSS = 4.0

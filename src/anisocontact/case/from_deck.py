@@ -24,8 +24,6 @@ from anisocontact.mesh.deck_supports import key_of, written
 from anisocontact.mesh.inp import ideals, named_in
 from anisocontact.mesh.readers import file_arrays
 
-__all__ = ["case_of_deck"]
-
 #: Keywords that ask for output or say nothing that a case needs.
 SILENT = {"HEADING", "PREPRINT", "OUTPUT", "RESTART", "ENDSTEP", "ASSEMBLY", "ENDASSEMBLY"}
 SILENT |= {"ENDINSTANCE", "MONITOR", "NODEOUTPUT", "ELEMENTOUTPUT", "CONTACTOUTPUT"}

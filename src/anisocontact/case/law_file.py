@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import InputError, within
 from anisocontact.base.python_file import module_of, where_failed
 from anisocontact.case import objects
 from anisocontact.case.model import ContactSection
@@ -23,8 +23,6 @@ from anisocontact.interface import (
     TangentialLaw,
 )
 from anisocontact.laws import SIDES
-
-__all__ = ["contact_law", "law_of", "module_at", "object_of"]
 
 
 class _Later:
@@ -58,7 +56,7 @@ def contact_law(
     """
     if section.python is None:
         return objects.contact_law(section, place, auto, meshed=section.meshed)
-    with objects.within(place):
+    with within(place):
         given = section.python
         if given.directions is None and not given.isotropic:
             raise InputError("missing; needed unless isotropic = true", "python.directions")
@@ -96,7 +94,7 @@ def law_of(
     given = section.python
     if given is None:
         return None
-    with objects.within(f"{place}.python"):
+    with within(f"{place}.python"):
         law: TangentialLaw | None = object_of(given, resolve, execute)
         if law is not None:
             _check_law(law, given.law)

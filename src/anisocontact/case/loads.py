@@ -12,8 +12,6 @@ from anisocontact.case.bodies import Point, Rotate
 from anisocontact.case.quantity import FREE, line, number
 from anisocontact.case.section import Section
 
-__all__ = ["ElasticBed", "GroupSpring", "Loading", "Turning"]
-
 
 class Components(Section):
     """Components of a vector; what is left out is not prescribed."""

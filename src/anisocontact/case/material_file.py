@@ -6,15 +6,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import InputError, within
 from anisocontact.case import objects
 from anisocontact.case.law_file import object_of
 from anisocontact.case.python_section import MaterialSection, MaterialTable
 
 if TYPE_CHECKING:
     from anisocontact.bulk import Material
-
-__all__ = ["material_of"]
 
 
 class _Later:
@@ -54,7 +52,7 @@ def _own(
 ) -> Material:
     from anisocontact.bulk import user_material
 
-    with objects.within(place):
+    with within(place):
         made = object_of(section, resolve, execute)
         try:
             return user_material(made or _Later())

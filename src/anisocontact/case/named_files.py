@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from anisocontact.case.model import Case
     from anisocontact.case.read import CaseFile
 
-__all__ = ["check_files", "fingerprints"]
-
 
 def named(file: CaseFile) -> Iterator[tuple[str, str]]:
     """Place in the case file, and path as it is written there, of each file it names."""

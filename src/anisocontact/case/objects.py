@@ -18,20 +18,6 @@ if TYPE_CHECKING:
     from anisocontact.mesh import Body, Idealisation, Placement
     from anisocontact.mesh.selectors import Selector
 
-__all__ = [
-    "body",
-    "contact_law",
-    "directions",
-    "idealisation",
-    "interface",
-    "material",
-    "normal_law",
-    "placement",
-    "selector",
-    "surface",
-    "within",
-]
-
 
 class Laws(Protocol):
     """What an interface is made of: the tables of a contact."""

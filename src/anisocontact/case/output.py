@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from anisocontact.results.probes import Probe
     from anisocontact.results.resultants import Resultant
 
-__all__ = ["Output", "ProbeSection", "ResultantSection", "check_output"]
-
 
 class ProbeSection(Section):
     """Values at a point, along a line or at the nodes of a facet group, in `probes/<name>.csv`."""

@@ -12,8 +12,6 @@ from anisocontact.case.quantity import number
 from anisocontact.case.section import Section
 from anisocontact.laws import SIDES
 
-__all__ = ["MATERIAL", "MaterialSection", "MaterialTable", "PythonSection"]
-
 #: The entry of a material in a Python file.
 MATERIAL = Entry(
     "python",

@@ -14,8 +14,6 @@ from anisocontact.base import registry
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Parameter
 
-__all__ = ["AUTO", "FREE", "Quantity", "key_of", "line", "number", "shown", "word"]
-
 #: Written instead of a stiffness that the run is to choose.
 AUTO = "auto"
 #: Written instead of a displacement where a support is released.

@@ -16,17 +16,6 @@ from anisocontact.case.checks import check
 from anisocontact.case.model import Case, case_type
 from anisocontact.case.registries import Registries
 
-__all__ = [
-    "CaseError",
-    "CaseFile",
-    "as_input",
-    "json_schema",
-    "load",
-    "read_table",
-    "validate",
-    "without_null",
-]
-
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 

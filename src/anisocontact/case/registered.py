@@ -23,8 +23,6 @@ from anisocontact.base.registry import Entry, Parameter
 from anisocontact.case.quantity import AUTO, Quantity, key_of, line, shown
 from anisocontact.case.section import Section, near
 
-__all__ = ["Key", "OneOf", "Registered", "default_of", "table", "table_of"]
-
 
 class Registered(Section):
     """A table whose keys are the parameters of one or several registry entries.

@@ -16,8 +16,6 @@ if TYPE_CHECKING:
     from anisocontact.case.read import CaseFile
     from anisocontact.results.checkpoint import Stored
 
-__all__ = ["check_same", "checkpoint_of"]
-
 #: Tables of a case file that may change: they say nothing of the state.
 FREE_TO_CHANGE = ("title", "output", "solver")
 

@@ -11,8 +11,6 @@ from anisocontact.case.amplitudes import PATH, Scheduled, prescribed
 from anisocontact.case.quantity import FREE, line, number
 from anisocontact.case.section import Section
 
-__all__ = ["Load", "Motion", "Rigid", "Springs"]
-
 Point = tuple[float, float, float]
 
 _TURNS = ("rx", "ry", "rz")

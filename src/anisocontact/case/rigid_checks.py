@@ -9,8 +9,6 @@ from anisocontact.case.courses import led_axes
 from anisocontact.case.model import Case, StepSection
 from anisocontact.case.section import near
 
-__all__ = ["check_rigid"]
-
 
 def check_rigid(case: Case) -> Iterator[InputError]:
     """Mistakes in rigid bodies, their motion and their loads, each as an error not raised."""

@@ -19,8 +19,6 @@ from anisocontact.results.files import WriteError
 from anisocontact.results.writer import Writer
 from anisocontact.solver import Accepted, Cut, Progress, StoppedError
 
-__all__ = ["Listener", "Outcome", "run"]
-
 
 class Listener(Protocol):
     """Who wants to know how a run goes on."""

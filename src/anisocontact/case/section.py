@@ -16,8 +16,6 @@ from pydantic_core import ErrorDetails, InitErrorDetails
 from anisocontact.base.words import elsewhere, meant
 from anisocontact.case.quantity import Quantity, line, shown
 
-__all__ = ["Section", "near"]
-
 _NEEDED = {
     "string_type": "a text in quotes",
     "dict_type": "a table",

@@ -14,8 +14,6 @@ from anisocontact.case.section import Section
 if TYPE_CHECKING:
     from anisocontact.mesh import Model
 
-__all__ = ["TieSection", "close_gaps_of"]
-
 
 class TieSection(Section):
     """Two facet groups glued together (tie, bonded contact); their meshes need not match."""

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, ValidationError, create_model
 
-from anisocontact.base.errors import InputError
+from anisocontact.base.errors import InputError, within
 from anisocontact.case import objects
 from anisocontact.case.contact_laws import laws
 from anisocontact.case.quantity import AUTO, number
@@ -21,8 +21,6 @@ from anisocontact.case.section import Section
 from anisocontact.case.trace_load import LOADS, GroupSection
 from anisocontact.interface import Interface
 from anisocontact.point import Group, Load
-
-__all__ = ["Trace", "TraceCase", "load_trace", "trace_schema", "validate_trace"]
 
 _NO_AUTO = '"auto" given or nothing, a number needed: a point has no mesh that a value follows from'
 
@@ -192,7 +190,7 @@ def _interface(case: TraceCase, contact: Any) -> Interface:
 
 
 def _within(place: str, build: Callable[[], Any]) -> Any:
-    with objects.within(place):
+    with within(place):
         return build()
 
 

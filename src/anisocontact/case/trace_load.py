@@ -18,8 +18,6 @@ from anisocontact.point import DeadLoad, DraggingSpring, Group, Load, Prescribed
 from anisocontact.point.device import FRAMES
 from anisocontact.point.group import ORIENTATIONS
 
-__all__ = ["LOADS", "GroupSection", "LoadSection"]
-
 # More steps than anyone waits for: a slip of the keyboard.
 _MOST_STEPS = 10_000_000
 

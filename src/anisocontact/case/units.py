@@ -10,8 +10,6 @@ from anisocontact.base.errors import InputError
 from anisocontact.case.quantity import word
 from anisocontact.case.section import Section
 
-__all__ = ["Units", "check_units", "doubts"]
-
 #: Unit -> how many of the SI unit it is.
 LENGTHS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "in": 0.0254, "ft": 0.3048}
 FORCES = {"N": 1.0, "kN": 1e3, "MN": 1e6, "mN": 1e-3, "uN": 1e-6, "lbf": 4.4482216152605}

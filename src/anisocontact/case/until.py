@@ -13,8 +13,6 @@ from anisocontact.case.output import ProbeSection
 from anisocontact.case.quantity import number, shown, word
 from anisocontact.case.section import Section, near
 
-__all__ = ["UntilSection"]
-
 _EVENTS = "; ".join(f"{name}: {text}" for name, text in CONTACT_EVENTS.items())
 
 

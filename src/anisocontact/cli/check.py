@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from anisocontact.case.build import Built
     from anisocontact.contact import Contact
 
-__all__ = ["command", "contents"]
-
 
 def command(arguments: argparse.Namespace) -> int:
     """Build the case and say what is in it."""

@@ -8,8 +8,6 @@ from pathlib import Path
 from anisocontact.base.errors import InputError
 from anisocontact.cli.output import say
 
-__all__ = ["command"]
-
 
 def command(arguments: argparse.Namespace) -> int:
     """Read a mesh, that of a case, or a results folder, and write it in another format.

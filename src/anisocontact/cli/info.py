@@ -13,8 +13,6 @@ from anisocontact.base.registry import Entry, Parameter
 from anisocontact.case.quantity import Quantity, key_of
 from anisocontact.case.registries import Registries
 
-__all__ = ["command", "facts"]
-
 _PACKAGES = ("numpy", "scipy", "pydantic", "gmsh", "pyvista", "vtk")
 
 

@@ -19,8 +19,6 @@ from anisocontact.base.processes import started_together
 from anisocontact.base.signals import ended_by_signals
 from anisocontact.cli.output import outputs, say
 
-__all__ = ["BAD_INPUT", "DONE", "INTERNAL", "STOPPED", "build_parser", "main"]
-
 DONE, INTERNAL, BAD_INPUT, STOPPED = 0, 1, 2, 3
 
 _EPILOG = """\

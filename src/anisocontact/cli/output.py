@@ -11,8 +11,6 @@ from typing import Any, Protocol, TextIO, cast
 
 from anisocontact.base.errors import printable
 
-__all__ = ["Output", "outputs", "say"]
-
 
 class Stream(Protocol):
     """Where lines can go."""

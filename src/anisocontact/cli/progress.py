@@ -14,9 +14,6 @@ from anisocontact.solver import Accepted, Cut, Progress, Step
 if TYPE_CHECKING:
     from rich.progress import Progress as Bar
 
-__all__ = ["progress_on"]
-
-
 #: What is said after a first Ctrl-C.
 STOPPING = "stopping after this increment; a second Ctrl-C stops at once"
 

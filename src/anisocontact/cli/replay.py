@@ -13,8 +13,6 @@ from anisocontact.interface import STATUS
 if TYPE_CHECKING:
     from anisocontact.interface.failed_point import FailedPoint
 
-__all__ = ["command"]
-
 
 def command(arguments: argparse.Namespace) -> int:
     """Evaluate a failed point alone and print what decides the answer, and the answer."""

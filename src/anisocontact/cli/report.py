@@ -10,8 +10,6 @@ from anisocontact.base.errors import InputError
 from anisocontact.cli.main import DONE
 from anisocontact.cli.output import say
 
-__all__ = ["command"]
-
 
 def command(arguments: argparse.Namespace) -> int:
     """Make the report of a folder anew from what is in it."""

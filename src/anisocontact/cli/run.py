@@ -22,8 +22,6 @@ if TYPE_CHECKING:
     from anisocontact.results.beside import Reporter
     from anisocontact.results.checkpoint import Stored
 
-__all__ = ["command"]
-
 
 def command(arguments: argparse.Namespace) -> int:
     """Solve a case; 0 if it is done, 3 if it stopped before its end."""

@@ -7,8 +7,6 @@ import json
 
 from anisocontact.case import json_schema
 
-__all__ = ["command"]
-
 
 def command(arguments: argparse.Namespace) -> int:
     """Print the JSON Schema of the case file."""

@@ -16,8 +16,6 @@ from anisocontact.results.files import check_folder
 from anisocontact.results.lock import locked
 from anisocontact.results.trace import write_trace
 
-__all__ = ["command"]
-
 
 def command(arguments: argparse.Namespace) -> int:
     """Drive a point; 0 if it is done, 3 if it stopped before its end."""

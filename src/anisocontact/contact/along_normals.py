@@ -15,16 +15,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.facet_mesh import beyond_sides
 from anisocontact.contact.sides import Sides, located
 from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, FacetProjections
-
-Ints = npt.NDArray[np.int32]
-Numbers = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 #: Corrections of a place on a facet, and the last one that is good enough.
 MOST, ENOUGH = 12, 1e-14
@@ -59,7 +54,7 @@ class Places:
             not a number inside the surface; zero where the place does not follow the slave node.
     """
 
-    facet: Ints
+    facet: Locals
     xi: Floats
     edge: Floats
 
@@ -127,8 +122,8 @@ def _stay(sides: Sides, x: Floats, normal: Floats, places: Places, before: Place
 
 
 def _kept(
-    sides: Sides, x: Floats, normal: Floats, places: Places, other: Places, rows: Numbers
-) -> Mask:
+    sides: Sides, x: Floats, normal: Floats, places: Places, other: Places, rows: Ints
+) -> Flags:
     """Take the places on other edges that next to none of some places, (m,), are nearer than.
 
     Returns:
@@ -150,7 +145,7 @@ def _kept(
     return taken
 
 
-def _put(places: Places, rows: Numbers, facet: Ints, xi: Floats, edge: Floats | float) -> None:
+def _put(places: Places, rows: Ints, facet: Locals, xi: Floats, edge: Floats | float) -> None:
     places.facet[rows], places.xi[rows], places.edge[rows] = facet, xi, edge
 
 
@@ -163,7 +158,7 @@ def _across(v: Floats, normal: Floats) -> Floats:
     return np.asarray(v - _dot(v, normal)[:, None] * normal)
 
 
-def _met(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple[Mask, Floats]:
+def _met(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple[Flags, Floats]:
     """Whether normals meet facets inside, (n,), and where, (n, 2), by Newton's method."""
     inside = at.feature == FEATURES.index("interior")
     xi = np.where(inside[:, None], at.xi, np.clip(at.xi, 0.0, 1.0))
@@ -189,7 +184,7 @@ def _met(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple
     return ~flat & (beyond_sides(sides.master.topology, xi) <= ROUNDING), xi
 
 
-def _ahead(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple[Floats, Mask]:
+def _ahead(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple[Floats, Flags]:
     """Where normals meet the planes of what is closest, (n, 3), and whether they do, (n,)."""
     jet = sides.surface.jet(at.facet, at.xi)
     plane = np.cross(jet.d1[:, 0], jet.d1[:, 1])

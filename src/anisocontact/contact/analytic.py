@@ -8,6 +8,7 @@ from typing import Any, Self, override
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Codes, Floats, Locals
 from anisocontact.contact.body_blocks import BodyBlocks, body_blocks
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Master
@@ -19,9 +20,6 @@ from anisocontact.interface.failed_point import OnSurface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.rigid import MovingInterface, RigidBody
 from anisocontact.surfaces import PROJECTION_STATUS
-
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 _INTERIOR = PROJECTION_STATUS.index("interior")
 
@@ -216,7 +214,7 @@ class AnalyticMaster(Master):
         return float(stiffness / area)
 
     @override
-    def couplable(self) -> Ints:
+    def couplable(self) -> Locals:
         return np.unique(self._slave.quadrature.nodes).astype(np.int32)
 
     @override
@@ -251,9 +249,7 @@ class AnalyticMaster(Master):
         )
 
     @override
-    def probe(
-        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
-    ) -> npt.NDArray[np.int8]:
+    def probe(self, laws: tuple[NormalLaw, Adhesion, Friction], state: State) -> Codes:
         interface = Interface(self.interface.surface, *laws)
         at_rest = self._slave.quadrature.at_rest
         slave = self._turned(at_rest) if interface.takes_slave() else None

@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.quadrature import FacetQuadrature, Surfaced
 from anisocontact.interface import SlaveSurface
 from anisocontact.rigid import RigidBody, motion_derivative, skew
-
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -32,7 +29,7 @@ class BodyBlocks:
             zero along a motion, nothing in the contact holds the body against it.
     """
 
-    nodes: Ints
+    nodes: Locals
     node_body: Floats
     body_node: Floats
     body: Floats

@@ -7,6 +7,7 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.typed import typed
 from anisocontact.contact.defaults import WithoutPenalty, exact
 from anisocontact.contact.making import Before, Options, SurfaceMaster, before_this, parts_of
@@ -17,10 +18,6 @@ from anisocontact.interface import STATUS, ContactLaw, Response
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model
 from anisocontact.rigid import RigidBody
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
-Mask = npt.NDArray[np.bool_]
 
 
 @typed
@@ -184,15 +181,15 @@ class Contact(Pass):
         """Add the forces of the trial to the local nodes, (nodes, 3), force."""
         self.answer.add_force(out)
 
-    def couplable(self) -> Ints:
+    def couplable(self) -> Locals:
         """Local nodes that the contact acts on; all ranks together have all of them."""
         return self.master.couplable()
 
-    def projected_facets(self) -> npt.NDArray[np.int64]:
+    def projected_facets(self) -> Ints:
         """As of `Master`."""
         return self.master.projected_facets(len(self.state))
 
-    def hold(self, points: Mask) -> None:
+    def hold(self, points: Flags) -> None:
         """As of `Master`."""
         self.master.hold(points)
 
@@ -230,7 +227,7 @@ class Contact(Pass):
         """
         return self.extreme(values[self.counted()])
 
-    def counted(self) -> Mask:
+    def counted(self) -> Flags:
         """Slave points of the accepted increment that count among peaks, (n,)."""
         return self.slave_points.peaks(self.areas)
 

@@ -19,14 +19,10 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.contact.plane_axes import Carried, Turned, dual, in_tangents, unit_normal
-
-Mask = npt.NDArray[np.bool_]
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 #: Nodes that stand for a slave node and its planes: the slave with two tangents, the plane of now
 #: and that of the accepted increment.
@@ -58,15 +54,15 @@ class Opposite:
         carried: Axes of the contact plane in both tangents and their normal, (n, 2, 3).
     """
 
-    masters: Ints
+    masters: Locals
     shares: Floats
-    facet: Ints
-    nodes: Ints
+    facet: Locals
+    nodes: Locals
     shape: Floats
     gradient: Floats
     second: Floats
     edge: Floats
-    around: Ints
+    around: Locals
     along: Floats
     bending: Floats
     carried: Floats
@@ -94,7 +90,7 @@ class Opposite:
         """The same, to carry the axes of a plane along with the master."""
         return replace(self, carried=plane.carried)
 
-    def with_rows(self, which: Mask, other: Opposite) -> Opposite:
+    def with_rows(self, which: Flags, other: Opposite) -> Opposite:
         """The same with what is opposite to some nodes, (n,), from another one."""
         pair = (other, self)
         masters = max(one.masters.shape[1] for one in pair)
@@ -109,7 +105,7 @@ class Opposite:
         }
         return Opposite(**rows)
 
-    def in_order(self, names: Ints | None = None) -> Opposite:
+    def in_order(self, names: Locals | None = None) -> Opposite:
         """The same with the nodes that have a share alone, all in ascending order.
 
         So sums over them have the same bits in a run that goes on.
@@ -124,7 +120,7 @@ class Opposite:
         shares = np.take_along_axis(self.shares, order, axis=1)
         return replace(self, masters=masters, shares=shares).around_in_order(self.around)
 
-    def around_in_order(self, names: Ints) -> Opposite:
+    def around_in_order(self, names: Locals) -> Opposite:
         """The same with the nodes around in ascending order of names, (n, i), -1 for none."""
         count = max(int((names >= 0).sum(axis=1).max(initial=0)), 1)
         order = np.argsort(np.where(names < 0, np.iinfo(np.int32).max, names), axis=1)[:, :count]
@@ -161,7 +157,7 @@ class Opposite:
         found[self.facet < 0] = np.eye(3)[:2]
         return found
 
-    def named(self) -> Ints:
+    def named(self) -> Locals:
         """All nodes of these, (n, k + j + i), -1 for none."""
         none = self.facet[:, None] < 0
         found = [np.where(none, np.int32(-1), one) for one in (self.nodes, self.around)]
@@ -232,7 +228,7 @@ class ContactPlanes:
         away = self.slave - self.mean
         return np.asarray(np.einsum("nai,ni->na", dual(self.now.axes), away, order="C"))
 
-    def points(self, facet: Ints, xi: Floats) -> tuple[Floats, Floats]:
+    def points(self, facet: Locals, xi: Floats) -> tuple[Floats, Floats]:
         """Points in the planes, (n, 3), length, and the axes of these, (n, 2, 3).
 
         Args:
@@ -297,7 +293,7 @@ class ContactPlanes:
 
 
 def held_directions(
-    resting: Sequence[tuple[Mask, Floats]], nodes: Ints, below: Ints, normal: Floats
+    resting: Sequence[tuple[Flags, Floats]], nodes: Locals, below: Locals, normal: Floats
 ) -> Floats:
     """Directions in the contact plane along which supports hold slave nodes and the master.
 

@@ -9,14 +9,13 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.anisotropy import DirectionField, make_directions
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_sides, fem
 from anisocontact.base.typed import typed
 from anisocontact.contact.quadrature import facet_quadrature
 from anisocontact.mesh import Model
 from anisocontact.surfaces import PROJECTION_STATUS, Surface
-
-Floats = npt.NDArray[np.float64]
 
 #: Degree of the rule at whose points a function is sampled: nine on a quadrilateral.
 SAMPLES = 4
@@ -106,7 +105,7 @@ def _on_surface(field: DirectionField, surface: Surface | None) -> Callable[[Flo
     return axes
 
 
-def _of_function(model: Model, facets: npt.NDArray[np.int32], f: Any, x: Floats) -> Floats:
+def _of_function(model: Model, facets: Locals, f: Any, x: Floats) -> Floats:
     """Values of a DOLFINx function at points of boundary facets, as many on each."""
     if len(x) == 0:
         return np.zeros((0, 3))

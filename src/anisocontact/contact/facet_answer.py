@@ -8,8 +8,8 @@ from functools import cached_property, partial
 from typing import Any, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
@@ -26,10 +26,6 @@ NOTHING = np.zeros((0, 3, 3))
 #: Gap up to which a point may be in contact, as a share of the size of the facets: rounding.
 NEAR = 1e-6
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
-Mask = npt.NDArray[np.bool_]
-
 
 class Forces(Protocol):
     """Forces on the nodes of the surface and their derivative."""
@@ -37,7 +33,7 @@ class Forces(Protocol):
     def add_force(self, out: Floats) -> None:
         """Add them, (nodes, 3)."""
 
-    def couplings(self, touching: Mask) -> list[Couplings]:
+    def couplings(self, touching: Flags) -> list[Couplings]:
         """Where `-d force / d u` has entries, and the entries, of points in contact, (n,)."""
 
 
@@ -57,7 +53,7 @@ class ByFacets:
         """As of `Forces`."""
         out += self.force
 
-    def couplings(self, touching: Mask) -> list[Couplings]:
+    def couplings(self, touching: Flags) -> list[Couplings]:
         """As of `Forces`."""
         return self.blocks
 
@@ -73,13 +69,13 @@ class ByPoints:
         own: Number of nodes of a slave facet, which come first.
     """
 
-    nodes: Ints
+    nodes: Locals
     residual: Floats
     tangent: Floats
     own: int
 
     @property
-    def rows(self) -> Ints:
+    def rows(self) -> Locals:
         """Nodes of the rows, (n, r)."""
         return self.nodes[:, : self.residual.shape[1] // 3]
 
@@ -93,7 +89,7 @@ class ByPoints:
         there = rows >= 0
         np.add.at(out, rows[there], forces.reshape(*rows.shape, 3)[there])
 
-    def couplings(self, touching: Mask) -> list[Couplings]:
+    def couplings(self, touching: Flags) -> list[Couplings]:
         """As of `Forces`."""
         return [(self.rows[touching], self.nodes[touching], self.tangent[touching])]
 
@@ -211,7 +207,7 @@ class Evaluation:
         }
 
 
-def response_of(found: Mapping[str, Any], lost: Mask) -> Response:
+def response_of(found: Mapping[str, Any], lost: Flags) -> Response:
     """What the core has found for a batch as a response.
 
     Args:

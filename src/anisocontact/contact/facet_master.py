@@ -9,6 +9,7 @@ from typing import Any, override
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
 from anisocontact.contact.facet_answer import ByPoints, Evaluation, FacetAnswer
 from anisocontact.contact.held_feet import HeldFeet, on_held_facets, projected_facets
 from anisocontact.contact.history import Snapshot
@@ -20,10 +21,6 @@ from anisocontact.interface import ContactLaw, State
 from anisocontact.interface.failed_point import OnFacets, one_point
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces.facets import FacetProjections
-
-Mask = npt.NDArray[np.bool_]
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 
 class FacetMaster(MeshedMaster):
@@ -67,7 +64,7 @@ class FacetMaster(MeshedMaster):
             self._number_anew(u, named)
         return anew
 
-    def _number_anew(self, u: Floats, named: Sequence[Ints]) -> None:
+    def _number_anew(self, u: Floats, named: Sequence[Locals]) -> None:
         """Have the facets that are near and those that are named; collective.
 
         Args:
@@ -128,17 +125,15 @@ class FacetMaster(MeshedMaster):
         return self.sides.place(state)
 
     @override
-    def feet(self) -> Ints:
+    def feet(self) -> Locals:
         return np.unique(self.facets[self._hint.facet[located(self._hint)]])
 
     @override
-    def below(self, state: State) -> Ints:
+    def below(self, state: State) -> Locals:
         return np.unique(self.facets[state["facet"][self.located(state)]])
 
     @override
-    def probe(
-        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
-    ) -> npt.NDArray[np.int8]:
+    def probe(self, laws: tuple[NormalLaw, Adhesion, Friction], state: State) -> Codes:
         asked = Evaluation(self.sides, self._hint, self._nodes.now, False)
         law = ContactLaw(*laws).on_facets()
         return asked.answer(law, state, 1.0, False).snapshot.response.failure
@@ -152,11 +147,11 @@ class FacetMaster(MeshedMaster):
         return slid(self.sides, state, self._hint)
 
     @override
-    def projected_facets(self, count: int) -> npt.NDArray[np.int64]:
+    def projected_facets(self, count: int) -> Ints:
         return projected_facets(self._hint, self._gathered.globally(self._hint.facet))
 
     @override
-    def hold(self, points: Mask) -> None:
+    def hold(self, points: Flags) -> None:
         self._held.points |= points
 
     @override

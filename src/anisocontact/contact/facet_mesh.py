@@ -7,16 +7,13 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.base.fenicsx import basix, facet_sides, scalar_element
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sweep import Sweep
 from anisocontact.surfaces.facets import outward_flips
-
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 #: Facet of a cell by the type of the cell and the order of the displacement; in the plane that
 #: which is swept out of an edge.
@@ -46,8 +43,8 @@ class FacetMesh:
     """
 
     topology: str
-    nodes: Ints
-    flip: npt.NDArray[np.bool_]
+    nodes: Locals
+    flip: Flags
     sweep: Sweep | None = None
 
     @property
@@ -57,7 +54,7 @@ class FacetMesh:
 
 
 def facet_mesh(
-    space: Any, facets: Ints, sweep: Sweep | None = None, order: int | None = None
+    space: Any, facets: Locals, sweep: Sweep | None = None, order: int | None = None
 ) -> FacetMesh:
     """Boundary facets that this rank owns, with outward orientation.
 
@@ -83,12 +80,12 @@ def facet_mesh(
     return FacetMesh(topology, nodes, outward_flips(x, nodes, topology, middle), sweep)
 
 
-def facet_nodes(space: Any, facets: Ints) -> Ints:
+def facet_nodes(space: Any, facets: Locals) -> Locals:
     """Local nodes of boundary facets, of edges in the plane, (m, k)."""
     return _of_cells(space, facets)[0]
 
 
-def _of_cells(space: Any, facets: Ints) -> tuple[Ints, Ints]:
+def _of_cells(space: Any, facets: Locals) -> tuple[Locals, Locals]:
     """Nodes of facets in increasing order, and the cells that they bound."""
     cells, local = facet_sides(space.mesh, np.sort(facets))
     closure = np.array(scalar_element(space).entity_closure_dofs[-2])

@@ -7,17 +7,14 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.facet_mesh import FacetMesh, facet_corners, outward_normals
 from anisocontact.contact.sharp_edges import SMOOTH
 from anisocontact.surfaces.facets import FacetSets, FacetSurface
 
-Ints = npt.NDArray[np.int64]
-Ints32 = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
+Ints32 = Locals
 
 #: How far behind each other facets lie at most that touch in a slit, as a share of their radius: a
 #: thin wall is thicker.
@@ -91,7 +88,7 @@ class Pairs:
     master: Ints
     apart: Floats
 
-    def take(self, which: Mask) -> Pairs:
+    def take(self, which: Flags) -> Pairs:
         """Some of them."""
         return Pairs(self.slave[which], self.master[which], self.apart[which])
 
@@ -103,7 +100,7 @@ def largest_radius(slave: FacetMesh, now: Floats) -> float:
 
 
 def facing(
-    sides: Facing, slave: FacetMesh, now: Floats, radius: float, across: Mask | None = None
+    sides: Facing, slave: FacetMesh, now: Floats, radius: float, across: Flags | None = None
 ) -> Pairs:
     """Pairs of facets within reach that oppose each other and may overlap along the normal.
 

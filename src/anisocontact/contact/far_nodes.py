@@ -7,12 +7,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.mesh.split import Route, Split
 
-Ints = npt.NDArray[np.int32]
-Numbers = npt.NDArray[np.int64]
-
-NONE: Numbers = np.zeros(0, dtype=np.int64)
+NONE: Ints = np.zeros(0, dtype=np.int64)
 
 
 class FarNodes:
@@ -27,7 +25,7 @@ class FarNodes:
         owned: How many of the local nodes, which come first, this process owns.
     """
 
-    def __init__(self, space: Any, numbers: Numbers) -> None:
+    def __init__(self, space: Any, numbers: Ints) -> None:
         index_map = space.dofmap.index_map
         self._comm, self.owned = space.mesh.comm, int(index_map.size_local)
         self._local = node_count(space)
@@ -47,7 +45,7 @@ class FarNodes:
             return nodal
         return np.concatenate([nodal, self._route.back(nodal[self._asked])])
 
-    def hand_back(self, forces: npt.NDArray[np.float64], out: npt.NDArray[np.float64]) -> None:
+    def hand_back(self, forces: Floats, out: Floats) -> None:
         """Add forces that all processes have for these nodes where these live.
 
         Args:
@@ -59,7 +57,7 @@ class FarNodes:
         out += forces[: self._local]
         np.add.at(out, self._asked, self._route.there(forces[self._local :]))
 
-    def coupled(self, nodes: Ints) -> Ints:
+    def coupled(self, nodes: Locals) -> Locals:
         """Nodes as `Couplings` name them: these by their number in the whole mesh.
 
         Args:
@@ -80,7 +78,7 @@ def node_count(space: Any) -> int:
     return int(index_map.size_local + index_map.num_ghosts)
 
 
-def globally(nodes: npt.NDArray[Any], space: Any) -> Numbers:
+def globally(nodes: npt.NDArray[Any], space: Any) -> Ints:
     """Numbers in the whole mesh of nodes that `FarNodes.coupled` has named.
 
     Args:
@@ -93,7 +91,7 @@ def globally(nodes: npt.NDArray[Any], space: Any) -> Numbers:
     return found
 
 
-def owned_among(space: Any, nodes: Ints) -> Ints:
+def owned_among(space: Any, nodes: Locals) -> Locals:
     """Nodes of this process, among those that any process names; collective.
 
     Args:
@@ -109,7 +107,7 @@ def owned_among(space: Any, nodes: Ints) -> Ints:
     return np.flatnonzero(marked).astype(np.int32)
 
 
-def with_ghosts(space: Any, flags: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+def with_ghosts(space: Any, flags: Flags) -> Flags:
     """Flags of local nodes with those of ghosts as their owners have them; collective.
 
     Args:

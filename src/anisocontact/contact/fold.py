@@ -13,16 +13,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Codes, Ints
 from anisocontact.contact.facing import Pairs
 from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.slave_nodes import SlaveNodes
-
-Mask = npt.NDArray[np.bool_]
-Numbers = npt.NDArray[np.int64]
-Sides = npt.NDArray[np.int8]
 
 #: Colours of a facet that faces another one.
 SLAVE, MASTER = 1, -1
@@ -40,11 +36,11 @@ class Fold:
         self._around, self._comm = points.around, surface.comm
         self._numbers = surface.in_group(points.keys)
         count = self._comm.allreduce(len(surface.own.nodes))
-        self._side: Sides = np.zeros(count, dtype=np.int8)
+        self._side: Codes = np.zeros(count, dtype=np.int8)
         self._accepted = self._side
-        self._faced: Numbers = np.zeros(0, dtype=np.int64)
+        self._faced: Ints = np.zeros(0, dtype=np.int64)
 
-    def oriented(self, pairs: Pairs, masters: Numbers) -> Pairs:
+    def oriented(self, pairs: Pairs, masters: Ints) -> Pairs:
         """Those pairs of which the first facet is the slave; collective.
 
         Facets that face others for the first time take sides until `commit` or `roll_back`.
@@ -72,7 +68,7 @@ class Fold:
         """Return to the sides of the accepted increment."""
         self._side = self._accepted
 
-    def persistent(self) -> Numbers:
+    def persistent(self) -> Ints:
         """Accepted sides of the facets around each node, (n, k): number and one, times side."""
         offsets, facets = self._around.offsets, self._numbers[self._around.facets]
         counts = np.diff(offsets)
@@ -81,7 +77,7 @@ class Fold:
         kept[np.arange(width) < counts[:, None]] = (facets + 1) * self._accepted[facets]
         return kept
 
-    def restore(self, kept: Numbers) -> None:
+    def restore(self, kept: Ints) -> None:
         """Go on from what `persistent` gave; collective."""
         known = np.concatenate(self._comm.allgather(np.unique(kept[kept != 0])))
         self._accepted = np.zeros_like(self._side)
@@ -89,7 +85,7 @@ class Fold:
         self._side = self._accepted
 
 
-def _with_sides(side: Sides, first: Numbers, second: Numbers, apart: Any) -> Sides:
+def _with_sides(side: Codes, first: Ints, second: Ints, apart: Any) -> Codes:
     """Sides of facets that have some, and of others that face each other.
 
     Two more nodes of the graph face the slaves and the masters that are known, and each other. In

@@ -11,15 +11,11 @@ from __future__ import annotations
 from dataclasses import fields, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.facet_mesh import beyond_sides
 from anisocontact.contact.sides import Sides, located
 from anisocontact.surfaces.facets import FACET_STATUS, FEATURES, FacetProjections, FacetSurface
-
-Mask = npt.NDArray[np.bool_]
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 #: How far beyond its sides a facet goes on, in its coordinates, which run from 0 to 1.
 BEYOND = 0.1
@@ -42,7 +38,7 @@ class HeldFeet:
     """
 
     def __init__(self, n: int) -> None:
-        self.points: Mask = np.zeros(n, dtype=bool)
+        self.points: Flags = np.zeros(n, dtype=bool)
         self._let_go = self.points.copy()
         self._before: FacetProjections | None = None
 
@@ -75,7 +71,7 @@ class HeldFeet:
         return before
 
 
-def projected_facets(hit: FacetProjections, facets: Ints) -> npt.NDArray[np.int64]:
+def projected_facets(hit: FacetProjections, facets: Locals) -> Ints:
     """A code of the feature of a facet that each point has below it, (n,).
 
     Args:
@@ -85,13 +81,13 @@ def projected_facets(hit: FacetProjections, facets: Ints) -> npt.NDArray[np.int6
     return np.asarray(facets.astype(np.int64) * len(FEATURES) + hit.feature)
 
 
-def facet_of(codes: npt.NDArray[np.int64]) -> npt.NDArray[np.int64]:
+def facet_of(codes: Ints) -> Ints:
     """Facets in codes of `projected_facets`."""
     return codes // len(FEATURES)
 
 
 def on_held_facets(
-    sides: Sides, now: Floats, hit: FacetProjections, on: Ints, held: Mask
+    sides: Sides, now: Floats, hit: FacetProjections, on: Locals, held: Flags
 ) -> FacetProjections:
     """Projections of which some are on a given facet, continued beyond its sides.
 
@@ -125,7 +121,7 @@ def on_held_facets(
 
 
 def _feet(
-    surface: FacetSurface, x: Floats, facets: Ints, start: Floats
+    surface: FacetSurface, x: Floats, facets: Locals, start: Floats
 ) -> tuple[Floats, Floats, Floats]:
     """Coordinates, positions and normals where x - rho is normal to a facet, by Newton's method."""
     xi = start

@@ -13,8 +13,6 @@ from anisocontact.contact.defaults import FINER, STIFF
 from anisocontact.contact.initial import initial_overlap
 from anisocontact.contact.sharp_edges import SMOOTH
 
-__all__ = ["COARSE", "coarse_slaves", "doubtful_sides", "warn_of"]
-
 #: Size of the facets of the slave over those of the master beyond which points between which
 #: something of the master fits are worth a word; where nothing touches, already at MISSED.
 COARSE, MISSED = 3.0, 1.5

@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.interface import STATUS, Response, State
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -56,7 +54,7 @@ class Slid:
 
     way: Floats
     work: Floats
-    touching: npt.NDArray[np.bool_]
+    touching: Flags
 
     @classmethod
     def of(cls, state: State) -> Slid:

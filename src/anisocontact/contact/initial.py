@@ -6,15 +6,13 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
 from anisocontact.contact.master import Master
 from anisocontact.contact.points import SlavePoints
 from anisocontact.interface import FAILURE, ContactLaw, Interface, Response, State
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw
-
-Floats = npt.NDArray[np.float64]
 
 #: Cosine of the angle of the normals of slave and master above which they point the same way.
 SAME_WAY = 0.5
@@ -176,7 +174,7 @@ def _fields(law: Interface | ContactLaw) -> list[Carried]:
     return [one for one in law.carried if one.field is not None]
 
 
-def _singular(contact: Beginning, one: Carried, size: float) -> npt.NDArray[np.bool_]:
+def _singular(contact: Beginning, one: Carried, size: float) -> Flags:
     """Points at which a field has no direction: asked by pressing every point a little."""
     law = (
         NormalLaw(penalty=1.0),
@@ -191,9 +189,7 @@ def _singular(contact: Beginning, one: Carried, size: float) -> npt.NDArray[np.b
 _DIRECTION = next(code for code, text in enumerate(FAILURE) if "direction field" in text)
 
 
-def _refuse(
-    contact: Beginning, bad: npt.NDArray[np.bool_], text: str, field: str, normal: Floats
-) -> None:
+def _refuse(contact: Beginning, bad: Flags, text: str, field: str, normal: Floats) -> None:
     found = np.flatnonzero(bad)
     local: Any = None
     if found.size:

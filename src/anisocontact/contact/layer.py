@@ -19,14 +19,12 @@ from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.contact.multipliers import RATIO, ContactTrial, Frames
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.interface import STATUS, Response, State
 from anisocontact.interface.series import History
-
-Floats = npt.NDArray[np.float64]
 
 #: Change of the multipliers over the tractions that is good enough to go on with a stiffer layer,
 #: or with none.

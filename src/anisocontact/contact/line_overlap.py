@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Numbers = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
+from anisocontact.base.array_types import Flags, Floats, Ints
 
 
 @dataclass(frozen=True)
@@ -41,12 +39,12 @@ class Number:
         """The difference."""
         return self + other.times(-1.0)
 
-    def where(self, own: npt.NDArray[np.bool_], other: Number) -> Number:
+    def where(self, own: Flags, other: Number) -> Number:
         """These numbers, or others."""
         by = np.where(own[:, None], self.by, other.by)
         return Number(np.where(own, self.of, other.of), by)
 
-    def take(self, which: Numbers) -> Number:
+    def take(self, which: Ints) -> Number:
         """Some of them."""
         return Number(self.of[which], self.by[which])
 
@@ -91,7 +89,7 @@ class Overlap:
         high = high.where(high.of < length.of, length)
         return cls(length, (first, last), low, high)
 
-    def take(self, which: Numbers) -> Overlap:
+    def take(self, which: Ints) -> Overlap:
         """Some of them."""
         first, last = (one.take(which) for one in self.ends)
         return Overlap(

@@ -16,16 +16,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.contact.facing import Facing, Pairs
 from anisocontact.contact.line_overlap import Number, Overlap
 from anisocontact.contact.slave_edges import SlaveEdges, line_rule, line_shapes
 from anisocontact.contact.slave_nodes import Patches
-
-Ints = npt.NDArray[np.int32]
-Numbers = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 #: Ends of the parts of an edge by the number of its nodes, and their coordinates.
 _PARTS = {2: ([[0, 1]], [[0.0, 1.0]]), 3: ([[0, 2], [2, 1]], [[0.0, 0.5], [0.5, 1.0]])}
@@ -59,14 +55,14 @@ class _Edges:
         transform: As of `SlaveEdges`.
     """
 
-    slave: Ints
-    master: Ints
+    slave: Locals
+    master: Locals
     now: Floats
     reference: Floats | None
     across: tuple[float, float]
     transform: Floats
 
-    def integrals(self, f: Numbers, g: Numbers) -> tuple[Numbers, Numbers, Floats, Floats]:
+    def integrals(self, f: Ints, g: Ints) -> tuple[Ints, Ints, Floats, Floats]:
         """Integrals over the overlaps of parts of pairs of edges.
 
         Args:
@@ -111,7 +107,7 @@ class _Edges:
             slopes += product[..., None] * area.by[:, None, None]
         return pair[kept], local[kept], values, slopes
 
-    def _across(self, share: Number, nodes: Ints, length: Floats) -> Number:
+    def _across(self, share: Number, nodes: Locals, length: Floats) -> Number:
         """Length across the plane at points of the slave; of reference per length of now."""
         offset, rate = self.across
         x = self.now if self.reference is None else self.reference
@@ -141,7 +137,7 @@ class LineWeights:
         d_weight: (f, k, c, 2 (k + c)).
     """
 
-    masters: Ints
+    masters: Locals
     area: Floats
     weight: Floats
     d_area: Floats
@@ -177,7 +173,7 @@ class LineWeights:
         return LineWeights(self.masters, area[..., 0], weight, d_area[:, :, 0], d_weight)
 
 
-def listed(owner: Numbers, nodes: Ints, count: int) -> Ints:
+def listed(owner: Ints, nodes: Locals, count: int) -> Locals:
     """Nodes of each owner once, (count, c), ascending, -1 behind the last."""
     most = int(nodes.max(initial=0)) + 1
     own, node = np.divmod(np.unique(owner[nodes >= 0] * most + nodes[nodes >= 0]), most)
@@ -187,12 +183,12 @@ def listed(owner: Numbers, nodes: Ints, count: int) -> Ints:
     return out
 
 
-def place_in(lists: Ints, nodes: Ints) -> Numbers:
+def place_in(lists: Locals, nodes: Locals) -> Ints:
     """Places of nodes, (p, j), in lists, (p, c)."""
     return np.asarray((lists[:, None] == nodes[:, :, None]).argmax(axis=2))
 
 
-def edge_weights(edges: _Edges, f: Numbers, g: Numbers) -> LineWeights:
+def edge_weights(edges: _Edges, f: Ints, g: Ints) -> LineWeights:
     """Weights of slave edges from their overlaps with those of the master, pairs (p,)."""
     pair, local, values, slopes = edges.integrals(f, g)
     owner, below = f[pair], edges.master[g[pair]]
@@ -212,7 +208,7 @@ def edge_weights(edges: _Edges, f: Numbers, g: Numbers) -> LineWeights:
     return _dual(masters, total.swapaxes(1, 2), np.moveaxis(rates, 3, 1))
 
 
-def _dual(masters: Ints, total: Floats, rates: Floats) -> LineWeights:
+def _dual(masters: Locals, total: Floats, rates: Floats) -> LineWeights:
     """W = D m^-1 w and its derivative from (m, w), (f, k, k + c), and theirs."""
     k = total.shape[1]
     m, w, dm, dw = total[..., :k], total[..., k:], rates[:, :, :k], rates[:, :, k:]
@@ -248,7 +244,7 @@ class LineNodes:
     """
 
     around: Patches
-    masters: Ints
+    masters: Locals
     area: Floats
     weight: Floats
     d_area: Floats
@@ -256,13 +252,13 @@ class LineNodes:
 
     def tangent(
         self,
-        which: Ints,
+        which: Locals,
         by: Floats,
         lift: Floats,
         traction: Floats,
-        moving: Sequence[tuple[int, Ints | None, Floats]],
+        moving: Sequence[tuple[int, Locals | None, Floats]],
         threads: int,
-    ) -> tuple[Floats, Ints, Ints, Floats]:
+    ) -> tuple[Floats, Locals, Locals, Floats]:
         """As of `Differentiated`."""
         masters, area, support = self.masters[which], self.area[which], self.around.support[which]
         patch = self.around.nodes[which]
@@ -291,7 +287,7 @@ def line_weights(
     sides: Facing,
     around: Patches,
     now: Floats,
-    more: Ints,
+    more: Locals,
     pairs: Pairs,
     *,
     current_area: bool,

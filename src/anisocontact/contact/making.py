@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_keys, facet_sides
 from anisocontact.contact.analytic import AnalyticMaster
@@ -167,7 +167,7 @@ def _on_surface(
 
 def _slave_nodes(
     model: Model,
-    facets: npt.NDArray[np.int32],
+    facets: Locals,
     current_area: bool,
     of_edges: Callable[[SlaveEdges], NodesOfFacets],
     towards: Towards | None = None,
@@ -194,7 +194,7 @@ def _slave_nodes(
     return SlaveNodes(found, whole, x, current_area=current_area, comm=comm)
 
 
-def _order(model: Model, facets: npt.NDArray[np.int32]) -> int:
+def _order(model: Model, facets: Locals) -> int:
     """Order of the displacement on facets, the higher one where bodies of both orders have them."""
     if not model.linear:
         return model.order

@@ -8,6 +8,7 @@ from typing import Any, Protocol, Self
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.reachable import NodePairs
@@ -16,13 +17,8 @@ from anisocontact.interface import Response, State
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.rigid import RigidBody
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
-Mask = npt.NDArray[np.bool_]
-
-
 #: Local nodes that supports hold along a direction, (nodes,), and the direction, (3,).
-type Resting = tuple[Mask, Floats]
+type Resting = tuple[Flags, Floats]
 
 
 class Answer(Protocol):
@@ -138,7 +134,7 @@ class Master(Protocol):
     def at(self, state: State) -> tuple[Floats, Floats]:
         """Its places at the coordinates of a state, (n, 3), and its tangents, (n, 2, 3), length."""
 
-    def located(self, state: State) -> Mask:
+    def located(self, state: State) -> Flags:
         """Whether each point of a state has a surface below it, (n,)."""
         return np.ones(len(state), dtype=bool)
 
@@ -166,7 +162,7 @@ class Master(Protocol):
         """
         return 0.0
 
-    def couplable(self) -> Ints:
+    def couplable(self) -> Locals:
         """Local nodes that the contact acts on; all ranks together have all of them."""
 
     def take_resting(self, resting: Sequence[Resting], state: State) -> None:
@@ -186,19 +182,19 @@ class Master(Protocol):
         """
         return None
 
-    def immovable(self, fixed: Mask) -> bool:
+    def immovable(self, fixed: Flags) -> bool:
         """Whether it cannot give way where local nodes are fixed, (nodes, 3); collective."""
         return self.body is None or not self.body.free
 
-    def local_names(self, nodes: Ints) -> Ints:
+    def local_names(self, nodes: Locals) -> Locals:
         """Nodes of the slave points as those of the mesh, of which they may be images."""
         return nodes
 
-    def feet(self) -> Ints:
+    def feet(self) -> Locals:
         """Local nodes of the master below points of the trial."""
         return np.zeros(0, dtype=np.int32)
 
-    def opposite(self) -> tuple[Ints, Ints, Floats] | None:
+    def opposite(self) -> tuple[Locals, Locals, Floats] | None:
         """What each slave node is held against in the trial, where points are slave nodes.
 
         Returns:
@@ -207,7 +203,7 @@ class Master(Protocol):
         """
         return None
 
-    def below(self, state: State) -> Ints:
+    def below(self, state: State) -> Locals:
         """Local nodes of the master below points of a state."""
         return np.zeros(0, dtype=np.int32)
 
@@ -239,19 +235,17 @@ class Master(Protocol):
             now: The points in the trial.
         """
 
-    def probe(
-        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
-    ) -> npt.NDArray[np.int8]:
+    def probe(self, laws: tuple[NormalLaw, Adhesion, Friction], state: State) -> Codes:
         """Why other laws would fail in the reference configuration, codes of `FAILURE`, (n,)."""
 
-    def projected_facets(self, count: int) -> npt.NDArray[np.int64]:
+    def projected_facets(self, count: int) -> Ints:
         """The facet, or feature of one, below each point in the trial, a code (n,).
 
         Facets are numbered in the whole group; a smooth master is one.
         """
         return np.zeros(count, dtype=np.int64)
 
-    def hold(self, points: Mask) -> None:
+    def hold(self, points: Flags) -> None:
         """Hold points on the facet that they are on until the trial is kept or forgotten, (n,)."""
         return
 

@@ -7,16 +7,13 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.fenicsx import facet_keys
 from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
 from anisocontact.contact.far_nodes import NONE, FarNodes, node_count, owned_among
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.sweep import Sweep
 from anisocontact.mesh.split import Route, Split, arranged
-
-Ints = npt.NDArray[np.int32]
-Keys = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 
 class MasterSurface:
@@ -44,7 +41,7 @@ class MasterSurface:
     """
 
     def __init__(
-        self, space: Any, facets: Ints, sweep: Sweep | None = None, beside: Keys = NONE
+        self, space: Any, facets: Locals, sweep: Sweep | None = None, beside: Ints = NONE
     ) -> None:
         self._space, self._beside = space, beside
         self.own = own = facet_mesh(space, facets, sweep)
@@ -70,7 +67,7 @@ class MasterSurface:
             nodes = np.ascontiguousarray(own.nodes[order])
             self.facets = FacetMesh(own.topology, nodes, own.flip[order], sweep)
 
-    def gather(self, numbers: Keys) -> None:
+    def gather(self, numbers: Ints) -> None:
         """Have these facets instead of those before; collective.
 
         Args:
@@ -85,7 +82,7 @@ class MasterSurface:
         self.facets = FacetMesh(self.own.topology, named, flip)
         self.reference = self.everywhere(self.start)
 
-    def within(self, low: Floats, high: Floats, now: Floats) -> Keys:
+    def within(self, low: Floats, high: Floats, now: Floats) -> Ints:
         """Facets that may reach into a box; collective.
 
         Args:
@@ -108,7 +105,7 @@ class MasterSurface:
             to.append(np.full(len(found[-1]), rank))
         return np.unique(Route(self.comm, np.concatenate(to)).there(np.concatenate(found)))
 
-    def number(self, facets: Keys) -> Ints:
+    def number(self, facets: Ints) -> Locals:
         """Numbers among those of this process of facets that it has, -1 for others; collective.
 
         Args:
@@ -116,11 +113,11 @@ class MasterSurface:
         """
         return self.renumbered(self.in_group(facets))
 
-    def in_group(self, facets: Keys) -> Keys:
+    def in_group(self, facets: Ints) -> Ints:
         """Numbers in the whole group of facets of `facet_keys`, -1 for others; collective."""
         return self._ranks.find(facets)
 
-    def owned(self, nodes: Ints) -> Ints:
+    def owned(self, nodes: Locals) -> Locals:
         """Nodes of the mesh that this process owns, among those any process names; collective.
 
         Args:
@@ -128,7 +125,7 @@ class MasterSurface:
         """
         return owned_among(self._space, nodes[nodes < node_count(self._space)])
 
-    def renumbered(self, numbers: npt.NDArray[Any]) -> Ints:
+    def renumbered(self, numbers: npt.NDArray[Any]) -> Locals:
         """Numbers among those of this process of facets that it has; -1 for others.
 
         Args:
@@ -139,11 +136,11 @@ class MasterSurface:
         place = np.minimum(np.searchsorted(self.numbers, numbers), len(self.numbers) - 1)
         return np.where(self.numbers[place] == numbers, place, -1).astype(np.int32)
 
-    def globally(self, facets: npt.NDArray[Any]) -> Ints:
+    def globally(self, facets: npt.NDArray[Any]) -> Locals:
         """Numbers in the whole group of facets of this process, -1 for none, (n,)."""
         return np.asarray(np.append(self.numbers, -1)[facets], dtype=np.int32)
 
-    def names(self, nodes: Ints) -> Ints:
+    def names(self, nodes: Locals) -> Locals:
         """Nodes of facets of this process by the first of these and their place on it.
 
         Args:
@@ -158,7 +155,7 @@ class MasterSurface:
         names[nodes >= 0] = self._width * self.numbers[facet] + place
         return names
 
-    def of_names(self, names: Ints) -> Ints:
+    def of_names(self, names: Locals) -> Locals:
         """Nodes of `names`, whose facets this process has."""
         there = names >= 0
         nodes = np.full_like(names, -1)
@@ -166,7 +163,7 @@ class MasterSurface:
         nodes[there] = self.facets.nodes[self.renumbered(facet), place]
         return nodes
 
-    def facets_of_names(self, names: Ints) -> Ints:
+    def facets_of_names(self, names: Locals) -> Locals:
         """Numbers in the whole group of the facets of `names`, -1 for none."""
         return names // self._width
 
@@ -198,7 +195,7 @@ class MasterSurface:
             self._sweep.fold(forces, out)
         self._far.hand_back(forces, out)
 
-    def coupled(self, nodes: Ints) -> Ints:
+    def coupled(self, nodes: Locals) -> Locals:
         """Nodes as `Couplings` name them: gathered ones by their number in the whole mesh.
 
         Args:
@@ -215,7 +212,7 @@ class MasterSurface:
         """Displacements of the nodes as they are numbered here, from those of the mesh."""
         return u if self._sweep is None else self._sweep.moved(u)
 
-    def local_names(self, nodes: Ints) -> Ints:
+    def local_names(self, nodes: Locals) -> Locals:
         """Nodes of which some are images as those of the mesh."""
         return nodes if self._sweep is None else self._sweep.named(nodes)
 
@@ -235,12 +232,12 @@ class _Ranks:
         keys: Keys of this process, each on one of them.
     """
 
-    def __init__(self, comm: Any, keys: Keys) -> None:
+    def __init__(self, comm: Any, keys: Ints) -> None:
         self._comm, self._end = comm, max(comm.allgather(int(keys.max(initial=-1)))) + 1
         self._there = np.sort(self._route(keys).there(keys))
         self._first = Split(comm, len(self._there)).first
 
-    def find(self, keys: Keys) -> Keys:
+    def find(self, keys: Ints) -> Ints:
         """Place of each of some keys, -1 for one that is not there, (n,)."""
         route = self._route(keys)
         asked = route.there(keys)
@@ -248,6 +245,6 @@ class _Ranks:
         known = np.append(self._there, -1)[place] == asked
         return route.back(np.where(known, self._first + place, -1))
 
-    def _route(self, keys: Keys) -> Route:
+    def _route(self, keys: Ints) -> Route:
         size = self._comm.size
         return Route(self._comm, np.minimum(keys * size // max(self._end, 1), size - 1))

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master import Master
 from anisocontact.contact.point_tangent import Nodes
@@ -14,10 +14,6 @@ from anisocontact.contact.sides import Sides
 from anisocontact.contact.whereabouts import Seen, Whereabouts, carried
 from anisocontact.interface import ContactLaw, State
 from anisocontact.surfaces.facets import FacetProjections
-
-Mask = npt.NDArray[np.bool_]
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 
 class MeshedMaster(Master):
@@ -46,16 +42,16 @@ class MeshedMaster(Master):
         self.take(law, law)
 
     @property
-    def facets(self) -> Ints:
+    def facets(self) -> Locals:
         """Nodes of the facets that this rank has, (m, k)."""
         return self._gathered.local_names(self.sides.master.nodes)
 
     @override
-    def local_names(self, nodes: Ints) -> Ints:
+    def local_names(self, nodes: Locals) -> Locals:
         return self._gathered.local_names(nodes)
 
     @property
-    def numbers(self) -> npt.NDArray[np.int64]:
+    def numbers(self) -> Ints:
         """Their numbers in the whole group."""
         return self._gathered.numbers
 
@@ -65,7 +61,7 @@ class MeshedMaster(Master):
         self._derivative = self._law if derivative is laws else derivative.on_facets()
 
     @override
-    def located(self, state: State) -> Mask:
+    def located(self, state: State) -> Flags:
         return np.asarray(state["facet"] >= 0)
 
     @override
@@ -78,12 +74,12 @@ class MeshedMaster(Master):
         return slave * self.sides.points.size / (master * self.size)
 
     @override
-    def couplable(self) -> Ints:
+    def couplable(self) -> Locals:
         named = self._gathered.local_names
         return np.union1d(named(self.sides.slave.nodes), named(self._gathered.own.nodes))
 
     @override
-    def immovable(self, fixed: Mask) -> bool:
+    def immovable(self, fixed: Flags) -> bool:
         here = bool(fixed[self._gathered.local_names(self._gathered.own.nodes)].all())
         return all(self._comm.allgather(here))
 
@@ -119,7 +115,7 @@ class MeshedMaster(Master):
             gathered.local(self.sides.reference) + u
         )
 
-    def _have(self, u: Floats, *facets: Ints) -> None:
+    def _have(self, u: Floats, *facets: Locals) -> None:
         """Have the facets of the master that are near, and others; collective.
 
         Args:

@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.contact.contact_planes import ContactPlanes, Opposite
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
@@ -20,10 +20,6 @@ from anisocontact.surfaces import default_threads
 
 #: Status of a node that slides.
 SLIP = STATUS.index("slip")
-
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -49,12 +45,12 @@ class MortarState:
     reference: Floats
 
     @cached_property
-    def columns(self) -> Ints:
+    def columns(self) -> Locals:
         """Nodes that the traction of each slave node depends on, (n, c), -1 for none."""
         return np.concatenate([self.quadrature.nodes, self.weights.masters], axis=1)
 
     @cached_property
-    def rows(self) -> Ints:
+    def rows(self) -> Locals:
         """Nodes that its force acts on, (n, r), -1 for none."""
         own = self.quadrature.nodes[:, : self.quadrature.rows]
         return np.concatenate([own, self.weights.masters], axis=1)
@@ -67,7 +63,7 @@ class MortarState:
         return np.concatenate([area * own, -self.weights.weight], axis=1)
 
     @property
-    def _moving(self) -> list[tuple[int, Ints | None, Floats]]:
+    def _moving(self) -> list[tuple[int, Locals | None, Floats]]:
         """How slave point, tangents and planes are made of nodes: first of twelve, nodes, values.
 
         The slave point and its tangents, the mean of the master and the tangents there, these of
@@ -75,15 +71,15 @@ class MortarState:
         """
         quadrature, (now, then) = self.quadrature, self.opposite
         own = [quadrature.basis, quadrature.gradient[:, 0].swapaxes(1, 2)]
-        parts: list[tuple[int, Ints | None, Floats]] = [(0, None, np.concatenate(own, axis=1))]
+        parts: list[tuple[int, Locals | None, Floats]] = [(0, None, np.concatenate(own, axis=1))]
         for first, one in ((3, now), (6, then)):
             parts += [(first, one.masters, one.shares[:, None])]
             parts += [(first + 1, one.around, one.along)]
         return [*parts, (9, now.nodes, now.shape[:, None]), (10, now.nodes, now.gradient)]
 
     def tangent(
-        self, by_nodes: Floats, which: Ints, traction: Floats
-    ) -> tuple[Floats, Ints, Ints, Floats]:
+        self, by_nodes: Floats, which: Locals, traction: Floats
+    ) -> tuple[Floats, Locals, Locals, Floats]:
         """Derivative of tractions, and of the forces that they are.
 
         Args:
@@ -144,13 +140,13 @@ class MortarAnswer:
     at: MortarState
     snapshot: Snapshot
     stiffness: Floats
-    which: Ints
+    which: Locals
     by_nodes: Floats
     answered: Floats
     by_held: Floats
 
     @cached_property
-    def _tangent(self) -> tuple[Floats, Ints, Ints, Floats]:
+    def _tangent(self) -> tuple[Floats, Locals, Locals, Floats]:
         traction = self.snapshot.response.traction[self.which]
         return self.at.tangent(self.by_nodes, self.which, traction)
 
@@ -163,7 +159,7 @@ class MortarAnswer:
         """As of `Answer`."""
         self.add_traction(self.which, self.snapshot.response.traction[self.which], out)
 
-    def add_traction(self, which: Ints, traction: Floats, out: Floats) -> None:
+    def add_traction(self, which: Locals, traction: Floats, out: Floats) -> None:
         """Add the forces of tractions on the slave, (p, 3), of some slave nodes, (p,)."""
         rows, weights = self.at.rows[which], self.at.row_weights[which]
         forces = self.at.gathered.zeros(out)

@@ -9,6 +9,7 @@ from typing import Any, override
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Codes, Flags, Floats, Locals
 from anisocontact.contact.along_normals import OPPOSED
 from anisocontact.contact.contact_planes import (
     ContactPlanes,
@@ -40,10 +41,6 @@ from anisocontact.interface.contact_law import FacetBatch, FacetLaw
 from anisocontact.interface.failed_point import OnFacets, one_point
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
-
-Mask = npt.NDArray[np.bool_]
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 #: Gap up to which a node may be in contact, as a share of the size of the facets: rounding.
 NEAR = 1e-6
@@ -78,7 +75,7 @@ class MortarMaster(MeshedMaster):
         width = sides.master.nodes.shape[1]
         self._then = Opposite.none(len(sides.points.facet), width)
         # slave nodes that count slip from a trial, and what was opposite at the accepted increment
-        self._replaced: tuple[Mask, Opposite] | None = None
+        self._replaced: tuple[Flags, Opposite] | None = None
         super().__init__(sides, law, group=group, size=size)
         self._at = self._placed()
 
@@ -112,7 +109,7 @@ class MortarMaster(MeshedMaster):
         )
 
     @property
-    def _below(self) -> Ints:
+    def _below(self) -> Locals:
         """Nodes of the facets closest to the slave nodes, (n, j), -1 for none."""
         facet, nodes = self._hint.facet, self.sides.master.nodes
         if not len(nodes):
@@ -121,7 +118,7 @@ class MortarMaster(MeshedMaster):
         return np.where(facet[:, None] >= 0, found, np.int32(-1))
 
     @property
-    def _located(self) -> Mask:
+    def _located(self) -> Flags:
         """Slave nodes with a master opposite."""
         at = self._at
         covered = at.weights.area > COVERED * self._points.quadrature.areas
@@ -169,7 +166,7 @@ class MortarMaster(MeshedMaster):
         return anew
 
     def _number_anew(
-        self, u: Floats, thens: Sequence[Opposite], hints: Sequence[Ints]
+        self, u: Floats, thens: Sequence[Opposite], hints: Sequence[Locals]
     ) -> list[Opposite]:
         """Have the facets of the master that are near and those that are named; collective.
 
@@ -279,12 +276,12 @@ class MortarMaster(MeshedMaster):
         return self._at.planes.points(state["facet"], state["xi"])
 
     @override
-    def feet(self) -> Ints:
+    def feet(self) -> Locals:
         named = self._gathered.local_names(self._at.weights.masters)
         return np.unique(named[named >= 0])
 
     @override
-    def opposite(self) -> tuple[Ints, Ints, Floats]:
+    def opposite(self) -> tuple[Locals, Locals, Floats]:
         named, weights = self._gathered.local_names, self._at.weights
         return named(self._at.quadrature.nodes[:, 0]), named(weights.masters), weights.shares
 
@@ -298,14 +295,12 @@ class MortarMaster(MeshedMaster):
         return found.with_behind(there, hit.normal, self._points.quadrature.areas)
 
     @override
-    def below(self, state: State) -> Ints:
+    def below(self, state: State) -> Locals:
         named = self._gathered.local_names(self._then.named()[self.located(state)])
         return np.unique(named[named >= 0])
 
     @override
-    def probe(
-        self, laws: tuple[NormalLaw, Adhesion, Friction], state: State
-    ) -> npt.NDArray[np.int8]:
+    def probe(self, laws: tuple[NormalLaw, Adhesion, Friction], state: State) -> Codes:
         law = ContactLaw(*laws).on_facets()
         failure = self._answer(law, state, 1.0, False).snapshot.response.failure
         return np.asarray(failure, dtype=np.int8)

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.slave_nodes import SlaveNodes
 from anisocontact.surfaces.facets import FACET_STATUS
-
-Floats = npt.NDArray[np.float64]
-Numbers = npt.NDArray[np.int64]
 
 
 def mortar_reachable(
@@ -60,7 +57,7 @@ def mortar_reachable(
     return [(named(rows), named(columns)) for rows, columns in pairs]
 
 
-def _incidence(point: Numbers, nodes: npt.NDArray[np.int32], count: int) -> scipy.sparse.csr_array:
+def _incidence(point: Ints, nodes: Locals, count: int) -> scipy.sparse.csr_array:
     """Which nodes of the master are near each point: a matrix (points, nodes)."""
     rows = np.repeat(point, nodes.shape[1])
     shape = (count, int(nodes.max(initial=-1)) + 1)

@@ -8,17 +8,14 @@ from functools import cache
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.fenicsx import basix
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.facing import Facing, Pairs
 from anisocontact.contact.line_weights import line_weights
 from anisocontact.contact.slave_nodes import Patches
-
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 #: Degree of the product of two shape functions of the position, by topology, on triangles and
 #: parallelograms, and of the rule on other quadrilaterals, where they are no polynomials.
@@ -37,14 +34,14 @@ class Differentiated(Protocol):
 
     def tangent(
         self,
-        which: Ints,
+        which: Locals,
         by: Floats,
         lift: Floats,
         traction: Floats,
-        moving: Sequence[tuple[int, Ints | None, Floats]],
+        moving: Sequence[tuple[int, Locals | None, Floats]],
         threads: int,
         /,
-    ) -> tuple[Floats, Ints, Ints, Floats]:
+    ) -> tuple[Floats, Locals, Locals, Floats]:
         """Derivatives of tractions, and of the forces that they are.
 
         Args:
@@ -72,7 +69,7 @@ class MortarWeights:
         core: What has found them, and differentiates them.
     """
 
-    masters: Ints
+    masters: Locals
     area: Floats
     weight: Floats
     core: Differentiated
@@ -88,7 +85,7 @@ def mortar_weights(
     sides: Facing,
     around: Patches,
     now: Floats,
-    more: Ints,
+    more: Locals,
     pairs: Pairs,
     *,
     current_area: bool,
@@ -143,7 +140,7 @@ def mortar_weights(
     return MortarWeights(core.masters, core.area, core.weight, core)
 
 
-def _by_slave(pairs: Pairs, slaves: int, masters: int) -> tuple[npt.NDArray[np.int64], Ints]:
+def _by_slave(pairs: Pairs, slaves: int, masters: int) -> tuple[Ints, Locals]:
     """Where the facets opposite to each of the slave begin, and these, ascending."""
     order = np.argsort(pairs.slave * masters + pairs.master, kind="stable")
     offsets = np.searchsorted(pairs.slave[order], np.arange(slaves + 1))

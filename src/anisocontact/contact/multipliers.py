@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
 from anisocontact.interface import STATUS, VECTOR_FORMS, ContactLaw, Interface, Response, State
 from anisocontact.interface.augmentation import NEWTON, Augmentation
@@ -24,7 +24,6 @@ from anisocontact.interface.augmentation import NEWTON, Augmentation
 #: Laws whose penalties can be augmented.
 type AugmentedLaw = Interface | ContactLaw
 
-Floats = npt.NDArray[np.float64]
 
 #: Change of the multipliers over the tractions, both as norms over the area, that is good enough.
 SHARE = 1e-5
@@ -162,9 +161,9 @@ class ContactTrial:
     now: Frames
     before: Frames
     axes: Floats
-    immovable: npt.NDArray[np.bool_]
+    immovable: Flags
     covered: Floats
-    shared: npt.NDArray[np.bool_]
+    shared: Flags
     held: Floats | None
 
     @property
@@ -186,7 +185,7 @@ class ContactTrial:
         return np.where(self.shared, 1.0 - self.covered / SHARED_RATIO, 1.0)[:, None]
 
     @property
-    def remembers(self) -> npt.NDArray[np.bool_]:
+    def remembers(self) -> Flags:
         """Points that were in contact and have a tangential history, (n, 1)."""
         return np.asarray(self.start["status"] != OPEN)[:, None]
 
@@ -224,7 +223,7 @@ class Multipliers:
         """What normal penalty and stiffness of adhesion are multiplied with now."""
         return self.factor, self.factor * self._proportion if self.tangential else 1.0
 
-    def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
+    def begin(self, state: State, located: Flags) -> State:
         """What the trials of the next increment start from.
 
         A point nearer than the tolerance counts as touching: it bears a pressure that closes the
@@ -336,7 +335,7 @@ class Multipliers:
         given = np.hstack([step.start["multiplier"][:, None], old])
         return given, np.hstack([step.answer.pressure[:, None], force])
 
-    def beyond(self, step: ContactTrial) -> npt.NDArray[np.bool_]:
+    def beyond(self, step: ContactTrial) -> Flags:
         """Points whose pressure, as one of a penalty, stands for more than the tolerance, (n,)."""
         deep = step.covered * step.answer.pressure / (self._penalties[0] * self.factors[0])
         return np.asarray(deep > self._limit)

@@ -9,9 +9,7 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
-
+from anisocontact.base.array_types import Flags
 from anisocontact.contact.multipliers import ContactTrial, Multipliers
 from anisocontact.contact.penalty import PENALTY_FACTOR
 from anisocontact.contact.semismooth import Semismooth
@@ -58,7 +56,7 @@ class Nested(Uzawa):
         """What normal penalty and stiffness of adhesion are multiplied with now."""
         return self._last.factors if self._ends else super().factors
 
-    def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
+    def begin(self, state: State, located: Flags) -> State:
         """What the trials of the next increment start from, see `Multipliers.begin`."""
         self._ends, self._next = False, None
         self._last.begin(state, located)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
 from anisocontact.contact.adjust import adjusted
 from anisocontact.contact.body_blocks import BodyBlocks
@@ -22,10 +23,6 @@ from anisocontact.interface import FAILURE, Response
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.mesh.node_unknowns import NodeUnknowns
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
-Mask = npt.NDArray[np.bool_]
 
 #: Fields of a point's state that are energies per area, by their name in the balance: what is
 #: stored, and what is dissipated, which grows by increments on the area of each.
@@ -155,7 +152,7 @@ class Pass:
         self.trials.suit(self.body_stiffness)
         self._begin()
 
-    def take_supports(self, fixed: Mask, resting: Sequence[Resting]) -> None:
+    def take_supports(self, fixed: Flags, resting: Sequence[Resting]) -> None:
         """Learn which displacements are prescribed from now on.
 
         Args:

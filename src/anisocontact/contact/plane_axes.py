@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact import _core
-
-Floats = npt.NDArray[np.float64]
+from anisocontact.base.array_types import Floats
 
 
 @dataclass(frozen=True)

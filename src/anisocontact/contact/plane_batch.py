@@ -6,20 +6,17 @@ from functools import lru_cache
 from typing import TypedDict
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Codes, Flags, Floats, Locals
 from anisocontact.contact.contact_planes import NODES
 from anisocontact.contact.facet_answer import OFF
 from anisocontact.contact.mortar_answer import MortarState
 from anisocontact.interface.contact_law import FacetBatch
-from anisocontact.surfaces.facets import TOPOLOGIES
-
-Mask = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
+from anisocontact.surfaces import TOPOLOGIES
 
 
 def plane_batch(
-    at: MortarState, located: Mask, near: Mask, tangent: bool, threads: int
+    at: MortarState, located: Flags, near: Flags, tangent: bool, threads: int
 ) -> FacetBatch:
     """Each slave node as a point of a triangle, and its planes of now and then as two others.
 
@@ -50,14 +47,14 @@ def plane_batch(
 class _Triangles(TypedDict):
     """Part of `FacetBatch`."""
 
-    slave_nodes: npt.NDArray[np.int32]
+    slave_nodes: Locals
     slave_shape: Floats
     slave_gradient: Floats
     weight: Floats
-    connectivity: npt.NDArray[np.int32]
-    topology: npt.NDArray[np.int8]
-    flip: Mask
-    facet: npt.NDArray[np.int32]
+    connectivity: Locals
+    topology: Codes
+    flip: Flags
+    facet: Locals
     edge: Floats
 
 

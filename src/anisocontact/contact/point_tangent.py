@@ -6,12 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.contact.facet_answer import ByPoints, FacetAnswer
 from anisocontact.contact.points import SlavePoints
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,16 +6,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.quadrature import FacetQuadrature, Surfaced, mean_size
 
 #: Share of the normal along free displacements below which a point does not move along it.
 FREE = 0.1
-
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 
 class SlavePoints:
@@ -53,12 +50,12 @@ class SlavePoints:
 
     spread = beside = 0.0
     at_nodes = False
-    polygons: Ints = np.zeros((0, 3), dtype=np.int32)
+    polygons: Locals = np.zeros((0, 3), dtype=np.int32)
 
     def __init__(
         self,
         quadrature: FacetQuadrature,
-        flip: npt.NDArray[np.bool_],
+        flip: Flags,
         *,
         current_area: bool,
         comm: Any,
@@ -70,7 +67,7 @@ class SlavePoints:
         self._sign = np.where(np.repeat(flip, each), -1.0, 1.0)
         self.size = mean_size(quadrature, comm)
 
-    def held(self, fixed: npt.NDArray[np.bool_], normal: Floats) -> npt.NDArray[np.bool_]:
+    def held(self, fixed: Flags, normal: Floats) -> Flags:
         """Points that cannot move along the normal.
 
         Args:
@@ -82,7 +79,7 @@ class SlavePoints:
         free = moving.any(axis=1)
         return np.asarray(np.linalg.norm(free * normal, axis=1) < FREE)
 
-    def peaks(self, areas: Floats) -> npt.NDArray[np.bool_]:
+    def peaks(self, areas: Floats) -> Flags:
         """Points whose tractions count among peaks, of those with some areas, (n,)."""
         return np.ones(len(areas), dtype=bool)
 
@@ -102,12 +99,12 @@ class SlavePoints:
         """Values of the nodes as points number them from those of the local nodes; collective."""
         return nodal
 
-    def coupled(self, nodes: Ints) -> Ints:
+    def coupled(self, nodes: Locals) -> Locals:
         """Nodes as `Couplings` name them from those of points."""
         return nodes
 
     @cached_property
-    def nodes(self) -> Ints:
+    def nodes(self) -> Locals:
         """Local nodes of the facet of each point, (n, k)."""
         return np.repeat(self.quadrature.nodes, self.quadrature.basis.shape[1], axis=0)
 

@@ -5,14 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact.anisotropy import BY_COORDINATES
+from anisocontact.base.array_types import Floats
 from anisocontact.interface import Interface
 from anisocontact.surfaces import Surface
-
-Floats = npt.NDArray[np.float64]
-
 
 #: Share of a direction up to which two components are as large as each other: rounding.
 SAME = 1e-6

@@ -7,19 +7,16 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import basix, facet_sides, geometry, scalar_element
 from anisocontact.mesh.idealisation import SOLID, Idealisation
 
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
-
 #: Nodes of rows and columns, (p, r) and (p, c), -1 for none, and blocks (p, 3 r, 3 c), or one 3 x 3
 #: matrix for each pair of nodes, (p, r, c, 3, 3).
-type Couplings = tuple[Ints, Ints, Floats]
+type Couplings = tuple[Locals, Locals, Floats]
 
 
 @dataclass(frozen=True)
@@ -39,7 +36,7 @@ class FacetQuadrature:
         spread: Shares of the nodes in the position that it goes with, (m, q, k); `basis` if None.
     """
 
-    nodes: Ints
+    nodes: Locals
     basis: Floats
     weights: Floats
     reference: Floats
@@ -286,7 +283,7 @@ def mean_size(quadrature: FacetQuadrature, comm: Any) -> float:
     return float(mean if line else np.sqrt(mean))
 
 
-def inward(space: Any, facets: Ints, quadrature: FacetQuadrature) -> npt.NDArray[np.bool_]:
+def inward(space: Any, facets: Locals, quadrature: FacetQuadrature) -> Flags:
     """Whether the first tangent cross the second points into the body, of each facet, (m,).
 
     Args:
@@ -303,7 +300,7 @@ def inward(space: Any, facets: Ints, quadrature: FacetQuadrature) -> npt.NDArray
 
 
 def facet_quadrature(
-    space: Any, facets: Ints, degree: int, idealisation: Idealisation = SOLID
+    space: Any, facets: Locals, degree: int, idealisation: Idealisation = SOLID
 ) -> FacetQuadrature:
     """Quadrature of the given degree on boundary facets.
 

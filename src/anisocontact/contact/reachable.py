@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.contact.sides import Sides, located
 from anisocontact.interface import State
 from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
 
-Ints = npt.NDArray[np.int32]
-Numbers = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
-
 #: Nodes of rows and columns that are coupled, (p, r) and (p, c), named as in `Couplings`.
-type NodePairs = tuple[Ints, Ints]
+type NodePairs = tuple[Locals, Locals]
 
 
 def reachable(sides: Sides, now: Floats, way: Floats, margin: float, hops: int) -> list[NodePairs]:
@@ -73,7 +69,7 @@ def slid(sides: Sides, state: State, hit: FacetProjections) -> Floats:
     return out
 
 
-def _met(group: Numbers, facet: Ints, facets: int, hops: int) -> tuple[Numbers, Numbers]:
+def _met(group: Ints, facet: Locals, facets: int, hops: int) -> tuple[Ints, Ints]:
     """Pairs of facets that are in one group, or in groups at most `hops` apart."""
     rows, columns = _different(group, facet, facets)
     shape = (int(rows.max(initial=0)) + hops + 1, facets)
@@ -86,7 +82,7 @@ def _met(group: Numbers, facet: Ints, facets: int, hops: int) -> tuple[Numbers, 
     return to.astype(np.int64), back.astype(np.int64)
 
 
-def _different(first: Numbers, second: Ints, count: int) -> tuple[Numbers, Numbers]:
+def _different(first: Ints, second: Locals, count: int) -> tuple[Ints, Ints]:
     """Each pair of numbers once; `second` is below `count`."""
     own, other = np.divmod(np.unique(first * count + second), count)
     return own, other

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.contact.facet_mesh import (
     FacetMesh,
     FacetShapes,
@@ -14,10 +14,6 @@ from anisocontact.contact.facet_mesh import (
 )
 from anisocontact.contact.sweep import Sweep
 from anisocontact.mesh import Model
-
-__all__ = ["sagitta"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Cosine of the angle of a facet and the mean at its vertex below which that is an edge: one of
 #: the body, not of a mesh that stands for something round.

@@ -18,8 +18,8 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.contact.master import Linear
 from anisocontact.contact.multipliers import (
     OPEN,
@@ -32,8 +32,6 @@ from anisocontact.contact.multipliers import (
     Multipliers,
 )
 from anisocontact.interface import State
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -131,7 +129,7 @@ class Semismooth(Multipliers):
         """As of `Multipliers.settled`: springs let a body glide on that nothing rubs against."""
         return self.begin_from(step)
 
-    def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
+    def begin(self, state: State, located: Flags) -> State:
         """What the trials of the next increment start from, see `Multipliers.begin`."""
         self.share = 1.0
         self.factor = self.level

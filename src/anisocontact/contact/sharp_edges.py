@@ -18,35 +18,30 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import facet_quadrature, inward
 from anisocontact.mesh import Model
 
-Ints = npt.NDArray[np.int32]
-Numbers = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
-Mask = npt.NDArray[np.bool_]
-
 #: Places, (n, 3), and the normals of facets there with their place, (pairs, 3) and (pairs,), to
 #: outward unit normals of the master nearest to the places, (n, 3); not a number where none is.
-type Towards = Callable[[Floats, Floats, Numbers], Floats]
+type Towards = Callable[[Floats, Floats, Ints], Floats]
 
 
 class Around(Protocol):
     """The facets around slave nodes, see `Patches`."""
 
     @property
-    def offsets(self) -> Numbers:
+    def offsets(self) -> Ints:
         """Where the facets of each node begin, (n + 1,)."""
 
     @property
-    def facets(self) -> Ints:
+    def facets(self) -> Locals:
         """Facets around the nodes, one list after the other."""
 
     @property
-    def nodes(self) -> Ints:
+    def nodes(self) -> Locals:
         """Each node first, then those around it, (n, k)."""
 
     @property
@@ -62,7 +57,7 @@ BEHIND = 0.02
 SHARP = np.sqrt(0.75)
 
 
-def facing_facets(owner: Numbers, normals: Floats, master: Floats) -> Mask:
+def facing_facets(owner: Ints, normals: Floats, master: Floats) -> Flags:
     """Facets that make the averaged normals of nodes, (pairs,).
 
     Args:
@@ -106,7 +101,7 @@ def counting(around: Around, normals: Floats, x: Floats, towards: Towards | None
     return counts
 
 
-def beside_edges(around: Around, keys: Numbers, comm: Any) -> Mask:
+def beside_edges(around: Around, keys: Ints, comm: Any) -> Flags:
     """Facets that do not count at one of their nodes, on whatever process, (m,); collective.
 
     Args:
@@ -134,7 +129,7 @@ def towards_itself(model: Model, group: str) -> Towards:
     """The same of a group that meets itself: of those facets that face one at the place."""
     places, normals = _middles(model, group)
 
-    def towards(x: Floats, own: Floats, owner: Numbers) -> Floats:
+    def towards(x: Floats, own: Floats, owner: Ints) -> Floats:
         found = np.full_like(x, np.nan)
         for i, place in enumerate(x):
             there, way = own[owner == i], places - place

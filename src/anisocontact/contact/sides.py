@@ -8,8 +8,8 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Codes, Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_keys, facet_sides
 from anisocontact.contact.facet_mesh import (
@@ -31,17 +31,14 @@ from anisocontact.contact.sweep import Sweep
 from anisocontact.contact.whereabouts import Seen
 from anisocontact.interface import State
 from anisocontact.mesh import Model
-from anisocontact.surfaces import default_threads
-from anisocontact.surfaces.facets import (
+from anisocontact.surfaces import (
     FACET_STATUS,
     TOPOLOGIES,
     FacetProjections,
     FacetSets,
     FacetSurface,
+    default_threads,
 )
-
-Mask = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -72,7 +69,7 @@ class Sides:
     reach: float
     apart: Near | None
     near: Near | None
-    kinds: npt.NDArray[np.int8]
+    kinds: Codes
     at: Floats
     threads: int
     comm: Any
@@ -117,7 +114,7 @@ class Sides:
         self.surface.update(now)
         return self.surface.project(self.points.positions(now), hint, self.reach, self.excluded)
 
-    def look(self, x: Floats, which: npt.NDArray[np.int64] | None = None) -> Seen:
+    def look(self, x: Floats, which: Ints | None = None) -> Seen:
         """The master where it is now from points.
 
         Args:
@@ -192,7 +189,7 @@ class Sides:
         # where the way is not finite, nothing is found anyway
         return bool(self.reach < 3.0 * slave + master < np.inf)
 
-    def gather(self, now: Floats, more: npt.NDArray[np.int64]) -> Sides:
+    def gather(self, now: Floats, more: Ints) -> Sides:
         """Both sides with the facets of the master that are near now; collective.
 
         Args:
@@ -216,7 +213,7 @@ def _collect(
     points: SlavePoints,
     now: Floats,
     far: float,
-    more: npt.NDArray[np.int64],
+    more: Ints,
 ) -> None:
     """Gather what is near a slave, and more; all is there on one process."""
     if not gathered.distributed:
@@ -244,7 +241,7 @@ def _surface(gathered: MasterSurface, now: Floats) -> FacetSurface:
     return FacetSurface(x, facets.nodes, facets.topology, facets.flip)
 
 
-def _kinds(facets: FacetMesh) -> npt.NDArray[np.int8]:
+def _kinds(facets: FacetMesh) -> Codes:
     return np.full(len(facets.nodes), list(TOPOLOGIES).index(facets.topology), dtype=np.int8)
 
 
@@ -313,7 +310,7 @@ def make_sides(
     )
 
 
-def located(hit: FacetProjections) -> Mask:
+def located(hit: FacetProjections) -> Flags:
     """Whether each point has a facet below it, (n,)."""
     return np.asarray(hit.status == FACET_STATUS.index("on"))
 

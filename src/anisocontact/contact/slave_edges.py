@@ -10,8 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.fenicsx import basix
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.quadrature import FacetQuadrature
@@ -25,9 +25,6 @@ from anisocontact.contact.slave_nodes import (
     transformed,
 )
 from anisocontact.contact.sweep import Sweep
-
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 #: Coordinates of the nodes on the reference edge.
 NODES = np.array([0.0, 1.0, 0.5])
@@ -76,7 +73,7 @@ class SlaveEdges:
         return self.facets.sweep
 
     @property
-    def nodes(self) -> Ints:
+    def nodes(self) -> Locals:
         """Nodes of each edge, (m, 2 or 3)."""
         return self.sweep.edges(self.facets.nodes)
 
@@ -156,12 +153,12 @@ class SlaveEdges:
         ends = self.reference[self.nodes[:, :2]]
         return self._outward(ends[:, 1] - ends[:, 0], np.arange(len(ends), dtype=np.int32))
 
-    def _outward(self, t: Floats, edge: Ints) -> Floats:
+    def _outward(self, t: Floats, edge: Locals) -> Floats:
         """Outward normals of edges, (n,), from tangents, (n, 3)."""
         sign = np.where(self.facets.flip[edge], -1.0, 1.0)[:, None]
         return np.asarray(sign * np.cross(t, ACROSS) / np.linalg.norm(t, axis=1)[:, None])
 
-    def _slopes(self, around: Patches, owner: npt.NDArray[np.int64]) -> Floats:
+    def _slopes(self, around: Patches, owner: Ints) -> Floats:
         """Shares of edges in the derivative at each node along its averaged tangent, (pairs, k)."""
         edges = self.nodes[around.facets]
         slope = line_shapes(NODES[around.local], edges.shape[1])[1]

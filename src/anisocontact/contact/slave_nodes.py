@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.fenicsx import basix
 from anisocontact.base.peaks import PEAK
 from anisocontact.contact.facet_mesh import (
@@ -26,10 +27,6 @@ from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sharp_edges import Towards, beside_edges, counting
 from anisocontact.mesh.split import Route, Split
-
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
-Numbers = npt.NDArray[np.int64]
 
 #: Share of the nodes of the edges that the vertices of a tri6 take, whose own functions have no
 #: mass [Popp Wohlmuth Gitterle Wall 2012, sec. 3.2]; as in cpp/include/anisocontact/mortar. An edge
@@ -78,13 +75,13 @@ class Patches:
     """
 
     mesh: FacetMesh
-    offsets: npt.NDArray[np.int64]
-    facets: Ints
-    local: Ints
-    nodes: Ints
+    offsets: Ints
+    facets: Locals
+    local: Locals
+    nodes: Locals
     support: Floats
     counts: Floats
-    pieces: Ints
+    pieces: Locals
     memory: _core.MortarMemory = field(default_factory=_core.MortarMemory)
 
 
@@ -102,10 +99,10 @@ class WholeFacets:
     mesh: FacetMesh
     far: FarNodes
     others: FarNodes
-    keys: Numbers
+    keys: Ints
 
 
-def around_own_nodes(space: Any, mesh: FacetMesh, keys: Numbers) -> WholeFacets:
+def around_own_nodes(space: Any, mesh: FacetMesh, keys: Ints) -> WholeFacets:
     """The facets around nodes; on one process those that are given; collective.
 
     Args:
@@ -247,7 +244,7 @@ def nodes_of_facets(
     return around, points, float(np.sqrt(area / max(facets, 1.0)))
 
 
-def _plane_gradients(around: Patches, owner: Numbers, reference: Floats) -> Floats:
+def _plane_gradients(around: Patches, owner: Ints, reference: Floats) -> Floats:
     """Mean gradients along two axes of a plane at each node, (n, k, 2)."""
     mesh, (n, k) = around.mesh, around.nodes.shape
     shapes = FacetShapes(mesh.topology)
@@ -276,7 +273,7 @@ def _plane_gradients(around: Patches, owner: Numbers, reference: Floats) -> Floa
     return gradient
 
 
-def _angles(topology: str, local: Ints, t: Floats) -> Floats:
+def _angles(topology: str, local: Locals, t: Floats) -> Floats:
     """Angle of each facet at its node: that of a corner, else a half or a whole turn, (pairs,)."""
     size = np.linalg.norm(t, axis=2)
     cosine = np.einsum("pi,pi->p", t[:, 0], t[:, 1]) / (size[:, 0] * size[:, 1])
@@ -305,7 +302,7 @@ def _axes(normal: Floats) -> Floats:
     return np.stack([first, np.cross(n, first)], axis=1)
 
 
-def _pieces(mesh: FacetMesh) -> Ints:
+def _pieces(mesh: FacetMesh) -> Locals:
     """Pieces of the facets with straight edges, as numbers of their nodes in ascending order."""
     pieces = mesh.nodes[:, _PIECES[mesh.topology]]
     pieces = np.where(mesh.flip[:, None, None], pieces[..., ::-1], pieces)
@@ -361,11 +358,11 @@ class SlaveNodes(SlavePoints):
         return self.far.everywhere(nodal)
 
     @override
-    def coupled(self, nodes: Ints) -> Ints:
+    def coupled(self, nodes: Locals) -> Locals:
         return self.far.coupled(nodes)
 
     @override
-    def peaks(self, areas: Floats) -> npt.NDArray[np.bool_]:
+    def peaks(self, areas: Floats) -> Flags:
         """Nodes with more than 5 % of their weight: others carry next to no force."""
         return np.asarray(areas > PEAK * self.quadrature.areas)
 

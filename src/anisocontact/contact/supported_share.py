@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from anisocontact.base.array_types import Flags, Floats
 
 
 def supported_share(
@@ -15,7 +14,7 @@ def supported_share(
     last: Floats,
     carried: Floats,
     normal: Floats,
-    stick: npt.NDArray[np.bool_],
+    stick: Flags,
 ) -> Floats:
     """Tractions with a bound on what they are along supported directions.
 

@@ -11,16 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.contact.facet_mesh import FacetMesh, facet_corners
 from anisocontact.surfaces import default_threads
 from anisocontact.surfaces.facets import FacetSurface
-
-Ints = npt.NDArray[np.int32]
-Numbers = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 #: Cosine of the angle of the normals of two facets beyond which the edge between them is sharp.
 SHARP = np.cos(np.radians(40.0))
@@ -41,7 +37,7 @@ class SurfaceGradient:
         normals: Averaged normals at the vertices, (m, c, 3).
     """
 
-    nodes: Ints
+    nodes: Locals
     at_vertices: Floats
     normals: Floats
 
@@ -83,7 +79,9 @@ class SurfaceGradient:
         around = np.where(around >= 0, known[order][around], np.int32(-1))
         return cls(around, at_vertices, normals[by_facet])
 
-    def tangents(self, facet: Ints, xi: Floats, own: Floats, bend: Floats) -> tuple[Floats, Floats]:
+    def tangents(
+        self, facet: Locals, xi: Floats, own: Floats, bend: Floats
+    ) -> tuple[Floats, Floats]:
         """How two tangents in the reference configuration move with the nodes around.
 
         The tangents d_a of the facet are brought into the plane of the averaged normal N,
@@ -122,7 +120,7 @@ class _Slots:
     angles: Floats
 
     @classmethod
-    def of(cls, mesh: FacetMesh, reference: Floats, vertices: Ints) -> _Slots:
+    def of(cls, mesh: FacetMesh, reference: Floats, vertices: Locals) -> _Slots:
         (m, k), corners = mesh.nodes.shape, vertices.shape[1]
         surface = FacetSurface(reference, mesh.nodes, mesh.topology, mesh.flip)
         facet = np.repeat(np.arange(m, dtype=np.int32), corners)
@@ -147,14 +145,14 @@ def _sides(x: Floats, topology: str) -> Floats:
     return np.asarray(out / np.linalg.norm(out, axis=3, keepdims=True))
 
 
-def _vertices(mesh: FacetMesh) -> Ints:
+def _vertices(mesh: FacetMesh) -> Locals:
     """Nodes at `VERTICES`, (m, c): coordinates of facets that are flipped change places."""
     corners = 3 if mesh.topology.startswith("tri") else 4
     nodes = mesh.nodes[:, :corners]
     return np.where(mesh.flip[:, None], nodes[:, [0, 2, 1, 3][:corners]], nodes)
 
 
-def _smooth(topology: str, normals: Floats, nodes: Ints) -> Numbers:
+def _smooth(topology: str, normals: Floats, nodes: Locals) -> Ints:
     """Groups of facets at a vertex between which the surface is smooth, (s,)."""
     # SciPy takes a while to be imported
     from scipy.sparse import coo_array
@@ -178,7 +176,7 @@ def _smooth(topology: str, normals: Floats, nodes: Ints) -> Numbers:
     return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
 
 
-def _listed(owner: Numbers, nodes: Ints, count: int) -> tuple[Ints, Numbers]:
+def _listed(owner: Ints, nodes: Locals, count: int) -> tuple[Locals, Ints]:
     """Nodes of each owner once, (count, j), -1 behind the last, and the place of each given one."""
     most = int(nodes.max(initial=0)) + 1
     keys, inverse = np.unique(owner.astype(np.int64) * most + nodes, return_inverse=True)

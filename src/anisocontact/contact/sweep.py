@@ -12,13 +12,10 @@ second tangent. Forces and blocks on the images go back by the transposed maps.
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
-
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 #: Half the angle of a facet of revolution, radian.
 ANGLE = 0.5
@@ -68,16 +65,16 @@ class Sweep:
         """That of a mesh in the plane; None of one in space."""
         return cls(model) if model.idealisation.dim == 2 else None
 
-    def facets(self, edges: Ints) -> Ints:
+    def facets(self, edges: Locals) -> Locals:
         """Nodes of the facets of edges, (m, 4 or 9), from those of the edges, (m, 2 or 3)."""
         node, row = self._nodes.T
         return np.asarray(edges[:, node] + self._count * row, dtype=np.int32)
 
-    def edges(self, facets: Ints) -> Ints:
+    def edges(self, facets: Locals) -> Locals:
         """Nodes of the edges, (m, 2 or 3), from those of the facets that `facets` made of them."""
         return self.named(facets[:, self._edge])
 
-    def tangents(self, nodes: Ints, shares: Floats) -> tuple[Ints, Floats]:
+    def tangents(self, nodes: Locals, shares: Floats) -> tuple[Locals, Floats]:
         """Images, (n, 2 k), and factors at which they sum up to mean tangents across the plane.
 
         Args:
@@ -96,7 +93,7 @@ class Sweep:
         """Positions of the images, (rows nodes, 3), from those of the nodes, length."""
         return np.asarray(self.moved(x) + np.repeat(self._shifts, self._count, axis=0))
 
-    def named(self, nodes: Ints) -> Ints:
+    def named(self, nodes: Locals) -> Locals:
         """Nodes of which these are images; -1 for none."""
         return np.where(nodes < 0, -1, nodes % self._count).astype(np.int32)
 

@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.contact.points import SlavePoints
 from anisocontact.interface import Interface, SlaveSurface
 from anisocontact.mesh.idealisation import Idealisation
 from anisocontact.surfaces import PROJECTION_STATUS
-
-Floats = npt.NDArray[np.float64]
 
 #: Slip and penetration of the points that are tried, over the size of a facet.
 TRIED = 1e-4

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.contact.along_normals import Places, along_normals
 from anisocontact.contact.contact_planes import Opposite
 from anisocontact.contact.facet_mesh import node_coordinates
 from anisocontact.contact.sides import Sides
 from anisocontact.surfaces.facets import FacetProjections
-
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
-
 
 #: Coordinates of the corners of facets.
 CORNERS = {
@@ -89,8 +85,8 @@ def tangent_places(sides: Sides, places: Places) -> Opposite:
 
 
 def _material(
-    sides: Sides, facet: Ints, xi: Floats, gradient: Floats, second: Floats
-) -> tuple[Ints, Floats, Floats]:
+    sides: Sides, facet: Locals, xi: Floats, gradient: Floats, second: Floats
+) -> tuple[Locals, Floats, Floats]:
     """Nodes that material tangents depend on, what they are made of, and its derivatives.
 
     Args:

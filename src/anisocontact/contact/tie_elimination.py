@@ -6,15 +6,12 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.contact.tie_weights import TieConditions
 
-Flags = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 type Sparse = scipy.sparse.csr_array
 
 #: Share of a node that is rounding.

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import basix, geometry
 from anisocontact.base.typed import typed
@@ -12,9 +12,6 @@ from anisocontact.contact.penalty import facet_size
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.mesh import Model
 from anisocontact.surfaces.facets import FacetSurface
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 #: Gap that is closed over the size of the facets of the master, if none is given.
 TOLERANCE = 0.1

@@ -19,9 +19,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.facing import Near, facing, largest_radius
@@ -32,8 +32,6 @@ from anisocontact.contact.turning import Turning
 from anisocontact.surfaces import default_threads
 from anisocontact.surfaces.facets import FacetSurface
 
-Ints = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 type Sparse = scipy.sparse.csr_array
 
 #: Share of the weight of a node that has to lie on the master for it to be tied: others would be
@@ -63,7 +61,7 @@ class TieConditions:
     own: Sparse
     other: Sparse
     beside: Sparse
-    covered: npt.NDArray[np.bool_]
+    covered: Flags
     gap: Floats
     turning: Turning | None = None
 

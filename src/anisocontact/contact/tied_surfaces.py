@@ -7,16 +7,13 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import basix, facet_sides, scalar_element
 from anisocontact.contact.facet_mesh import FacetMesh, facet_mesh, node_positions
 from anisocontact.contact.sweep import Sweep
 from anisocontact.mesh import Model
-
-Ints = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -75,7 +72,7 @@ class WholeGroups:
         """Local number of each node, -1 of those that are not on this rank, (n,)."""
         return np.asarray(self._map.global_to_local(self.nodes), dtype=np.int64)
 
-    def owned(self) -> npt.NDArray[np.bool_]:
+    def owned(self) -> Flags:
         """Whether each node is this rank's own, (n,)."""
         first, last = self._map.local_range
         return np.asarray((self.nodes >= first) & (self.nodes < last))

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.master import Answer, Master
@@ -26,7 +26,6 @@ from anisocontact.contact.supported_share import supported_share
 from anisocontact.interface import State
 from anisocontact.interface.augmentation import Augmentation
 
-Floats = npt.NDArray[np.float64]
 #: What a trial starts from, and what the next Newton step is linear about.
 type Mark = tuple[State, Linearised | None]
 

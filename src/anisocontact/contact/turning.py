@@ -7,12 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
+
+from anisocontact.base.array_types import Floats
 
 #: Cosine, and distance over that from the origin, by which lines that are one may differ.
 SAME_LINE = 1e-9
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

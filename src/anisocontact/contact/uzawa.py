@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Codes, Flags, Floats
 from anisocontact.contact.multipliers import (
     SHARE,
     ContactTrial,
@@ -17,8 +17,6 @@ from anisocontact.contact.multipliers import (
 from anisocontact.contact.penalty import PENALTY_FACTOR
 from anisocontact.interface import State
 from anisocontact.interface.augmentation import Augmentation
-
-Floats = npt.NDArray[np.float64]
 
 #: Cycles after which an increment is given up.
 MOST_CYCLES = 30
@@ -54,12 +52,12 @@ class Uzawa(Multipliers):
         self._cycles: list[float] = []
         self._raised, self._waits = False, 0
         self._mixing = Mixing(comm)
-        self._status: npt.NDArray[np.int8] | None = None
+        self._status: Codes | None = None
 
     def suit(self, _: float) -> None:
         """The penalties are those given; the level is found from increment to increment."""
 
-    def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
+    def begin(self, state: State, located: Flags) -> State:
         """What the trials of the next increment start from, see `Multipliers.begin`."""
         self._cycles = []
         self._raised, self._waits = False, 0
@@ -147,7 +145,7 @@ class Uzawa(Multipliers):
             self._raised = True
             self._mixing = Mixing(self._comm)
 
-    def _settle(self, status: npt.NDArray[np.int8]) -> None:
+    def _settle(self, status: Codes) -> None:
         """Forget earlier cycles where the status of a point has changed: the map has a kink."""
         same = self._status is not None and np.array_equal(self._status, status)
         if self._comm.allreduce(int(not same)) > 0:
@@ -168,7 +166,7 @@ class Penalties(Uzawa):
     def commit(self) -> None:
         """Keep nothing."""
 
-    def begin(self, state: State, located: npt.NDArray[np.bool_]) -> State:
+    def begin(self, state: State, located: Flags) -> State:
         """What the trials of the next increment start from, see `Multipliers.begin`."""
         start = super().begin(state, located)
         start["multiplier"] = 0.0
@@ -182,7 +180,7 @@ class Penalties(Uzawa):
         """What equilibrium with penalties leaves stays."""
         return None
 
-    def beyond(self, step: ContactTrial) -> npt.NDArray[np.bool_]:
+    def beyond(self, step: ContactTrial) -> Flags:
         """No point has anything else than its penalty."""
         return np.zeros(len(step.start), dtype=bool)
 

@@ -12,13 +12,9 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.rigid.rotation import rotation, rotation_vector
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Mask = npt.NDArray[np.bool_]
 
 #: Cosine of the normals of slave and master above which they point the same way.
 SAME_WAY = 0.5
@@ -40,7 +36,7 @@ class Seen:
         normal: Its normal there, (n, 3).
     """
 
-    on: Mask
+    on: Flags
     gap: Floats
     normal: Floats
 
@@ -67,9 +63,9 @@ class Whereabouts:
     before: Floats
     now: Floats
     outward: Floats
-    closed: Mask
-    located: Mask
-    had: Mask
+    closed: Flags
+    located: Flags
+    had: Flags
     normal: Floats
     areas: Floats
     size: float
@@ -77,14 +73,14 @@ class Whereabouts:
     look: Callable[[Floats, Ints], Seen]
     comm: Any
 
-    def from_behind(self) -> Mask:
+    def from_behind(self) -> Flags:
         """Points in contact whose slave faces the same way as the master; none if they are few."""
         wrong = self.closed & (_cosine(self.outward, self.normal) > SAME_WAY)
         shares = np.array([self.areas[wrong].sum(), self.areas[self.closed].sum()])
         pressed, closed = self.comm.allreduce(shares)
         return wrong if pressed > CRUSHED * closed else np.zeros_like(wrong)
 
-    def with_behind(self, there: Mask, normal: Floats, areas: Floats) -> Whereabouts:
+    def with_behind(self, there: Flags, normal: Floats, areas: Floats) -> Whereabouts:
         """With points as if pressed that lie behind the master and face the same way.
 
         Args:
@@ -116,14 +112,14 @@ class Whereabouts:
             crossed = self._crossed(which, start, turn)
         return which[crossed], depth[crossed]
 
-    def _lost(self) -> Mask:
+    def _lost(self) -> Flags:
         """Open points that have left the side of the master on which they were."""
         moved = np.linalg.norm(self.now - self.before, axis=1)
         away = ~self.located & (self.had | (moved > 2.0 * self.reach))
         turned = self.located & (_cosine(self.outward, self.normal) > SAME_WAY)
         return np.asarray(~self.closed & (away | turned) & np.isfinite(moved))
 
-    def _same_way(self, seen: Seen, which: Ints) -> Mask:
+    def _same_way(self, seen: Seen, which: Ints) -> Flags:
         return np.asarray(_cosine(self.outward[which], seen.normal) > SAME_WAY)
 
     def _frame(self) -> tuple[Floats, Floats]:
@@ -139,7 +135,7 @@ class Whereabouts:
         turn = u @ np.diag([1.0, 1.0, np.linalg.det(u @ v)]) @ v
         return first, rotation_vector(turn)
 
-    def _crossed(self, which: Ints, middle: Floats, turn: Floats) -> Mask:
+    def _crossed(self, which: Ints, middle: Floats, turn: Floats) -> Flags:
         """Whether points come from in front of the master through it; see `_path`."""
         path = self._path(which, middle, turn)
         begun = self.look(path[0], which)

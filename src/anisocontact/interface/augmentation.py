@@ -7,8 +7,6 @@ from dataclasses import dataclass
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 
-__all__ = ["AUTO", "NEWTON", "SCHEMES", "UZAWA", "Augmentation"]
-
 #: Ways to the multipliers: with the displacements in one Newton iteration, in cycles around it, or
 #: whichever of the two suits the laws.
 NEWTON, UZAWA, AUTO = "newton", "uzawa", "auto"

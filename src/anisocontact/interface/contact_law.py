@@ -5,11 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypedDict
 
-import numpy as np
-import numpy.typing as npt
-
 from anisocontact import _core
 from anisocontact.base import registry
+from anisocontact.base.array_types import Codes, Flags, Floats, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
@@ -217,22 +215,22 @@ class ContactLaw(Remade):
 class FacetBatch(TypedDict):
     """Slave points that meet facets as the core takes them, with its names."""
 
-    slave_nodes: npt.NDArray[np.int32]
-    slave_shape: npt.NDArray[np.float64]
-    slave_gradient: npt.NDArray[np.float64]
-    weight: npt.NDArray[np.float64]
+    slave_nodes: Locals
+    slave_shape: Floats
+    slave_gradient: Floats
+    weight: Floats
     current_area: bool
-    now: npt.NDArray[np.float64]
-    reference: npt.NDArray[np.float64]
-    connectivity: npt.NDArray[np.int32]
-    topology: npt.NDArray[np.int8]
-    flip: npt.NDArray[np.bool_]
-    facet: npt.NDArray[np.int32]
-    xi: npt.NDArray[np.float64]
-    feature: npt.NDArray[np.int8]
-    edge: npt.NDArray[np.float64]
-    held: npt.NDArray[np.float64]
-    near: npt.NDArray[np.bool_]
+    now: Floats
+    reference: Floats
+    connectivity: Locals
+    topology: Codes
+    flip: Flags
+    facet: Locals
+    xi: Floats
+    feature: Codes
+    edge: Floats
+    held: Floats
+    near: Flags
     tangent: bool
     threads: int
 

@@ -21,8 +21,6 @@ from anisocontact.interface.states import STATE, State
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import Surface, make_surface
 
-__all__ = ["described", "made"]
-
 
 def described(part: Any) -> Any:
     """A law, a surface or what a law in Python holds, as JSON has it.

@@ -9,17 +9,15 @@ from pathlib import Path
 from typing import Any, cast, override
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact import __version__
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.whole_files import replacing
 from anisocontact.interface import FAILURE, SlaveSurface, State
 from anisocontact.interface.contact_law import FacetBatch
 from anisocontact.interface.description import described, made
 from anisocontact.surfaces import TOPOLOGIES, FacetSurface
-
-Floats = npt.NDArray[np.float64]
 
 #: Steps of the differences that the tangent is held against, over the size of the surroundings.
 STEPS = (1e-4, 1e-5, 1e-6)

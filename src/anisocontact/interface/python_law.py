@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.anisotropy import DirectionField
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.interface.law_in_series import LawInSeries
@@ -30,7 +31,6 @@ from anisocontact.interface.tangential_law import (
     law_stiffness,
 )
 from anisocontact.laws import SIDES, Adhesion, Carried, Friction, NormalLaw
-from anisocontact.surfaces import Floats
 
 #: How the history enters a step: a law in Python sees it turned to where the point is.
 EVOLUTION = "transport"

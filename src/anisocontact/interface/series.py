@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact import _core
+from anisocontact.base.array_types import Floats
 from anisocontact.laws import Adhesion
-from anisocontact.surfaces import Floats
 
 
 @dataclass(frozen=True)

@@ -8,8 +8,8 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.base.array_types import Codes, Flags, Floats
 from anisocontact.base.errors import InputError
-from anisocontact.surfaces import Floats
 
 #: Names of the codes of a point's status.
 STATUS = ("open", "stick", "slip")
@@ -108,7 +108,7 @@ class Response:
     normal: Floats
     directions_adhesion: Floats
     directions_friction: Floats
-    failure: npt.NDArray[np.int8]
+    failure: Codes
     tangent_slave: Floats = field(default_factory=lambda: np.empty((0, 2, 3, 3)))
 
     @property
@@ -122,12 +122,12 @@ class Response:
         return self.state["gap"]
 
     @property
-    def status(self) -> npt.NDArray[np.int8]:
+    def status(self) -> Codes:
         """0 open, 1 stick, 2 slip, (n,)."""
         return self.state["status"].astype(np.int8)
 
     @property
-    def failed(self) -> npt.NDArray[np.bool_]:
+    def failed(self) -> Flags:
         """Whether a point could not be updated, (n,)."""
         return np.asarray(self.failure != 0)
 

@@ -7,10 +7,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.arrays import answered, read_only
 from anisocontact.base.errors import InputError
 from anisocontact.base.python_file import where_failed
-from anisocontact.surfaces import Floats
 
 
 @dataclass(frozen=True)

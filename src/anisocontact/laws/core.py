@@ -15,11 +15,12 @@ from anisocontact.anisotropy import (
     require_regular,
 )
 from anisocontact.base import registry
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry
 from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
-from anisocontact.surfaces import Floats, Surface, points
+from anisocontact.surfaces import Surface, points
 
 Named = tuple[str, dict[str, list[float]]]
 

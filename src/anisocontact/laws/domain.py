@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
-from anisocontact.surfaces import Floats, points
+from anisocontact.surfaces import points
 
 if TYPE_CHECKING:
     pass
@@ -72,7 +73,7 @@ class Ellipse:
         unit = np.stack([np.cos(t), np.sin(t)], axis=1)
         return np.asarray(self.centre + (unit * self.semi_axes) @ rotation(self.angle).T)
 
-    def contains(self, x: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    def contains(self, x: npt.ArrayLike) -> Flags:
         """Whether points (n, 2) are inside or on the boundary, (n,).
 
         Args:
@@ -130,7 +131,7 @@ class Strip:
         offsets = np.array([-1.0, 1.0])[:, None, None] * self.half_width * across
         return np.asarray(self.centre + ends[None] + offsets)
 
-    def contains(self, x: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    def contains(self, x: npt.ArrayLike) -> Flags:
         """Whether points (n, 2) are inside or on the boundary, (n,).
 
         Args:

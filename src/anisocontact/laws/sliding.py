@@ -9,9 +9,10 @@ import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.base import registry
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
-from anisocontact.surfaces import Floats, default_threads
+from anisocontact.surfaces import default_threads
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,8 @@ class Slide:
     slip: Floats
     d_trial: Floats
     d_pressure: Floats
-    slides: npt.NDArray[np.bool_]
-    converged: npt.NDArray[np.bool_]
+    slides: Flags
+    converged: Flags
 
 
 @typed

@@ -8,17 +8,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI
 from anisocontact.mesh.split import Route, Split, share_of
 
-Nodes = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
-
 # Vertices of the facets of a cell, in DOLFINx (tensor) order.
-CELL_FACETS: dict[str, Nodes] = {
+CELL_FACETS: dict[str, Ints] = {
     "tetrahedron": np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]]),
     "hexahedron": np.array(
         [
@@ -60,9 +57,9 @@ class MeshArrays:
     cell: str
     degree: int
     points: Floats
-    cells: Nodes
-    bodies: dict[str, Nodes]
-    facets: dict[str, Nodes]
+    cells: Ints
+    bodies: dict[str, Ints]
+    facets: dict[str, Ints]
     order: int
     linear: tuple[str, ...] = ()
     nodes: dict[str, Floats] = field(default_factory=dict)
@@ -85,7 +82,7 @@ class MeshArrays:
         return Split(self.comm, len(self.cells))
 
     @property
-    def labels(self) -> Nodes:
+    def labels(self) -> Ints:
         """Number of the body of each cell of this process, (cells,)."""
         out = np.full(len(self.cells), -1, dtype=np.int64)
         for number, rows in enumerate(self.bodies.values()):
@@ -124,7 +121,7 @@ class MeshArrays:
         return int(self.comm.allreduce(count))
 
 
-def facet_owners(mesh: MeshArrays, facets: Nodes) -> tuple[Nodes, Nodes]:
+def facet_owners(mesh: MeshArrays, facets: Ints) -> tuple[Ints, Ints]:
     """Which cell each facet bounds.
 
     Args:
@@ -155,7 +152,7 @@ def facet_owners(mesh: MeshArrays, facets: Nodes) -> tuple[Nodes, Nodes]:
     return question.back(owner[asked]), question.back(count[asked])
 
 
-def check_boundary(mesh: MeshArrays, name: str, counts: Nodes) -> None:
+def check_boundary(mesh: MeshArrays, name: str, counts: Ints) -> None:
     """Refuse a group with facets that do not bound exactly one cell.
 
     Raises:

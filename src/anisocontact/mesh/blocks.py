@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from anisocontact.base.array_types import Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, cell_nodes, facet_nodes
-from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays, Nodes
+from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.lattice import Block, Lattice, Side, Weld
 from anisocontact.mesh.split import share_of
 
@@ -41,7 +42,7 @@ def mesh_blocks(
     weld = Weld(lattices)
     own_nodes, own = share_of(comm, int(nodes[-1])), share_of(comm, int(hexahedra[-1]))
     points, cells = [np.zeros((0, 3))], [np.zeros((0, len(cell_nodes(cell, degree))), np.int64)]
-    facets: dict[str, Nodes] = {}
+    facets: dict[str, Ints] = {}
     for lattice, start, first in zip(lattices, nodes[:-1], hexahedra[:-1], strict=True):
         here = lattice.part(own_nodes, start, lattice.count)
         kept = here[~np.isin(start + here, weld.removed)]
@@ -60,7 +61,7 @@ def mesh_blocks(
     )
 
 
-def _cells(local: Nodes, number: Callable[[Nodes], Nodes], cell: str, degree: int) -> Nodes:
+def _cells(local: Ints, number: Callable[[Ints], Ints], cell: str, degree: int) -> Ints:
     """Cells in DOLFINx order from hexahedra as of `Lattice`."""
     if cell == "hexahedron":
         return local[:, _place(cell_nodes(cell, degree), degree)]
@@ -74,12 +75,12 @@ def _cells(local: Nodes, number: Callable[[Nodes], Nodes], cell: str, degree: in
     return np.asarray(local[rows, _place(nodes, degree)].reshape(-1, len(weights)))
 
 
-def _place(lattice: Nodes, degree: int) -> Nodes:
+def _place(lattice: Ints, degree: int) -> Ints:
     """Number of a node in a hexahedron as of `Lattice`, from whole places along the axes."""
     return np.asarray(lattice @ np.array([(degree + 1) ** 2, degree + 1, 1]))
 
 
-def _split_kind(corners: Nodes) -> Nodes:
+def _split_kind(corners: Ints) -> Ints:
     """Row of `_splits`: lowest corner, and which diagonal each opposite face has."""
     lowest = np.argmin(corners, axis=1)
     faces = CELL_FACETS["hexahedron"]
@@ -91,7 +92,7 @@ def _split_kind(corners: Nodes) -> Nodes:
 
 
 @cache
-def _splits() -> Nodes:
+def _splits() -> Ints:
     """Corners of six tetrahedra for every `_split_kind`, (64, 6, 4).
 
     Each face is cut from its lowest corner, so that neighbours cut it alike; the three faces
@@ -115,7 +116,7 @@ def _right_handed(corners: list[int]) -> list[int]:
     return corners if np.linalg.det(edges) > 0.0 else [*corners[:2], corners[3], corners[2]]
 
 
-def _side(cells: Nodes, lattice: Lattice, side: Side, cell: str, degree: int) -> Nodes:
+def _side(cells: Ints, lattice: Lattice, side: Side, cell: str, degree: int) -> Ints:
     """Nodes of the facets on a side of the cube, vertices first, (facets, nodes)."""
     facets = cells[:, facet_nodes(cell, degree)]
     facets = facets.reshape(-1, facets.shape[-1])

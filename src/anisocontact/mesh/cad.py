@@ -13,8 +13,6 @@ from anisocontact.base.fenicsx import MPI
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.gmsh import gmsh_arrays
 
-__all__ = ["CAD", "cad_arrays"]
-
 #: Endings of names.
 CAD = (".step", ".stp", ".iges", ".igs", ".brep", ".stl")
 #: Cells around a full circle, so that curved faces are resolved, and along the longest side.

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 
 #: How deep files may include others.
@@ -63,7 +63,7 @@ class Card:
                 entries.pop()
             yield entries
 
-    def numbers(self) -> npt.NDArray[np.float64]:
+    def numbers(self) -> Floats:
         """All numbers of the data, one after the other.
 
         Raises:

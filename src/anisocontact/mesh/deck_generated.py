@@ -8,16 +8,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck
 from anisocontact.mesh.placement import Rotation
-
-__all__ = ["GENERATORS", "NOT_READ"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Keywords that make or move nodes or elements in a way that is not read.
 NOT_READ = ("NCOPY", "ELCOPY", "NMAP", "SYSTEM")

@@ -10,16 +10,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck
 from anisocontact.mesh.placement import Rotation
-
-__all__ = ["begun", "numbered", "own_numbers", "place"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Keywords that nodes and elements stand in front of the end of, beside the assembly's own.
 INSIDE = {"PART": "ENDPART", "INSTANCE": "ENDINSTANCE"}

@@ -11,14 +11,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, real
-
-__all__ = ["ANALYTIC", "Piece", "Profile", "profile_of"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Kinds of them.
 ANALYTIC = ("SEGMENTS", "CYLINDER", "REVOLUTION")

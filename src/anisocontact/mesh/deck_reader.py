@@ -11,8 +11,6 @@ from anisocontact.mesh.deck_contents import Deck
 from anisocontact.mesh.deck_generated import GENERATORS, NOT_READ
 from anisocontact.mesh.deck_instances import begun, numbered, own_numbers, place
 
-__all__ = ["read_deck"]
-
 #: Keywords of a part that every instance of it has under its own names.
 OF_PARTS = ("RIGIDBODY", "COUPLING", "KINEMATIC", "DISTRIBUTING", "TIE", "EQUATION", "MPC")
 

@@ -11,22 +11,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, real
-
-__all__ = [
-    "Support",
-    "Transform",
-    "Unread",
-    "check_options",
-    "support_lines",
-    "supports_of",
-    "transform_of",
-]
-
-Floats = npt.NDArray[np.float64]
 
 #: Names of supports in the place of components.
 NAMED = {

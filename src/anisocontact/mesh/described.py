@@ -5,15 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.quality import scaled_jacobian
-
-__all__ = ["described"]
-
-Floats = npt.NDArray[np.float64]
-Nodes = npt.NDArray[np.int64]
 
 #: Distance of nodes at the same place, over the size of a body.
 SAME = 1e-9
@@ -62,7 +57,7 @@ def described(mesh: MeshArrays) -> list[str]:
     return [*lines, *(f"cells     {note}" for note in mesh.notes)]
 
 
-def _pieces(mesh: MeshArrays, name: str, cells: Nodes) -> Iterator[str]:
+def _pieces(mesh: MeshArrays, name: str, cells: Ints) -> Iterator[str]:
     """A line on a body that is not one: several parts, or cells whose nodes were not joined."""
     from scipy.sparse import bmat, csr_matrix
     from scipy.sparse.csgraph import connected_components

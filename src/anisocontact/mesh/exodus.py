@@ -12,15 +12,10 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.tetrahedra import EDGES
-
-__all__ = ["SUFFIXES", "read_exodus"]
-
-Nodes = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 #: Endings of names.
 SUFFIXES = (".e", ".exo", ".ex2", ".g", ".gen")
@@ -129,12 +124,12 @@ def _identifiers(values: Mapping[str, Any], kind: str, count: int) -> list[int]:
     return [int(n) for n in values[key][:]] if key in values else list(range(1, count + 1))
 
 
-def _type(kind: str, nodes: Nodes) -> str:
+def _type(kind: str, nodes: Ints) -> str:
     """Name of meshio for elements."""
     return KINDS.get(kind, ("", {}))[1].get(nodes.shape[1], f"{kind.lower()}{nodes.shape[1]}")
 
 
-def _in_order(kind: str, nodes: Nodes, points: Floats) -> Nodes:
+def _in_order(kind: str, nodes: Ints, points: Floats) -> Ints:
     """Nodes in the order of VTK: as the format has it, or as they are where that fits better."""
     order = ORDERS.get(nodes.shape[1])
     if order is None or kind not in ("HEX", "WED"):
@@ -142,7 +137,7 @@ def _in_order(kind: str, nodes: Nodes, points: Floats) -> Nodes:
     cell = KINDS[kind][0]
     ends, count = np.array(EDGES[cell]), {"hexahedron": 8, "prism": 6}[cell]
 
-    def off(found: Nodes) -> float:
+    def off(found: Ints) -> float:
         middles = points[found[:, count : count + len(ends)]]
         return float(np.abs(middles - points[found[:, ends]].mean(axis=2)).sum())
 
@@ -150,7 +145,7 @@ def _in_order(kind: str, nodes: Nodes, points: Floats) -> Nodes:
 
 
 def _bodies(
-    kinds: list[str], rows: list[Nodes], names: list[str], numbers: list[int]
+    kinds: list[str], rows: list[Ints], names: list[str], numbers: list[int]
 ) -> Iterator[tuple[str, Any]]:
     """Cells of each block by its name; blocks without a name have one if there are several."""
     solid = [k for k, kind in enumerate(kinds) if kind in ("HEX", "TET", "WED", "PYR")]
@@ -161,7 +156,7 @@ def _bodies(
             yield own, [np.arange(len(one)) if i == k else None for i, one in enumerate(rows)]
 
 
-def _node_sets(values: Mapping[str, Any]) -> Iterator[tuple[str, Nodes]]:
+def _node_sets(values: Mapping[str, Any]) -> Iterator[tuple[str, Ints]]:
     numbers = _numbers(values, "node_ns")
     known = _identifiers(values, "ns", len(numbers))
     for place, (k, name) in enumerate(
@@ -171,8 +166,8 @@ def _node_sets(values: Mapping[str, Any]) -> Iterator[tuple[str, Nodes]]:
 
 
 def _side_sets(
-    values: Mapping[str, Any], kinds: list[str], rows: list[Nodes]
-) -> Iterator[tuple[str, list[Nodes]]]:
+    values: Mapping[str, Any], kinds: list[str], rows: list[Ints]
+) -> Iterator[tuple[str, list[Ints]]]:
     starts = [0, *np.cumsum([len(one) for one in rows]).tolist()]
     numbers = _numbers(values, "elem_ss")
     known = _identifiers(values, "ss", len(numbers))
@@ -181,7 +176,7 @@ def _side_sets(
     ):
         elements = np.asarray(values[f"elem_ss{k}"][:], dtype=np.int64) - 1
         sides = np.asarray(values[f"side_ss{k}"][:], dtype=np.int64) - 1
-        found: list[Nodes] = []
+        found: list[Ints] = []
         for block, (kind, nodes) in enumerate(zip(kinds, rows, strict=True)):
             inside = (elements >= starts[block]) & (elements < starts[block + 1])
             if not inside.any() or kind not in KINDS or kind == "SHE":

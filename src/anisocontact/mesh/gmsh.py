@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, cell_permutation
 from anisocontact.base.words import hint
@@ -24,9 +24,6 @@ from anisocontact.mesh.quality import check_cells
 from anisocontact.mesh.split import Route, Split, arranged
 from anisocontact.mesh.stream import MshError
 from anisocontact.mesh.whole import WholeMesh
-
-Nodes = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 # gmsh element type -> cell, degree
 CELLS = {
@@ -136,12 +133,12 @@ def _arrays(msh: MshFile, bodies: Sequence[str] | None, comm: Any) -> MeshArrays
     places = {name: np.flatnonzero(labels == i) for i, name in enumerate(names)}
     mesh = MeshArrays(cell, degree, msh.points[used], cells, places, {}, degree, comm=comm)
     check_cells(mesh)
-    surfaces: dict[str, list[Nodes]] = {}
+    surfaces: dict[str, list[Ints]] = {}
     for name, block in _named(msh, dim - 1):
         surfaces.setdefault(name, []).append(block.nodes)
     groups = {name: known.fetch(compact, np.concatenate(parts)) for name, parts in surfaces.items()}
     mesh = replace(mesh, facets=_facet_groups(mesh, groups))
-    lower: dict[str, list[Nodes]] = {}
+    lower: dict[str, list[Ints]] = {}
     for name, block in (one for below in range(dim - 1) for one in _named(msh, below)):
         lower.setdefault(name, []).append(known.fetch(compact, block.nodes).reshape(-1))
     return replace(mesh, nodes=_points_and_edges(mesh, lower))
@@ -162,7 +159,7 @@ def _made_over(msh: MshFile, bodies: Sequence[str] | None) -> MeshArrays:
     return mesh.arrays(bodies)
 
 
-def _points_and_edges(mesh: MeshArrays, groups: dict[str, list[Nodes]]) -> dict[str, Floats]:
+def _points_and_edges(mesh: MeshArrays, groups: dict[str, list[Ints]]) -> dict[str, Floats]:
     """Places of the nodes of groups of points and curves by full name; -1 for no node of a body."""
     found = {}
     for body, cells in mesh.bodies.items():
@@ -224,7 +221,7 @@ def _kind(blocks: list[Block]) -> tuple[str, int]:
     return CELLS[kinds.pop()]
 
 
-def _check_single(cells: Nodes, nodes: Split, comm: Any) -> None:
+def _check_single(cells: Ints, nodes: Split, comm: Any) -> None:
     rows = np.sort(cells, axis=1)
     rows = Route(comm, nodes.owner(rows[:, 0])).there(rows)
     twice = comm.allreduce(len(rows) - len(np.unique(rows, axis=0)))
@@ -232,10 +229,10 @@ def _check_single(cells: Nodes, nodes: Split, comm: Any) -> None:
         raise InputError(f"{twice} cells are in two volume groups")
 
 
-def _facet_groups(mesh: MeshArrays, groups: dict[str, Nodes]) -> dict[str, Nodes]:
+def _facet_groups(mesh: MeshArrays, groups: dict[str, Ints]) -> dict[str, Ints]:
     """Surface groups by full name, from their nodes, -1 for one that no cell has."""
     names, labels = list(mesh.bodies), mesh.labels
-    facets: dict[str, Nodes] = {}
+    facets: dict[str, Ints] = {}
     for name, found in groups.items():
         # A group of a body that is not taken has nodes that are not used.
         nodes = found[(found >= 0).all(axis=1)]
@@ -252,8 +249,8 @@ def _facet_groups(mesh: MeshArrays, groups: dict[str, Nodes]) -> dict[str, Nodes
 
 
 def _prefixed(
-    mesh: MeshArrays, name: str, owners: Nodes, bodies: list[str]
-) -> Iterator[tuple[str, npt.NDArray[np.bool_]]]:
+    mesh: MeshArrays, name: str, owners: Ints, bodies: list[str]
+) -> Iterator[tuple[str, Flags]]:
     """Full names of a group, and which of its facets have each; `owners` are bodies by number."""
     prefix, dot, _ = name.partition(".")
     counts = [mesh.sum(int((owners == body).sum())) for body in range(len(bodies))]

@@ -15,16 +15,14 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from anisocontact.base import registry
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import ufl
 from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.typed import typed
-
-Floats = npt.NDArray[np.float64]
 
 #: Distance from the axis that counts as on it, over the largest coordinate.
 ON_AXIS = 1e-12
@@ -95,7 +93,7 @@ class Idealisation:
             InputError: It is not.
         """
 
-    def held(self, x: Floats) -> Iterator[tuple[npt.NDArray[np.int64], int]]:
+    def held(self, x: Floats) -> Iterator[tuple[Ints, int]]:
         """Nodes that cannot move along an axis of space, and the axis.
 
         Args:
@@ -178,7 +176,7 @@ class _Plane(Idealisation):
         domain = mesh if hasattr(mesh, "topology") else ufl.domain.extract_unique_domain(mesh)
         return float(self.turn[2, 0]) * ufl.SpatialCoordinate(domain)[0]
 
-    def held(self, x: Floats) -> Iterator[tuple[npt.NDArray[np.int64], int]]:
+    def held(self, x: Floats) -> Iterator[tuple[Ints, int]]:
         """As of `Idealisation`."""
         if not self.lateral:
             yield np.arange(len(x)), 2
@@ -311,7 +309,7 @@ class Axisymmetric(_Plane):
         gradient = plane + ufl.outer(side, ufl.as_vector([0.0, 0.0, 1.0]))
         return ufl.replace(expression, {plane: gradient})
 
-    def held(self, x: Floats) -> Iterator[tuple[npt.NDArray[np.int64], int]]:
+    def held(self, x: Floats) -> Iterator[tuple[Ints, int]]:
         """As of `Idealisation`: what is on the axis stays there."""
         yield from super().held(x)
         on_axis = np.flatnonzero(x[:, 0] <= ON_AXIS * np.abs(x).max(initial=0.0))

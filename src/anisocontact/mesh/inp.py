@@ -10,17 +10,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Ints
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck_contents import IDEAL, KNOWN, PLANE, SOLIDS, Deck, Section
 from anisocontact.mesh.deck_reader import read_deck
 from anisocontact.mesh.deck_supports import support_lines
 from anisocontact.mesh.tetrahedra import EDGES, FACES
 from anisocontact.mesh.whole import WholeMesh
-
-Nodes = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 #: Faces of cells by their corners; of those in the plane their edges.
 SIDES = FACES | {cell: tuple(EDGES[cell]) for cell in ("triangle", "quadrilateral")}
@@ -119,9 +116,9 @@ def _beside_solids(by_kind: dict[str, list[int]]) -> list[int]:
 
 def _of_faces(
     deck: Deck, mesh: WholeMesh, elements: list[int], at: Mapping[int, int]
-) -> dict[str, list[Nodes]]:
+) -> dict[str, list[Ints]]:
     """Sets of elements of a plane that are faces of solids, as surfaces."""
-    found: dict[str, list[Nodes]] = {}
+    found: dict[str, list[Ints]] = {}
     if not elements:
         return found
     known: dict[int, set[tuple[int, ...]]] = {3: set(), 4: set()}
@@ -205,7 +202,7 @@ def plain(name: str) -> str:
     return name.replace(".", "_").lower()
 
 
-def _faces(deck: Deck, faces: Iterable[tuple[str, str]], at: Mapping[int, int]) -> list[Nodes]:
+def _faces(deck: Deck, faces: Iterable[tuple[str, str]], at: Mapping[int, int]) -> list[Ints]:
     """Corners of the faces of a surface, by the number of corners; see `WholeMesh.surfaces`."""
     found: dict[int, list[list[int]]] = {}
     for entry, face in faces:

@@ -8,13 +8,10 @@ from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.arrays import connected
 from anisocontact.base.errors import InputError
-from anisocontact.mesh.arrays import Floats, Nodes
-
-Mask = npt.NDArray[np.bool_]
 
 #: A side of the unit cube: axis and end (0: low, 1: high).
 type Side = tuple[int, int]
@@ -188,7 +185,7 @@ class Lattice:
         self._strides = np.array([self._shape[1] * self._shape[2], self._shape[2], 1])
         self.count = math.prod(self._shape)
 
-    def part(self, own: tuple[int, int], before: int, count: int) -> Nodes:
+    def part(self, own: tuple[int, int], before: int, count: int) -> Ints:
         """Numbers in this block of what is one's own in a row of blocks.
 
         Args:
@@ -198,24 +195,24 @@ class Lattice:
         """
         return np.arange(*np.clip(np.subtract(own, before), 0, count), dtype=np.int64)
 
-    def points(self, nodes: Nodes) -> Floats:
+    def points(self, nodes: Ints) -> Floats:
         """Points in space of some nodes, (n, 3), length."""
         shares = [p[self._along(axis, nodes)] for axis, p in enumerate(self._planes)]
         return self.block.place(np.stack(shares, axis=-1))
 
-    def hexahedra(self, numbers: Nodes) -> Nodes:
+    def hexahedra(self, numbers: Ints) -> Ints:
         """Nodes of some hexahedra, (n, (degree + 1)^3), the last axis fastest."""
         cells = [len(p) - 1 for p in self.block.planes]
         corner = self._degree * np.stack(np.unravel_index(numbers, cells), axis=-1)
         inside = np.array(list(product(range(self._degree + 1), repeat=3)))
         return np.asarray((corner[:, None] + inside) @ self._strides, dtype=np.int64)
 
-    def on(self, nodes: Nodes, side: Side) -> Mask:
+    def on(self, nodes: Ints, side: Side) -> Flags:
         """Whether nodes lie on a side of the cube."""
         axis, end = side
         return np.asarray(self._along(axis, nodes) == end * (self._shape[axis] - 1))
 
-    def seams(self) -> Nodes:
+    def seams(self) -> Ints:
         """Nodes on the sides that are no facet groups: what meets another side is none."""
         sides = [np.zeros(0, dtype=np.int64)]
         for axis, end in set(product(range(3), (0, 1))) - set(self.block.sides):
@@ -224,7 +221,7 @@ class Lattice:
             sides.append(sum(i * s for i, s in zip(index, self._strides, strict=True)).reshape(-1))
         return np.unique(np.concatenate(sides))
 
-    def _along(self, axis: int, nodes: Nodes) -> Nodes:
+    def _along(self, axis: int, nodes: Ints) -> Ints:
         return np.asarray(nodes // self._strides[axis] % self._shape[axis])
 
 
@@ -265,7 +262,7 @@ class Weld:
         self.removed = nodes[gone]
         self._stays = stays[gone]
 
-    def number(self, nodes: Nodes) -> Nodes:
+    def number(self, nodes: Ints) -> Ints:
         """Numbers of nodes once those at one place are one, in the order of the nodes."""
         if not len(self.removed):
             return nodes

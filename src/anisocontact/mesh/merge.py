@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from anisocontact.base.array_types import Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import cell_nodes, facet_nodes, middle_nodes
-from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays, Nodes, facet_owners
+from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays, facet_owners
 from anisocontact.mesh.split import Route, Split, arranged
 
 
@@ -111,7 +112,7 @@ def lift(mesh: MeshArrays) -> MeshArrays:
     return replace(mesh, degree=2, points=all_points, cells=cells, facets=facets)
 
 
-def facet_rows(mesh: MeshArrays, lifted: Nodes, facets: Nodes, degree: int) -> Nodes:
+def facet_rows(mesh: MeshArrays, lifted: Ints, facets: Ints, degree: int) -> Ints:
     """All nodes of facets of which the corners are given, in the order of DOLFINx.
 
     Args:

@@ -9,15 +9,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.mesh import exodus
 from anisocontact.mesh.exodus import read_exodus
 from anisocontact.mesh.meshio_patches import names_of_med, nastran
 from anisocontact.mesh.whole import WholeMesh
-
-Nodes = npt.NDArray[np.int64]
 
 #: Endings of names; gmsh's and Abaqus's have readers of their own.
 SUFFIXES: tuple[str, ...] = (
@@ -113,7 +111,7 @@ def read_by_meshio(path: Path) -> WholeMesh:
     return mesh
 
 
-def _dimension(given: Any, points: npt.NDArray[np.float64]) -> int:
+def _dimension(given: Any, points: Floats) -> int:
     """3, or 2 for a mesh in the plane z = 0."""
     kinds = {block.type for block in given.cells}
     return 2 if not kinds & set(SOLIDS) and kinds & set(PLANE) and not points[:, 2].any() else 3

@@ -13,8 +13,6 @@ import numpy as np
 
 from anisocontact.base.errors import InputError
 
-__all__ = ["names_of_med", "nastran"]
-
 #: Where the mesh of a Nastran file begins and ends.
 BEGIN = re.compile(r"^\s*BEGIN\s+BULK.*$", re.IGNORECASE | re.MULTILINE)
 END = re.compile(r"^\s*ENDDATA.*", re.IGNORECASE | re.MULTILINE)

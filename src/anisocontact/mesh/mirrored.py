@@ -5,14 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.mesh.tetrahedra import EDGES
-
-__all__ = ["turned"]
-
-Nodes = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 #: Corners in the order in which a mirrored cell has them.
 CORNERS = {
@@ -35,8 +30,8 @@ AXES: dict[str, tuple[tuple[Sequence[int], Sequence[int]], ...]] = {
 
 
 def turned(
-    cell: str, nodes: Nodes, points: Floats, faces: Sequence[tuple[int, ...]]
-) -> tuple[Nodes, int]:
+    cell: str, nodes: Ints, points: Floats, faces: Sequence[tuple[int, ...]]
+) -> tuple[Ints, int]:
     """Cells in space with those turned round whose volume is negative; others as they are.
 
     Args:

@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Ints, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, create_mesh, fem, locate_entities, vector_space
 from anisocontact.base.typed import typed
@@ -18,8 +18,6 @@ from anisocontact.mesh.idealisation import SOLID, Idealisation
 from anisocontact.mesh.node_groups import nodes_at
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.mesh.own_space import named_facets, own_unknowns
-
-Ints = npt.NDArray[np.int32]
 
 
 @typed
@@ -49,8 +47,8 @@ class Model:
     def __init__(
         self,
         mesh: Any,
-        bodies: Mapping[str, Ints],
-        facets: Mapping[str, Ints],
+        bodies: Mapping[str, Locals],
+        facets: Mapping[str, Locals],
         order: int = 1,
         linear: Sequence[str] = (),
         idealisation: Idealisation = SOLID,
@@ -64,9 +62,9 @@ class Model:
         self.linear = tuple(linear)
         self._bodies = dict(bodies)
         self._facets = dict(facets)
-        self._nodes: dict[str, Ints] = {}
+        self._nodes: dict[str, Locals] = {}
         #: Nodes of groups of facets that are on none of these.
-        self._beside: dict[str, Ints] = {}
+        self._beside: dict[str, Locals] = {}
 
     @classmethod
     def from_arrays(
@@ -104,7 +102,7 @@ class Model:
     def of(
         cls,
         space: Any,
-        facets: Mapping[str, Ints | int] | Any,
+        facets: Mapping[str, Locals | int] | Any,
         idealisation: Idealisation = SOLID,
         *,
         tags: Any = None,
@@ -170,7 +168,7 @@ class Model:
         """
         return list(self._facets)
 
-    def cells(self, name: str, field: str = "") -> Ints:
+    def cells(self, name: str, field: str = "") -> Locals:
         """Local cells of a body.
 
         Args:
@@ -185,7 +183,7 @@ class Model:
         """
         return _looked_up(self._bodies, name, "body", field)
 
-    def facets(self, name: str, field: str = "") -> Ints:
+    def facets(self, name: str, field: str = "") -> Locals:
         """Local facets of a group.
 
         Args:
@@ -200,7 +198,7 @@ class Model:
         """
         return _looked_up(self._facets, name, "facet group", field)
 
-    def name_nodes(self, name: str, nodes: Ints) -> None:
+    def name_nodes(self, name: str, nodes: Locals) -> None:
         """Give nodes a name by which displacements are prescribed: points and edges.
 
         Args:
@@ -214,7 +212,7 @@ class Model:
             raise InputError(f"{name!r} given, there is a group of that name already", "nodes")
         self._nodes[name] = nodes
 
-    def nodes(self, name: str, field: str = "") -> Ints:
+    def nodes(self, name: str, field: str = "") -> Locals:
         """Nodes of a group that this rank owns, of facets or of nodes with a name, or of both.
 
         Args:
@@ -233,7 +231,7 @@ class Model:
         own = nodes[nodes < self.space.dofmap.index_map.size_local]
         return np.union1d(own, self._beside[name]) if name in self._beside else np.asarray(own)
 
-    def facet_nodes(self, name: str, field: str = "") -> Ints:
+    def facet_nodes(self, name: str, field: str = "") -> Locals:
         """Nodes of a facet group on this rank; the call is collective.
 
         Args:
@@ -249,7 +247,7 @@ class Model:
         dim = self.mesh.topology.dim - 1
         return np.asarray(fem.locate_dofs_topological(self.space, dim, self.facets(name, field)))
 
-    def boundary(self, name: str, field: str = "") -> Ints:
+    def boundary(self, name: str, field: str = "") -> Locals:
         """Local facets of a group that has to lie on the boundary; the call is collective.
 
         Args:
@@ -324,7 +322,7 @@ class Model:
         return int(self.mesh.comm.allreduce(owned))
 
 
-def _located(mesh: Any, dim: int, groups: Mapping[str, npt.NDArray[np.int64]]) -> dict[str, Ints]:
+def _located(mesh: Any, dim: int, groups: Mapping[str, Ints]) -> dict[str, Locals]:
     """Local entities of each group, from the nodes of each of its entities."""
     if mesh.comm.size == 1 and groups:
         rows = np.concatenate(list(groups.values()))
@@ -338,7 +336,7 @@ def _located(mesh: Any, dim: int, groups: Mapping[str, npt.NDArray[np.int64]]) -
     }
 
 
-def _with_two_cells(mesh: Any, facets: Ints) -> int:
+def _with_two_cells(mesh: Any, facets: Locals) -> int:
     """How many of the facets that this rank owns have a cell on either side."""
     topology = mesh.topology
     dim = topology.dim
@@ -364,7 +362,7 @@ def _check_dimension(mesh: Any, idealisation: Idealisation) -> None:
     idealisation.check_points(np.array([low, high]))
 
 
-def _looked_up(known: dict[str, Ints], name: str, kind: str, field: str) -> Ints:
+def _looked_up(known: dict[str, Locals], name: str, kind: str, field: str) -> Locals:
     if name in known:
         return known[name]
     there = hint(name, known, "the mesh has")

@@ -12,14 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import MPI
 from anisocontact.mesh.split import Route, Split, share_of
 from anisocontact.mesh.stream import FLOAT, SIZE, MshError, Stream
 
-Nodes = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 # Dimension, physical tags of the entity -> nothing else is known of an element group.
 Entity = tuple[int, int]
 type Groups = dict[Entity, tuple[int, ...]]
@@ -65,9 +63,9 @@ class Block:
     """
 
     kind: int
-    nodes: Nodes
+    nodes: Ints
     groups: tuple[int, ...]
-    places: Nodes
+    places: Ints
     count: int
 
     @property
@@ -116,7 +114,7 @@ def read_msh(path: Path, comm: Any = MPI.COMM_SELF) -> MshFile:
     return out
 
 
-def _read(stream: Stream, comm: Any) -> tuple[MshFile, Nodes]:
+def _read(stream: Stream, comm: Any) -> tuple[MshFile, Ints]:
     """Content with the tags of the file, and the tags of the nodes."""
     if stream.line() != b"$MeshFormat":
         raise MshError("it does not begin with $MeshFormat")
@@ -156,7 +154,7 @@ def _read(stream: Stream, comm: Any) -> tuple[MshFile, Nodes]:
 class _Sections:
     """How a version of the format writes nodes and elements."""
 
-    nodes: Callable[[Stream, Any], tuple[Nodes, Floats]]
+    nodes: Callable[[Stream, Any], tuple[Ints, Floats]]
     elements: Callable[[Stream, Groups, Any], list[Block]]
 
 
@@ -197,7 +195,7 @@ def _entities(stream: Stream) -> Groups:
     return groups
 
 
-def _nodes_4(stream: Stream, comm: Any) -> tuple[Nodes, Floats]:
+def _nodes_4(stream: Stream, comm: Any) -> tuple[Ints, Floats]:
     blocks, total = (int(v) for v in stream.sizes(4)[:2])
     own = share_of(comm, total)
     tags, points = [np.zeros(0, dtype=np.int64)], [np.zeros((0, 3))]
@@ -231,7 +229,7 @@ def _elements_4(stream: Stream, entities: Groups, comm: Any) -> list[Block]:
     return blocks
 
 
-def _nodes_2(stream: Stream, comm: Any) -> tuple[Nodes, Floats]:
+def _nodes_2(stream: Stream, comm: Any) -> tuple[Ints, Floats]:
     if stream.binary:
         count = stream.count()
         row = np.dtype([("tag", "<i4"), ("x", "<f8", 3)])
@@ -272,10 +270,10 @@ class _Growing:
     def __init__(self, comm: Any) -> None:
         self._rank, self._size = comm.rank, comm.size
         self._count = 0
-        self._nodes: list[Nodes] = []
-        self._places: list[Nodes] = []
+        self._nodes: list[Ints] = []
+        self._places: list[Ints] = []
 
-    def add(self, nodes: Nodes) -> None:
+    def add(self, nodes: Ints) -> None:
         places = np.arange(self._count, self._count + len(nodes))
         own = places % self._size == self._rank
         self._count += len(nodes)
@@ -300,7 +298,7 @@ def _node_count(kind: int) -> int:
     return ELEMENTS[kind][1]
 
 
-def _renumber(out: MshFile, tags: Nodes, comm: Any) -> None:
+def _renumber(out: MshFile, tags: Ints, comm: Any) -> None:
     """Put the numbers of the nodes in the place of their tags.
 
     A node is looked up on the process that its tag names, wherever it lives.

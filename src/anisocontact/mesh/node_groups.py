@@ -8,14 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.arrays import points
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
-
-__all__ = ["node_near", "nodes_along", "nodes_at"]
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
 
 #: Distance from a line that is rounding of mesh files, over the size of the body.
 ROUNDED = 1e-5
@@ -26,7 +22,7 @@ FAR = 0.5
 
 
 @typed
-def node_near(model: Any, body: str, point: npt.ArrayLike, field: str = "") -> Ints:
+def node_near(model: Any, body: str, point: npt.ArrayLike, field: str = "") -> Locals:
     """The node of a body that is nearest to a point; collective.
 
     Args:
@@ -54,7 +50,7 @@ def node_near(model: Any, body: str, point: npt.ArrayLike, field: str = "") -> I
     if least > FAR * size:
         text = f"the nearest node of {body!r} is {least:.4g} off, the body {size:.4g} large"
         raise InputError(f"{text}: a point at the body needed", field)
-    found: Ints = nodes[away <= least + SAME * size]
+    found: Locals = nodes[away <= least + SAME * size]
     count = model.mesh.comm.allreduce(len(found))
     if count > 1:
         text = f"{count} nodes of {body!r} are {least:.4g} from it; give a point nearer to one"
@@ -65,7 +61,7 @@ def node_near(model: Any, body: str, point: npt.ArrayLike, field: str = "") -> I
 @typed
 def nodes_along(
     model: Any, body: str, start: npt.ArrayLike, end: npt.ArrayLike, field: str = ""
-) -> Ints:
+) -> Locals:
     """The nodes of a body on a straight line between two points; collective.
 
     Args:
@@ -99,7 +95,7 @@ def nodes_along(
         raise InputError("start and end are one point", field)
     share = np.clip((x - first) @ way / length**2, 0.0, 1.0)
     off = np.linalg.norm(x - first - share[:, None] * way, axis=1)
-    found: Ints = nodes[off <= ROUNDED * size]
+    found: Locals = nodes[off <= ROUNDED * size]
     if not model.mesh.comm.allreduce(len(found)):
         least = min(model.mesh.comm.allgather(float(off.min(initial=np.inf))))
         raise InputError(
@@ -108,7 +104,7 @@ def nodes_along(
     return found
 
 
-def nodes_at(model: Any, body: str, places: Floats) -> Ints:
+def nodes_at(model: Any, body: str, places: Floats) -> Locals:
     """The nodes of a body at some places; collective.
 
     Args:
@@ -121,11 +117,11 @@ def nodes_at(model: Any, body: str, places: Floats) -> Ints:
     """
     nodes, x, size = _nodes_of(model, body, "")
     distance, _ = scipy.spatial.KDTree(places).query(x)
-    found: Ints = nodes[distance <= ROUNDED * size]
+    found: Locals = nodes[distance <= ROUNDED * size]
     return found
 
 
-def _nodes_of(model: Any, body: str, field: str) -> tuple[Ints, Floats, float]:
+def _nodes_of(model: Any, body: str, field: str) -> tuple[Locals, Floats, float]:
     """Nodes of a body that this rank owns, where they are, and the size of the body."""
     space, comm = model.space, model.mesh.comm
     nodes = np.unique(space.dofmap.list[model.cells(body, field)])

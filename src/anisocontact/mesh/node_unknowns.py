@@ -6,13 +6,10 @@ from functools import cached_property
 from typing import Any, override
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc, la
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 class NodeUnknowns:

@@ -6,13 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import tags_of_mesh, vector_space
 from anisocontact.mesh.node_unknowns import NodeUnknowns, PlacedUnknowns
-
-Ints = npt.NDArray[np.int32]
 
 _CELLS = ("tetrahedron", "hexahedron", "triangle", "quadrilateral")
 _NEEDED = '("Lagrange", 1 or 2, (3,)) needed'
@@ -60,7 +58,7 @@ def own_unknowns(space: Any) -> NodeUnknowns:
     return PlacedUnknowns(vector_space(space.mesh, element.degree), space)
 
 
-def named_facets(facets: Any, mesh: Any, tags: Any = None) -> dict[str, Ints]:
+def named_facets(facets: Any, mesh: Any, tags: Any = None) -> dict[str, Locals]:
     """Facet groups by name, each facet once.
 
     Args:
@@ -111,7 +109,7 @@ def _name(name: object) -> str:
     return name
 
 
-def _numbers(name: str, given: Any) -> Ints:
+def _numbers(name: str, given: Any) -> Locals:
     if _are_tags(given):
         what = "facets" if given.dim == 2 else f"entities of dimension {given.dim}"
         text = f"MeshTags of {what} given, an array of facets needed: facet_tags.find(value)"

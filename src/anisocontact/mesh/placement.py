@@ -9,10 +9,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from anisocontact.base import registry
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Parameter
 from anisocontact.base.typed import typed
-from anisocontact.mesh.arrays import Floats, MeshArrays
+from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.quality import check_cells
 
 _ANGLE = Parameter("angle", "scalar", "angle", "angle of a rotation")

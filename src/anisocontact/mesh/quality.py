@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import curved_gradients, middle_nodes
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
@@ -62,7 +62,7 @@ def check_cells(mesh: MeshArrays) -> None:
         raise InputError("neighbouring cells do not have the same nodes on their common edges")
 
 
-def scaled_jacobian(mesh: MeshArrays) -> npt.NDArray[np.float64]:
+def scaled_jacobian(mesh: MeshArrays) -> Floats:
     """Least volume at a corner of each cell over the lengths of its edges, (cells,).
 
     1 for a cube or a square and, scaled, for a regular tetrahedron or triangle [Knupp 2000].
@@ -86,7 +86,7 @@ def scaled_jacobian(mesh: MeshArrays) -> npt.NDArray[np.float64]:
     return np.asarray((_corner_volumes(mesh) / size).min(axis=1))
 
 
-def _corner_volumes(mesh: MeshArrays) -> npt.NDArray[np.float64]:
+def _corner_volumes(mesh: MeshArrays) -> Floats:
     corners = _CORNERS[mesh.cell]
     dim = corners.shape[1] - 1
     points = mesh.points[mesh.cells[:, corners]]
@@ -94,12 +94,12 @@ def _corner_volumes(mesh: MeshArrays) -> npt.NDArray[np.float64]:
     return _either_side(np.linalg.det(edges), dim)
 
 
-def _either_side(volumes: npt.NDArray[np.float64], dim: int) -> npt.NDArray[np.float64]:
+def _either_side(volumes: Floats, dim: int) -> Floats:
     """Cells in the plane may be seen from either side."""
     return volumes * np.sign(volumes[:, :1]) if dim == 2 else volumes
 
 
-def _inner_volumes(mesh: MeshArrays) -> npt.NDArray[np.float64]:
+def _inner_volumes(mesh: MeshArrays) -> Floats:
     dim = _CORNERS[mesh.cell].shape[1] - 1
     points = np.ascontiguousarray(mesh.points[mesh.cells][..., :dim].swapaxes(1, 2))
     # One point after the other: all at once would be many times the mesh.

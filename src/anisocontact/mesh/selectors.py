@@ -9,9 +9,9 @@ from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact.base import registry
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.arrays import connected
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_nodes
@@ -19,12 +19,6 @@ from anisocontact.base.registry import Entry, Parameter
 from anisocontact.base.typed import typed
 from anisocontact.mesh.arrays import CELL_FACETS, MeshArrays
 from anisocontact.mesh.split import Route
-
-__all__ = ["Boundary", "Selector", "make_selector", "register_selector", "selectors", "with_groups"]
-
-Floats = npt.NDArray[np.float64]
-Nodes = npt.NDArray[np.int64]
-Mask = npt.NDArray[np.bool_]
 
 #: Share of the size of a body that files round places to.
 ROUNDED = 1e-5
@@ -53,10 +47,10 @@ class Boundary:
     """
 
     corners: Floats
-    vertices: Nodes
-    nodes: Nodes
+    vertices: Ints
+    nodes: Ints
     normals: Floats
-    bodies: Nodes
+    bodies: Ints
 
     @classmethod
     def of(cls, mesh: MeshArrays) -> Boundary:
@@ -91,22 +85,22 @@ class Boundary:
         """Longest side of the box around the facets, length."""
         return float(np.ptp(self.corners.reshape(-1, 3), axis=0).max())
 
-    def of_bodies(self, chosen: Mask) -> Boundary:
+    def of_bodies(self, chosen: Flags) -> Boundary:
         """Some of the facets."""
         parts: Any = (self.corners, self.vertices, self.nodes, self.normals, self.bodies)
         return Boundary(*(part[chosen] for part in parts))
 
 
 #: Says which facets are in a group, (facets,).
-type Selector = Callable[[Boundary], Mask]
+type Selector = Callable[[Boundary], Flags]
 
-_SELECTORS: dict[str, tuple[Entry, Callable[..., Mask]]] = {}
+_SELECTORS: dict[str, tuple[Entry, Callable[..., Flags]]] = {}
 
 
 @typed
 def register_selector(
     name: str, doc: str, *parameters: Parameter
-) -> Callable[[Callable[..., Mask]], Callable[..., Mask]]:
+) -> Callable[[Callable[..., Flags]], Callable[..., Flags]]:
     """Let a function choose the facets of groups; `by` in `[group.<name>]` has its name then.
 
     Args:
@@ -124,7 +118,7 @@ def register_selector(
         >>> _ = _SELECTORS.pop("upwards-doctest")
     """
 
-    def register(select: Callable[..., Mask]) -> Callable[..., Mask]:
+    def register(select: Callable[..., Flags]) -> Callable[..., Flags]:
         _SELECTORS[name] = Entry(name, "group selector", doc, parameters), select
         return select
 
@@ -222,7 +216,7 @@ def _normals(corners: Floats, middles: Floats) -> Floats:
 
 
 @register_selector("all", "All facets at the boundary of the body.")
-def _all(boundary: Boundary) -> Mask:
+def _all(boundary: Boundary) -> Flags:
     return np.ones(len(boundary.nodes), dtype=bool)
 
 
@@ -232,7 +226,7 @@ def _all(boundary: Boundary) -> Mask:
     Parameter("low", "vector", "length", "lowest corner of the box"),
     Parameter("high", "vector", "length", "highest corner of the box"),
 )
-def _box(boundary: Boundary, low: Sequence[float], high: Sequence[float]) -> Mask:
+def _box(boundary: Boundary, low: Sequence[float], high: Sequence[float]) -> Flags:
     slack = ROUNDED * boundary.size
     inside = (boundary.corners >= np.array(low) - slack) & (
         boundary.corners <= np.array(high) + slack
@@ -246,7 +240,7 @@ def _box(boundary: Boundary, low: Sequence[float], high: Sequence[float]) -> Mas
     Parameter("point", "vector", "length", "a point of the plane"),
     Parameter("normal", "vector", "1", "normal of the plane", "nonzero"),
 )
-def _plane(boundary: Boundary, point: Sequence[float], normal: Sequence[float]) -> Mask:
+def _plane(boundary: Boundary, point: Sequence[float], normal: Sequence[float]) -> Flags:
     unit = np.array(normal) / np.linalg.norm(normal)
     off = np.abs((boundary.corners - np.array(point)) @ unit)
     return np.asarray((off <= ROUNDED * boundary.size).all(axis=1))
@@ -261,7 +255,7 @@ def _plane(boundary: Boundary, point: Sequence[float], normal: Sequence[float]) 
 )
 def _cylinder(
     boundary: Boundary, point: Sequence[float], axis: Sequence[float], radius: float
-) -> Mask:
+) -> Flags:
     unit = np.array(axis) / np.linalg.norm(axis)
     away = boundary.corners - np.array(point)
     off = np.linalg.norm(away - (away @ unit)[..., None] * unit, axis=2) - radius
@@ -282,7 +276,7 @@ def _cylinder(
         default=(math.radians(10.0),),
     ),
 )
-def _normal(boundary: Boundary, direction: Sequence[float], angle: float) -> Mask:
+def _normal(boundary: Boundary, direction: Sequence[float], angle: float) -> Flags:
     unit = np.array(direction) / np.linalg.norm(direction)
     return np.asarray(boundary.normals @ unit >= np.cos(angle))
 
@@ -301,7 +295,7 @@ def _normal(boundary: Boundary, direction: Sequence[float], angle: float) -> Mas
         default=(math.radians(30.0),),
     ),
 )
-def _nearest(boundary: Boundary, point: Sequence[float], angle: float) -> Mask:
+def _nearest(boundary: Boundary, point: Sequence[float], angle: float) -> Flags:
     local = np.array(_EDGES[boundary.vertices.shape[1]])
     edges = np.sort(boundary.vertices[:, local], axis=2).reshape(-1, local.shape[1])
     facet = np.repeat(np.arange(len(boundary.vertices)), len(local))

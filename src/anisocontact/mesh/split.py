@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Ints
+
 type Table = npt.NDArray[Any]
-Numbers = npt.NDArray[np.int64]
 
 
 class Route:
@@ -20,7 +21,7 @@ class Route:
         to: Process to which each row goes, (rows,).
     """
 
-    def __init__(self, comm: Any, to: Numbers) -> None:
+    def __init__(self, comm: Any, to: Ints) -> None:
         self._comm = comm
         if comm.size > 1:
             self._order = np.argsort(to, kind="stable")
@@ -50,7 +51,7 @@ class Route:
         out[self._order] = self._exchanged(answers, self._got, self._sent)
         return out
 
-    def _exchanged(self, rows: Table, sent: Numbers, got: Numbers) -> Table:
+    def _exchanged(self, rows: Table, sent: Ints, got: Ints) -> Table:
         width = int(np.prod(rows.shape[1:]))
         out = np.empty((int(got.sum()), *rows.shape[1:]), rows.dtype)
         given = np.ascontiguousarray(rows)
@@ -78,15 +79,15 @@ class Split:
         self.total = int(self._starts[-1])
 
     @cached_property
-    def numbers(self) -> Numbers:
+    def numbers(self) -> Ints:
         """Numbers of the rows of this process."""
         return np.arange(self.first, self.first + self._count)
 
-    def owner(self, numbers: Numbers) -> Numbers:
+    def owner(self, numbers: Ints) -> Ints:
         """Process that has each of these rows."""
         return np.searchsorted(self._starts, numbers, side="right") - 1
 
-    def fetch(self, values: Table, numbers: Numbers) -> Table:
+    def fetch(self, values: Table, numbers: Ints) -> Table:
         """Rows of all processes.
 
         Args:
@@ -103,7 +104,7 @@ class Split:
         found = route.back(values[route.there(asked) - self.first])
         return np.asarray(found[place.reshape(numbers.shape)])
 
-    def marked(self, numbers: Numbers) -> npt.NDArray[np.bool_]:
+    def marked(self, numbers: Ints) -> Flags:
         """Which rows of this process any process has named, (rows,)."""
         mask = np.zeros(self._count, dtype=np.bool_)
         asked = np.unique(numbers) if self._comm.size > 1 else numbers
@@ -111,7 +112,7 @@ class Split:
         return mask
 
 
-def arranged(comm: Any, total: int, numbers: Numbers, *tables: Table) -> list[Table]:
+def arranged(comm: Any, total: int, numbers: Ints, *tables: Table) -> list[Table]:
     """Rows in order, an even share of them on every process.
 
     Args:

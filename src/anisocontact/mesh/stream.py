@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-Nodes = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
+from anisocontact.base.array_types import Floats, Ints
 
 INT, SIZE, FLOAT = np.dtype("<i4"), np.dtype("<i8"), np.dtype("<f8")
 #: Bytes of text that are taken apart at a time.
@@ -83,11 +82,11 @@ class Stream:
         self._at = self._closing(name)
         self.line()
 
-    def ints(self, n: int = 1) -> Nodes:
+    def ints(self, n: int = 1) -> Ints:
         """Short integers, (n,)."""
         return self._take(n, INT).astype(np.int64)
 
-    def sizes(self, n: int = 1) -> Nodes:
+    def sizes(self, n: int = 1) -> Ints:
         """Long integers, (n,)."""
         return self._take(n, SIZE)
 

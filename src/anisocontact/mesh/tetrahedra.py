@@ -9,10 +9,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
-Nodes = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
+from anisocontact.base.array_types import Floats, Ints
 
 #: Corners of the faces of cells in the order of Abaqus, to the left round seen from inside.
 FACES = {
@@ -46,7 +44,7 @@ COUNT = {"tetrahedron": 4, "hexahedron": 8, "prism": 6, "pyramid": 5}
 _THROUGH = ((0, 6), (1, 7), (2, 4), (3, 5))
 
 
-def tetrahedra(cell: str, corners: Nodes, points: Floats) -> tuple[Nodes, Nodes]:
+def tetrahedra(cell: str, corners: Ints, points: Floats) -> tuple[Ints, Ints]:
     """Tetrahedra that fill cells.
 
     Args:
@@ -71,7 +69,7 @@ def tetrahedra(cell: str, corners: Nodes, points: Floats) -> tuple[Nodes, Nodes]
     return np.concatenate(found)[order], np.concatenate(owners)[order]
 
 
-def triangles(facets: Nodes) -> Sequence[Nodes]:
+def triangles(facets: Ints) -> Sequence[Ints]:
     """Facets by their corners as triangles: those of four are cut at the corner of least number."""
     if facets.shape[1] == 3:
         return [facets]
@@ -92,7 +90,7 @@ class Middles:
         points: With the nodes that were added.
     """
 
-    def __init__(self, points: Floats, cells: Sequence[tuple[str, Nodes]]) -> None:
+    def __init__(self, points: Floats, cells: Sequence[tuple[str, Ints]]) -> None:
         self.points, self._keys = points, np.zeros((0, 2), dtype=np.int64)
         self._middle = np.zeros(0, dtype=np.int64)
         corners, around = [np.zeros((0, 4), dtype=np.int64)], [np.zeros((0, 4), dtype=np.int64)]
@@ -112,21 +110,21 @@ class Middles:
         self._keys, self._middle = self._keys[order], self._middle[order]
         self._rows = self._named(self._keys)
 
-    def of(self, corners: Nodes) -> Nodes:
+    def of(self, corners: Ints) -> Ints:
         """The middle nodes of tetrahedra in the order of VTK, (m, 6)."""
         ends = np.sort(corners[:, EDGES["tetrahedron"]], axis=2).reshape(-1, 2)
         found = self._middle[np.searchsorted(self._rows, self._named(ends))]
         return np.asarray(found.reshape(len(corners), 6))
 
-    def _named(self, pairs: Nodes) -> Nodes:
+    def _named(self, pairs: Ints) -> Ints:
         return pairs[:, 0] * (len(self.points) + 1) + pairs[:, 1]
 
-    def _know(self, ends: Nodes, middle: Nodes) -> None:
+    def _know(self, ends: Ints, middle: Ints) -> None:
         self._keys = np.concatenate([self._keys, np.sort(ends, axis=1)])
         self._middle = np.concatenate([self._middle, middle])
 
     def _add(
-        self, corners: Nodes, around: Nodes, share: float, diagonals: Sequence[tuple[int, int]]
+        self, corners: Ints, around: Ints, share: float, diagonals: Sequence[tuple[int, int]]
     ) -> None:
         """Add the middles of faces or cells, one for those of the same corners.
 
@@ -147,7 +145,7 @@ class Middles:
             self._know(corners[:, diagonal], numbers)
 
 
-def _upright(corners: Nodes, points: Floats) -> Nodes:
+def _upright(corners: Ints, points: Floats) -> Ints:
     """Prisms with the second triangle where the normal of the first points to: formats differ."""
     x = points[corners]
     normal = np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0])

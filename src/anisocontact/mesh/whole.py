@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import cell_nodes, facet_nodes, middle_nodes
 from anisocontact.base.words import hint
@@ -21,12 +21,9 @@ from anisocontact.mesh.mirrored import turned
 from anisocontact.mesh.quality import check_cells
 from anisocontact.mesh.tetrahedra import COUNT, EDGES, Middles, tetrahedra, triangles
 
-Nodes = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
-
 #: A cell and how many nodes it has; nodes and body of each element.
 type Kind = tuple[str, int]
-type Elements = tuple[Nodes, list[str]]
+type Elements = tuple[Ints, list[str]]
 
 #: Corners of a cell in VTK's order -> DOLFINx's, which goes along one axis after the other.
 CORNERS = {
@@ -60,14 +57,14 @@ class WholeMesh:
     """
 
     points: Floats
-    cells: list[tuple[str, Nodes]] = field(default_factory=list)
+    cells: list[tuple[str, Ints]] = field(default_factory=list)
     bodies: list[Sequence[str]] = field(default_factory=list)
-    node_sets: dict[str, Nodes] = field(default_factory=dict)
-    surfaces: dict[str, list[Nodes]] = field(default_factory=dict)
+    node_sets: dict[str, Ints] = field(default_factory=dict)
+    surfaces: dict[str, list[Ints]] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
 
-    def add_cells(self, cell: str, nodes: Nodes, bodies: Sequence[str]) -> None:
+    def add_cells(self, cell: str, nodes: Ints, bodies: Sequence[str]) -> None:
         """Add elements of one kind with the body of each."""
         self.cells.append((cell, nodes))
         self.bodies.append(bodies)
@@ -111,9 +108,9 @@ class WholeMesh:
         mesh = merge([self._of_kind(cell, *part) for (cell, _), part in joined.items()])
         return replace(mesh, notes=self.notes)
 
-    def _by_kind(self, wanted: Sequence[str]) -> dict[tuple[str, int], tuple[Nodes, list[str]]]:
+    def _by_kind(self, wanted: Sequence[str]) -> dict[tuple[str, int], tuple[Ints, list[str]]]:
         """Nodes and bodies of the elements of some bodies, by cell and number of nodes."""
-        kinds: dict[tuple[str, int], list[tuple[Nodes, list[str]]]] = {}
+        kinds: dict[tuple[str, int], list[tuple[Ints, list[str]]]] = {}
         for (cell, nodes), labels in zip(self.cells, self.bodies, strict=True):
             taken = np.isin(np.array(labels), list(wanted))
             if taken.any():
@@ -124,7 +121,7 @@ class WholeMesh:
             for kind, parts in kinds.items()
         }
 
-    def _cut(self, kinds: Mapping[tuple[str, int], tuple[Nodes, list[str]]]) -> WholeMesh:
+    def _cut(self, kinds: Mapping[tuple[str, int], tuple[Ints, list[str]]]) -> WholeMesh:
         """The same bodies in tetrahedra, where not all cells are of one kind that a mesh can have.
 
         Raises:
@@ -153,7 +150,7 @@ class WholeMesh:
         return cut
 
     @staticmethod
-    def _check_apart(kinds: Mapping[tuple[str, int], tuple[Nodes, list[str]]]) -> None:
+    def _check_apart(kinds: Mapping[tuple[str, int], tuple[Ints, list[str]]]) -> None:
         """Refuse kinds of elements that share nodes: no mesh has cells of both."""
         said = " and ".join(f"{cell}s of {n} nodes" for cell, n in sorted(kinds))
         nodes = np.concatenate([np.unique(rows) for rows, _ in kinds.values()])
@@ -164,7 +161,7 @@ class WholeMesh:
             if names.count(name) > 1:
                 raise InputError(f"body {name!r} has {said}, one kind is needed")
 
-    def _of_kind(self, cell: str, nodes: Nodes, labels: Sequence[str]) -> MeshArrays:
+    def _of_kind(self, cell: str, nodes: Ints, labels: Sequence[str]) -> MeshArrays:
         """The arrays of elements of one kind with the body of each."""
         names = list(dict.fromkeys(labels))
         points, cells, degree = _in_order(cell, nodes, self.points)
@@ -186,7 +183,7 @@ class WholeMesh:
                 groups.add_nodes(name, numbers[found])
         return replace(mesh, facets=groups.facets, nodes=self._points_and_edges(groups, numbers))
 
-    def _points_and_edges(self, groups: _Groups, numbers: Nodes) -> dict[str, Floats]:
+    def _points_and_edges(self, groups: _Groups, numbers: Ints) -> dict[str, Floats]:
         """Sets of nodes of each body, what they have beyond their facets: places by "body.set"."""
         mesh, found = groups.mesh, {}
         for body, cells in mesh.bodies.items():
@@ -239,7 +236,7 @@ def in_triangles(mesh: WholeMesh, kinds: Mapping[Kind, Elements]) -> WholeMesh:
     return cut
 
 
-def _in_order(cell: str, nodes: Nodes, points: Floats) -> tuple[Floats, Nodes, int]:
+def _in_order(cell: str, nodes: Ints, points: Floats) -> tuple[Floats, Ints, int]:
     """Points, cells in DOLFINx's order, and their degree."""
     order = CORNERS[cell]
     corners = nodes[:, order]
@@ -271,9 +268,7 @@ def _in_order(cell: str, nodes: Nodes, points: Floats) -> tuple[Floats, Nodes, i
     return points, cells, 2
 
 
-def _with_faces(
-    points: Floats, cells: Nodes, missing: Sequence[tuple[int, Nodes, Nodes]]
-) -> Floats:
+def _with_faces(points: Floats, cells: Ints, missing: Sequence[tuple[int, Ints, Ints]]) -> Floats:
     """The points with one in each face, where the shape functions of eight nodes have its middle.
 
     Args:
@@ -318,9 +313,9 @@ class _Groups:
         self._nodes = mesh.cells[:, full].reshape(-1, full.shape[1])
         self._corners, self._names = keys, list(names)
         self._body = np.repeat(mesh.labels, len(local))
-        self.facets: dict[str, Nodes] = {}
+        self.facets: dict[str, Ints] = {}
 
-    def add_surface(self, name: str, corners: Nodes) -> None:
+    def add_surface(self, name: str, corners: Ints) -> None:
         """Add a surface by the corners of its facets, -1 for those of bodies that are not taken.
 
         Raises:
@@ -335,13 +330,13 @@ class _Groups:
         found = np.unique(np.array(places, dtype=np.int64))
         self._add(name, found[self._free[found]])
 
-    def add_nodes(self, name: str, nodes: Nodes) -> None:
+    def add_nodes(self, name: str, nodes: Ints) -> None:
         """Add the facets at the boundary with all corners among some nodes, if there are any."""
         marked = np.zeros(int(self._corners.max(initial=0)) + 1, dtype=bool)
         marked[nodes[(nodes >= 0) & (nodes < len(marked))]] = True
         self._add(name, np.flatnonzero(marked[self._corners].all(axis=1) & self._free))
 
-    def _add(self, name: str, found: Nodes) -> None:
+    def _add(self, name: str, found: Ints) -> None:
         rows = self._first[found]
         for label, body in enumerate(self._names):
             own = rows[self._body[rows] == label]

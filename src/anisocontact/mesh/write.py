@@ -8,15 +8,14 @@ from typing import Any
 import numpy as np
 import scipy
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import middle_nodes
-from anisocontact.mesh.arrays import Floats, MeshArrays, Nodes
+from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.merge import facet_rows
 from anisocontact.mesh.meshio_files import GROUP, needed
 from anisocontact.mesh.tetrahedra import EDGES
 from anisocontact.mesh.whole import CORNERS, FACES
-
-__all__ = ["FORMATS", "write_mesh"]
 
 #: Ending -> format of meshio.
 FORMATS = {".msh": "gmsh22", ".vtu": "vtu", ".vtk": "vtk"}
@@ -73,14 +72,14 @@ def write_mesh(mesh: MeshArrays, path: str | Path) -> None:
         raise InputError(f"'{path}' cannot be written: {problem.strerror or problem}") from None
 
 
-def _facets(mesh: MeshArrays, rows: Nodes) -> tuple[str, Nodes]:
+def _facets(mesh: MeshArrays, rows: Ints) -> tuple[str, Ints]:
     corners = rows[:, : mesh.vertices_per_facet]
     nodes = facet_rows(mesh, mesh.cells, corners, mesh.degree)
     facet, order = _FACETS[mesh.vertices_per_facet, mesh.degree]
     return facet, nodes[:, order]
 
 
-def _numbers(mesh: MeshArrays, name: str, places: Floats) -> Nodes:
+def _numbers(mesh: MeshArrays, name: str, places: Floats) -> Ints:
     """Nodes of the body of a group at some places."""
     own = np.unique(mesh.cells[mesh.bodies[name.partition(".")[0]]])
     return np.asarray(own[scipy.spatial.KDTree(mesh.points[own]).query(places)[1]])
@@ -101,7 +100,7 @@ def _vtk_order(mesh: MeshArrays) -> list[int]:
     return [*corners, *middles, *range(len(corners) + len(middles), mesh.cells.shape[1])]
 
 
-def _numbered(mesh: MeshArrays, blocks: list[tuple[str, Nodes]]) -> dict[str, Any]:
+def _numbered(mesh: MeshArrays, blocks: list[tuple[str, Ints]]) -> dict[str, Any]:
     """Physical groups of gmsh."""
     numbers = [np.full(len(rows), k, dtype=np.int64) for k, (_, rows) in enumerate(blocks, 1)]
     dim = 2 if mesh.vertices_per_facet == 2 else 3
@@ -118,7 +117,7 @@ def _numbered(mesh: MeshArrays, blocks: list[tuple[str, Nodes]]) -> dict[str, An
     }
 
 
-def _marked(names: list[str], blocks: list[tuple[str, Nodes]]) -> dict[str, Any]:
+def _marked(names: list[str], blocks: list[tuple[str, Ints]]) -> dict[str, Any]:
     """An array of 0 and 1 for each name."""
     sizes = [len(rows) for _, rows in blocks]
     return {

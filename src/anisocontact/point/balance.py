@@ -17,11 +17,12 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.interface import FAILURE, Response, State
 from anisocontact.point.device import Action, Device
 from anisocontact.point.foot import Foot, foot
 from anisocontact.point.group import Arms, Group, turned_arms
-from anisocontact.surfaces import Floats, Surface
+from anisocontact.surfaces import Surface
 
 
 class PointInterface(Protocol):

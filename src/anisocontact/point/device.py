@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.point.foot import Foot
-from anisocontact.surfaces import Floats
 
 #: Frames of a force or direction that is given by components.
 FRAMES = ("space", "friction", "adhesion", "coordinates")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.interface import State
@@ -34,7 +35,6 @@ from anisocontact.point.history import (
 )
 from anisocontact.point.loads import Load
 from anisocontact.point.newton import solve
-from anisocontact.surfaces import Floats
 
 #: How often a step is halved before the drive stops.
 MOST_HALVINGS = 10

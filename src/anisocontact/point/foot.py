@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from anisocontact.surfaces import PROJECTION_STATUS, Floats, Surface
+from anisocontact.base.array_types import Floats
+from anisocontact.surfaces import PROJECTION_STATUS, Surface
 
 # Of the distance to the foot: a point that is not on the normal of its foot is beyond an edge.
 _OFF_NORMAL = 1e-6

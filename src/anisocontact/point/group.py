@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.point.foot import Foot
-from anisocontact.surfaces import Floats
 
 #: What a group may do with its orientation.
 ORIENTATIONS = ("held", "surface", "free")

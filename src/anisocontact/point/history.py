@@ -11,10 +11,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.limits import FOLLOWED
 from anisocontact.interface import STATUS, Response
 from anisocontact.point.balance import Pose
-from anisocontact.surfaces import Floats, Surface
+from anisocontact.surfaces import Surface
 
 Table = npt.NDArray[np.void]
 

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.point.device import (
@@ -22,7 +23,7 @@ from anisocontact.point.device import (
 )
 from anisocontact.point.foot import foot, foot_at
 from anisocontact.point.schedule import OverTime, Schedule, instants, knot_times
-from anisocontact.surfaces import Floats, Surface
+from anisocontact.surfaces import Surface
 
 
 class Load(ABC):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.point.balance import PointBalance, StepError, Trial
 from anisocontact.point.press import pressed
-from anisocontact.surfaces import Floats
 
 #: Of the forces at the trial position.
 TOLERANCE = 1e-12

@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.point.balance import PointBalance, StepError, Trial, shown
 from anisocontact.point.foot import foot
-from anisocontact.surfaces import Floats
 
 
 def pressed(balance: PointBalance, guess: Floats) -> Trial:

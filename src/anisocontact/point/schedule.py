@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
-from anisocontact.surfaces import Floats
 
 #: A number or vector, knots of it, or a function of time.
 OverTime = npt.ArrayLike | Callable[[float], npt.ArrayLike]

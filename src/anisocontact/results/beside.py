@@ -14,8 +14,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-__all__ = ["Reporter", "report_beside", "report_here"]
-
 #: Writes the report of a results folder; what could not be drawn and why, a line each.
 Reporter = Callable[[Path], list[str]]
 _PROGRAM = "anisocontact.results.report.waiting"

@@ -21,24 +21,13 @@ import numpy as np
 import numpy.typing as npt
 from numpy.lib.recfunctions import repack_fields
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
+from anisocontact.base.whole_files import replacing
 from anisocontact.contact.facet_mesh import node_positions
 from anisocontact.mesh import Model
-from anisocontact.results.files import Disk, replacing
+from anisocontact.results.files import Disk
 from anisocontact.solver.terms.persistent import Arrays, Persistent, under
-
-__all__ = [
-    "NAME",
-    "Stored",
-    "distribute",
-    "keep_checkpoint",
-    "load_checkpoint",
-    "own_arrays",
-    "save_checkpoint",
-]
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 NAME = "checkpoint.npz"
 #: Folder of the pieces of several processes.

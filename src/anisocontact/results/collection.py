@@ -7,10 +7,9 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
+from anisocontact.base.whole_files import replacing
 from anisocontact.results.dataset import DataSet
-from anisocontact.results.files import Disk, replacing, write_text
-
-__all__ = ["Collection"]
+from anisocontact.results.files import Disk, write_text
 
 
 class Collection:

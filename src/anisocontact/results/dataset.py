@@ -15,7 +15,7 @@ from zlib import compress, decompress
 import numpy as np
 import numpy.typing as npt
 
-__all__ = ["DataSet", "polygons", "read_data_set", "vertices"]
+from anisocontact.base.array_types import Floats
 
 type Arrays = Mapping[str, npt.NDArray[Any]]
 
@@ -58,7 +58,7 @@ class DataSet:
     """
 
     kind: str
-    points: npt.NDArray[np.float64]
+    points: Floats
     cells: Mapping[str, Arrays]
     point_data: Arrays
     cell_data: Arrays = field(default_factory=lambda: _NO_ARRAYS)

@@ -14,26 +14,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import GREY
 
 if TYPE_CHECKING:
     from anisocontact.results.scene import Scene
     from anisocontact.results.solids import Solid
-
-__all__ = [
-    "SHOWN",
-    "Shown",
-    "caption",
-    "colours_of",
-    "in_plane",
-    "magnification",
-    "round_box",
-    "surfaces",
-]
-
-Floats = npt.NDArray[np.float64]
 
 #: Largest displacement in the picture as a share of the size of the bodies.
 VISIBLE = 0.1

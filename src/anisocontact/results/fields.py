@@ -12,8 +12,6 @@ from anisocontact.results.dataset import DataSet
 from anisocontact.results.files import Disk
 from anisocontact.solver import Accepted, Step
 
-__all__ = ["SUFFIXES", "FieldFiles"]
-
 #: Sorts of fields, and the suffix of their files.
 SUFFIXES: Mapping[str, str] = MappingProxyType(
     {"fields": ".vtu", "contact": ".vtp", "surfaces": ".vtp"}

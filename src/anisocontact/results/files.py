@@ -12,17 +12,6 @@ from typing import Any
 from anisocontact.base.errors import InputError
 from anisocontact.base.whole_files import replacing
 
-__all__ = [
-    "LOCK",
-    "Disk",
-    "WriteError",
-    "check_folder",
-    "clear",
-    "clear_drafts",
-    "replacing",
-    "write_text",
-]
-
 #: A point at which the law failed, for `anisocontact replay`.
 FAILED = "failed_point.json"
 #: Everything a run writes into its folder.

@@ -14,8 +14,6 @@ from typing import Any
 from anisocontact.base.errors import InputError
 from anisocontact.results.files import LOCK
 
-__all__ = ["locked"]
-
 #: What file systems answer that have no locks, some of those over a network.
 _NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL)
 

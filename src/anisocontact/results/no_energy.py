@@ -6,8 +6,6 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-__all__ = ["NO_ENERGY", "energies_by_name"]
-
 #: What stands for an energy that there is not.
 NO_ENERGY = "no energy"
 

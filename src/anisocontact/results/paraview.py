@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.fenicsx import compiled_expression, dolfinx, fem, scalar_element, ufl
 from anisocontact.bulk import PLASTIC_STRAIN, bare, cauchy_stress
 from anisocontact.bulk.cell_energy import volumes
@@ -24,10 +25,6 @@ from anisocontact.results.quantities import (
     von_mises,
 )
 from anisocontact.solver import Problem
-
-__all__ = ["Bodies", "slave_points"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Rows and columns of the stress components, in the order VTK has them.
 _SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
@@ -132,7 +129,7 @@ class Bodies:
         self._mean.x.scatter_forward()
         return np.array(self._mean.x.array, dtype=np.float64)
 
-    def _body_numbers(self, count: int) -> npt.NDArray[np.int32]:
+    def _body_numbers(self, count: int) -> Locals:
         numbers = np.zeros(count, dtype=np.int32)
         for i, body in enumerate(self.problem.model.body_names()):
             cells = self.problem.model.cells(body)
@@ -158,10 +155,11 @@ class BodiesNow:
 
     @cached_property
     def stress(self) -> Floats:
+        """At the nodes, (nodes, 6), stress."""
         return self._bodies.stress(self._trial)
 
     @property
-    def numbers(self) -> npt.NDArray[np.int32]:
+    def numbers(self) -> Locals:
         """Number of the body of each cell, (cells,)."""
         return self._bodies.numbers
 

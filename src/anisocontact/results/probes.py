@@ -8,17 +8,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import closest_cells, fem, reference_place, scalar_element
 from anisocontact.results.history import History
 from anisocontact.results.paraview import Bodies
 from anisocontact.results.quantities import NODE, quantities
-
-__all__ = ["Peak", "Probe", "ProbeTable", "ProbeValues"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Distance over the size of the mesh by which a point may lie outside of all bodies.
 OUTSIDE = 1e-6
@@ -75,9 +71,9 @@ class Places:
     """
 
     points: Floats
-    nodes: npt.NDArray[np.int32]
+    nodes: Locals
     weights: Floats
-    mine: npt.NDArray[np.int64]
+    mine: Ints
 
 
 class ProbeValues:
@@ -212,9 +208,7 @@ def _nodes_of(model: Any, group: str, field: str) -> Floats:
     return np.asarray(places[np.lexsort(places.T[::-1])])
 
 
-def _interpolation(
-    model: Any, points: Floats, field: str
-) -> tuple[npt.NDArray[np.int32], Floats, npt.NDArray[np.int64]]:
+def _interpolation(model: Any, points: Floats, field: str) -> tuple[Locals, Floats, Ints]:
     """Nodes and weights of the points that this process has, and which these are."""
     comm, mesh = model.mesh.comm, model.mesh
     cells, distance = closest_cells(mesh, points)

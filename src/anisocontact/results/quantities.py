@@ -9,24 +9,9 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
-
-__all__ = [
-    "CELL",
-    "CONTACT",
-    "FILES",
-    "NODE",
-    "PATCH",
-    "POINT",
-    "RIGID",
-    "OutputQuantity",
-    "SlavePoints",
-    "arrays",
-    "numbers",
-    "quantities",
-    "register_quantity",
-]
 
 #: What a quantity belongs to.
 NODE, CELL, POINT, PATCH = "node", "cell", "slave point", "patch"
@@ -187,19 +172,19 @@ class SlavePoints:
         return self.contact.state
 
     @property
-    def numbers(self) -> npt.NDArray[np.int32]:
+    def numbers(self) -> Locals:
         """Number of the contact for each point, (n,)."""
         return np.full(len(self.contact.areas), self.number, dtype=np.int32)
 
 
-def von_mises(stress: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def von_mises(stress: Floats) -> Floats:
     """Equivalent stress of (n, 6) components XX YY ZZ XY YZ XZ, (n,)."""
     xx, yy, zz, xy, yz, xz = stress.T
     normal = (xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2
     return np.asarray(np.sqrt(0.5 * normal + 3.0 * (xy**2 + yz**2 + xz**2)))
 
 
-def principal(stress: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
+def principal(stress: Floats) -> Floats:
     """Principal stresses of (n, 6) components XX YY ZZ XY YZ XZ, the largest first, (n, 3).
 
     A node on a cell whose stress is no number there, being inside out at that node, has none.

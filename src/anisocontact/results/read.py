@@ -15,6 +15,7 @@ from xml.etree import ElementTree
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.results.dataset import DataSet, read_data_set
@@ -22,9 +23,6 @@ from anisocontact.results.history import read_history
 
 if TYPE_CHECKING:
     import pyvista
-
-__all__ = ["Results"]
-
 
 #: Sorts of fields.
 KINDS = ("fields", "contact", "surfaces")
@@ -92,7 +90,7 @@ class Results:
             return read_history(path) if path.is_file() else {}
 
     @property
-    def times(self) -> npt.NDArray[np.float64]:
+    def times(self) -> Floats:
         """Times at which fields were written, the first is the start."""
         return np.array([time for time, _ in self._listed("fields.pvd")])
 

@@ -11,17 +11,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import fem
 from anisocontact.bulk import small_strain
 from anisocontact.solver import Problem
-
-__all__ = ["GroupResultant", "Resultant", "SectionResultant"]
-
-Floats = npt.NDArray[np.float64]
-Nodes = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -40,7 +35,7 @@ class GroupResultant:
         """Name of the body."""
         return problem.model.body_of(self.group)
 
-    def nodes(self, problem: Problem, field: str) -> Nodes:
+    def nodes(self, problem: Problem, field: str) -> Ints:
         """Nodes of the group that this process owns."""
         model, dim = problem.model, problem.model.idealisation.dim - 1
         facets = model.facets(self.group, f"{field}.group")
@@ -75,7 +70,7 @@ class SectionResultant:
         """Name of the body."""
         return self.body
 
-    def nodes(self, problem: Problem, field: str) -> Nodes:
+    def nodes(self, problem: Problem, field: str) -> Ints:
         """Nodes of the body in front of the plane that this process owns; collective.
 
         Raises:
@@ -101,7 +96,7 @@ class SectionResultant:
 type Resultant = GroupResultant | SectionResultant
 
 
-def resultant(what: Resultant, problem: Problem, nodes: Nodes) -> dict[str, Any]:
+def resultant(what: Resultant, problem: Problem, nodes: Ints) -> dict[str, Any]:
     """Force and moment about the point in the accepted state; collective.
 
     Args:
@@ -119,7 +114,7 @@ def resultant(what: Resultant, problem: Problem, nodes: Nodes) -> dict[str, Any]
     return {"force": force.tolist(), "moment": moment.tolist()}
 
 
-def _places(problem: Problem, body: str, nodes: Nodes) -> Floats:
+def _places(problem: Problem, body: str, nodes: Ints) -> Floats:
     """Where the forces at nodes of a body are in balance, (nodes, 3), length."""
     places = problem.model.space.tabulate_dof_coordinates()[nodes]
     if small_strain(problem.materials[body]):
@@ -127,5 +122,5 @@ def _places(problem: Problem, body: str, nodes: Nodes) -> Floats:
     return np.asarray(places + problem.u.x.array.reshape(-1, 3)[nodes])
 
 
-def _owned(problem: Problem, nodes: Any) -> Nodes:
+def _owned(problem: Problem, nodes: Any) -> Ints:
     return np.asarray(nodes[nodes < problem.model.space.dofmap.index_map.size_local])

@@ -6,14 +6,10 @@ from collections.abc import Iterator
 from itertools import combinations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
 from anisocontact.solver import Problem
-
-__all__ = ["Images", "round_radius"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Ratio of the semi-axes, and of the farthest point to the radius, up to which an area is round.
 AXES, FARTHEST = 1.15, 1.17

@@ -25,9 +25,8 @@ from vtkmodules.vtkRenderingCore import (
     vtkWindowToImageFilter,
 )
 
-__all__ = ["Scene"]
+from anisocontact.base.array_types import Floats
 
-Floats = npt.NDArray[np.float64]
 Colour = tuple[float, float, float]
 
 _BLACK: Colour = (0.0, 0.0, 0.0)

@@ -9,8 +9,8 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
 from anisocontact.results.quantities import CONTACT, RIGID, SlavePoints, numbers
 from anisocontact.results.resultants import Resultant, resultant
@@ -18,10 +18,6 @@ from anisocontact.results.round_area import Images, round_radius
 from anisocontact.rigid import Pose, RigidBody, rotation_vector
 from anisocontact.solver import Accepted, Problem, Step
 from anisocontact.solver.terms.loads import mean_shares
-
-__all__ = ["Observer", "laws", "named_groups"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Share of a pressure by which others are as large: rounding.
 ALIKE = 1e-9

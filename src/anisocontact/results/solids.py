@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import (
@@ -21,9 +20,7 @@ from vtkmodules.vtkFiltersGeneral import vtkTableBasedClipDataSet, vtkWarpVector
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
 
-__all__ = ["Solid", "one_cell", "read_solid"]
-
-Floats = npt.NDArray[np.float64]
+from anisocontact.base.array_types import Floats, Ints
 
 
 class Solid:
@@ -60,7 +57,7 @@ class Solid:
         """An array at the nodes, (n,) or (n, components)."""
         return _floats(self.data.GetPointData().GetArray(name))
 
-    def triangles(self) -> npt.NDArray[np.int64]:
+    def triangles(self) -> Ints:
         """Nodes of the facets of a skin, (m, 3)."""
         to_numpy: Any = vtk_to_numpy
         found = to_numpy(self.data.GetPolys().GetConnectivityArray())

@@ -7,16 +7,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact.anisotropy import DirectionField
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.contact import Contact
 from anisocontact.results.dataset import DataSet, polygons
 from anisocontact.results.quantities import PATCH, arrays
-
-__all__ = ["Surfaces"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Points of a patch along each coordinate.
 POINTS = 33
@@ -74,7 +70,7 @@ class Patch:
         directions: First axes of friction, zero where there are none, (n, 3).
     """
 
-    numbers: npt.NDArray[np.int32]
+    numbers: Locals
     points: Floats
     directions: Floats
 

@@ -9,12 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from anisocontact import __version__
+from anisocontact.base.whole_files import replacing
 from anisocontact.point import History
 from anisocontact.point.balance import PointInterface
-from anisocontact.results.files import clear, replacing, write_text
+from anisocontact.results.files import clear, write_text
 from anisocontact.results.no_energy import energies_by_name
-
-__all__ = ["write_trace"]
 
 _CAPTIONS = {
     "path": (

@@ -15,9 +15,6 @@ from anisocontact.base.whole_files import replacing
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.read import Results, needed
 
-__all__ = ["write_vtkhdf"]
-
-
 #: Sorts of cells of data sets here and there, in the order of the format.
 _POLY = {"Verts": "Vertices", "Lines": "Lines", "Polys": "Polygons", "Strips": "Strips"}
 

@@ -15,8 +15,6 @@ from anisocontact.solver.stepping.turned import MARGIN
 from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.rotations import CURE, WARNED
 
-__all__ = ["at_end", "at_start", "of_models", "soft", "worst", "worst_of_models"]
-
 #: Angle along a part of an increment beyond which it is worth a warning, radian.
 TURNED = MARGIN * FOLLOWED
 #: Share of the facet size beyond which a penetration or an elastic slip is worth a warning.

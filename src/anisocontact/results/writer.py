@@ -36,8 +36,6 @@ from anisocontact.solver import Accepted, Culprit, Cut, Problem, Step
 from anisocontact.solver.stepping.alarms import missed_event
 from anisocontact.solver.terms.persistent import Persistent
 
-__all__ = ["Writer"]
-
 
 class Writer:
     """Writes a run into a folder; every file in it is whole at any moment.

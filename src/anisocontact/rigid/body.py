@@ -10,12 +10,11 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact.base import registry
+from anisocontact.base.array_types import Floats
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.rigid.rotation import orthonormal, rotation, spin_of
-
-Floats = npt.NDArray[np.float64]
 
 #: Translation of the reference point along, and turn about the axes of space.
 COMPONENTS = ("x", "y", "z", "rx", "ry", "rz")

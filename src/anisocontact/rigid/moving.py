@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.typed import typed
 from anisocontact.interface import Interface, Response, SlaveSurface, State
 from anisocontact.rigid.body import RigidBody
 from anisocontact.rigid.rotation import skew
 from anisocontact.surfaces import Surface
-
-Floats = npt.NDArray[np.float64]
 
 
 @typed

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from anisocontact.base.array_types import Floats
 
 #: Below this angle the series is exact to the last digit and the closed form is not.
 _SMALL = 1e-2

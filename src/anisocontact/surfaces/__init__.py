@@ -1,6 +1,7 @@
 """Surfaces of a master: analytic ones, facets of a mesh, their geometry and closest points."""
 
-from anisocontact.base.arrays import Floats
+from anisocontact.base.array_types import Floats
+from anisocontact.base.arrays import points
 from anisocontact.surfaces.analytic import (
     PROJECTION_STATUS,
     Jet,
@@ -8,7 +9,6 @@ from anisocontact.surfaces.analytic import (
     Surface,
     default_threads,
     make_surface,
-    points,
 )
 from anisocontact.surfaces.facet_blocks import TOPOLOGIES
 from anisocontact.surfaces.facets import (

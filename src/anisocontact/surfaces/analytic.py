@@ -5,29 +5,16 @@ from __future__ import annotations
 import os
 from dataclasses import dataclass
 
-import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
 from anisocontact.base import registry
-from anisocontact.base.arrays import Floats, points
+from anisocontact.base.array_types import Codes, Floats
+from anisocontact.base.arrays import points
 from anisocontact.base.errors import InputError
 from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.surfaces.geometry import Geometry, GeometryDerivatives
-
-__all__ = [
-    "PROJECTION_STATUS",
-    "Floats",
-    "Geometry",
-    "GeometryDerivatives",
-    "Jet",
-    "Projection",
-    "Surface",
-    "default_threads",
-    "make_surface",
-    "points",
-]
 
 
 @dataclass(frozen=True)
@@ -78,7 +65,7 @@ class Projection:
 
     xi: Floats
     gap: Floats
-    status: npt.NDArray[np.int8]
+    status: Codes
     dxi_dx: Floats
     dgap_dx: Floats
 

@@ -9,10 +9,8 @@ from typing import cast
 import numpy as np
 import numpy.typing as npt
 
-from anisocontact.base.arrays import Floats
+from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.base.errors import InputError
-
-Integers = npt.NDArray[np.int32]
 
 #: Number of nodes of each topology. Nodes are in the order of DOLFINx: vertices (0,0), (1,0), (0,1)
 #: of a triangle and (0,0), (1,0), (0,1), (1,1) of a quadrilateral, then edges, then the interior.
@@ -31,9 +29,9 @@ class FacetBlocks:
     """
 
     topologies: list[str]
-    counts: Integers
-    nodes: Integers
-    flip: npt.NDArray[np.bool_]
+    counts: Locals
+    nodes: Locals
+    flip: Flags
 
     @classmethod
     def of(
@@ -73,7 +71,7 @@ class FacetBlocks:
         return cls(names, counts, nodes, np.ascontiguousarray(turned))
 
 
-def _block(connectivity: npt.ArrayLike, topology: str) -> Integers:
+def _block(connectivity: npt.ArrayLike, topology: str) -> Locals:
     if topology not in TOPOLOGIES:
         raise InputError(f"given {topology!r}, allowed: {', '.join(TOPOLOGIES)}", field="topology")
     b = np.asarray(connectivity)

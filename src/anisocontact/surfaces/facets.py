@@ -9,27 +9,15 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
-from anisocontact.base.arrays import Floats, points
+from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
+from anisocontact.base.arrays import points
 from anisocontact.base.errors import InputError
 from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.surfaces.analytic import Jet, default_threads
-from anisocontact.surfaces.facet_blocks import TOPOLOGIES, FacetBlocks, Integers, finite
+from anisocontact.surfaces.facet_blocks import FacetBlocks, finite
 from anisocontact.surfaces.geometry import PointGeometry
 from anisocontact.surfaces.orientation import Orientation, orientation, triangular
-
-Codes = npt.NDArray[np.int8]
-
-__all__ = [
-    "FACET_STATUS",
-    "FEATURES",
-    "TOPOLOGIES",
-    "FacetProjections",
-    "FacetSets",
-    "FacetSurface",
-    "Orientation",
-    "outward_flips",
-]
 
 #: Names of the codes in `FacetProjections.status`.
 FACET_STATUS = ("on", "off", "beyond", "failed")
@@ -57,7 +45,7 @@ class FacetProjections:
         edge: Direction of the edge in coordinates, (n, 2); zero unless on an edge.
     """
 
-    facet: Integers
+    facet: Locals
     xi: Floats
     position: Floats
     gap: Floats
@@ -67,7 +55,7 @@ class FacetProjections:
     entity: Codes
     edge: Floats
 
-    def take(self, which: npt.NDArray[np.int64]) -> FacetProjections:
+    def take(self, which: Ints) -> FacetProjections:
         """Projections of some of the points, (k,).
 
         Args:
@@ -88,16 +76,16 @@ class FacetSets:
         facets: The sets one after the other, each in ascending order.
     """
 
-    offsets: npt.NDArray[np.int64]
-    facets: Integers
+    offsets: Ints
+    facets: Locals
 
-    def __getitem__(self, i: int) -> Integers:
+    def __getitem__(self, i: int) -> Locals:
         return self.facets[self.offsets[i] : self.offsets[i + 1]]
 
     def __len__(self) -> int:
         return len(self.offsets) - 1
 
-    def take(self, which: npt.NDArray[np.int64]) -> FacetSets:
+    def take(self, which: Ints) -> FacetSets:
         """Sets of some of the points.
 
         Args:
@@ -112,7 +100,7 @@ class FacetSets:
         return FacetSets(offsets, self.facets[np.repeat(self.offsets[which], counts) + within])
 
     @classmethod
-    def of_pairs(cls, points: npt.NDArray[np.int64], facets: Integers, count: int) -> FacetSets:
+    def of_pairs(cls, points: Ints, facets: Locals, count: int) -> FacetSets:
         """Sets from pairs, in any order and as often as they come.
 
         Args:
@@ -125,7 +113,7 @@ class FacetSets:
         offsets = np.searchsorted(pairs, np.arange(count + 1) * width)
         return cls(offsets.astype(np.int64), (pairs % width).astype(np.int32))
 
-    def joined(self, offsets: npt.NDArray[np.int64], which: Integers) -> FacetSets:
+    def joined(self, offsets: Ints, which: Locals) -> FacetSets:
         """Sets of what has several points each: all that one of its points has.
 
         Args:
@@ -315,7 +303,7 @@ class FacetSurface(Remade):
         """
         return orientation(self.core)
 
-    def _at(self, facet: npt.ArrayLike, xi: npt.ArrayLike) -> tuple[Integers, Floats]:
+    def _at(self, facet: npt.ArrayLike, xi: npt.ArrayLike) -> tuple[Locals, Floats]:
         f = np.ascontiguousarray(np.atleast_1d(facet), dtype=np.int32)
         if f.size and not 0 <= f.min() <= f.max() < self._count:
             given = f.min() if f.min() < 0 else f.max()
@@ -328,7 +316,7 @@ def outward_flips(
     connectivity: npt.ArrayLike | Sequence[npt.ArrayLike],
     topology: str | Sequence[str],
     inside: npt.ArrayLike,
-) -> npt.NDArray[np.bool_]:
+) -> Flags:
     """Which facets have to be flipped so that their normals leave the body.
 
     Args:
@@ -351,11 +339,11 @@ def outward_flips(
     middle = np.where(triangular(surface.core), 1.0 / 3.0, 0.5)
     j = surface.jet(np.arange(len(surface)), np.column_stack((middle, middle)))
     outward = np.cross(j.d1[:, 0], j.d1[:, 1])
-    flips: npt.NDArray[np.bool_] = np.sum((j.position - behind) * outward, axis=1) < 0.0
+    flips: Flags = np.sum((j.position - behind) * outward, axis=1) < 0.0
     return flips
 
 
-def _hint(hint: FacetProjections | npt.ArrayLike | None, n: int) -> tuple[Integers, Floats]:
+def _hint(hint: FacetProjections | npt.ArrayLike | None, n: int) -> tuple[Locals, Floats]:
     if hint is None:
         return np.zeros(0, np.int32), np.zeros((0, 2))
     if isinstance(hint, FacetProjections):

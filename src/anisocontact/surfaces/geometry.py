@@ -9,7 +9,8 @@ import numpy as np
 import numpy.typing as npt
 
 from anisocontact import _core
-from anisocontact.base.arrays import Floats, blocks
+from anisocontact.base.array_types import Floats
+from anisocontact.base.arrays import blocks
 from anisocontact.base.errors import InputError
 
 

@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy.typing as npt
 
-from anisocontact.base.arrays import Floats, blocks, points
+from anisocontact.base.array_types import Floats
+from anisocontact.base.arrays import blocks, points
 from anisocontact.surfaces.analytic import Surface
 
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact import _core
+from anisocontact.base.array_types import Flags, Locals
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class Orientation:
     """
 
     closed: bool
-    inconsistent: npt.NDArray[np.int32]
+    inconsistent: Locals
     volume: float
 
     @property
@@ -63,7 +63,7 @@ def orientation(core: _core.FacetSurface) -> Orientation:
     return Orientation(closed, np.unique(facet[wrong]), _volume(core) if closed else np.nan)
 
 
-def triangular(core: _core.FacetSurface) -> npt.NDArray[np.bool_]:
+def triangular(core: _core.FacetSurface) -> Flags:
     """Which facets have three sides.
 
     Args:
@@ -72,7 +72,7 @@ def triangular(core: _core.FacetSurface) -> npt.NDArray[np.bool_]:
     Returns:
         A flag for each, (number of facets,).
     """
-    three: npt.NDArray[np.bool_] = np.bincount(core.sides()[:, 0]) == 3
+    three: Flags = np.bincount(core.sides()[:, 0]) == 3
     return three
 
 

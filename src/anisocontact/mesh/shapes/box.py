@@ -8,9 +8,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block, Side
 from anisocontact.mesh.shapes.shape import (
     cells_parameter,

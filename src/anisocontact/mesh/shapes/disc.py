@@ -7,8 +7,8 @@ from functools import partial
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.registry import Parameter
-from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block, Side, focused
 from anisocontact.mesh.shapes.shape import (
     Shape,

@@ -9,9 +9,9 @@ from typing import ClassVar
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.lattice import Block
 from anisocontact.mesh.shapes.disc import (
     PARTS,

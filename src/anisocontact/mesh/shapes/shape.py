@@ -7,10 +7,10 @@ from collections.abc import Iterable, Sequence
 from typing import ClassVar, Protocol
 
 from anisocontact.base import registry
+from anisocontact.base.array_types import Floats
 from anisocontact.base.cells import CELLS, IN_PLANE, IN_SPACE
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Entry, Parameter
-from anisocontact.mesh.arrays import Floats
 from anisocontact.mesh.blocks import check_count
 from anisocontact.mesh.lattice import Block, graded, zoned
 

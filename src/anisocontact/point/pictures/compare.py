@@ -8,13 +8,13 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import new_figure
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
 from anisocontact.point.pictures.ellipse import yield_ellipse
 from anisocontact.point.pictures.forces import limits
 from anisocontact.point.pictures.style import INK, RUNS, UNITS, number
-from anisocontact.surfaces import Floats
 
 
 def compare(runs: dict[str, History], interface: PointInterface, *, title: str = "") -> Figure:

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from anisocontact.base.array_types import Floats
 from anisocontact.laws.domain import Strip, domain_from_tensors
 from anisocontact.point.history import Table
 from anisocontact.point.pictures.style import tangential_law
-from anisocontact.surfaces import Floats
 
 # Of a strip, which has no end, so many half-widths are drawn.
 _STRIP = 6.0

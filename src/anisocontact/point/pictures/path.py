@@ -9,6 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FormatStrFormatter, MaxNLocator
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import new_figure
 from anisocontact.point.balance import PointInterface
 from anisocontact.point.history import History
@@ -24,7 +25,7 @@ from anisocontact.point.pictures.style import (
     size,
     tangential_law,
 )
-from anisocontact.surfaces import Floats, Surface
+from anisocontact.surfaces import Surface
 
 # An ellipse smaller than this share of the picture is drawn enlarged.
 _SMALL = 0.04

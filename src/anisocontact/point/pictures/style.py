@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Codes, Floats
 from anisocontact.interface import STATUS
 from anisocontact.point.history import History
-from anisocontact.surfaces import Floats
 
 # The same as in the report of a run; told apart also without red and green, and in grey.
 COLOURS = {"open": "#9ca3af", "stick": "#1d4ed8", "slip": "#f59e0b"}
@@ -21,7 +20,7 @@ INK = "#222222"
 UNITS = "in the units of the case"
 
 
-def runs(status: npt.NDArray[np.int8]) -> Iterator[tuple[str, slice]]:
+def runs(status: Codes) -> Iterator[tuple[str, slice]]:
     """Stretches of the same status: its name and the rows; each begins where the last ended."""
     begin = 1
     for i in range(1, len(status)):

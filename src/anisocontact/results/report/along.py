@@ -7,8 +7,8 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import STEP_COLOURS, new_figure, plain
 from anisocontact.results.report.frame import ALIKE, ContactView, axis_name
 from anisocontact.results.report.run_data import Moment
@@ -16,10 +16,6 @@ from anisocontact.results.report.run_data import Moment
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-__all__ = ["pressure_along", "traction_along"]
-
-Floats = npt.NDArray[np.float64]
 
 
 def pressure_along(views: Sequence[tuple[ContactView, Moment]]) -> Figure:

@@ -6,19 +6,15 @@ from itertools import cycle
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib.ticker import MaxNLocator
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import ACCENT, GREY, STEP_COLOURS, new_figure, plain
 from anisocontact.results.report.run_data import RunData
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-__all__ = ["domain", "force"]
-
-Floats = npt.NDArray[np.float64]
 
 #: Distance of names of steps above a curve that leaves room for both, over its length.
 BESIDE = 0.04

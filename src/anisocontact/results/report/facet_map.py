@@ -5,21 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.results.dataset import DataSet
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
 
-__all__ = ["FacetMap", "polygons_of"]
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-
-
-def polygons_of(points: DataSet, chosen: npt.NDArray[np.bool_]) -> Ints:
+def polygons_of(points: DataSet, chosen: Flags) -> Ints:
     """Triangles and quadrilaterals between chosen points, numbered among these.
 
     Args:
@@ -59,7 +54,7 @@ class FacetMap:
         around = np.stack([self._squares, np.roll(self._squares, -1, axis=1), middle], axis=2)
         self._triangles = np.concatenate([triangles[:, :3], around.reshape(-1, 3)])
 
-    def beside(self, nodes: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    def beside(self, nodes: Flags) -> Flags:
         """Some nodes, and those that have a facet in common with one of them, (n,)."""
         corners = np.where(self.polygons < 0, self.polygons[:, :1], self.polygons)
         out = nodes.copy()

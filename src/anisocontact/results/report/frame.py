@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 from matplotlib.colors import ListedColormap
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.figure_style import STATUS_COLOURS
 from anisocontact.base.peaks import PEAK
 from anisocontact.results.dataset import DataSet
@@ -18,10 +19,6 @@ from anisocontact.results.report.facet_map import FacetMap, polygons_of
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.cm import ScalarMappable
-
-__all__ = ["ContactView", "Frame", "axis_name"]
-
-Floats = npt.NDArray[np.float64]
 
 #: One less the cosine of the angle up to which directions are drawn as the same: 2.6 degrees.
 ALIKE = 1e-3
@@ -177,7 +174,7 @@ class ContactView:
         return float(height / width)
 
     @cached_property
-    def _nearest(self) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.bool_]]:
+    def _nearest(self) -> tuple[Ints, Flags]:
         """The point nearest to each pixel and whether it is too far to speak for the pixel."""
         from scipy.spatial import KDTree  # slow to import, and points with facets do without
 

@@ -6,8 +6,6 @@ import json
 import os
 from collections.abc import Callable, Sequence
 
-__all__ = ["attempts"]
-
 
 def attempts(work: Sequence[Callable[[], str]], *, forks: bool) -> list[str]:
     """What each of some functions returns.

@@ -9,8 +9,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-__all__ = ["in_units", "labelled"]
-
 #: The dimension at the end of a label, in brackets.
 _BRACKETS = re.compile(r"\[[a-z/^0-9 ]+\]")
 _WORD = re.compile(r"[a-z]+")

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.cm import ScalarMappable
     from matplotlib.figure import Figure
 
-__all__ = ["pressure", "status", "traction"]
-
 #: Panels side by side; of more steps the last ones are shown.
 MOST = 3
 #: Height of a map over its width below which the scale of colours lies under it, to be long enough.

@@ -12,8 +12,6 @@ from typing import Any
 from anisocontact.base.errors import printable
 from anisocontact.results.report.labels import in_units
 
-__all__ = ["Picture", "as_html", "document", "figure", "page", "table"]
-
 _STYLE = """
 body { font: 16px/1.5 system-ui, sans-serif; color: #111827; max-width: 72rem; margin: 2rem auto;
   padding: 0 1rem; }

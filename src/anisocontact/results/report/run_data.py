@@ -9,16 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.figure_style import plain
 from anisocontact.results.read import Results
 from anisocontact.results.report.frame import ContactView
-
-__all__ = ["Moment", "RunData"]
-
-Floats = npt.NDArray[np.float64]
-Indices = npt.NDArray[np.int64]
 
 #: Component along x of an axis from which on it is the radial one.
 RADIAL = 0.5
@@ -54,7 +49,7 @@ class RunData:
         self.rows = len(self.history.get("time", ()))
 
     @cached_property
-    def steps(self) -> list[tuple[str, Indices]]:
+    def steps(self) -> list[tuple[str, Ints]]:
         """Name of each step that was begun, and the rows of its accepted increments."""
         names = self.history["step"] if self.rows else np.array([], dtype=str)
         order = list(dict.fromkeys(names.tolist()))
@@ -76,7 +71,7 @@ class RunData:
         """The last written state of each step."""
         return [m for m in (self._last_of(rows) for _, rows in self.steps) if m is not None]
 
-    def _last_of(self, rows: Indices) -> Moment | None:
+    def _last_of(self, rows: Ints) -> Moment | None:
         inside = [m for m in self.moments if m.row in rows]
         return inside[-1] if inside else None
 

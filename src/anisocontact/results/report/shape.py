@@ -31,8 +31,6 @@ from anisocontact.results.deformed import (
 if TYPE_CHECKING:
     from anisocontact.results.solids import Solid
 
-__all__ = ["Drawings", "end", "start_vtk"]
-
 #: Seconds that VTK may take for all of them.
 PATIENCE = 120.0
 _RENDERER = "anisocontact.results.deformed"

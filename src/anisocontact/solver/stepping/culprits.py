@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.contact import facet_size
 from anisocontact.contact.held_feet import facet_of
 from anisocontact.interface import FAILURE, STATUS
@@ -14,8 +14,6 @@ from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.problem import Problem
-
-Floats = npt.NDArray[np.float64]
 
 #: How many places are named.
 NAMED = 5

@@ -10,13 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.contact import initial_overlap
 from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.problem import Problem
-
-Floats = npt.NDArray[np.float64]
 
 #: Share of points that begin or end contact in an increment beyond which they make the residual.
 MANY = 0.05
@@ -106,7 +104,7 @@ class EnergyWatch:
         u = self._problem.accepted().array_r[: len(diagonal)]
         return float(self._problem.comm.allreduce(float(diagonal @ u**2)))
 
-    def _counted(self) -> npt.NDArray[np.int64]:
+    def _counted(self) -> Ints:
         return np.array([c.counts()["open"] for c in self._problem.contacts], dtype=np.int64)
 
     def _points(self) -> int:

@@ -11,14 +11,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.contact import Contact
 from anisocontact.laws import Friction
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.free_body import FreeBody
-
-Floats = npt.NDArray[np.float64]
 
 #: Sum of the normal forces over the sum of their sizes from which on a contact is flat.
 FLAT = 0.99

@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
 from anisocontact.contact import Contact
 from anisocontact.rigid import RigidBody
 from anisocontact.solver.system.problem import Problem
-
-Floats = npt.NDArray[np.float64]
 
 #: Way of a free body over what it touches in a part, over the length that it touches along the way,
 #: from which on too many other points are pressed in the next one.

@@ -6,17 +6,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import Material, small_strain
 from anisocontact.mesh import Model
 from anisocontact.solver.system.rotations import CURE, REFUSED, WARNED, spurious
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.supports import Supports
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 #: Places along a step at which a turn is looked at.
 _PLACES = 16

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.rotations import Turned
 from anisocontact.solver.system.sides_kept import Behind
-
-Floats = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)

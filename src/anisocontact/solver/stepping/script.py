@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError, ModelWarning
 from anisocontact.base.fenicsx import Mat, Vec, fem, ufl
 from anisocontact.base.limits import Limits
@@ -39,8 +39,6 @@ from anisocontact.solver.terms.free_modes import connected_body
 from anisocontact.solver.terms.loose import MeshPart, loose_motions, parts
 from anisocontact.solver.terms.persistent import under
 from anisocontact.solver.terms.rigid import RigidBodies
-
-Floats = npt.NDArray[np.float64]
 
 #: Gap over the facet size up to which a point counts as touching: rounding of a mesh.
 NEAR = 1e-6
@@ -363,7 +361,7 @@ class ContactProblem(AssembledSystem):
                     "contacts" if self.contacts else "bcs",
                 )
 
-    def _any(self, here: npt.NDArray[np.bool_]) -> bool:
+    def _any(self, here: Flags) -> bool:
         return bool(self.comm.allreduce(int(here.any())))
 
     def _untouched(self) -> list[MeshPart]:

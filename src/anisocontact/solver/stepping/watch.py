@@ -6,12 +6,9 @@ from collections import deque
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Ints
 from anisocontact.contact import Contact
-
-Codes = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 #: Iterations that are remembered.
 MEMORY = 8
@@ -32,8 +29,8 @@ class StatusWatch:
 
     def __init__(self, contacts: Sequence[Contact]) -> None:
         self._contacts = list(contacts)
-        self._statuses: deque[list[Codes]] = deque(maxlen=MEMORY)
-        self._feet: deque[list[Codes]] = deque(maxlen=MEMORY)
+        self._statuses: deque[list[Ints]] = deque(maxlen=MEMORY)
+        self._feet: deque[list[Ints]] = deque(maxlen=MEMORY)
         self._residuals: deque[float] = deque(maxlen=MEMORY)
 
     def clear(self) -> None:
@@ -62,11 +59,11 @@ class StatusWatch:
         for contact, hops in zip(self._contacts, self.hopping(), strict=True):
             contact.hold(hops)
 
-    def history(self, contact: int) -> Codes:
+    def history(self, contact: int) -> Ints:
         """Status of the points of a contact, (iterations, points), the latest at the end."""
         return self._of(self._statuses, contact)
 
-    def feet(self, contact: int) -> Codes:
+    def feet(self, contact: int) -> Ints:
         """What they had below them, see `projected_facets`, (iterations, points)."""
         return self._of(self._feet, contact)
 
@@ -87,19 +84,19 @@ class StatusWatch:
             if len(seen) == 3
         )
 
-    def _returned(self, contact: int) -> Codes:
+    def _returned(self, contact: int) -> Ints:
         """How often each touching point came back to what it had below it before."""
         feet = self.feet(contact)
         touching = self._contacts[contact].trial.status != 0
         returned = _changes(feet) - _changes(np.sort(feet, axis=0))
         return np.asarray(np.where(touching, returned, 0), dtype=np.int64)
 
-    def _of(self, memory: deque[list[Codes]], contact: int) -> Codes:
+    def _of(self, memory: deque[list[Ints]], contact: int) -> Ints:
         points = len(self._contacts[contact].trial.status)
         seen = [codes[contact] for codes in memory]
         return np.array(seen, dtype=np.int64).reshape(len(seen), points)
 
 
-def _changes(seen: Codes) -> Codes:
+def _changes(seen: Ints) -> Ints:
     """How often each point changed from one iteration to the next, (points,)."""
     return np.asarray((seen[1:] != seen[:-1]).sum(axis=0), dtype=np.int64)

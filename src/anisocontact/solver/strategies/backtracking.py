@@ -6,12 +6,10 @@ from collections import deque
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.terms.contacts import Contacts, Marks
-
-Floats = npt.NDArray[np.float64]
 
 #: Residuals of which a correction must not exceed the largest: while points find their status it
 #: rises now and then.

@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
 from anisocontact.contact import NotHeldError
@@ -79,7 +79,7 @@ class System(Protocol):
         """Matrix for `tangent`."""
         ...
 
-    def evaluate(self, x: Vec) -> npt.NDArray[np.float64]:
+    def evaluate(self, x: Vec) -> Floats:
         """Residual of the unknowns this rank owns; NaN everywhere where a law has no answer."""
         ...
 
@@ -196,7 +196,7 @@ class Newton:
         self.snes.destroy()
 
     @property
-    def residual(self) -> npt.NDArray[np.float64]:
+    def residual(self) -> Floats:
         """Residual of the unknowns this rank owns at the last iterate."""
         return np.array(self.snes.getFunction()[0].array_r)
 

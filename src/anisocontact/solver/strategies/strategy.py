@@ -6,9 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-import numpy as np
-import numpy.typing as npt
-
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import PETSc, Vec
 from anisocontact.base.registry import Entry
 from anisocontact.solver.strategies.newton import NewtonResult, OptionValue
@@ -45,7 +43,7 @@ class IncrementSolver(Protocol):
     """Finds equilibrium at given loads; see `Newton`."""
 
     @property
-    def residual(self) -> npt.NDArray[np.float64]:
+    def residual(self) -> Floats:
         """Residual of the unknowns this rank owns at the last iterate."""
         ...
 

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.layout import Layout
 from anisocontact.solver.terms.persistent import Arrays
-
-Floats = npt.NDArray[np.float64]
 
 
 class AcceptedState:

@@ -4,16 +4,12 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager, nullcontext
 
-import numpy as np
-import numpy.typing as npt
-
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.culprit import Culprit, LostError
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.stabilisation import Stabilisation
-
-Floats = npt.NDArray[np.float64]
 
 
 class AssembledSystem:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.fields import Fields
 from anisocontact.solver.system.force_balance import ForceBalance, Magnitudes, closed
@@ -22,9 +22,6 @@ from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.rigid import RigidBodies
 from anisocontact.solver.terms.term import Term, TermGroup
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 class Prescribed(Protocol):

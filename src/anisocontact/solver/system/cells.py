@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.fenicsx import basix, scalar_element
 from anisocontact.mesh import Model
-
-Ints = npt.NDArray[np.int32]
-Floats = npt.NDArray[np.float64]
 
 
 class DeformedCells:
@@ -29,7 +26,7 @@ class DeformedCells:
         self._idealisation = model.idealisation
         owned = model.mesh.topology.index_map(model.idealisation.dim).size_local
         cells = np.concatenate([np.zeros(0, dtype=np.int32), *map(model.cells, bodies)])
-        self._nodes: Ints = model.space.dofmap.list[np.sort(cells[cells < owned])]
+        self._nodes: Locals = model.space.dofmap.list[np.sort(cells[cells < owned])]
         self._reference = np.asarray(model.space.tabulate_dof_coordinates())
         self._rest = self._volumes(self._reference)
 

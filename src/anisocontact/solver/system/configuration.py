@@ -5,15 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import MPI, Vec, fem
 from anisocontact.bulk import small_strain
 from anisocontact.solver.system.assembly import TrialState
 from anisocontact.solver.system.cells import DeformedCells
 from anisocontact.solver.system.parts import Parts
-
-Floats = npt.NDArray[np.float64]
 
 
 class Configuration:

@@ -21,14 +21,12 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import MPI
 from anisocontact.interface import STATUS
 from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.parts import Parts
-
-Floats = npt.NDArray[np.float64]
 
 #: Share of the touching points that have to begin or end contact or slip.
 CHANGED = 0.05

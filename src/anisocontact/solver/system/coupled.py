@@ -7,18 +7,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.far_nodes import globally
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.mesh.node_unknowns import NodeUnknowns
-
-Ints = npt.NDArray[np.int32]
-Keys = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 #: Couplings over those that are needed or foreseen, at which the others lose their places.
 MOST_LEFT = 2.0
@@ -58,13 +54,13 @@ class CoupledTangent:
         self.first_extra = int(local + index_map.size_global)
         self._numbers = self.first_extra + extra
         self._first, _ = stiffness.getOwnershipRange()
-        self._keys: Keys = np.empty(0, dtype=np.int64)
+        self._keys: Ints = np.empty(0, dtype=np.int64)
         self._given = self._keys
         self._sum = scipy.sparse.csr_array((0, 0), dtype=np.float64)
         self._blocks: Floats = np.empty((0, 9))
 
     @property
-    def pattern(self) -> Keys:
+    def pattern(self) -> Ints:
         """Couplings that have a place, pairs of nodes as one number each.
 
         The order of elimination depends on them, and with it the last bits of a solution.
@@ -72,11 +68,11 @@ class CoupledTangent:
         return self._keys.copy()
 
     @pattern.setter
-    def pattern(self, keys: Keys) -> None:
+    def pattern(self, keys: Ints) -> None:
         self._keys = keys.copy()
         self._given = np.full(1, -1, dtype=np.int64)
 
-    def placed(self) -> tuple[Keys, Keys, Floats]:
+    def placed(self) -> tuple[Ints, Ints, Floats]:
         """Couplings that have a place: nodes of rows and columns of the whole system, and blocks.
 
         Blocks are those of the last `make_room`, (k, 9); of a matrix just made there are none.
@@ -96,7 +92,7 @@ class CoupledTangent:
         )
 
     @cached_property
-    def _entries(self) -> tuple[Keys, Keys]:
+    def _entries(self) -> tuple[Ints, Ints]:
         """Rows and columns of the entries of the bulk on this rank."""
         pattern = self._of_bulk
         rows = np.arange(pattern.shape[0]) + self._first
@@ -148,7 +144,7 @@ class CoupledTangent:
         self._unknowns.add_blocks(out, row[:, None], column[:, None], blocks)
         out.assemble()
 
-    def _locate(self, keys: Keys, out: Mat, foresee: Callable[[], Sequence[NodePairs]]) -> bool:
+    def _locate(self, keys: Ints, out: Mat, foresee: Callable[[], Sequence[NodePairs]]) -> bool:
         """Places of the blocks of `keys`; whether the pattern grows by some that are new."""
         there = np.flatnonzero(keys >= 0)
         unknown = np.unique(keys[there][~_found(self._keys, keys[there])])
@@ -180,19 +176,19 @@ class CoupledTangent:
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         matrix.assemble()
 
-    def _named(self, pairs: Sequence[NodePairs]) -> Keys:
+    def _named(self, pairs: Sequence[NodePairs]) -> Ints:
         """Each pair of nodes once, as one number."""
         found = [_keys(rows, columns, self._numbers) for rows, columns in pairs]
         named = np.unique(np.concatenate([self._keys[:0], *found]))
         return named[named >= 0]
 
-    def _places(self) -> tuple[Keys, Keys]:
+    def _places(self) -> tuple[Ints, Ints]:
         """Nodes of the rows and of the columns of the couplings, numbers in the whole system."""
         row, column = np.divmod(self._keys, self._numbers)
         return globally(row, self._space), globally(column, self._space)
 
 
-def _found(known: Keys, keys: Keys) -> npt.NDArray[np.bool_]:
+def _found(known: Ints, keys: Ints) -> Flags:
     """Whether each key is among those that are known, which are sorted."""
     if not len(known):
         return np.zeros(len(keys), dtype=bool)
@@ -204,14 +200,14 @@ def _joined(bulk: Any, contact: Any) -> Any:
     return np.concatenate([bulk, contact]).astype(PETSc.IntType)
 
 
-def _keys(rows: Ints, columns: Ints, nodes: int) -> Keys:
+def _keys(rows: Locals, columns: Locals, nodes: int) -> Ints:
     """Pairs of nodes as one number each, -1 for none: of rows (p, r) and columns (p, c)."""
     pair = rows[:, :, None].astype(np.int64) * nodes + columns[:, None, :]
     missing = (rows[:, :, None] < 0) | (columns[:, None, :] < 0)
     return np.where(missing, -1, pair).reshape(-1)
 
 
-def _pairs(couplings: Sequence[Couplings], nodes: int) -> tuple[Keys, Floats]:
+def _pairs(couplings: Sequence[Couplings], nodes: int) -> tuple[Ints, Floats]:
     """Pairs of nodes as one number each, -1 for none, and their 3 x 3 blocks as rows of nine."""
     keys, blocks = [np.empty(0, dtype=np.int64)], [np.empty((0, 9))]
     for rows, columns, values in couplings:

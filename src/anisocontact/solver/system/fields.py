@@ -16,8 +16,8 @@ from types import MappingProxyType
 from typing import Any, override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.bulk import cell_size
 from anisocontact.mesh.node_unknowns import NodeUnknowns
@@ -28,9 +28,6 @@ from anisocontact.solver.system.force_balance import (
     Magnitudes,
 )
 from anisocontact.solver.terms.bodies import Bodies
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 class Fields:

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-Floats = npt.NDArray[np.float64]
+from anisocontact.base.array_types import Floats
 
 #: Share of `|diag(K) u|` and of `Term.lever` that is round-off of the forces.
 ROUND_OFF = 16.0 * float(np.finfo(np.float64).eps)

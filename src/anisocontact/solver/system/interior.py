@@ -3,20 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import PETSc, Vec
 from anisocontact.solver.terms.bodies import Bulk, mean_diagonal
-
-Floats = npt.NDArray[np.float64]
 
 #: In front of the names of what `with_interior` needs.
 PENDING = "pending_"
 
 
-def with_interior(
-    bulk: Bulk, known: npt.NDArray[np.bool_], values: Floats, force: Floats
-) -> Floats:
+def with_interior(bulk: Bulk, known: Flags, values: Floats, force: Floats) -> Floats:
     """Displacements of all nodes from those that can be touched or are prescribed; collective.
 
     Equilibrium of the others is `K_ii u_i = f_i - K_ic u_c - K_ip u_p`: one linear solution, on

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import MPI, PETSc, Vec
 from anisocontact.mesh.node_unknowns import NodeUnknowns
-
-Floats = npt.NDArray[np.float64]
 
 
 class Layout:

@@ -6,14 +6,12 @@ from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.course import Course
 from anisocontact.contact import Contact
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.terms.step import AXES, Step
-
-Floats = npt.NDArray[np.float64]
 
 # Places that are not used cost fill: a margin of a quarter or a longer window make eliminations
 # dearer than the symbolic factorisations that they save, see docs/dev/decisions.md.

@@ -7,8 +7,8 @@ from contextlib import AbstractContextManager
 from typing import Any, override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.base.processes import Together
 from anisocontact.base.typed import typed
@@ -38,8 +38,6 @@ from anisocontact.solver.terms.faces import CoupledFace
 from anisocontact.solver.terms.persistent import Persistent, under
 from anisocontact.solver.terms.step import Step, check_courses
 from anisocontact.solver.terms.tied_faces import Tie
-
-Floats = npt.NDArray[np.float64]
 
 
 @typed
@@ -155,7 +153,7 @@ class Problem(ReportedSystem):
         """Couplings between bodies in the tangent; None where there cannot be any."""
         return self._tangent.coupled
 
-    def constrained(self) -> npt.NDArray[np.int64]:
+    def constrained(self) -> Ints:
         """Unknowns whose row says what they are, prescribed or constrained: local numbers."""
         of_bodies = self.assembly.prescribed_of_bodies()
         found = [self.supports.unknowns, self.constraints.followers(), of_bodies]
@@ -316,7 +314,7 @@ class Problem(ReportedSystem):
             return {}
         return self.reduction.turned(self.rotations, x, self.load_factor == 1.0)
 
-    def stabilise_at(self, where: npt.NDArray[np.bool_]) -> None:
+    def stabilise_at(self, where: Flags) -> None:
         """Keep bodies in reach by springs at these of the nodes alone, (nodes,)."""
         self.stabilisation.confine(where)
         self._stabilise()

@@ -4,14 +4,10 @@ from __future__ import annotations
 
 from typing import Protocol
 
-import numpy as np
-import numpy.typing as npt
-
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.rotations import Rotations, Turned
 from anisocontact.solver.terms.persistent import Arrays
-
-Floats = npt.NDArray[np.float64]
 
 
 class Reduction(Protocol):

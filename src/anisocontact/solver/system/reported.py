@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-import numpy.typing as npt
-
+from anisocontact.base.array_types import Floats
 from anisocontact.solver.system.accepted import AcceptedState
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import Assembly
@@ -14,8 +12,6 @@ from anisocontact.solver.system.reduction import Reduction
 from anisocontact.solver.system.whole import Whole
 from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.guides import Guides
-
-Floats = npt.NDArray[np.float64]
 
 #: Energies that every run reports, in this order.
 ENERGIES = ("elastic", "adhesion", "normal", "friction", "viscous", "stabilisation", "flow")

@@ -13,13 +13,11 @@ from functools import cached_property
 from typing import Any, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.base.fenicsx import MPI, Vec, basix, scalar_element
 from anisocontact.bulk import Material, small_strain
 from anisocontact.mesh import Model
-
-Floats = npt.NDArray[np.float64]
 
 #: Angles beyond which a turn is worth a warning, and beyond which it is refused, radian.
 WARNED, REFUSED = float(np.radians(1.0)), float(np.radians(5.0))
@@ -102,7 +100,7 @@ class Kept:
         along_loads: Mean displacement along all loads, length.
     """
 
-    nodes: npt.NDArray[np.bool_]
+    nodes: Flags
     u: Floats
     along_loads: float
 
@@ -289,11 +287,11 @@ class _Cells:
         volumes = [self._reference_volume * np.abs(np.linalg.det(j)) for j in found]
         return [np.linalg.inv(j) for j in found], volumes
 
-    def _chunks(self) -> Iterator[npt.NDArray[np.int32]]:
+    def _chunks(self) -> Iterator[Locals]:
         for start in range(0, len(self._nodes), _CHUNK):
             yield self._nodes[start : start + _CHUNK]
 
-    def _jacobian(self, nodes: npt.NDArray[np.int32], gradients: Floats) -> Floats:
+    def _jacobian(self, nodes: Locals, gradients: Floats) -> Floats:
         jacobian = np.asarray(np.swapaxes(self._reference[nodes], 1, 2) @ gradients)
         if self._flat:  # what is across the plane stays
             jacobian[:, 2, 2] = 1.0

@@ -10,15 +10,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.contact import Contact
 from anisocontact.contact.whereabouts import CRUSHED
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.terms.free_modes import ConnectedBody
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 type Point = tuple[float, float, float]
 
 #: Most nodes of a body on a rank that are looked at.
@@ -178,7 +176,7 @@ class SidesKept:
         most, (x0, x1, x2) = max(comm.allgather(deepest))
         return float(count / max(total, 1.0)), most, (x0, x1, x2)
 
-    def _culprit(self, watched: _Watched, why: str, points: npt.NDArray[np.int64]) -> Culprit:
+    def _culprit(self, watched: _Watched, why: str, points: Ints) -> Culprit:
         """With the first of the points over all ranks."""
         one, local = watched.one, None
         if len(points):

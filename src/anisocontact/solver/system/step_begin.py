@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.contact.far_nodes import with_ghosts
 from anisocontact.solver.system.parts import Parts
@@ -16,8 +16,6 @@ from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.step import AXES, Step
 from anisocontact.solver.terms.supports import Supports
-
-Floats = npt.NDArray[np.float64]
 
 
 def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again: bool) -> None:
@@ -114,7 +112,7 @@ def _cut_faces(parts: Parts) -> list[HeldFrame]:
     return [] if ties is None else ties.frames()
 
 
-def _on_bodies(parts: Parts) -> npt.NDArray[np.int64]:
+def _on_bodies(parts: Parts) -> Ints:
     """Unknowns that follow rigid bodies, local numbers."""
     faces = parts.rigid.faces
     return np.zeros(0, dtype=np.int64) if faces is None else faces.followers

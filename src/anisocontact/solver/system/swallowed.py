@@ -5,16 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.solver.system.layout import Layout
 from anisocontact.solver.terms.free_modes import Held
 from anisocontact.solver.terms.pressure import Given
 from anisocontact.solver.terms.step import Step
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 #: Share of the squares of a load that may act on what is not held and still counts as rounding.
 NOTHING = 1e-20

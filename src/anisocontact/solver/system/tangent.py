@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.system.assembly import Assembly
@@ -115,6 +115,6 @@ class Tangent:
         return found
 
 
-def _nothing(pairs: NodePairs) -> npt.NDArray[np.float64]:
+def _nothing(pairs: NodePairs) -> Floats:
     """Blocks of zeros between single nodes."""
     return np.zeros((len(pairs[0]), 3, 3))

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.system.accepted import AcceptedState
 from anisocontact.solver.system.assembled import AssembledSystem
@@ -13,8 +13,6 @@ from anisocontact.solver.system.interior import with_interior
 from anisocontact.solver.system.parts import Parts
 from anisocontact.solver.system.rotations import Rotations, Turned
 from anisocontact.solver.terms.persistent import Arrays
-
-Floats = npt.NDArray[np.float64]
 
 
 class Whole:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from typing import override
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact.base import registry
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.registry import Parameter
 from anisocontact.base.typed import typed
@@ -21,8 +21,6 @@ from anisocontact.solver.terms.prescribed import Prescribed
 from anisocontact.solver.terms.pressure import outward
 from anisocontact.solver.terms.step import AXES, Step
 from anisocontact.solver.terms.term import Term
-
-Floats = npt.NDArray[np.float64]
 
 #: Nodes of the groups of a spring: each moves all others, so that the matrix gets their square.
 MOST_NODES = 2000
@@ -37,7 +35,7 @@ class Attached(Term):
     """
 
     name: str
-    nodes: npt.NDArray[np.int32]
+    nodes: Locals
 
     def reaction(self, u: Floats) -> Floats:
         """Force on the body in the accepted state `u`, over all ranks, (3,)."""

@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Locals
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.attached import ElasticSupport, Spring
 from anisocontact.solver.terms.step import AXES, Step
 from anisocontact.solver.terms.term import TermGroup
-
-Floats = npt.NDArray[np.float64]
 
 
 class Attachments(TermGroup):
@@ -62,7 +60,7 @@ class Attachments(TermGroup):
                     raise InputError(text, f"{place}.{name}.{axis}")
 
     @property
-    def nodes(self) -> npt.NDArray[np.int32]:
+    def nodes(self) -> Locals:
         """Local nodes of the bodies that they act on."""
         return np.concatenate([np.zeros(0, dtype=np.int32), *(one.nodes for one in self._all)])
 

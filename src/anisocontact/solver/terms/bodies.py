@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from typing import Any, override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.bulk import LinearBulk, NonlinearBulk
@@ -18,8 +18,6 @@ from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.prescribed import Prescribed
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
-
-Floats = npt.NDArray[np.float64]
 
 #: What forces inside bodies come from.
 type Bulk = LinearBulk | NonlinearBulk | FormBulk

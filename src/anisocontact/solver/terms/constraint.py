@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 class Constraint:
@@ -75,7 +72,7 @@ class Constraint:
         n = len(starts) - 1
         return scipy.sparse.csr_array((values, columns, starts), shape=(n, n))
 
-    def involved(self) -> npt.NDArray[np.bool_]:
+    def involved(self) -> Flags:
         """Unknowns of this rank that follow from others, or others from them."""
         return np.asarray(self._involved.array_r > 0.0)
 

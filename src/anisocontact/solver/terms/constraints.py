@@ -5,18 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.fenicsx import Mat, Vec
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.faces import CoupledFaces
 from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.tied_faces import TiedFaces
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 class Constraints:
@@ -113,7 +110,7 @@ class Constraints:
         found += [] if self._faces is None else [self._faces.followers]
         return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
-    def involved(self) -> npt.NDArray[np.bool_]:
+    def involved(self) -> Flags:
         """Unknowns of this rank that follow from others, or others from them."""
         found = np.zeros(self._like.getLocalSize(), dtype=np.bool_)
         for constraint in self._all():

@@ -6,8 +6,8 @@ from collections.abc import Iterator, Sequence
 from typing import override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.fenicsx import Mat
 from anisocontact.contact import Contact
 from anisocontact.contact.far_nodes import globally
@@ -16,8 +16,6 @@ from anisocontact.contact.trials import Mark
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int32]
 #: Where the multipliers of all contacts were.
 type Marks = list[Mark]
 
@@ -108,12 +106,12 @@ class Contacts(Term):
         for contact in self._all:
             contact.pass_through()
 
-    def feet(self) -> npt.NDArray[np.int64]:
+    def feet(self) -> Ints:
         """Local nodes of the master facets that are below slave points in the trial."""
         found = [contact.master.feet() for contact in self.meshed]
         return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
-    def opposite(self) -> list[tuple[Ints, Ints, Floats]]:
+    def opposite(self) -> list[tuple[Locals, Locals, Floats]]:
         """Slave nodes and what they are held against in the trial, see `Master.opposite`."""
         found = [contact.master.opposite() for contact in self.meshed]
         return [one for one in found if one is not None]
@@ -157,11 +155,11 @@ class Contacts(Term):
         """Points that stuck in the last evaluation; collective."""
         return sum(one.counts()["stick"] for one in self._all)
 
-    def statuses(self) -> Ints:
+    def statuses(self) -> Locals:
         """Status of the slave points of this rank in the last evaluation."""
         return np.concatenate([one.trial.status for one in self._all]).astype(np.int32)
 
-    def same(self, before: Ints) -> bool:
+    def same(self, before: Locals) -> bool:
         """Whether all points have the status that they had before; collective."""
         changed = int((self.statuses() != before).sum())
         return bool(self._all[0].space.mesh.comm.allreduce(changed) == 0)

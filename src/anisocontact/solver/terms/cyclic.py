@@ -7,17 +7,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.contact.tie_weights import TieConditions
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.contact.turning import Turning
-
-Flags = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 #: Distance over the size of the cut face below which a node is on the axis, or on another node.
 SAME_PLACE = 1e-6

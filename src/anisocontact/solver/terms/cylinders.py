@@ -6,18 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError, within
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.cylindrical import COMPONENTS, NO_SHARE, Cylindrical
 from anisocontact.solver.terms.step import Goal, Step
 from anisocontact.solver.terms.tied_faces import TiedFaces
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-
 
 #: Component of nodes that stay on the axis of a sector.
 ACROSS = "across"

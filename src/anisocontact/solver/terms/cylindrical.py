@@ -7,14 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.mesh.placement import check_vector
-
-Floats = npt.NDArray[np.float64]
 
 #: Directions of cylinder coordinates, in this order.
 COMPONENTS = ("radial", "tangential", "axial")

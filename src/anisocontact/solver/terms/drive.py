@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.rigid import COMPONENTS, RigidBody
 from anisocontact.rigid.body import component_number
 from anisocontact.solver.terms.prescribed import Prescribed
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.turn import Turn
-
-Floats = npt.NDArray[np.float64]
 
 #: Places along a step at which the pace of a rotation is looked at.
 _PLACES = 64

@@ -5,10 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
-Flags = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
+from anisocontact.base.array_types import Flags, Floats
 
 #: Share of a direction that counts as none of it along an axis.
 NO_SHARE = 1e-9

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Mat, Vec, fem
 from anisocontact.base.typed import typed
@@ -20,10 +20,6 @@ from anisocontact.rigid import COMPONENTS, RigidBody
 from anisocontact.rigid.rotation import skew
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.handed_rows import HandedRows
-
-Flags = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 @typed
@@ -100,7 +96,7 @@ class FaceOnBody:
         #: Body that has no strain, as all of it follows; empty where one face alone does.
         self.whole = "" if self.skin is None else model.body_of(spec.group)
 
-    def of_its_own(self, there: npt.NDArray[np.int32]) -> list[Couplings]:
+    def of_its_own(self, there: Locals) -> list[Couplings]:
         """Places for the rows of a body that has no stiffness, and for what acts on its skin.
 
         Args:
@@ -290,7 +286,7 @@ class CoupledFaces:
         constraint.close()
         return out
 
-    def involved(self, like: Vec) -> npt.NDArray[np.bool_]:
+    def involved(self, like: Vec) -> Flags:
         """Unknowns of this rank that follow from others, or others from them."""
         found = np.zeros(like.getLocalSize(), dtype=np.bool_)
         found[self.followers] = True

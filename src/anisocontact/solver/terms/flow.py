@@ -16,16 +16,13 @@ from __future__ import annotations
 from typing import Any, override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.contact import NotHeldError
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.term import Term
-
-Floats = npt.NDArray[np.float64]
-Flags = npt.NDArray[np.bool_]
 
 #: Viscosity over the first step, and the largest, shares of the mean diagonal of the bulk.
 FIRST, MOST_VISCOUS = 0.03, 1e3

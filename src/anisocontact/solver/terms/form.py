@@ -7,8 +7,8 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import (
     Mat,
@@ -22,8 +22,6 @@ from anisocontact.base.fenicsx import (
 )
 from anisocontact.base.form_matrix import FormMatrix
 from anisocontact.bulk import AtPoints, Heated
-
-Floats = npt.NDArray[np.float64]
 
 
 class FormBulk:
@@ -111,7 +109,7 @@ class Dirichlet:
         self._bcs = bcs
 
     @property
-    def unknowns(self) -> npt.NDArray[np.int64]:
+    def unknowns(self) -> Ints:
         """Unknowns this rank owns that are prescribed, local numbers."""
         return prescribed_rows(self._bcs).astype(np.int64)
 

@@ -6,15 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.terms.free_modes import ConnectedBody
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 #: Share of a facet by which a body on springs that touches may move at once.
 TOUCHING = 0.01

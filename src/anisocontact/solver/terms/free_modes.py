@@ -7,16 +7,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import fem
 from anisocontact.contact import Contact
 from anisocontact.mesh import Idealisation, Model
 from anisocontact.mesh.idealisation import SOLID
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 #: Share of the largest eigenvalue below which a motion meets no support.
 FREE = 1e-9
@@ -40,7 +37,7 @@ class HeldFrame:
 
     nodes: Ints
     point: Floats
-    held: npt.NDArray[np.bool_]
+    held: Flags
     axes: Floats = field(default_factory=lambda: np.eye(3))
 
     def rows(self, body: ConnectedBody, comm: Any) -> Floats:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
 from anisocontact.mesh import Model
@@ -17,9 +17,6 @@ from anisocontact.solver.terms.elimination import Elimination, eliminated
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.symmetry import SymmetryPlanes
 from anisocontact.solver.terms.tied_faces import TiedFaces
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 #: What cannot be met of the displacements over the largest one that counts as nothing.
 OUT = 1e-6

@@ -10,14 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.reachable import NodePairs
-
-Flags = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -32,7 +28,7 @@ class HandedRows:
 
     place: Ints
     gathering: Floats
-    body: npt.NDArray[np.int32]
+    body: Locals
 
     def couplings(self, given: Sequence[Couplings]) -> list[Couplings]:
         """The same blocks without rows of these nodes."""
@@ -61,14 +57,14 @@ class HandedRows:
         nodes = np.unique(np.concatenate(reached)).astype(np.int32)[:, None]
         return [*out, (self._body_rows(len(nodes)), nodes)]
 
-    def _places(self, rows: npt.NDArray[np.int32]) -> Ints:
+    def _places(self, rows: Locals) -> Ints:
         return np.where(rows >= 0, self.place[rows], -1)
 
-    def _body_rows(self, count: int) -> npt.NDArray[np.int32]:
+    def _body_rows(self, count: int) -> Locals:
         return np.tile(self.body, (count, 1))
 
 
-def _without(rows: npt.NDArray[np.int32], place: Ints) -> npt.NDArray[np.int32]:
+def _without(rows: Locals, place: Ints) -> Locals:
     return np.where(place >= 0, -1, rows).astype(np.int32)
 
 

@@ -10,13 +10,11 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Floats
 from anisocontact.solver.terms.free_modes import FREE, ConnectedBody
 from anisocontact.solver.terms.term import Term
-
-Floats = npt.NDArray[np.float64]
 
 #: Stiffness of a motion over the mean diagonal of the bulk that no solution can resolve.
 NOTHING = 1e-12

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import body_shares
 from anisocontact.bulk import Material
 from anisocontact.contact import facet_quadrature
@@ -16,8 +16,6 @@ from anisocontact.solver.terms.prescribed import Prescribed
 from anisocontact.solver.terms.pressure import Given, Pressures
 from anisocontact.solver.terms.step import AXES, Goal, Step
 from anisocontact.solver.terms.term import Term, TermGroup
-
-Floats = npt.NDArray[np.float64]
 
 
 class DeadLoads(Term):

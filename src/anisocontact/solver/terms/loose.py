@@ -6,15 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import MPI, Mat
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.solver.terms.free_modes import named
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 #: Force of a rigid motion over that of moving single nodes, root mean square, that is rounding.
 NOTHING = 1e-10

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Vec, corner_weights
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
-
-Ints = npt.NDArray[np.int64]
 
 
 def middle_nodes(model: Model) -> Ints:
@@ -47,7 +45,7 @@ def follow_corners(model: Model, like: Vec) -> Constraint | None:
     )
 
 
-def shares_of_corners(model: Model) -> tuple[Ints, Ints, npt.NDArray[np.float64]]:
+def shares_of_corners(model: Model) -> tuple[Ints, Ints, Floats]:
     """Middle nodes this rank owns, corners and weights, each middle node once for each corner."""
     middle, weights = corner_weights(model.space)
     cells = np.concatenate([np.zeros(0, dtype=np.int32), *map(model.cells, model.linear)])

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.course import Course
 from anisocontact.solver.terms.step import Goal
-
-Floats = npt.NDArray[np.float64]
 
 
 class Prescribed:

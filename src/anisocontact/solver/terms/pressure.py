@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.bulk import Material, small_strain
 from anisocontact.contact import FacetQuadrature, facet_quadrature
 from anisocontact.contact.quadrature import Couplings, Surfaced, inward
@@ -16,8 +16,6 @@ from anisocontact.mesh import Model
 from anisocontact.solver.terms.prescribed import Prescribed
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
-
-Floats = npt.NDArray[np.float64]
 
 
 class Pressures(Term):

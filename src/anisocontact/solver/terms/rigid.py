@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
 from anisocontact.contact import Contact
 from anisocontact.contact.quadrature import Couplings
@@ -19,8 +19,6 @@ from anisocontact.solver.terms.free_modes import HeldFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import SingularError, Term
-
-Floats = npt.NDArray[np.float64]
 
 #: Share of the stiffness of a body's contacts and springs below which a motion counts as free.
 _NOTHING = 1e-12
@@ -208,7 +206,7 @@ class RigidBodies(Term):
         parts = [b.springs * b.trial.values / self._scales[b] for b in self.free]
         return np.concatenate([np.zeros(0), *parts])
 
-    def prescribed(self) -> npt.NDArray[np.bool_]:
+    def prescribed(self) -> Flags:
         """Which of the unknowns are prescribed, (size,)."""
         return np.concatenate([np.zeros(0, dtype=bool), *(self._drives[b].held for b in self.free)])
 

@@ -15,8 +15,8 @@ from collections.abc import Iterable, Sequence
 from typing import override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.contact import Contact, NotHeldError
@@ -29,9 +29,6 @@ from anisocontact.solver.terms.free_modes import Held, HeldFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
 from anisocontact.solver.terms.unheld_bodies import UnheldBodies
-
-Floats = npt.NDArray[np.float64]
-Flags = npt.NDArray[np.bool_]
 
 #: Force of the springs over the forces at work that an accepted state may have.
 SHARE = 1e-7

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, Vec
@@ -12,8 +12,6 @@ from anisocontact.mesh import Model
 from anisocontact.solver.terms.step import AXES, Goal, Step
 from anisocontact.solver.terms.turn import Turn
 
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 Support = tuple[str, int]  # group of facets or nodes, axis
 
 

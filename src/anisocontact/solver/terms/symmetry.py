@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, fem
 from anisocontact.contact import facet_quadrature
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.cylinders import Guide
 from anisocontact.solver.terms.pressure import outward
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 #: Largest difference of normals of a plane; roundings of mesh files are well below.
 FLAT = 1e-6

@@ -7,14 +7,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
-
-Floats = npt.NDArray[np.float64]
 
 
 class SingularError(RuntimeError):

@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError, within
 from anisocontact.base.fenicsx import Vec
 from anisocontact.base.typed import typed
@@ -24,9 +25,6 @@ from anisocontact.solver.terms.cyclic import CutFaces, CyclicSymmetry
 from anisocontact.solver.terms.free_modes import HeldFrame
 from anisocontact.solver.terms.middles import shares_of_corners
 
-Flags = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 type Sparse = scipy.sparse.csr_array
 
 #: Gap up to which nodes are tied, over the size of the facets of the master, if none is given.

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact.base.amplitudes import Amplitude
+from anisocontact.base.array_types import Floats
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.mesh.placement import Rotation, check_vector
-
-Floats = npt.NDArray[np.float64]
 
 #: Places along a step at which the pace of a rotation is looked at.
 _PLACES = 64

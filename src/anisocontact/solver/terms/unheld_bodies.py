@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import NoReturn
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.contact import Contact, facet_size
 from anisocontact.mesh import Model
@@ -23,8 +23,6 @@ from anisocontact.solver.terms.free_modes import (
     named,
 )
 from anisocontact.solver.terms.holding import NOTHING, stiffness, unheld, work
-
-Floats = npt.NDArray[np.float64]
 
 #: Sizes of a body by which the loads may carry it on its springs: beyond, contact is to hold it, or
 #: where there is none the springs count as none.

@@ -5,14 +5,11 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.solver.strategies.iterative.split import Split, sparse, weights
 from anisocontact.solver.system.problem import Problem
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 #: Damping of the smoothed aggregation over the largest eigenvalue of the scaled matrix.
 DAMPING = 4.0 / 3.0

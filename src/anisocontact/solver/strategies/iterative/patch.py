@@ -8,14 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.contact.far_nodes import globally
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step
-
-Flags = npt.NDArray[np.bool_]
-Ints = npt.NDArray[np.int64]
 
 
 class Patch:

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.solver.system.problem import Problem
-
-Flags = npt.NDArray[np.bool_]
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 
 class Split:

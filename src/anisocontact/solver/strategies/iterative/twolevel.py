@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
@@ -13,8 +12,6 @@ from anisocontact.solver.strategies.iterative.interpolation import interpolation
 from anisocontact.solver.strategies.iterative.patch import Patch
 from anisocontact.solver.strategies.iterative.split import Split, interior_matrix
 from anisocontact.solver.system.problem import Problem
-
-Ints = npt.NDArray[np.int64]
 
 #: Given unknowns follow from given ones at most so often, with ties on a symmetry plane.
 CHAIN = 3

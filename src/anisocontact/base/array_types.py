@@ -1,0 +1,24 @@
+"""Types of arrays by role: one name each, in every file."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+#: Numbers in the units of a case.
+Floats = npt.NDArray[np.float64]
+
+#: The same in single precision.
+Singles = npt.NDArray[np.float32]
+
+#: Local numbers of nodes, cells and facets, as DOLFINx has them.
+Locals = npt.NDArray[np.int32]
+
+#: Global numbers, keys of pairs, offsets, places in other arrays.
+Ints = npt.NDArray[np.int64]
+
+#: Status and failure of points.
+Codes = npt.NDArray[np.int8]
+
+#: Which of some things.
+Flags = npt.NDArray[np.bool_]
