@@ -83,9 +83,6 @@ def answered(x: object, shape: tuple[int, ...], who: str, part: str) -> Floats:
 def read_only(x: npt.NDArray[Any]) -> npt.NDArray[Any]:
     """The same numbers, which whoever is given them cannot change.
 
-    Args:
-        x: An array.
-
     Returns:
         A view of it.
 
@@ -134,9 +131,6 @@ def blocks(x: npt.ArrayLike, shape: tuple[int, ...], name: str) -> Floats:
         x: What was given; it is broadcast along its first axis.
         shape: The shape.
         name: Name of the argument, for the message.
-
-    Returns:
-        The array.
 
     Raises:
         InputError: The shapes do not agree.

@@ -104,9 +104,6 @@ def compiled(form: Any, comm: MPI.Comm) -> Any:
         form: UFL form.
         comm: Communicator of its mesh.
 
-    Returns:
-        The DOLFINx form.
-
     Raises:
         MachineError: It cannot be compiled on this machine.
     """
@@ -186,9 +183,6 @@ def create_mesh(comm: MPI.Comm, cell: str, degree: int, cells: Ints, points: Flo
         degree: Degree of the geometry.
         cells: Node numbers of each cell in DOLFINx order, (cells, nodes).
         points: Coordinates of the nodes, (nodes, 3), length.
-
-    Returns:
-        The mesh.
     """
     element = basix.ufl.element(
         "Lagrange", cell, degree, basix.LagrangeVariant.equispaced, shape=(3,)
@@ -309,12 +303,7 @@ def geometry(mesh: Any) -> tuple[Any, Locals, Floats]:
 
 
 def tags_of_mesh(tags: Any, mesh: Any) -> bool:
-    """Whether MeshTags are those of a mesh: numbers of facets of another one mean nothing.
-
-    Args:
-        tags: The MeshTags.
-        mesh: The mesh.
-    """
+    """Whether MeshTags are those of a mesh: numbers of facets of another one mean nothing."""
     one, other = (getattr(t, "_cpp_object", t) for t in (tags.topology, mesh.topology))
     return one is other
 

@@ -44,9 +44,6 @@ def plain(text: str) -> str:
 
     Two dollars would make a formula of what is between them.
 
-    Args:
-        text: The text.
-
     Returns:
         The text, for titles and labels.
     """
@@ -54,14 +51,7 @@ def plain(text: str) -> str:
 
 
 def png(figure: Figure) -> bytes:
-    """A picture as PNG, without the date so that equal runs give equal files.
-
-    Args:
-        figure: The picture.
-
-    Returns:
-        What a file has.
-    """
+    """A picture as PNG, without the date so that equal runs give equal files."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.image import imsave
 

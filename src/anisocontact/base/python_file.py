@@ -17,9 +17,6 @@ def module_of(path: Path) -> ModuleType:
 
     Modules beside the file can be imported by it.
 
-    Args:
-        path: The file.
-
     Raises:
         ImportError: Its name is none of a Python file.
         Exception: Whatever the file raises.

@@ -14,9 +14,6 @@ def replacing(path: Path) -> Iterator[Path]:
 
     Readers see the old file or the new one, never a part of either.
 
-    Args:
-        path: The file.
-
     Yields:
         The path to write to, in the same folder.
 
@@ -35,9 +32,6 @@ def replacing(path: Path) -> Iterator[Path]:
 
 def draft_of(path: Path) -> Path:
     """Where a file is while this process writes it.
-
-    Args:
-        path: The file.
 
     Returns:
         A name that no other process has, in the same folder.

@@ -167,9 +167,6 @@ def hint(name: str, known: Collection[str], others: str = "there are") -> str:
 def elsewhere(word: str) -> str | None:
     """Where what a word stands for is said, if it is no key of the table it was written in.
 
-    Args:
-        word: What was written.
-
     Returns:
         A few words; None if nothing is known of it.
 

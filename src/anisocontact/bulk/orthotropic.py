@@ -107,9 +107,6 @@ class _Directed(Hyperelastic):
     def stress(self, u: Any) -> Any:
         """UFL stress of the displacement `u` at small strain.
 
-        Args:
-            u: UFL displacement.
-
         Returns:
             Stress, (3, 3), UFL.
         """

@@ -51,9 +51,6 @@ def pressure_element(space: Any) -> Any:
 
     A constant in cells of order 1, the mean dilatation Q1/P0, and in simplices; a linear function
     in hexahedra and quadrilaterals of order 2, Q2/P1 [Boffi Brezzi Fortin 2013, section 8.6].
-
-    Args:
-        space: Space of the displacements.
     """
     element = space.element.basix_element
     linear = element.cell_type.name in ("hexahedron", "quadrilateral") and element.degree == 2

@@ -48,9 +48,6 @@ def contact_law(
         auto: Stiffness where the table says "auto" [stress/length].
         law: The law in Python; without one what it stands in is good for checks alone.
 
-    Returns:
-        The law of the contact.
-
     Raises:
         InputError: What the table says does not go together.
     """

@@ -261,9 +261,6 @@ class Case(Section):
 def case_type(known: Registries) -> type[Case]:
     """The type of a case file that can name what is in the registries.
 
-    Args:
-        known: The registries.
-
     Returns:
         A subclass of `Case`.
     """

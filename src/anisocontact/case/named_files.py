@@ -48,9 +48,6 @@ def fingerprints(file: CaseFile) -> dict[str, str]:
 
     With a Python file come those beside it that it imports.
 
-    Args:
-        file: The case.
-
     Returns:
         SHA-256 of each file, by its path in the case file.
 

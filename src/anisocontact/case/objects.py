@@ -105,9 +105,6 @@ def contact_law(
         auto: Stiffness where the table says "auto" [stress/length].
         meshed: Whether the master is meshed.
 
-    Returns:
-        The law.
-
     Raises:
         InputError: A direction is missing, a value only the laws can judge is wrong, or a meshed
             master does not have the evolution.

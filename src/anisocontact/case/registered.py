@@ -68,9 +68,6 @@ def table(name: str, keys: Mapping[Key, Entry], base: type[Registered]) -> type[
         name: Name of the class; titles of the schema.
         keys: Each choosing key with the entry it has chosen.
         base: Class with the keys that do not come from a registry.
-
-    Returns:
-        The class.
     """
     fields: dict[str, Any] = {}
     for key, entry in keys.items():
@@ -95,9 +92,6 @@ def table_of(
         entries: The entries.
         base: Class with the keys that do not come from a registry.
         fields: Further keys that come first.
-
-    Returns:
-        The class.
     """
     keys = {key_of(p): _field(p) for entry in entries for p in entry.parameters}
     doc = " ".join(entry.doc for entry in entries)

@@ -106,9 +106,6 @@ def load_trace(path: str | Path) -> Trace:
 def validate_trace(data: Mapping[str, Any]) -> Trace:
     """A case of the point driver from nested tables, as `tomllib` returns them.
 
-    Args:
-        data: The tables.
-
     Returns:
         Interface, load and points.
 

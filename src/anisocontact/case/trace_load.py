@@ -44,9 +44,6 @@ class Numbers:
         Args:
             given: What is written.
 
-        Returns:
-            The same.
-
         Raises:
             PydanticCustomError: It is of another form, or a number is not finite or not whole.
         """

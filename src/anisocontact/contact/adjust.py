@@ -17,9 +17,6 @@ def adjusted(state: State, reach: float | None) -> State:
         reach: Gaps up to this one are closed and every overlap is taken out, >= 0, length; None
             leaves all as it is.
 
-    Returns:
-        The state with offsets.
-
     Raises:
         InputError: The reach is negative.
     """

@@ -71,9 +71,6 @@ def along_normals(
         hit: Closest points of the slave nodes. Nodes whose normal meets nothing that is near to
             these keep them.
         before: Places at the accepted increment, if there are any.
-
-    Returns:
-        The places.
     """
     there = hit.status <= FACET_STATUS.index("off")
     facet = np.where(there, hit.facet, -1).astype(np.int32)

@@ -277,10 +277,6 @@ class AnalyticLinear:
 
     The tangent is so stiff that the rounding of positions would be felt in their difference:
     displacements are taken.
-
-    Args:
-        master: The master, where the answer was given.
-        answer: The answer.
     """
 
     def __init__(self, master: AnalyticMaster, answer: AnalyticAnswer) -> None:

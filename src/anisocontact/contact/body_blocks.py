@@ -51,9 +51,6 @@ def body_blocks(
         body: The body at its trial.
         now: What the points answer there.
         slave: The slave's surface, where it carries directions.
-
-    Returns:
-        The blocks.
     """
     m, q, k = quadrature.basis.shape
     traction = now.response.traction

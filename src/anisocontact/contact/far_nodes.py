@@ -36,11 +36,7 @@ class FarNodes:
         self._asked = self._route.there(numbers) - owners.first
 
     def everywhere[T: np.generic](self, nodal: npt.NDArray[T]) -> npt.NDArray[T]:
-        """Values of the local nodes, then of these, (nodes, ...); on one process the same array.
-
-        Args:
-            nodal: Of the local nodes, (local nodes, ...).
-        """
+        """Values of the local nodes, then of these, (nodes, ...); on one process the same array."""
         if self._comm.size == 1:
             return nodal
         return np.concatenate([nodal, self._route.back(nodal[self._asked])])

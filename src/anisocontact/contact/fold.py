@@ -25,12 +25,7 @@ SLAVE, MASTER = 1, -1
 
 
 class Fold:
-    """Sides of the facets of a group that meets itself, the same on all processes.
-
-    Args:
-        points: Nodes of the group.
-        surface: Its facets.
-    """
+    """Sides of the facets of a group that meets itself, the same on all processes."""
 
     def __init__(self, points: SlaveNodes, surface: MasterSurface) -> None:
         self._around, self._comm = points.around, surface.comm

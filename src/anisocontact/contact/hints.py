@@ -64,9 +64,6 @@ def stiff_slaves(contacts: Sequence[Contact]) -> list[str]:
     do so for all of them: pressures alternate. Points of a single pass ask for less, by their
     penalties.
 
-    Args:
-        contacts: The contacts.
-
     Returns:
         A line for each of them.
     """
@@ -112,9 +109,6 @@ UNEVEN = (
 def uneven(contacts: Sequence[Contact]) -> list[str]:
     """What to know of pressures where slave nodes are those of tetrahedra of order 1.
 
-    Args:
-        contacts: The contacts.
-
     Returns:
         A line, or none.
     """
@@ -157,9 +151,6 @@ def jumping_rules(contacts: Sequence[Contact]) -> list[str]:
 
     With isotropic stiffness slip relieves the yield function everywhere where the symmetric part of
     F K is positive definite, docs/theory/sliding-rules.md.
-
-    Args:
-        contacts: The contacts.
 
     Returns:
         A line for each of them.

@@ -116,9 +116,6 @@ class Layer:
     def stiff(self, step: ContactTrial) -> tuple[State, Floats]:
         """Where to take the derivative, and the slip that a step is to take away.
 
-        Args:
-            step: The trial.
-
         Returns:
             State from which the law itself answers as the trial does; displacement of the slave
             points that would make the trial exact, (n, 3), length.

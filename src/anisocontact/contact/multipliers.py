@@ -282,9 +282,6 @@ class Multipliers:
     def improve(self, step: ContactTrial) -> State | None:
         """Better multipliers from a trial in equilibrium.
 
-        Args:
-            step: The trial.
-
         Returns:
             What the next trial starts from; None if these hold.
 
@@ -295,9 +292,6 @@ class Multipliers:
 
     def settled(self, _: ContactTrial) -> State | None:
         """What the next trial starts from where points came to lie in equilibrium on springs.
-
-        Args:
-            step: The trial.
 
         Returns:
             The start, in which these carry friction from where they are; None if nothing changes.

@@ -255,9 +255,6 @@ def chosen_degree(given: int | None, order: int, augmented: bool) -> int:
         order: Order of the displacement.
         augmented: Whether every point carries a multiplier.
 
-    Returns:
-        The degree.
-
     Raises:
         InputError: It is below 1.
 

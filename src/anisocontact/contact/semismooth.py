@@ -106,9 +106,6 @@ class Semismooth(Multipliers):
         """What the trials start from after equilibrium with penalties: what it answers.
 
         A point whose gap has closed carries friction from where it came to lie.
-
-        Args:
-            step: The trial in equilibrium.
         """
         _, found = self.values(step)
         self.share = 1.0
@@ -150,9 +147,6 @@ class Semismooth(Multipliers):
 
     def stiff(self, step: ContactTrial) -> tuple[State, Floats]:
         """Where to take the derivative, and the violation that a step is to take away.
-
-        Args:
-            step: The trial.
 
         Returns:
             State from which the law with `ratio` times the penalties answers as the trial does;

@@ -13,9 +13,6 @@ def tell_shared(contacts: Sequence[Contact]) -> None:
     """Let the multipliers of contacts know which slave nodes others have as well.
 
     A slave node is looked at where it is owned, by all contacts that have it.
-
-    Args:
-        contacts: The contacts.
     """
     shared = [one for one in contacts if one.trials.augmented and one.slave_points.at_nodes]
     if len(shared) < 2:

@@ -38,9 +38,6 @@ class Sweep:
 
     The first row is the nodes themselves.
 
-    Args:
-        model: The mesh.
-
     Attributes:
         share: Of the area of a facet, that of the thickness or of the circumference.
         ideal: What the mesh is taken for.

@@ -238,9 +238,6 @@ class FacetBatch(TypedDict):
 class FacetLaw:
     """A contact law for slave points that meet facets of a mesh.
 
-    Args:
-        law: The law.
-
     Attributes:
         in_python: Whether its tangential part is written in Python.
     """

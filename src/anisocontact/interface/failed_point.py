@@ -99,9 +99,6 @@ class FailedPoint:
     def write(self, path: Path) -> None:
         """Keep it in a file, for `anisocontact replay`.
 
-        Args:
-            path: The file.
-
         Raises:
             InputError: A law in Python holds what cannot be written.
         """
@@ -175,9 +172,6 @@ def read_failed_point(path: Path) -> FailedPoint:
     """The point of a file that `FailedPoint.write` has written.
 
     A law in Python is made from the file that its class stood in, which is run.
-
-    Args:
-        path: The file.
 
     Raises:
         InputError: It cannot be read, is no such file, or its law cannot be imported.

@@ -116,9 +116,6 @@ def evaluate(law: TangentialLaw, state: LawState, kinematics: LawKinematics) -> 
         state: What n points remember.
         kinematics: What happens to them.
 
-    Returns:
-        Its output.
-
     Raises:
         InputError: The law failed, or an array has another shape or numbers that are not finite.
     """

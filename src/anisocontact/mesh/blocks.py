@@ -32,9 +32,6 @@ def mesh_blocks(
         degree: Degree of the geometry, 1 or 2: curved cells have their middle nodes on the map.
         order: Order of the displacement.
         comm: Processes that share the body: each makes its own nodes and cells.
-
-    Returns:
-        The mesh.
     """
     lattices = [Lattice(block, degree) for block in blocks]
     nodes = np.cumsum([0] + [lattice.count for lattice in lattices])

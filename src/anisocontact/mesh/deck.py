@@ -99,9 +99,6 @@ def read_cards(path: Path, depth: int = 0) -> list[Card]:
         path: The file.
         depth: How many files have included this one.
 
-    Returns:
-        The cards.
-
     Raises:
         InputError: It does not begin with a keyword, or an included file is missing.
         OSError: It cannot be read.

@@ -271,9 +271,6 @@ def pressed_face(label: str) -> str:
 def pressures(card: Card) -> dict[str, tuple[str, list[tuple[str, str]]]]:
     """Faces under the pressures of a `*DLOAD`, as surfaces.
 
-    Args:
-        card: The card.
-
     Returns:
         Name of a surface -> pressure as written, (element or set, face). A set with its face is
         one; faces of single elements under one pressure are one, named by the line of the card.

@@ -18,9 +18,6 @@ OF_PARTS = ("RIGIDBODY", "COUPLING", "KINEMATIC", "DISTRIBUTING", "TIE", "EQUATI
 def read_deck(path: Path) -> Deck:
     """What is in an input file, parts where their instances are.
 
-    Args:
-        path: The file.
-
     Raises:
         InputError: As of `read_inp`.
         OSError: It cannot be read.

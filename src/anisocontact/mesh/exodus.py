@@ -52,9 +52,6 @@ ORDERS = {
 def read_exodus(path: Path) -> Any:
     """The mesh of an Exodus file as meshio would give it, with `sides`: name -> corners of facets.
 
-    Args:
-        path: The file.
-
     Raises:
         InputError: netCDF4 is not installed, or a side set names sides that elements do not have.
         OSError: It cannot be read.

@@ -19,9 +19,6 @@ def with_joined(mesh: MeshArrays, joined: Mapping[str, Sequence[str]]) -> MeshAr
         mesh: The mesh.
         joined: "body.group" -> groups of that body; a facet that is in several counts once.
 
-    Returns:
-        The mesh.
-
     Raises:
         InputError: A group is there already, or there is none to be joined.
 

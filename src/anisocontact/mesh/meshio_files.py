@@ -60,9 +60,6 @@ TAGS: tuple[str, ...] = (
 def read_by_meshio(path: Path) -> WholeMesh:
     """Solid cells and groups of a file that meshio reads.
 
-    Args:
-        path: The file.
-
     Returns:
         The mesh. Bodies are the sets of volume cells, or the numbers that the format gives them as
         `body1`, `body2` and so on, or all of them as `body`; facet groups are the sets or numbers

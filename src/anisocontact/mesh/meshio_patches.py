@@ -21,9 +21,6 @@ END = re.compile(r"^\s*ENDDATA.*", re.IGNORECASE | re.MULTILINE)
 def nastran(path: Path) -> Any:
     """The mesh of a Nastran file, with or without control sections in front of its bulk data.
 
-    Args:
-        path: The file.
-
     Raises:
         InputError: Nodes are given in coordinate systems of their own.
     """

@@ -95,9 +95,6 @@ def read_msh(path: Path, comm: Any = MPI.COMM_SELF) -> MshFile:
         path: The file.
         comm: Processes that share it; the call is collective.
 
-    Returns:
-        What this process has of it.
-
     Raises:
         MshError: It is not a mesh in format 4.1 or 2.2, or it is damaged; on all processes.
         OSError: It cannot be read.

@@ -118,9 +118,6 @@ def file_arrays(
         field: Where the path was written, for messages.
         comm: Processes, each of which gets its share.
 
-    Returns:
-        The arrays.
-
     Raises:
         InputError: The file is missing or damaged, or has no such body.
     """

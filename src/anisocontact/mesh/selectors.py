@@ -172,9 +172,6 @@ def with_groups(mesh: MeshArrays, groups: Mapping[str, Sequence[Selector]]) -> M
         groups: "body.group", or "group" for one in each body that has such facets -> selectors,
             all of which have to choose a facet.
 
-    Returns:
-        The mesh.
-
     Raises:
         InputError: A group has no facet or is there already, or there is no such body.
     """

@@ -30,11 +30,7 @@ class Route:
             comm.Alltoall(self._sent, self._got)
 
     def there(self, rows: Table) -> Table:
-        """Rows that come to this process, those of the first process first.
-
-        Args:
-            rows: Rows of this process, (rows, ...).
-        """
+        """Rows that come to this process, those of the first process first."""
         if self._comm.size == 1:
             return rows
         return self._exchanged(rows[self._order], self._sent, self._got)

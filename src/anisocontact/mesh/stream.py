@@ -25,9 +25,6 @@ class MshError(ValueError):
 class Stream:
     """A file that is read from front to back and never held as a whole.
 
-    Args:
-        path: The file.
-
     Attributes:
         binary: Whether the numbers are binary.
 

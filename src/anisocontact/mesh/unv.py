@@ -84,9 +84,6 @@ class _Content:
 def read_unv(path: Path) -> WholeMesh:
     """Solid elements and groups of a universal file.
 
-    Args:
-        path: The file.
-
     Returns:
         The mesh. Bodies are the groups of solid elements, or all of these as `body` where there is
         none; facet groups are those of surface elements, and of nodes that hold all corners of

@@ -78,11 +78,7 @@ class Device:
 
 
 class FixedPlace(Device):
-    """The reference where the path says, with its penetration.
-
-    Args:
-        place: Where, (3,).
-    """
+    """The reference where the path says, with its penetration."""
 
     def __init__(self, place: Floats) -> None:
         super().__init__()

@@ -21,9 +21,6 @@ def pressed(balance: PointBalance, guess: Floats) -> Trial:
         balance: The equations.
         guess: Unknowns, whose foot is kept.
 
-    Returns:
-        The equations there.
-
     Raises:
         StepError: No penetration gives the pressure.
     """

@@ -103,9 +103,6 @@ def read_data_set(path: Path) -> DataSet:
     Args:
         path: What `DataSet` has written.
 
-    Returns:
-        The data set.
-
     Raises:
         ValueError, OSError: The file is damaged, or there is none.
     """

@@ -24,11 +24,7 @@ from anisocontact.base.array_types import Floats, Ints
 
 
 class Solid:
-    """Cells, or facets, with arrays at their nodes.
-
-    Args:
-        data: What VTK has.
-    """
+    """Cells, or facets, with arrays at their nodes."""
 
     def __init__(self, data: vtkPointSet) -> None:
         self.data: Any = data

@@ -47,9 +47,6 @@ class FacetBlocks:
             topology: Name of the topology, or one for each array.
             flip: Facets to be turned round, (number of facets,), or None.
 
-        Returns:
-            The blocks.
-
         Raises:
             InputError: Unknown topology, or arrays of another shape or type.
         """
@@ -90,9 +87,6 @@ def finite(x: Floats) -> Floats:
 
     Args:
         x: Points, (n, 3).
-
-    Returns:
-        The same.
 
     Raises:
         InputError: A point is not finite.

@@ -48,9 +48,6 @@ def orientation(core: _core.FacetSurface) -> Orientation:
 
     Two neighbours agree where they run along their side in opposite directions.
 
-    Args:
-        core: The surface of the core.
-
     Returns:
         Whether the surface is closed, which facets disagree, the volume.
     """
@@ -65,9 +62,6 @@ def orientation(core: _core.FacetSurface) -> Orientation:
 
 def triangular(core: _core.FacetSurface) -> Flags:
     """Which facets have three sides.
-
-    Args:
-        core: The surface of the core.
 
     Returns:
         A flag for each, (number of facets,).

@@ -17,10 +17,6 @@ _WORD = re.compile(r"[a-z]+")
 def in_units(text: str, units: Mapping[str, str]) -> str:
     """A text with units in the place of dimensions in brackets.
 
-    Args:
-        text: The text.
-        units: Dimension -> unit.
-
     Example:
         >>> in_units("moment [force length], area [length^2]", {"length": "mm", "force": "N"})
         'moment [N mm], area [mm^2]'

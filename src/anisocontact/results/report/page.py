@@ -84,9 +84,6 @@ def document(title: str, body: Sequence[str]) -> str:
     Args:
         title: Title, as HTML.
         body: Its parts, as HTML.
-
-    Returns:
-        The page.
     """
     return (
         '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'

@@ -35,11 +35,7 @@ class Moment:
 
 
 class RunData:
-    """Results with what the pictures ask of them.
-
-    Args:
-        folder: Results folder.
-    """
+    """Results with what the pictures ask of them."""
 
     def __init__(self, folder: Path) -> None:
         self.results = Results(folder)

@@ -29,12 +29,7 @@ FALLS, ROUNDS = 0.1, 4
 
 
 class Continuation:
-    """Solves with a layer behind stiff adhesion first, then with the laws as they are.
-
-    Args:
-        problem: The problem.
-        newton: Its solver.
-    """
+    """Solves with a layer behind stiff adhesion first, then with the laws as they are."""
 
     def __init__(self, problem: Problem, newton: IncrementSolver) -> None:
         self._problem = problem

@@ -22,9 +22,6 @@ class Predictor:
     extrapolated displacements would press those that it leaves, and contact is lost. There rigid
     bodies go on as they did, and deformable ones start from where they are.
 
-    Args:
-        problem: The problem.
-
     Attributes:
         travels: Whether a free rigid body has travelled over what it touches in the last part.
     """

@@ -21,11 +21,7 @@ FALLING = 0.1
 
 
 class StatusWatch:
-    """Remembers status and foot of every slave point of this rank over the last iterations.
-
-    Args:
-        contacts: The contacts.
-    """
+    """Remembers status and foot of every slave point of this rank over the last iterations."""
 
     def __init__(self, contacts: Sequence[Contact]) -> None:
         self._contacts = list(contacts)

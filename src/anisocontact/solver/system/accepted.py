@@ -13,9 +13,6 @@ from anisocontact.solver.terms.persistent import Arrays
 class AcceptedState:
     """Unknowns, forces and work of the last accepted state, and the way from there to the next.
 
-    Args:
-        layout: Where the unknowns are.
-
     Attributes:
         x: The unknowns, length.
         outside: All forces but those of contact on the unknowns this rank owns, force.

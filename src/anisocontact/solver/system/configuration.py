@@ -17,9 +17,6 @@ from anisocontact.solver.system.parts import Parts
 class Configuration:
     """The bodies of a problem, brought from one state of all unknowns to the next.
 
-    Args:
-        parts: Parts of the problem.
-
     Attributes:
         u: Displacement, a DOLFINx function.
     """

@@ -16,14 +16,7 @@ from anisocontact.solver.terms.persistent import Arrays
 
 
 class Whole:
-    """Bulk of which all unknowns are kept up to date; see `Reduction`.
-
-    Args:
-        system: The system of all unknowns.
-        parts: Its parts.
-        bodies: Where the bodies are.
-        accepted: The accepted state.
-    """
+    """Bulk of which all unknowns are kept up to date; see `Reduction`."""
 
     whole = True
 

@@ -23,9 +23,6 @@ type Marks = list[Mark]
 class Contacts(Term):
     """All contacts: tractions at slave points, histories, multipliers of augmented ones.
 
-    Args:
-        contacts: The contacts.
-
     Attributes:
         meshed: Those against facets.
     """

@@ -19,9 +19,6 @@ _PLACES = 64
 class Drive:
     """Motion and loads of one rigid body along the steps; at first all components are held.
 
-    Args:
-        body: The body.
-
     Attributes:
         held: Which components are prescribed, (6,).
     """
