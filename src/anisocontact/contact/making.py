@@ -28,11 +28,11 @@ from anisocontact.contact.slave_edges import SlaveEdges
 from anisocontact.contact.slave_nodes import (
     NodesOfFacets,
     SlaveNodes,
-    around_own_nodes,
     nodes_of_facets,
 )
 from anisocontact.contact.sweep import Sweep
 from anisocontact.contact.symmetric import check_symmetry
+from anisocontact.contact.whole_facets import around_own_nodes
 from anisocontact.interface import ContactLaw, Interface
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model
@@ -288,7 +288,7 @@ def _on_facets(
     )
     if nodes is not None:
         size = facet_size(model, master)
-        met = MortarMaster(sides, law, group=master, size=size, folded=options.self_contact)
+        met = MortarMaster(sides, nodes, law, group=master, size=size, folded=options.self_contact)
         return nodes, met, law
     found = FacetMaster(sides, law, group=master, size=facet_size(model, master))
     return sides.points, found, law

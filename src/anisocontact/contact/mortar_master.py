@@ -58,6 +58,7 @@ class MortarMaster(MeshedMaster):
 
     Args:
         sides: Slave nodes and facets.
+        points: The slave nodes.
         law: Laws of the interface.
         group: Facet group of the master.
         size: Length of its facets.
@@ -65,15 +66,21 @@ class MortarMaster(MeshedMaster):
     """
 
     def __init__(
-        self, sides: Sides, law: ContactLaw, *, group: str, size: float, folded: bool = False
+        self,
+        sides: Sides,
+        points: SlaveNodes,
+        law: ContactLaw,
+        *,
+        group: str,
+        size: float,
+        folded: bool = False,
     ) -> None:
-        assert isinstance(sides.points, SlaveNodes)
-        self._points: SlaveNodes = sides.points
+        self._points = points
         self._resting: Sequence[Resting] = ()
         self._flags: Sequence[Resting] = ()
-        self._fold = Fold(sides.points, sides.gathered) if folded else None
+        self._fold = Fold(points, sides.gathered) if folded else None
         width = sides.master.nodes.shape[1]
-        self._then = Opposite.none(len(sides.points.facet), width)
+        self._then = Opposite.none(len(points.facet), width)
         # slave nodes that count slip from a trial, and what was opposite at the accepted increment
         self._replaced: tuple[Flags, Opposite] | None = None
         super().__init__(sides, law, group=group, size=size)

@@ -8,8 +8,10 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats, Locals
+from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.quadrature import FacetQuadrature, Surfaced, mean_size
+from anisocontact.surfaces import FacetSets
 
 #: Share of the normal along free displacements below which a point does not move along it.
 FREE = 0.1
@@ -102,6 +104,14 @@ class SlavePoints:
     def coupled(self, nodes: Locals) -> Locals:
         """Nodes as `Couplings` name them from those of points."""
         return nodes
+
+    def searched(self, slave: FacetMesh) -> FacetMesh:
+        """Facets from which a master is searched, of the slave's own on this rank."""
+        return slave
+
+    def unseen(self, by_facet: FacetSets) -> FacetSets:
+        """Facets that each point does not look at, from those of each facet that is searched."""
+        return by_facet.take(self.facet)
 
     @cached_property
     def nodes(self) -> Locals:

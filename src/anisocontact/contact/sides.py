@@ -77,17 +77,14 @@ class Sides:
     @property
     def searched(self) -> FacetMesh:
         """Facets of the slave from which the master is searched, with those around slave nodes."""
-        return _searched(self.slave, self.points)
+        return self.points.searched(self.slave)
 
     @cached_property
     def excluded(self) -> FacetSets | None:
         """Facets that each point does not look at; None where it looks at all."""
         if self.near is None:
             return None
-        if isinstance(self.points, SlaveNodes):
-            around = self.points.around
-            return self.near.unseen.joined(around.offsets, around.facets)
-        return self.near.unseen.take(self.points.facet)
+        return self.points.unseen(self.near.unseen)
 
     @cached_property
     def surface_gradient(self) -> SurfaceGradient:
@@ -228,12 +225,6 @@ def _collect(
     gathered.gather(np.union1d(gathered.within(low, high, now), more))
 
 
-def _searched(slave: FacetMesh, points: SlavePoints) -> FacetMesh:
-    if isinstance(points, SlaveNodes) and slave.sweep is None:
-        return points.around.mesh
-    return slave
-
-
 def _surface(gathered: MasterSurface, now: Floats) -> FacetSurface:
     """Facets that a rank has, at positions of the local nodes, (nodes, 3), length."""
     facets = gathered.facets
@@ -292,7 +283,7 @@ def make_sides(
     near = None
     if apart is not None:
         keys = facet_keys(model.mesh, np.sort(slave)) if nodes is None else nodes.keys
-        numbers, met = gathered.number(keys), _searched(own, points)
+        numbers, met = gathered.number(keys), points.searched(own)
         near = near_facets(met, numbers, surface, gathered.facets, gathered.reference, apart)
     return Sides(
         slave=own,

@@ -21,12 +21,12 @@ from anisocontact.contact.facet_mesh import (
     node_coordinates,
     outward_normals,
 )
-from anisocontact.contact.far_nodes import NONE, FarNodes, node_count
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sharp_edges import Towards, beside_edges, counting
-from anisocontact.mesh.split import Route, Split
+from anisocontact.contact.whole_facets import WholeFacets
+from anisocontact.surfaces import FacetSets
 
 #: Share of the nodes of the edges that the vertices of a tri6 take, whose own functions have no
 #: mass [Popp Wohlmuth Gitterle Wall 2012, sec. 3.2]; as in cpp/include/anisocontact/mortar. An edge
@@ -39,11 +39,8 @@ LINES, ROUND = {2: "line2", 3: "line3"}, "line3 of revolution"
 EDGE = 3.0
 #: Difference of the components of a unit vector that is none.
 ROUNDING = 1e-6
-#: Vertices beside the edges of a tri6.
-_ENDS = ((1, 2), (0, 2), (0, 1))
 #: Nodes that give a share, and the vertices that take it.
-_GIVING = {"tri6": {3 + e: ends for e, ends in enumerate(_ENDS)}, ROUND: {2: (0, 1)}}
-
+_GIVING = {"tri6": {3: (1, 2), 4: (0, 2), 5: (0, 1)}, ROUND: {2: (0, 1)}}
 #: Nodes around the pieces of a facet that have nodes at their corners alone.
 _PIECES = {
     "tri3": [[0, 1, 2]],
@@ -83,51 +80,6 @@ class Patches:
     counts: Floats
     pieces: Locals
     memory: _core.MortarMemory = field(default_factory=_core.MortarMemory)
-
-
-@dataclass(frozen=True)
-class WholeFacets:
-    """All facets around the nodes of a surface that this process owns, wherever they live.
-
-    Attributes:
-        mesh: The facets; nodes that are not local have numbers after these.
-        far: Those nodes.
-        others: Nodes of the facets that other processes own, in ascending order of their numbers.
-        keys: Numbers of `facet_keys` of the facets.
-    """
-
-    mesh: FacetMesh
-    far: FarNodes
-    others: FarNodes
-    keys: Ints
-
-
-def around_own_nodes(space: Any, mesh: FacetMesh, keys: Ints) -> WholeFacets:
-    """The facets around nodes; on one process those that are given; collective.
-
-    Args:
-        space: Vector Lagrange space of the displacement.
-        mesh: Facets of the surface on this process, with its local nodes.
-        keys: Their numbers of `facet_keys`, whose order is that of the facets, (m,).
-    """
-    comm, index_map = space.mesh.comm, space.dofmap.index_map
-    if comm.size == 1:
-        none = FarNodes(space, NONE)
-        return WholeFacets(mesh, none, none, keys)
-    nodes = index_map.local_to_global(mesh.nodes.reshape(-1)).reshape(mesh.nodes.shape)
-    owner = Split(comm, index_map.size_local).owner(nodes)
-    facet, to = np.divmod(np.unique(np.arange(len(nodes))[:, None] * comm.size + owner), comm.size)
-    route = Route(comm, to)
-    keys, nodes, flip = (route.there(table[facet]) for table in (keys, nodes, mesh.flip))
-    order = np.argsort(keys)
-    nodes = nodes[order]
-    local = index_map.global_to_local(nodes.reshape(-1)).reshape(nodes.shape)
-    far = np.unique(nodes[local < 0])
-    named = np.where(local < 0, node_count(space) + np.searchsorted(far, nodes), local)
-    known, first = np.unique(named, return_index=True)
-    others = nodes.reshape(-1)[first[known >= index_map.size_local]]
-    found = FacetMesh(mesh.topology, named.astype(np.int32), flip[order])
-    return WholeFacets(found, FarNodes(space, far), FarNodes(space, others), keys[order])
 
 
 def patches(mesh: FacetMesh, owned: int | None = None) -> Patches:
@@ -360,6 +312,14 @@ class SlaveNodes(SlavePoints):
     @override
     def coupled(self, nodes: Locals) -> Locals:
         return self.far.coupled(nodes)
+
+    @override
+    def searched(self, slave: FacetMesh) -> FacetMesh:
+        return self.around.mesh if slave.sweep is None else slave
+
+    @override
+    def unseen(self, by_facet: FacetSets) -> FacetSets:
+        return by_facet.joined(self.around.offsets, self.around.facets)
 
     @override
     def peaks(self, areas: Floats) -> Flags:

@@ -1,0 +1,58 @@
+"""Facets around nodes that a process owns, wherever these facets live."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from anisocontact.base.array_types import Ints
+from anisocontact.contact.facet_mesh import FacetMesh
+from anisocontact.contact.far_nodes import NONE, FarNodes, node_count
+from anisocontact.mesh.split import Route, Split
+
+
+@dataclass(frozen=True)
+class WholeFacets:
+    """All facets around the nodes of a surface that this process owns, wherever they live.
+
+    Attributes:
+        mesh: The facets; nodes that are not local have numbers after these.
+        far: Those nodes.
+        others: Nodes of the facets that other processes own, in ascending order of their numbers.
+        keys: Numbers of `facet_keys` of the facets.
+    """
+
+    mesh: FacetMesh
+    far: FarNodes
+    others: FarNodes
+    keys: Ints
+
+
+def around_own_nodes(space: Any, mesh: FacetMesh, keys: Ints) -> WholeFacets:
+    """The facets around nodes; on one process those that are given; collective.
+
+    Args:
+        space: Vector Lagrange space of the displacement.
+        mesh: Facets of the surface on this process, with its local nodes.
+        keys: Their numbers of `facet_keys`, whose order is that of the facets, (m,).
+    """
+    comm, index_map = space.mesh.comm, space.dofmap.index_map
+    if comm.size == 1:
+        none = FarNodes(space, NONE)
+        return WholeFacets(mesh, none, none, keys)
+    nodes = index_map.local_to_global(mesh.nodes.reshape(-1)).reshape(mesh.nodes.shape)
+    owner = Split(comm, index_map.size_local).owner(nodes)
+    facet, to = np.divmod(np.unique(np.arange(len(nodes))[:, None] * comm.size + owner), comm.size)
+    route = Route(comm, to)
+    keys, nodes, flip = (route.there(table[facet]) for table in (keys, nodes, mesh.flip))
+    order = np.argsort(keys)
+    nodes = nodes[order]
+    local = index_map.global_to_local(nodes.reshape(-1)).reshape(nodes.shape)
+    far = np.unique(nodes[local < 0])
+    named = np.where(local < 0, node_count(space) + np.searchsorted(far, nodes), local)
+    known, first = np.unique(named, return_index=True)
+    others = nodes.reshape(-1)[first[known >= index_map.size_local]]
+    found = FacetMesh(mesh.topology, named.astype(np.int32), flip[order])
+    return WholeFacets(found, FarNodes(space, far), FarNodes(space, others), keys[order])
