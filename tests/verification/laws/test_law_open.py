@@ -21,6 +21,7 @@ import pytest
 
 HERE = Path(__file__).parent
 ROOT = HERE.parents[2]
+TESTS = "tests/verification"
 HEADERS = "cpp/include/anisocontact"
 REGISTRY = f"{HEADERS}/law/registry.hpp"
 PAGE = (ROOT / "docs/dev/how-to-add.md").read_text()
@@ -36,6 +37,7 @@ ADDED = {
         "dict[str, Any]]] = {\n",
     ),
 }
+SAMPLES = ("conftest.py", "surface_sample.py", "profile_samples.py")
 SUITES = (
     "test_surface_geometry.py",
     "test_surface_projection.py",
@@ -57,7 +59,7 @@ def add_as_the_page_says(root, section):
     replace_once(listed, "#pragma once\n", f'#pragma once\n#include "anisocontact/{name}"\n')
     replace_once(listed, first, f"{made}, {first}")
     entry = sample.rstrip().removesuffix(",")
-    replace_once(root / "tests" / samples, before, f"{before}{entry},\n")
+    replace_once(root / TESTS / samples, before, f"{before}{entry},\n")
 
 
 def replace_once(path, old, new):
@@ -99,9 +101,9 @@ def extended(tmp_path_factory):
     root = tmp_path_factory.mktemp("extended")
     for folder in ("cpp", "src"):
         shutil.copytree(ROOT / folder, root / folder, ignore=shutil.ignore_patterns("*.so"))
-    shutil.copytree(HERE, root / "tests/laws", ignore=shutil.ignore_patterns("__pycache__"))
-    for name in ("conftest.py", *SUITES):
-        shutil.copy(HERE.parent / name, root / "tests")
+    shutil.copytree(HERE, root / TESTS / "laws", ignore=shutil.ignore_patterns("__pycache__"))
+    for name in (*SAMPLES, *SUITES):
+        shutil.copy(HERE.parent / name, root / TESTS)
     for name in ("CMakeLists.txt", "LICENSE"):
         shutil.copy(ROOT / name, root)
 
@@ -113,7 +115,7 @@ def extended(tmp_path_factory):
     )
     sample = '    "radial": [Rule("radial")],\n'
     toy = '    "toy": [Rule("toy", {"weight": 0.4})],\n'
-    replace_once(root / "tests/laws/conftest.py", sample, sample + toy)
+    replace_once(root / TESTS / "laws/conftest.py", sample, sample + toy)
     for section in ADDED:
         add_as_the_page_says(root, section)
 
@@ -170,7 +172,7 @@ def conformance(root, chosen, *files):
         root,
         *("pytest", "-q", "-rA", "-p", "no:cacheprovider", "-c", os.devnull),
         *("--rootdir", root, "--import-mode=importlib", "-k", chosen),
-        *(root / "tests" / file for file in files),
+        *(root / TESTS / file for file in files),
     )
     assert "failed" not in printed
     return [line for line in printed.splitlines() if line.startswith("PASSED")]
