@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -11,6 +10,7 @@ import numpy as np
 from anisocontact import _core
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.facet_mesh import FacetMesh, facet_corners, outward_normals
+from anisocontact.contact.near import Near
 from anisocontact.contact.sharp_edges import SMOOTH
 from anisocontact.surfaces.facets import FacetSets, FacetSurface
 
@@ -19,8 +19,9 @@ Ints32 = Locals
 #: How far behind each other facets lie at most that touch in a slit, as a share of their radius: a
 #: thin wall is thicker.
 BEHIND = 0.02
-#: Least cosine between the normal of one and the reversed one of its neighbour at the tip of a
-#: closed crack.
+#: Least cosine between the normal of one and the reversed one of another that is in front of it.
+OPPOSED = 0.1
+#: The same of its neighbour at the tip of a closed crack.
 CLOSED = 0.9
 
 
@@ -54,24 +55,6 @@ class Facing(Protocol):
     @property
     def threads(self) -> int:
         """Threads of the kernel."""
-
-
-@dataclass(frozen=True)
-class Near:
-    """Facets near to each facet in the reference configuration, and its neighbours.
-
-    Attributes:
-        unmet: Those that it does not overlap: neighbours, but at the tip of a closed crack, and
-            the other side of a thin wall.
-        unseen: Those that its points do not look at: as well those that it does not face.
-    """
-
-    unmet: FacetSets
-    unseen: FacetSets
-
-    def by(self, change: Callable[[FacetSets], FacetSets]) -> Near:
-        """Both changed alike."""
-        return Near(change(self.unmet), change(self.unseen))
 
 
 @dataclass(frozen=True)
@@ -173,7 +156,8 @@ def near_facets(
     meets = ~neighbours | ((ahead > 0.0) & (opposed > CLOSED))
     walls = (ahead <= 0.0) & (opposed > 0.0)
     unmet, unseen = ~meets | walls, ~meets | (ahead <= 0.0) | (opposed <= 0.0)
-    return Near(*(FacetSets.of_pairs(f[one], g[one], count) for one in (unmet, unseen)))
+    faced = ~unseen & (opposed > OPPOSED)
+    return Near(*(FacetSets.of_pairs(f[one], g[one], count) for one in (unmet, unseen, faced)))
 
 
 def _looks(

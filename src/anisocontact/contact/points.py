@@ -10,6 +10,7 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Locals
 from anisocontact.contact.facet_mesh import FacetMesh
 from anisocontact.contact.history import Snapshot
+from anisocontact.contact.near import Near
 from anisocontact.contact.quadrature import FacetQuadrature, Surfaced, mean_size
 from anisocontact.surfaces import FacetSets
 
@@ -109,9 +110,9 @@ class SlavePoints:
         """Facets from which a master is searched, of the slave's own on this rank."""
         return slave
 
-    def unseen(self, by_facet: FacetSets) -> FacetSets:
-        """Facets that each point does not look at, from those of each facet that is searched."""
-        return by_facet.take(self.facet)
+    def unseen(self, near: Near) -> FacetSets:
+        """Facets that each point does not look at, from what is near to those that are searched."""
+        return near.unseen.take(self.facet)
 
     @cached_property
     def nodes(self) -> Locals:

@@ -20,10 +20,11 @@ from anisocontact.contact.facet_mesh import (
     group_area,
     isoparametric,
 )
-from anisocontact.contact.facing import Near, largest_radius, near_facets
+from anisocontact.contact.facing import largest_radius, near_facets
 from anisocontact.contact.far_nodes import NONE
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.master_surface import MasterSurface
+from anisocontact.contact.near import Near
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.slave_nodes import SlaveNodes
 from anisocontact.contact.surface_gradient import SurfaceGradient
@@ -84,7 +85,7 @@ class Sides:
         """Facets that each point does not look at; None where it looks at all."""
         if self.near is None:
             return None
-        return self.points.unseen(self.near.unseen)
+        return self.points.unseen(self.near)
 
     @cached_property
     def surface_gradient(self) -> SurfaceGradient:

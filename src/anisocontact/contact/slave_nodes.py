@@ -22,6 +22,7 @@ from anisocontact.contact.facet_mesh import (
     outward_normals,
 )
 from anisocontact.contact.history import Snapshot
+from anisocontact.contact.near import Near
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sharp_edges import Towards, beside_edges, counting
@@ -318,8 +319,9 @@ class SlaveNodes(SlavePoints):
         return self.around.mesh if slave.sweep is None else slave
 
     @override
-    def unseen(self, by_facet: FacetSets) -> FacetSets:
-        return by_facet.joined(self.around.offsets, self.around.facets)
+    def unseen(self, near: Near) -> FacetSets:
+        around = self.around
+        return near.unseen_from(around.offsets, around.facets, around.counts > 0.0)
 
     @override
     def peaks(self, areas: Floats) -> Flags:

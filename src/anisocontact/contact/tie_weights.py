@@ -24,8 +24,9 @@ import scipy
 from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.contact.facet_mesh import FacetMesh
-from anisocontact.contact.facing import Near, facing, largest_radius
+from anisocontact.contact.facing import facing, largest_radius
 from anisocontact.contact.mortar_weights import MortarWeights, mortar_weights
+from anisocontact.contact.near import Near
 from anisocontact.contact.slave_nodes import Patches, nodal_quadrature, patches
 from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.contact.turning import Turning

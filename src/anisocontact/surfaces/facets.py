@@ -113,19 +113,6 @@ class FacetSets:
         offsets = np.searchsorted(pairs, np.arange(count + 1) * width)
         return cls(offsets.astype(np.int64), (pairs % width).astype(np.int32))
 
-    def joined(self, offsets: Ints, which: Locals) -> FacetSets:
-        """Sets of what has several points each: all that one of its points has.
-
-        Args:
-            offsets: Where the points of each begin, (m + 1,).
-            which: The points, one list after the other.
-        """
-        taken = self.take(which.astype(np.int64))
-        owner = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
-        return self.of_pairs(
-            np.repeat(owner, np.diff(taken.offsets)), taken.facets, len(offsets) - 1
-        )
-
 
 @typed
 class FacetSurface(Remade):

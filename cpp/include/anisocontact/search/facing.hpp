@@ -19,6 +19,10 @@ struct FacetBalls {
   }
 };
 
+/// Least cosine between one normal and the other, reversed: of a facet that is seen edge-on rounding
+/// says whether it faces another one, and it covers nothing.
+inline constexpr double edge_on = 1e-3;
+
 /// Facets of a surface, whose balls are `theirs`, that are within a distance of the middle of facet f,
 /// lie beside each other by no more than both radii, oppose it and are not left out (in ascending order).
 inline void faced(const FacetSurface& surface, const FacetBalls& own, std::size_t f,
@@ -28,7 +32,7 @@ inline void faced(const FacetSurface& surface, const FacetBalls& own, std::size_
                      normal = FacetBalls::row(own.normal, f);
   const auto wanted = [&](std::int32_t facet) {
     const auto g = static_cast<std::size_t>(facet);
-    if (!(normal.dot(FacetBalls::row(theirs.normal, g)) < 0.0)) return false;
+    if (!(normal.dot(FacetBalls::row(theirs.normal, g)) < -edge_on)) return false;
     const Vec3<double> apart = FacetBalls::row(theirs.middle, g) - middle;
     const double along = apart.dot(normal), both = own.radius[f] + theirs.radius[g];
     return apart.squaredNorm() - along * along <= both * both &&
