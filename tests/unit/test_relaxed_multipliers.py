@@ -63,7 +63,7 @@ def never_held(monkeypatch: pytest.MonkeyPatch) -> None:
     def improve(*_: object) -> None:
         raise NotHeldError("never")
 
-    monkeypatch.setattr(Semismooth, "held", lambda *_: False)
+    monkeypatch.setattr(Semismooth, "consistent", lambda *_: False)
     monkeypatch.setattr(Nested, "improve", improve)
 
 

@@ -365,7 +365,7 @@ def _step(
     weights: Mapping[str, Any],
     until: Until | None,
 ) -> Step:
-    def led(kind: str) -> dict[str, dict[str, Any]]:
+    def prescribed(kind: str) -> dict[str, dict[str, Any]]:
         return {
             name: schedule.values(given.given(), getattr(given, "path", None), begun)
             for name, given in getattr(section, kind).items()
@@ -388,7 +388,7 @@ def _step(
         temperature={body: schedule.value(v, begun) for body, v in section.temperature.items()},
         rotation=turns,
         cylindrical=_cylinders(section, schedule, begun),
-        body_force=led("body_force") | weights,
+        body_force=prescribed("body_force") | weights,
         until=until,
-        **{kind: led(kind) for kind in kinds},
+        **{kind: prescribed(kind) for kind in kinds},
     )

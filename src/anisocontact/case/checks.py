@@ -304,7 +304,7 @@ def _steps(case: Case) -> Iterator[InputError]:
             yield InputError(text, field=f"step[{i}].name")
         for what, group in step.groups():
             yield from _group(case, group, f"step[{i}].{what}")
-        yield from _led_once(step, f"step[{i}]")
+        yield from _prescribed_once(step, f"step[{i}]")
         grounded = [name for name, spring in case.spring.items() if spring.to is None]
         for name in step.anchor:
             if name not in grounded:
@@ -322,7 +322,7 @@ def _steps(case: Case) -> Iterator[InputError]:
                 yield InputError(text + near(body, expand), field=f"step[{i}].temperature")
 
 
-def _led_once(step: StepSection, place: str) -> Iterator[InputError]:
+def _prescribed_once(step: StepSection, place: str) -> Iterator[InputError]:
     pairs = (("rotation", "displacement"), ("rotation", "cylindrical"))
     for kind, other in (*pairs, ("cylindrical", "displacement")):
         for group in getattr(step, kind):

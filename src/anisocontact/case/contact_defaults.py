@@ -9,7 +9,7 @@ from anisocontact.bulk import Material
 from anisocontact.case.model import AUGMENTED, MORTAR, PENALTY, SINGLE, ContactSection
 from anisocontact.case.quantity import AUTO
 from anisocontact.contact.defaults import takes_nodes
-from anisocontact.contact.multipliers import check, follows
+from anisocontact.contact.multipliers import check, simultaneous
 from anisocontact.interface import ContactLaw
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.mesh import Model
@@ -65,4 +65,4 @@ def _method(section: ContactSection, law: ContactLaw) -> str:
         check(augmentation, law)
     except InputError:
         return PENALTY
-    return AUGMENTED if follows(augmentation, law) else PENALTY
+    return AUGMENTED if simultaneous(augmentation, law) else PENALTY

@@ -82,7 +82,7 @@ def _path(table: Any, place: str) -> Any:
         return make_path(table.chosen["kind"], **table.parameters())
 
 
-def led_axes(case: Case, path: str | None) -> list[str]:
+def prescribed_axes(case: Case, path: str | None) -> list[str]:
     """Components that a path prescribes; none where it is not there or wrong."""
     try:
         return [] if path is None else list(_path(case.path[path], "").components())
@@ -92,7 +92,7 @@ def led_axes(case: Case, path: str | None) -> list[str]:
 
 def check_courses(case: Case) -> Iterator[InputError]:
     """Amplitudes and paths that are wrong, or that steps name and there are not."""
-    led: dict[str, list[str]] = {}
+    axes_of: dict[str, list[str]] = {}
     for name, table in case.amplitude.items():
         if not isinstance(table, FunctionTable):
             try:
@@ -100,7 +100,7 @@ def check_courses(case: Case) -> Iterator[InputError]:
             except InputError as error:
                 yield error
     for name, table in case.path.items():
-        led[name] = led_axes(case, name)
+        axes_of[name] = prescribed_axes(case, name)
         try:
             _path(table, f"path.{name}")
         except InputError as error:
@@ -115,17 +115,17 @@ def check_courses(case: Case) -> Iterator[InputError]:
                 yield _missing(turn.amplitude, list(case.amplitude), place)
         for kind in ("displacement", "motion", "anchor"):
             for name, given in getattr(step, kind).items():
-                yield from _along_path(given, led, f"step[{i}].{kind}.{_key(name)}")
+                yield from _along_path(given, axes_of, f"step[{i}].{kind}.{_key(name)}")
 
 
-def _along_path(given: Any, led: Mapping[str, list[str]], place: str) -> Iterator[InputError]:
+def _along_path(given: Any, axes_of: Mapping[str, list[str]], place: str) -> Iterator[InputError]:
     if given.path is None:
         return
-    if given.path not in led:
-        yield _missing(given.path, list(led), place, "path")
+    if given.path not in axes_of:
+        yield _missing(given.path, list(axes_of), place, "path")
         return
     for axis in given.given():
-        if axis in led[given.path]:
+        if axis in axes_of[given.path]:
             text = f'given with path "{given.path}", which has {axis}; one of the two is allowed'
             yield InputError(text, f"{place}.{axis}")
 

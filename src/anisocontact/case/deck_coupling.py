@@ -30,7 +30,7 @@ FACES = ("ANALYTICALSURFACE", "SURFACE", "ELSET", "NSET", "TIENSET", "PINNSET")
 
 
 @dataclass(frozen=True)
-class _Led:
+class _Prescribed:
     """A component of a point that a step gives.
 
     Attributes:
@@ -78,7 +78,7 @@ class Couplings:
         self._deck, self._mesh, self._named = deck, mesh, named
         self._tools, self._components, self._leave = tools, components, leave
         self._points: dict[int, tuple[str, int]] = {}
-        self._led: list[_Led] = []
+        self._prescribed: list[_Prescribed] = []
         self._new: set[tuple[int, str]] = set()
         self._open: Card | None = None
         self.tables: dict[str, dict[str, object]] = {}
@@ -135,18 +135,20 @@ class Couplings:
                 kept.append((step, replace(card, data=tuple(lines))))
         return kept
 
-    def step(self, number: int, led: Callable[[object, str], object]) -> dict[str, object]:
+    def step(
+        self, number: int, with_amplitude: Callable[[object, str], object]
+    ) -> dict[str, object]:
         """Motions and loads of a step.
 
         Args:
             number: Its number, from 1 on.
-            led: Gives a value its amplitude.
+            with_amplitude: Gives a value its amplitude.
         """
-        motion = {name: self._given(number, "motion", name, led) for name in self.tables}
+        motion = {name: self._given(number, "motion", name, with_amplitude) for name in self.tables}
         load = {
             name: {  # what is taken off a component that is held now needs no words
                 component: value
-                for component, value in self._given(number, "load", name, led).items()
+                for component, value in self._given(number, "load", name, with_amplitude).items()
                 if value != 0.0 or motion[name].get(_MOVED[component], "free") == "free"
             }
             for name in self.tables
@@ -156,9 +158,9 @@ class Couplings:
         return {key: bodies for key, bodies in found.items() if bodies}
 
     def _given(
-        self, number: int, key: str, body: str, led: Callable[[object, str], object]
+        self, number: int, key: str, body: str, with_amplitude: Callable[[object, str], object]
     ) -> dict[str, object]:
-        own = [one for one in self._led if (one.key, one.body) == (key, body)]
+        own = [one for one in self._prescribed if (one.key, one.body) == (key, body)]
         now: dict[str, object] = {}
         if key == "motion" and number == 1:
             now = {MOTION[k - 1]: "free" for k in self._components}
@@ -167,7 +169,7 @@ class Couplings:
             now = dict.fromkeys(before, "free" if key == "motion" else 0.0)
         for one in own:
             if one.step == number or (number == 1 and one.step == 0):
-                now[one.component] = led(one.value, one.amplitude)
+                now[one.component] = with_amplitude(one.value, one.amplitude)
         return now
 
     def _add(self, card: Card) -> None:
@@ -240,7 +242,7 @@ class Couplings:
                     turned = key == "motion" and k > 3
                     number = math.degrees(value) if turned else value
                     name = (MOTION if key == "motion" else LOAD)[k - 1]
-                    self._led.append(_Led(step, key, body, name, number, amplitude))
+                    self._prescribed.append(_Prescribed(step, key, body, name, number, amplitude))
 
 
 def _range(entries: Sequence[str]) -> tuple[int, int]:

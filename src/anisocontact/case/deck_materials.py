@@ -237,7 +237,7 @@ class Temperatures:
             self._start |= self._values(card)
         self._now = dict(self._start)
 
-    def lead(self, card: Card) -> Iterator[tuple[str, float]]:
+    def prescribed(self, card: Card) -> Iterator[tuple[str, float]]:
         """Bodies and the temperatures that a `*TEMPERATURE` leads them to, over the start.
 
         Raises:

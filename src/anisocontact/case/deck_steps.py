@@ -16,7 +16,13 @@ from anisocontact.case.deck_procedures import STATIC
 from anisocontact.mesh.arrays import MeshArrays
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_contents import Deck, pressed_face, pressures
-from anisocontact.mesh.deck_supports import Support, Unread, check_options, led, supports_of
+from anisocontact.mesh.deck_supports import (
+    Support,
+    Unread,
+    check_options,
+    supports_of,
+    with_amplitude,
+)
 from anisocontact.mesh.inp import bodies_of
 
 #: Most increments that are taken over of a step.
@@ -109,10 +115,12 @@ class Steps:
         for key, group, given in _LOADS[card.name](self, card):
             groups = self._steps[-1].keys.setdefault(key, {})
             if isinstance(given, dict):
-                components = {name: self.led(value, amplitude) for name, value in given.items()}
+                components = {
+                    name: self.with_amplitude(value, amplitude) for name, value in given.items()
+                }
                 groups[group] = {**groups.get(group, {}), **components}
             else:
-                groups[group] = self.led(given, amplitude)
+                groups[group] = self.with_amplitude(given, amplitude)
         return True
 
     def finish(self) -> list[str]:
@@ -141,7 +149,9 @@ class Steps:
         if not groups:
             yield f"support of node {one.entry}: it is on no body"
         for group in groups:
-            given = {name: self.led(value, one.amplitude) for name, value in one.given.items()}
+            given = {
+                name: self.with_amplitude(value, one.amplitude) for name, value in one.given.items()
+            }
             keys[group] = {**keys.get(group, {}), **given}
 
     def _node(self, number: int) -> tuple[str, ...]:
@@ -155,7 +165,7 @@ class Steps:
                 return (name,)
         return ()
 
-    def led(self, value: object, amplitude: str) -> object:
+    def with_amplitude(self, value: object, amplitude: str) -> object:
         """A value that follows an amplitude, if there is one.
 
         Args:
@@ -164,7 +174,7 @@ class Steps:
         """
         if amplitude in self.constant and isinstance(value, float):
             return self.constant[amplitude] * value
-        return led(value, amplitude)
+        return with_amplitude(value, amplitude)
 
     def _facets(self, name: str) -> str:
         """The facet group of a set or surface.
@@ -204,7 +214,7 @@ class Steps:
 
     def temperatures(self, card: Card) -> Iterator[_Load]:
         """Temperatures of bodies of `*TEMPERATURE`."""
-        for body, rise in self._temperatures().lead(card):
+        for body, rise in self._temperatures().prescribed(card):
             yield "temperature", body, rise
 
     def dloads(self, card: Card) -> Iterator[_Load]:

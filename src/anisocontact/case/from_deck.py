@@ -137,8 +137,8 @@ class _Case:
         for name, table in self._couplings.tables.items():
             yield from table_lines(f"[rigid.{key_of(name)}]", table)
         for number, step in enumerate(self._steps.tables(), 1):
-            led = self._couplings.step(number, self._steps.led)
-            yield from table_lines("[[step]]", step | led)
+            coupled = self._couplings.step(number, self._steps.with_amplitude)
+            yield from table_lines("[[step]]", step | coupled)
 
     def _each(self, take: Callable[[int, Card], object]) -> None:
         """Hand each card on; those that cannot be taken over are left out with a line."""

@@ -44,7 +44,7 @@ class Displacement(Components):
     path: str | None = PATH
 
 
-class CylindricalLead(Section):
+class CylindricalMotion(Section):
     """Displacement of a group along directions of cylinder coordinates; "free" releases them.
 
     Directions are those at the places of the nodes in the mesh, about an axis through a point.
@@ -168,7 +168,7 @@ class Loading(Section):
     displacement: dict[str, Displacement] = Field(
         default_factory=dict, description='prescribed displacements by "body.group"'
     )
-    cylindrical: dict[str, CylindricalLead] = Field(
+    cylindrical: dict[str, CylindricalMotion] = Field(
         default_factory=dict,
         description='prescribed displacements along cylindrical directions by "body.group"',
     )

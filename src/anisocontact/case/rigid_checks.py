@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from anisocontact.base.errors import InputError
-from anisocontact.case.courses import led_axes
+from anisocontact.case.courses import prescribed_axes
 from anisocontact.case.model import Case, StepSection
 from anisocontact.case.section import near
 
@@ -66,7 +66,7 @@ def _step(
         for component, value in motion.components().items():
             change = free.setdefault(name, set())
             (change.add if value is None else change.discard)(component)
-        free[name] -= set(led_axes(case, motion.path))
+        free[name] -= set(prescribed_axes(case, motion.path))
     for name, load in step.load.items():
         for component in load.given():
             if name in case.rigid and component not in free[name]:

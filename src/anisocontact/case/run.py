@@ -98,16 +98,18 @@ def run(
     except WriteError as error:
         return Outcome("stopped", str(error), Path(folder), goes_on=checkpoint is not None)
     writer.strategy(built.solver.choice.name, built.solver.choice.reason)
-    asked = _Asked(listener)
-    with on_signals(asked.by_signal):
-        _run_and_close(built, writer, asked, facts)
+    request = _StopRequest(listener)
+    with on_signals(request.by_signal):
+        _run_and_close(built, writer, request, facts)
     summary = writer.summary
     status, message = summary["status"], summary["message"]
     goes_on = (writer.folder / NAME).is_file()
     return Outcome(status, message, writer.folder, tuple(summary["warnings"]), goes_on)
 
 
-def _run_and_close(built: Built, writer: Writer, asked: _Asked, facts: dict[str, Any]) -> None:
+def _run_and_close(
+    built: Built, writer: Writer, request: _StopRequest, facts: dict[str, Any]
+) -> None:
     """Run the steps and close the results, however it ends.
 
     Raises:
@@ -117,7 +119,7 @@ def _run_and_close(built: Built, writer: Writer, asked: _Asked, facts: dict[str,
     """
     together = built.problem.together
     try:
-        status, message = _solve(built, writer, asked, facts)
+        status, message = _solve(built, writer, request, facts)
     except KeyboardInterrupt:
         status, message = "stopped", "interrupted"
         if together.met() is None:
@@ -184,39 +186,41 @@ def _writer(
 
 
 @dataclass(frozen=True)
-class _Told:
+class _Reports:
     """Tells log and listener what a run does.
 
     Attributes:
         writer: Writer of the results.
-        asked: Who listens.
+        request: Who listens.
     """
 
     writer: Writer
-    asked: _Asked
+    request: _StopRequest
 
     def iteration(self, progress: Progress) -> None:
         self.writer.log(_iteration_line(progress))
-        self.asked.listener.iteration(progress)
-        self.asked.tell()
+        self.request.listener.iteration(progress)
+        self.request.acknowledge()
 
     def cut(self, cut: Cut) -> None:
         self.writer.cut(cut)
-        self.asked.listener.cut(cut)
+        self.request.listener.cut(cut)
 
     def warning(self, text: str) -> None:
         self.writer.log(f"warning: {text}")
-        self.asked.listener.warning(text)
+        self.request.listener.warning(text)
 
     def accepted(self, accepted: Accepted) -> None:
-        self.asked.listener.accepted(accepted, self.writer.summary)
+        self.request.listener.accepted(accepted, self.writer.summary)
         self.writer.log(accepted_line(accepted, self.writer.summary))
         for said in ran_off_lines(accepted):
             self.writer.log(said)
 
 
-def _solve(built: Built, writer: Writer, asked: _Asked, facts: dict[str, Any]) -> tuple[str, str]:
-    told = _Told(writer, asked)
+def _solve(
+    built: Built, writer: Writer, request: _StopRequest, facts: dict[str, Any]
+) -> tuple[str, str]:
+    reports = _Reports(writer, request)
 
     def keep() -> None:
         place = built.solver.place
@@ -226,15 +230,17 @@ def _solve(built: Built, writer: Writer, asked: _Asked, facts: dict[str, Any]) -
     comm = built.problem.comm
     try:
         keep()
-        if comm.allreduce(bool(asked.why())):
-            return "stopped", asked.why()
-        for accepted in built.solver.run(told.iteration, told.cut, writer.log, told.warning):
+        if comm.allreduce(bool(request.why())):
+            return "stopped", request.why()
+        for accepted in built.solver.run(
+            reports.iteration, reports.cut, writer.log, reports.warning
+        ):
             writer.accept(accepted)
             keep()
-            told.accepted(accepted)
-            if comm.allreduce(bool(asked.why())):
+            reports.accepted(accepted)
+            if comm.allreduce(bool(request.why())):
                 where = f"step {accepted.step!r}, increment {accepted.increment}"
-                return "stopped", f"{asked.why() or 'interrupted'} after {where}"
+                return "stopped", f"{request.why() or 'interrupted'} after {where}"
     except StoppedError as stop:
         writer.log(f"stopped: {stop}")
         writer.log_culprits(stop.culprits)
@@ -290,7 +296,7 @@ def _force_text(force: list[float]) -> str:
 
 
 @dataclass
-class _Asked:
+class _StopRequest:
     """Whether a run has been asked to stop, by a signal or because nobody listens any more.
 
     Args:
@@ -299,7 +305,7 @@ class _Asked:
 
     listener: Listener
     _signal: int = field(default=0, init=False)
-    _told: bool = field(default=False, init=False)
+    _acknowledged: bool = field(default=False, init=False)
 
     def by_signal(self, number: int) -> None:
         """Take a signal; a Ctrl-C after another one interrupts at once.
@@ -315,8 +321,8 @@ class _Asked:
         """Why it is to stop, in a few words; empty if it is not."""
         return "interrupted" if self._signal else self.listener.lost()
 
-    def tell(self) -> None:
+    def acknowledge(self) -> None:
         """Say that a signal has been taken."""
-        if self._signal and not self._told:
-            self._told = True
+        if self._signal and not self._acknowledged:
+            self._acknowledged = True
             self.listener.stopping()

@@ -180,10 +180,10 @@ def _ended(arguments: argparse.Namespace) -> int:
         if arguments.debug:
             for line in "".join(traceback.format_exception(error)).splitlines():
                 say(line, sys.stderr)
-        return _told(error)
+        return _error_line(error)
 
 
-def _told(error: BaseException) -> int:
+def _error_line(error: BaseException) -> int:
     """Say in a line what is wrong; the exit code."""
     if isinstance(error, InputError):
         for one in getattr(error, "errors", [error]):

@@ -34,7 +34,7 @@ class AnalyticAnswer:
         turned: The slave's surface, where the laws see it.
         body: Rigid body that carries the surface, if one does.
         snapshot: The points as they are then.
-        told: What `stiffness` is where the derivative is that of other laws.
+        own_stiffness: What `stiffness` is where the derivative is that of other laws.
     """
 
     slave: SlavePoints
@@ -42,13 +42,13 @@ class AnalyticAnswer:
     turned: SlaveSurface | None
     body: RigidBody | None
     snapshot: Snapshot
-    told: Floats | None = None
+    own_stiffness: Floats | None = None
 
     @property
     def stiffness(self) -> Floats:
         """As of `Answer`."""
-        if self.told is not None:
-            return self.told
+        if self.own_stiffness is not None:
+            return self.own_stiffness
         sizes = np.linalg.norm(self.snapshot.response.tangent, axis=(1, 2))
         return np.asarray(sizes * self.snapshot.areas)
 
@@ -75,7 +75,9 @@ class AnalyticAnswer:
         response = replace(
             self.snapshot.response, tangent=stiff.tangent, tangent_slave=stiff.tangent_slave
         )
-        return replace(self, snapshot=replace(self.snapshot, response=response), told=stiffness)
+        return replace(
+            self, snapshot=replace(self.snapshot, response=response), own_stiffness=stiffness
+        )
 
     def body_blocks(self) -> BodyBlocks:
         """Rows and columns of the rigid body in the tangent.

@@ -33,13 +33,13 @@ class FarNodes:
         owners = Split(self._comm, index_map.size_local)
         self._route = Route(self._comm, owners.owner(numbers))
         #: Local nodes that other processes have asked for.
-        self._asked = self._route.there(numbers) - owners.first
+        self._requested = self._route.there(numbers) - owners.first
 
     def everywhere[T: np.generic](self, nodal: npt.NDArray[T]) -> npt.NDArray[T]:
         """Values of the local nodes, then of these, (nodes, ...); on one process the same array."""
         if self._comm.size == 1:
             return nodal
-        return np.concatenate([nodal, self._route.back(nodal[self._asked])])
+        return np.concatenate([nodal, self._route.back(nodal[self._requested])])
 
     def hand_back(self, forces: Floats, out: Floats) -> None:
         """Add forces that all processes have for these nodes where these live.
@@ -51,7 +51,7 @@ class FarNodes:
         if self._comm.size == 1:
             return
         out += forces[: self._local]
-        np.add.at(out, self._asked, self._route.there(forces[self._local :]))
+        np.add.at(out, self._requested, self._route.there(forces[self._local :]))
 
     def coupled(self, nodes: Locals) -> Locals:
         """Nodes as `Couplings` name them: these by their number in the whole mesh.

@@ -104,14 +104,14 @@ class Layer:
             own[name] = self._own[name]
         return own
 
-    def held(self, step: ContactTrial) -> bool:
+    def consistent(self, step: ContactTrial) -> bool:
         """Whether the multipliers are what the trial answers to them."""
         change = self._found(step) - self._force
         found = step.answer.traction
         local = np.array([step.areas @ (each**2).sum(axis=1) for each in (change, found)])
         changed, carried = self._comm.allreduce(local)
         settled = changed <= ENOUGH**2 * carried
-        return bool(settled) and (self._normal is None or self._normal.held(step))
+        return bool(settled) and (self._normal is None or self._normal.consistent(step))
 
     def stiff(self, step: ContactTrial) -> tuple[State, Floats]:
         """Where to take the derivative, and the slip that a step is to take away.

@@ -85,7 +85,7 @@ class Options:
         return {
             "augmentation": self.augmentation,
             "adjust": self.adjust,
-            "area_told": self.current_area is not None,
+            "area_given": self.current_area is not None,
         }
 
 

@@ -72,14 +72,14 @@ def check(augmentation: Augmentation, law: AugmentedLaw) -> None:
         raise InputError(
             f'"{law.evolution}" given, an augmented contact needs {allowed}', "evolution"
         )
-    if augmentation.multipliers == NEWTON and not follows(augmentation, law):
+    if augmentation.multipliers == NEWTON and not simultaneous(augmentation, law):
         raise InputError(
             f'"{NEWTON}" given, the sliding rule "{_EXPLICIT}" needs "uzawa" or "auto"',
             "multipliers",
         )
 
 
-def follows(augmentation: Augmentation, law: AugmentedLaw) -> bool:
+def simultaneous(augmentation: Augmentation, law: AugmentedLaw) -> bool:
     """Whether a law lets its multipliers be found together with the displacements."""
     if not augmentation.tangential or law.tangential.in_python:
         return True
@@ -272,7 +272,7 @@ class Multipliers:
         self.level, self._proportion = stiffness / normal, normal / tangential
 
     @property
-    def follower(self) -> Any:
+    def semismooth(self) -> Any:
         """Multipliers that follow every correction now; None where they are held meanwhile."""
         return None
 

@@ -47,7 +47,7 @@ class Nested(Uzawa):
         self._last.suit(stiffness)
 
     @property
-    def follower(self) -> Semismooth | None:
+    def semismooth(self) -> Semismooth | None:
         """The multipliers that follow every correction, while they do."""
         return self._last if self._ends else None
 

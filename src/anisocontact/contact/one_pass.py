@@ -47,7 +47,7 @@ class Pass:
         law: Laws, as the user gave them.
         augmentation: How exactly the contact is to hold; by its penalties alone if None.
         adjust: As of `adjusted`.
-        area_told: Whether the user has said which area counts.
+        area_given: Whether the user has said which area counts.
 
     Attributes:
         slave: As given.
@@ -80,12 +80,12 @@ class Pass:
         *,
         augmentation: Augmentation | None = None,
         adjust: float | None = None,
-        area_told: bool = False,
+        area_given: bool = False,
     ) -> None:
         self.unknowns, self.space = unknowns, unknowns.nodes
         self.slave, self.name = slave, name
         self.slave_points, self.master = points, master
-        self._comm, self._area_told = unknowns.comm, area_told
+        self._comm, self._area_given = unknowns.comm, area_given
         self._dt = 1.0
         self.body_stiffness = self.master_yields = 0.0
         self.ran_off: Floats = np.zeros((0, 3))
@@ -137,7 +137,7 @@ class Pass:
         Args:
             finite: Whether one of the bodies at this contact is.
         """
-        if not self._area_told:
+        if not self._area_given:
             self.slave_points.take_area(finite)
 
     def suit(self, diagonal: Floats) -> None:

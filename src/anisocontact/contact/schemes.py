@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from anisocontact.contact.multipliers import AugmentedLaw, Multipliers, check, follows
+from anisocontact.contact.multipliers import AugmentedLaw, Multipliers, check, simultaneous
 from anisocontact.contact.nested import Nested
 from anisocontact.contact.semismooth import Semismooth, Softer
 from anisocontact.contact.uzawa import Penalties, Uzawa
@@ -39,7 +39,7 @@ def make_multipliers(
     check(augmentation, law)
     name = augmentation.multipliers
     if name == AUTO:
-        name = NEWTON if follows(augmentation, law) else UZAWA
+        name = NEWTON if simultaneous(augmentation, law) else UZAWA
     ways = dict(SCHEMES[name])
     if not augmentation.required:
         ways[PENALTIES] = Penalties

@@ -92,7 +92,7 @@ class Semismooth(Multipliers):
     ratio: ClassVar[float] = RATIO
 
     @property
-    def follower(self) -> Semismooth:
+    def semismooth(self) -> Semismooth:
         """Itself."""
         return self
 
@@ -133,10 +133,10 @@ class Semismooth(Multipliers):
         return super().begin(state, located)
 
     def improve(self, step: ContactTrial) -> State | None:
-        """They are as good as equilibrium is: see `held`."""
+        """They are as good as equilibrium is: see `consistent`."""
         return None
 
-    def held(self, step: ContactTrial) -> bool:
+    def consistent(self, step: ContactTrial) -> bool:
         """Whether the multipliers are what the trial answers to them."""
         given, found = self.values(step)
         changed, carried = self._norms(found - given, step)

@@ -9,7 +9,7 @@ import numpy as np
 from anisocontact.contact.contact import Contact
 
 
-def tell_shared(contacts: Sequence[Contact]) -> None:
+def mark_shared(contacts: Sequence[Contact]) -> None:
     """Let the multipliers of contacts know which slave nodes others have as well.
 
     A slave node is looked at where it is owned, by all contacts that have it.

@@ -134,9 +134,9 @@ def _right(factor: Any, sides: Sparse, nodes: Ints, columns: Ints, n: int) -> Sp
 
 def _chained(follow: Sparse, ties: int) -> Sparse:
     """The same by nodes that follow nothing themselves."""
-    followers = (np.diff(follow.indptr) > 0).astype(float)
+    dependents = (np.diff(follow.indptr) > 0).astype(float)
     for _ in range(ties):
-        on = follow @ scipy.sparse.diags_array(followers)
+        on = follow @ scipy.sparse.diags_array(dependents)
         on.eliminate_zeros()
         if not on.nnz:
             return follow

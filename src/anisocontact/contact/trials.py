@@ -146,11 +146,11 @@ class Trials:
 
     def answer(self, dt: float) -> Answer:
         """The trial where the master is, with the derivative of a Newton step."""
-        follower, answer = self._follower, None
-        if follower is None:
+        semismooth, answer = self._semismooth, None
+        if semismooth is None:
             answer = self.master.answer(self.start, dt)
         else:
-            answer = self._linearised(follower, dt)
+            answer = self._linearised(semismooth, dt)
         self._now = answer.snapshot
         return answer
 
@@ -207,37 +207,37 @@ class Trials:
         self._start_from(start)
         return True
 
-    def _linearised(self, follower: Semismooth | Layer, dt: float) -> Answer:
+    def _linearised(self, semismooth: Semismooth | Layer, dt: float) -> Answer:
         """A trial to which the multipliers have followed, with the derivative of a Newton step."""
         master = self.master
-        self._follow(follower, dt)
+        self._correct(semismooth, dt)
         trial = master.answer(self.start, dt, tangent=False, separate=True)
         self._slight = self._slight & (self._points.covered(trial.snapshot.areas) < SLIGHT)
         step = self._step(trial.snapshot)
-        state, slip = follower.stiff(step)
+        state, slip = semismooth.stiff(step)
         stiff = master.answer(state, dt, derivative=True, separate=True)
-        stiffness = stiff.stiffness / follower.ratio
-        if not follower.tangential:
+        stiffness = stiff.stiffness / semismooth.ratio
+        if not semismooth.tangential:
             physical = self._laws.slip_stiffness(dt) * trial.snapshot.areas
             stiffness += physical * (trial.snapshot.response.status == STICK)
         answer: Answer = trial.by_derivative(stiff, stiffness)
         linear = master.linear(answer)
         traction = master.into_frame(trial.snapshot.response.traction)
-        if follower.tangential:
+        if semismooth.tangential:
             traction = traction + step.supported
-        base = Base(follower.vector(step), traction, linear.slipped(slip), step.kept)
+        base = Base(semismooth.vector(step), traction, linear.slipped(slip), step.kept)
         self._linear = Linearised(linear, base, slip)
         return answer
 
-    def _follow(self, follower: Semismooth | Layer, dt: float) -> None:
+    def _correct(self, semismooth: Semismooth | Layer, dt: float) -> None:
         """Let the multipliers follow a step of Newton's method."""
         about = self._linear
         if about is None or (change := about.linear.change()) is None:
             return
         now = self._frames(self.master.here(self.start, dt))
         before = self._frames(self.start)
-        traction = about.base.after(change, follower.share)
-        if follower.tangential and self.master.held is not None:
+        traction = about.base.after(change, semismooth.share)
+        if semismooth.tangential and self.master.held is not None:
             traction = supported_share(
                 traction,
                 self.master.held,
@@ -246,7 +246,7 @@ class Trials:
                 normal=now.normal,
                 stick=self._now.response.status == STICK,
             )
-        self.start = follower.advance(self.start, traction, now, before)
+        self.start = semismooth.advance(self.start, traction, now, before)
         self._let_go_of_immovable()
 
     def _let_go_of_immovable(self) -> None:
@@ -287,14 +287,14 @@ class Trials:
             self.begin(self._state, self._accepted)
 
     @property
-    def follows(self) -> bool:
+    def simultaneous(self) -> bool:
         """Whether multipliers follow every step of Newton's method."""
-        return self._follower is not None
+        return self._semismooth is not None
 
-    def held(self) -> bool:
+    def consistent(self) -> bool:
         """Whether multipliers that follow are what the trial answers to them."""
-        follower = self._follower
-        return follower is None or follower.held(self._step(self._now))
+        semismooth = self._semismooth
+        return semismooth is None or semismooth.consistent(self._step(self._now))
 
     @property
     def retraceable(self) -> bool:
@@ -311,13 +311,13 @@ class Trials:
 
     def damp_correction(self, share: float) -> None:
         """Take only a share of the next step of multipliers that follow."""
-        if self._follower is not None:
-            self._follower.share = share
+        if self._semismooth is not None:
+            self._semismooth.share = share
 
     @property
-    def _follower(self) -> Semismooth | Layer | None:
+    def _semismooth(self) -> Semismooth | Layer | None:
         """What follows every step of Newton's method."""
-        own = None if self._multipliers is None else self._multipliers.follower
+        own = None if self._multipliers is None else self._multipliers.semismooth
         return self._layer or own
 
     def slip_stiffness(self, dt: float) -> float:
@@ -344,7 +344,7 @@ class Trials:
             first = self._layer.without(first)
             self._layer.stiffer(compliance, (start, begun))
         else:
-            normal = None if self._multipliers is None else self._multipliers.follower
+            normal = None if self._multipliers is None else self._multipliers.semismooth
             self._layer = Layer(compliance, (start, begun), normal, self.master.at, self._comm)
         self._take(soft, stiff)
         self.start = self._layer.begin(first, self.master.axes(self._accepted.response))
@@ -367,8 +367,8 @@ class Trials:
         laws, stiff = self._laws, self._stiff_laws
         if self._multipliers is not None:
             laws = laws.stiffened(*self._multipliers.factors)
-            if self._follower is not None:
-                stiff = stiff.stiffened(*self._follower.stiff_factors)
+            if self._semismooth is not None:
+                stiff = stiff.stiffened(*self._semismooth.stiff_factors)
         self.master.take(laws, stiff)
 
     def _start_from(self, start: State) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from anisocontact.base.errors import InputError
 from anisocontact.mesh.deck import Card, real
 from anisocontact.mesh.deck_profiles import ANALYTIC, Profile, profile_of
-from anisocontact.mesh.deck_supports import held_nodes
+from anisocontact.mesh.deck_supports import supported_nodes
 
 #: Element -> cell, number of nodes; letters behind it say how it is integrated.
 SOLIDS = {
@@ -188,7 +188,7 @@ class Deck:
         """
         self.cards.append((step, card))
         if card.name == "BOUNDARY":
-            for name, nodes in held_nodes(card).items():
+            for name, nodes in supported_nodes(card).items():
                 first = self._held.setdefault(tuple(sorted(nodes)), name)
                 if first == name:
                     self.node_sets[name] = nodes

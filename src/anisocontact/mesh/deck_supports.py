@@ -120,7 +120,7 @@ class Support:
     @property
     def table(self) -> str:
         """Its components as a table of a case file."""
-        return written({key: led(v, self.amplitude) for key, v in self.given.items()})
+        return written({key: with_amplitude(v, self.amplitude) for key, v in self.given.items()})
 
 
 @dataclass(frozen=True)
@@ -151,8 +151,8 @@ def support_lines(
         else:
             groups = lines.setdefault((one.step, one.kind), {})
             for group in one.groups:
-                led_so = {key: led(v, one.amplitude) for key, v in one.given.items()}
-                groups[group] = {**groups.get(group, {}), **led_so}
+                given = {key: with_amplitude(v, one.amplitude) for key, v in one.given.items()}
+                groups[group] = {**groups.get(group, {}), **given}
     for (step, text), found in lines.items():
         if not found:
             yield f"{_where(step)}: {text}"
@@ -224,13 +224,13 @@ def _values(card: Card) -> dict[str, dict[int, float]]:
             continue
         last = int(rest[0]) if rest and rest[0] else int(first)
         value = real(rest[1]) if len(rest) > 1 else 0.0
-        led = {k: value for k in range(int(first), last + 1) if k <= 3}
-        if led:
-            found.setdefault(entry, {}).update(led)
+        components = {k: value for k in range(int(first), last + 1) if k <= 3}
+        if components:
+            found.setdefault(entry, {}).update(components)
     return found
 
 
-def held_nodes(card: Card) -> dict[str, list[int]]:
+def supported_nodes(card: Card) -> dict[str, list[int]]:
     """Nodes by their numbers that a `*BOUNDARY` holds or leads alike, two or more, as node sets.
 
     Returns:
@@ -258,7 +258,7 @@ def _entries(
 ) -> Iterator[tuple[str, dict[int, float]]]:
     """What a `*BOUNDARY` says of sets and nodes; nodes that are led alike are one set."""
     values = _values(card)
-    for name, nodes in held_nodes(card).items():
+    for name, nodes in supported_nodes(card).items():
         if len({id(of_node.get(node)) for node in nodes}) == 1:
             alike = [values.pop(str(node)) for node in nodes]
             yield name, alike[0]
@@ -299,7 +299,7 @@ def check_options(card: Card) -> None:
             raise InputError(f"the option {option}{'=' * bool(value)}{value} is not read")
 
 
-def led(value: object, amplitude: str) -> object:
+def with_amplitude(value: object, amplitude: str) -> object:
     """A number as a step has it that follows an amplitude, if there is one."""
     follows = amplitude and isinstance(value, float) and value != 0.0
     return {"amplitude": amplitude, "value": value} if follows else value

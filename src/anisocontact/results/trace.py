@@ -74,8 +74,8 @@ def write_trace(
         "title": title,
         "version": __version__,
         "wall_time_s": round(wall_time, 3),
-        **_told(history),
-        "compare": [{"label": name, **_told(run)} for name, run in compared.items()],
+        **_content(history),
+        "compare": [{"label": name, **_content(run)} for name, run in compared.items()],
     }
     write_text(folder / "summary.json", json.dumps(summary, indent=2, allow_nan=False) + "\n")
     if case:
@@ -89,7 +89,7 @@ def write_trace(
     return summary
 
 
-def _told(history: History) -> dict[str, Any]:
+def _content(history: History) -> dict[str, Any]:
     summary = history.summary()
     return summary | (
         {"energy": energies_by_name(summary["energy"])} if "energy" in summary else {}

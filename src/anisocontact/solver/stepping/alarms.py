@@ -18,14 +18,14 @@ class Alarms:
     """Warnings that accepted increments give reason to."""
 
     def __init__(self) -> None:
-        self._told: set[str] = set()
+        self._issued: set[str] = set()
 
     def of(self, accepted: Accepted) -> list[str]:
         """What has not been said before, with where it happened."""
         where = f"step {accepted.step!r}, increment {accepted.increment}"
         found = dict(_found(accepted))
-        fresh = [text for key, text in found.items() if key not in self._told]
-        self._told |= set(found)
+        fresh = [text for key, text in found.items() if key not in self._issued]
+        self._issued |= set(found)
         return [f"{where}: {text}" for text in fresh]
 
 

@@ -163,7 +163,7 @@ class Attempts:
 
     def _ways(self, searching: _Way, full: _Way, softer: bool) -> list[_Way]:
         trusts = self._problem.stabilisation.trusts
-        if self._problem.contact_term.follows:
+        if self._problem.contact_term.simultaneous:
             cycles = IN_CYCLES in self._problem.contact_term.ways
             ways = _following(searching, full, cycles, trusts, softer)
         else:

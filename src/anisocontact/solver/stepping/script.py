@@ -36,9 +36,9 @@ from anisocontact.solver.terms.constraints import Constraints
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.form import Dirichlet, FormBulk
 from anisocontact.solver.terms.free_modes import connected_body
-from anisocontact.solver.terms.loose import MeshPart, loose_motions, parts
 from anisocontact.solver.terms.persistent import under
 from anisocontact.solver.terms.rigid import RigidBodies
+from anisocontact.solver.terms.unconstrained_modes import MeshPart, parts, unconstrained_modes
 
 #: Gap over the facet size up to which a point counts as touching: rounding of a mesh.
 NEAR = 1e-6
@@ -157,7 +157,7 @@ class ContactProblem(AssembledSystem):
         before = self.u.x.array.copy()
         x = self.new_vector()
         x.array[:] = before[: x.getLocalSize()]
-        self._check_held(x)
+        self._check_supported(x)
         self._fields.measure(self._assembly.bodies)
         self._fields.weigh_by(lambda: self._start(x))
         result = self.newton.solve(x)
@@ -338,7 +338,7 @@ class ContactProblem(AssembledSystem):
         self._assembly.terms.roll_back()
         return self.balance
 
-    def _check_held(self, x: Vec) -> None:
+    def _check_supported(self, x: Vec) -> None:
         """Refuse a part of the mesh that can move as a rigid body."""
         if not self._untouched():
             return
@@ -351,7 +351,7 @@ class ContactProblem(AssembledSystem):
         stiffness = bodies.bulk.stiffness
         bodies.add_tangent(stiffness)
         for part in free:
-            motions = loose_motions(part, stiffness, bodies.scale, rows, self._unknowns)
+            motions = unconstrained_modes(part, stiffness, bodies.scale, rows, self._unknowns)
             if motions:
                 at = ", ".join(f"{v:.4g}" for v in part.middle)
                 raise InputError(

@@ -43,7 +43,7 @@ class Forcing:
         relative = size / max(system.balance.force_scale, _TINY)
         rough = self._rough if relative < self._before else _CAREFUL
         self._before = 0.5 * relative
-        if system.contact_term.follows:
+        if system.contact_term.simultaneous:
             # forces that take violations away are large beside those that are out of balance
             return max(_FINE * min(system.balance.norm / max(size, _TINY), 1.0), _FINEST)
         return max(min(rough, relative), 0.1 * self.tolerance / max(relative, _TINY))

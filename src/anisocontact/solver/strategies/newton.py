@@ -225,7 +225,7 @@ class Newton:
         spent = 0
         last = x.copy()
         while True:
-            full = full_steps or self._problem.contact_term.follows
+            full = full_steps or self._problem.contact_term.simultaneous
             search.setType("basic" if full else self._line_search)
             result = self._equilibrium(x)
             spent += result.iterations
@@ -288,7 +288,7 @@ class Newton:
 
     def _damp(self, x: Vec, direction: Vec) -> bool:
         share = 1.0 if self._damping is None else self._damping()
-        if self._problem.contact_term.follows:
+        if self._problem.contact_term.simultaneous:
             with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
                 share = self._search.share(x, direction, share)
         if share != 1.0:
@@ -300,7 +300,7 @@ class Newton:
     ) -> PETSc.SNES.ConvergedReason:
         reasons = PETSc.SNES.ConvergedReason
         balance, contacts = self._problem.balance, self._problem.contact_term
-        norm = balance.norm if contacts.follows or balance.fields else norms[2]
+        norm = balance.norm if contacts.simultaneous or balance.fields else norms[2]
         rtol, atol, _, _ = snes.getTolerances()
         fields = balance.of_fields(norm)
         relative = max(field.relative(rtol) for field in fields)
@@ -309,7 +309,7 @@ class Newton:
         if not np.isfinite(norm):
             return reasons.DIVERGED_FUNCTION_NANORINF
         small = all(field.small(rtol, atol) for field in fields)
-        if small and contacts.held():
+        if small and contacts.consistent():
             return reasons.CONVERGED_FNORM_RELATIVE
         if relative > DIVERGED * min(self._residuals[1:], default=np.inf):
             return reasons.DIVERGED_DTOL
@@ -321,7 +321,7 @@ class Newton:
 
     def _idles(self) -> bool:
         """Whether the last corrections, with multipliers that follow, have gained too little."""
-        if not self._problem.contact_term.follows:
+        if not self._problem.contact_term.simultaneous:
             return False
         contacts = self._problem.contact_term
         self._touching.append(contacts.touching())

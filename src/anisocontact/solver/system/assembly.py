@@ -126,7 +126,7 @@ class Assembly:
             sizes,
             layout.comm,
             failed=self.reactions.failed,
-            correction=self._multiplier_residual(u) if self.contacts.follows else None,
+            correction=self._multiplier_residual(u) if self.contacts.simultaneous else None,
             forces=(outside, load),
             fields=self.fields.balances(residual, x, sizes),
         )

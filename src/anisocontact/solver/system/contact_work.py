@@ -127,11 +127,11 @@ class ContactWork:
         Returns:
             The part of supports and prescribed motions, force times length.
         """
-        led = self._led_alone(nodal)
+        prescribed = self._prescribed_alone(nodal)
         answers = all(contact.retraceable for contact in self._contacts)
-        if len(self._passed) > 1 and not (led and answers):
-            return self._taken_up(nodal, led)
-        if not (led and answers and self._kinks()):
+        if len(self._passed) > 1 and not (prescribed and answers):
+            return self._taken_up(nodal, prescribed)
+        if not (prescribed and answers and self._kinks()):
             return 0.0
         places = [*self._places, self._here(nodal)]
         pieces = np.array([self._piece(a, b, dt, work) for a, b in pairwise(places)])
@@ -141,21 +141,21 @@ class ContactWork:
             ends = [self._power(places[0], places[-1], share, dt)[1] for share in (0.0, 1.0)]
             missed[0, 1] = pieces[:, 0, 1].sum() - 0.5 * sum(ends)
             missed[1:, 1] = 0.0
-        self._ask(places[-1], dt)
+        self._evaluate(places[-1], dt)
         first, rest = float(missed[0].sum()), float(missed[1:].sum())
         if not np.isfinite(first + rest):
             return 0.0
         self._parts.stabilisation.released -= rest
         return first
 
-    def _led_alone(self, nodal: Floats) -> bool:
+    def _prescribed_alone(self, nodal: Floats) -> bool:
         """Whether supports and prescribed motions alone drive the bodies."""
         parts = self._parts
         held = not (parts.stabilisation.watches or parts.rigid.free or parts.attached)
         loaded = held and bool(parts.loads.force(nodal).any())
         return held and not self._comm.allreduce(loaded, MPI.LOR)
 
-    def _taken_up(self, nodal: Floats, led: bool) -> float:
+    def _taken_up(self, nodal: Floats, prescribed: bool) -> float:
         """As `beyond_the_means`, by what the laws store and dissipate along a flow."""
         if self._rigid.free:
             return 0.0
@@ -166,8 +166,8 @@ class ContactWork:
         begun, rest = self._comm.allreduce(np.array(local)).tolist()
         if not np.isfinite(begun + rest):
             return 0.0
-        self._parts.stabilisation.released -= rest if led else begun + rest
-        return begun if led else 0.0
+        self._parts.stabilisation.released -= rest if prescribed else begun + rest
+        return begun if prescribed else 0.0
 
     def _passing(self, nodal: Floats) -> _Passed:
         taken_up = sum(contact.taken_up() for contact in self._contacts)
@@ -204,7 +204,7 @@ class ContactWork:
 
     def _power(self, start: _WayPoint, end: _WayPoint, share: float, dt: float) -> Floats:
         """Force from outside at a share of a piece times its way, on nodes and on rigid bodies."""
-        self._ask(start.towards(end, share), max(share, _AT_ONCE) * dt)
+        self._evaluate(start.towards(end, share), max(share, _AT_ONCE) * dt)
         forces = np.zeros_like(start.nodal)
         local = np.zeros(2)
         for contact in self._contacts:
@@ -215,7 +215,7 @@ class ContactWork:
                 local[1] += float(one.current.wrench(body.position) @ way)
         return np.asarray(self._comm.allreduce(local))
 
-    def _ask(self, place: _WayPoint, dt: float) -> None:
+    def _evaluate(self, place: _WayPoint, dt: float) -> None:
         """Let the contacts answer from the accepted state."""
         for body, values in zip(self._rigid.bodies, place.rigid, strict=True):
             body.place(values)

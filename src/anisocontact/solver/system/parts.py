@@ -12,7 +12,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import Vec
 from anisocontact.bulk import LinearBulk, Material, NonlinearBulk, bare, small_strain
 from anisocontact.contact import Contact
-from anisocontact.contact.shared_nodes import tell_shared
+from anisocontact.contact.shared_nodes import mark_shared
 from anisocontact.mesh import Model
 from anisocontact.solver.system.assembly import Assembly
 from anisocontact.solver.system.layout import Layout
@@ -27,7 +27,7 @@ from anisocontact.solver.terms.faces import CoupledFace, CoupledFaces
 from anisocontact.solver.terms.free_modes import bodies as all_bodies
 from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
-from anisocontact.solver.terms.middles import follow_corners, middle_nodes
+from anisocontact.solver.terms.middles import constrain_middles, middle_nodes
 from anisocontact.solver.terms.rigid import RigidBodies
 from anisocontact.solver.terms.stabilisation import Stabilisation
 from anisocontact.solver.terms.supports import Supports
@@ -97,7 +97,7 @@ def make_parts(
     like = layout.new_vector()
     tied = TiedFaces(ties, model, like, sectors) if ties or sectors else None
     guides = _guides(model, symmetry, like, tied, faces)
-    constraints = Constraints(like, follow_corners(model, like), tied, guides, faces)
+    constraints = Constraints(like, constrain_middles(model, like), tied, guides, faces)
     suit(contacts, bodies, [_finite(model, materials, contact) for contact in contacts])
     holders = {model.body_of(group) for one in specs for group in one.groups}
     links = faces.links + ([] if tied is None else tied.links)
@@ -149,7 +149,7 @@ def _guides(
 
 def suit(contacts: Sequence[Contact], bodies: Bodies, finite: Sequence[bool]) -> None:
     """Tell contacts how stiff their bodies are, which are at finite strain, and what they share."""
-    tell_shared(contacts)
+    mark_shared(contacts)
     diagonal = bodies.unknowns.own_nodal(np.array(bodies.bulk.yielding.array_r))
     for contact, is_finite in zip(contacts, finite, strict=True):
         contact.suit_strain(is_finite)

@@ -135,7 +135,7 @@ class Problem(ReportedSystem):
     @property
     def solved_for(self) -> int:
         """Number of unknowns over all ranks that do not follow from those of rigid bodies."""
-        local = 0 if self.rigid.faces is None else len(self.rigid.faces.followers)
+        local = 0 if self.rigid.faces is None else len(self.rigid.faces.dependents)
         return self.unknowns - int(self.comm.allreduce(local))
 
     @property
@@ -156,7 +156,7 @@ class Problem(ReportedSystem):
     def constrained(self) -> Ints:
         """Unknowns whose row says what they are, prescribed or constrained: local numbers."""
         of_bodies = self.assembly.prescribed_of_bodies()
-        found = [self.supports.unknowns, self.constraints.followers(), of_bodies]
+        found = [self.supports.unknowns, self.constraints.dependents(), of_bodies]
         return np.unique(np.concatenate(found)).astype(np.int64)
 
     @property
@@ -224,10 +224,10 @@ class Problem(ReportedSystem):
         for step in steps:
             self.attached.check(step)
         self.rigid.check(steps)
-        self.check_held(steps)
+        self.check_supported(steps)
         return doubtful
 
-    def check_held(self, steps: Sequence[Step]) -> bool:
+    def check_supported(self, steps: Sequence[Step]) -> bool:
         """Find out whether supports or contacts can hold every body in every step.
 
         Args:

@@ -110,7 +110,7 @@ class SidesKept:
 
     def __init__(self, contacts: Sequence[Contact], groups: Sequence[ConnectedBody]) -> None:
         self.partly: list[Behind] = []
-        self._told: set[tuple[str, str]] = set()
+        self._reported: set[tuple[str, str]] = set()
         self._watched = [one for contact in contacts for one in _watched(contact, groups)]
 
     def objection(self, u: Floats, whole: bool = True) -> Culprit | None:
@@ -129,8 +129,8 @@ class SidesKept:
 
     def fresh(self) -> list[Behind]:
         """Those of `partly` that this has not given before, by body and master."""
-        found = [one for one in self.partly if (one.body, one.master) not in self._told]
-        self._told |= {(one.body, one.master) for one in found}
+        found = [one for one in self.partly if (one.body, one.master) not in self._reported]
+        self._reported |= {(one.body, one.master) for one in found}
         return found
 
     def _objections(self, watched: _Watched, u: Floats, whole: bool) -> Iterator[Culprit]:

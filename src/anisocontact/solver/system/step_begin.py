@@ -9,9 +9,9 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.contact.far_nodes import with_ghosts
+from anisocontact.solver.system.lost_loads import check_lost_loads, unsupported
 from anisocontact.solver.system.parts import Parts
-from anisocontact.solver.system.swallowed import check_swallowed, not_held
-from anisocontact.solver.terms.free_modes import HeldFrame
+from anisocontact.solver.terms.free_modes import SupportedFrame
 from anisocontact.solver.terms.guides import Guides
 from anisocontact.solver.terms.loads import Loads
 from anisocontact.solver.terms.step import AXES, Step
@@ -36,21 +36,21 @@ def begin_step(parts: Parts, step: Step, start: Floats, reaction: Floats, again:
     _, of_supports = guides.forces(reaction)
     supports.begin(step, start)
     guides.begin(step, start, supports.unknowns, supports.end)
-    held = [*supports.held(), *guides.held()]
+    held = [*supports.supported(), *guides.supported()]
     gone = np.setdiff1d(before, supports.unknowns)
     let_go[gone] += of_supports[gone]
     released = np.zeros(len(start))
-    released[: len(let_go)] = not_held(let_go.reshape(-1, 3), held).reshape(-1)
+    released[: len(let_go)] = unsupported(let_go.reshape(-1, 3), held).reshape(-1)
     parts.assembly.terms.begin(step, released)
     if parts.assembly.constraints.ties is not None:
         parts.assembly.constraints.ties.begin(held, _on_bodies(parts))
-    _tell_contacts(parts, len(start))
+    _begin_contacts(parts, len(start))
     load = parts.loads.at_end(start.reshape(-1, 3)) if parts.attached else None
-    frames = parts.rigid.held_frames() + _cut_faces(parts)
+    frames = parts.rigid.supported_frames() + _cut_faces(parts)
     parts.stabilisation.find_free(held, step.name, load, not again, frames)
 
 
-def _tell_contacts(parts: Parts, count: int) -> None:
+def _begin_contacts(parts: Parts, count: int) -> None:
     """Let contacts know which nodes are prescribed, and which are held along which directions."""
     fixed = np.zeros(count, dtype=bool)
     fixed[parts.supports.unknowns] = True
@@ -84,7 +84,7 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
 
     Raises:
         InputError: See `Supports.begin`, `DeadLoads.begin`, `Guides.begin` and
-            `check_swallowed`.
+            `check_lost_loads`.
     """
     turned = False
     for step, supports, guides, loads in _rehearsed(parts, steps):
@@ -96,17 +96,17 @@ def check_steps(parts: Parts, steps: Sequence[Step]) -> None:
             supports.set_load_factor(float(share))
             guides.check(supports.unknowns, supports.values, step.name, float(share))
         if parts.rigid.faces:
-            all_led = np.concatenate([supports.unknowns, guides.cylinders.unknowns])
-            parts.rigid.faces.check(all_led, step.name)
-        held = [*supports.held(), *guides.held()]
+            all_prescribed = np.concatenate([supports.unknowns, guides.cylinders.unknowns])
+            parts.rigid.faces.check(all_prescribed, step.name)
+        held = [*supports.supported(), *guides.supported()]
         if (ties := parts.assembly.constraints.ties) is not None:
             ties.check(held, _on_bodies(parts))
-            led = supports.unknowns, supports.end
-            ties.check_led(*led, guides.of_planes(), step.name)
-        check_swallowed(parts.layout, step, loads.given(step), held)
+            ends = supports.unknowns, supports.end
+            ties.check_prescribed(*ends, guides.of_planes(), step.name)
+        check_lost_loads(parts.layout, step, loads.given(step), held)
 
 
-def _cut_faces(parts: Parts) -> list[HeldFrame]:
+def _cut_faces(parts: Parts) -> list[SupportedFrame]:
     """Cut faces of sectors."""
     ties = parts.assembly.constraints.ties
     return [] if ties is None else ties.frames()
@@ -115,7 +115,7 @@ def _cut_faces(parts: Parts) -> list[HeldFrame]:
 def _on_bodies(parts: Parts) -> Ints:
     """Unknowns that follow rigid bodies, local numbers."""
     faces = parts.rigid.faces
-    return np.zeros(0, dtype=np.int64) if faces is None else faces.followers
+    return np.zeros(0, dtype=np.int64) if faces is None else faces.dependents
 
 
 def _check_motions(parts: Parts, step: Step) -> None:
@@ -156,11 +156,11 @@ def contact_must_hold(parts: Parts, steps: Sequence[Step]) -> bool:
     all_frames = parts.rigid.rehearsed(steps)
     rehearsed = _rehearsed(parts, steps)
     for (step, supports, guides, loads), frames in zip(rehearsed, all_frames, strict=True):
-        held = [*supports.held(), *guides.held()]
+        held = [*supports.supported(), *guides.supported()]
         rest = np.zeros_like(parts.model.space.tabulate_dof_coordinates())
         load = loads.at_end(rest) if parts.attached else None
-        all_held = [*frames, *_cut_faces(parts)]
-        parts.stabilisation.find_free(held, step.name, load, False, all_held)
+        all_supported = [*frames, *_cut_faces(parts)]
+        parts.stabilisation.find_free(held, step.name, load, False, all_supported)
         found = found or parts.stabilisation.contact_alone
     parts.stabilisation.clear()
     return found

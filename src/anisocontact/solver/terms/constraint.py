@@ -24,7 +24,7 @@ class Constraint:
         handed: Shares of the force of a slave that its masters are handed, if they are others.
 
     Attributes:
-        followers: Slaves on this rank, local numbers.
+        dependents: Slaves on this rank, local numbers.
         offset: The d of the unknowns of this rank, length; None where they are zero.
     """
 
@@ -37,10 +37,10 @@ class Constraint:
         handed: Floats | None = None,
     ) -> None:
         first, last = like.getOwnershipRange()
-        followers = np.unique(slaves)
-        self.followers: Ints = followers - first
-        free = np.setdiff1d(np.arange(first, last), followers)
-        alone, own = np.ones(len(free)), np.ones(len(followers))
+        dependents = np.unique(slaves)
+        self.dependents: Ints = dependents - first
+        free = np.setdiff1d(np.arange(first, last), dependents)
+        alone, own = np.ones(len(free)), np.ones(len(dependents))
         shares = factors if handed is None else handed
         self._gather = _matrix(like, (free, free, alone), (masters, slaves, shares))
         self._involved = like.duplicate()
@@ -50,7 +50,7 @@ class Constraint:
         self._involved.setValues(coupled.astype(PETSc.IntType), ones, PETSc.InsertMode.ADD_VALUES)
         self._involved.assemble()
         self.offset: Floats | None = None
-        self._constrain = _matrix(like, (followers, followers, own), (slaves, masters, -factors))
+        self._constrain = _matrix(like, (dependents, dependents, own), (slaves, masters, -factors))
 
     def gather(self, force: Vec) -> Vec:
         """Forces handed from slaves to masters, `R f`, a new vector."""

@@ -44,7 +44,7 @@ class Constraints:
     def holding(self) -> Ints:
         """Unknowns of this rank that guides and faces have follow others, local numbers."""
         found = [] if self._guides is None else [self._guides.slaves]
-        found += [] if self._faces is None else [self._faces.followers]
+        found += [] if self._faces is None else [self._faces.dependents]
         return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
     def tied(self, force: Floats) -> Floats:
@@ -74,7 +74,7 @@ class Constraints:
             residual = self._handed(constraint, residual) + scale * violation
         if self._faces is not None:
             here = np.array(x.array_r[: len(residual)])
-            residual[self._faces.followers] = 0.0
+            residual[self._faces.dependents] = 0.0
             residual += scale * self._faces.violation(here)
         return residual
 
@@ -83,7 +83,7 @@ class Constraints:
         for constraint in self._all():
             force = self._handed(constraint, force)
         if self._faces is not None:
-            force[self._faces.followers] = 0.0
+            force[self._faces.dependents] = 0.0
         return force
 
     def transform(self, matrix: Mat, scale: float) -> None:
@@ -104,10 +104,10 @@ class Constraints:
             product = own if product is None else own @ product
         return product
 
-    def followers(self) -> Ints:
+    def dependents(self) -> Ints:
         """Unknowns of this rank that follow from others, local numbers."""
-        found = [constraint.followers for constraint in self._all()]
-        found += [] if self._faces is None else [self._faces.followers]
+        found = [constraint.dependents for constraint in self._all()]
+        found += [] if self._faces is None else [self._faces.dependents]
         return np.concatenate([np.zeros(0, dtype=np.int64), *found])
 
     def involved(self) -> Flags:

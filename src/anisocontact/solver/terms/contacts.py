@@ -131,13 +131,13 @@ class Contacts(Term):
         return any([one.soften() for one in self._trials])
 
     @property
-    def follows(self) -> bool:
+    def simultaneous(self) -> bool:
         """Whether multipliers follow every correction of Newton's method."""
-        return any(one.follows for one in self._trials)
+        return any(one.simultaneous for one in self._trials)
 
-    def held(self) -> bool:
+    def consistent(self) -> bool:
         """Whether multipliers that follow are what the last evaluation answers to them."""
-        return all([one.held() for one in self._trials])
+        return all([one.consistent() for one in self._trials])
 
     def touch(self) -> bool:
         """Whether a point touched in the last evaluation; collective."""

@@ -126,7 +126,7 @@ class CutFaces:
             )
             raise InputError(text, self.name)
 
-    def check_led(self, values: Floats, step: str) -> None:
+    def check_prescribed(self, values: Floats, step: str) -> None:
         """Refuse supports of the slave that are not those of the master; free nodes follow it.
 
         Args:

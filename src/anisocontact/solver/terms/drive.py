@@ -20,12 +20,12 @@ class Drive:
     """Motion and loads of one rigid body along the steps; at first all components are held.
 
     Attributes:
-        held: Which components are prescribed, (6,).
+        prescribed: Which components are prescribed, (6,).
     """
 
     def __init__(self, body: RigidBody) -> None:
         self._body = body
-        self.held = np.ones(6, dtype=bool)
+        self.prescribed = np.ones(6, dtype=bool)
         self._turn: Turn | None = None
         self._motion, self._load = Prescribed(6), Prescribed(6)
 
@@ -42,14 +42,14 @@ class Drive:
             InputError: A component is unknown, is freed though the body is not free, or is loaded
                 though it is held.
         """
-        was_held = self.held.copy()
+        was_prescribed = self.prescribed.copy()
         self._motion.begin(step.duration, values)
         self._turn = step.rotation.get(self._body.name)
         if self._turn is not None:
-            self.held[:] = True
+            self.prescribed[:] = True
         self._take_motion(step)
-        loads, freed = self._load.end, was_held & ~self.held
-        start = np.where(self.held, 0.0, np.where(freed, reaction, loads))
+        loads, freed = self._load.end, was_prescribed & ~self.prescribed
+        start = np.where(self.prescribed, 0.0, np.where(freed, reaction, loads))
         self._load.begin(step.duration, start)
         for i in np.flatnonzero(freed):
             self._load.prescribe(int(i), float(loads[i]))
@@ -62,7 +62,7 @@ class Drive:
             moved = self._turn.path(place[None], fraction)[0] - place
             change = np.concatenate([moved, self._turn.share(fraction) * self._turn.vector])
             return np.asarray(self._motion.start + change)
-        return np.where(self.held, self._motion.at(fraction), 0.0)
+        return np.where(self.prescribed, self._motion.at(fraction), 0.0)
 
     def stop(self, fraction: float) -> None:
         """End the step at a fraction of it: loads stay as they are there."""
@@ -79,7 +79,7 @@ class Drive:
 
     def largest_turn(self) -> float:
         """Rotation along the step where it is prescribed, at its fastest pace, radian."""
-        places = _PLACES if self._motion.follows else 1
+        places = _PLACES if self._motion.varies else 1
         turns = np.array([self.values(k / places)[3:] for k in range(places + 1)])
         return places * float(np.linalg.norm(np.diff(turns, axis=0), axis=1).max())
 
@@ -94,7 +94,7 @@ class Drive:
             i = component_number(component, where)
             if given is None and not self._body.free:
                 raise InputError("the rigid body was not made free", where)
-            self.held[i] = given is not None
+            self.prescribed[i] = given is not None
             self._motion.prescribe(i, 0.0 if given is None else given)
 
     def _take_load(self, step: Step) -> None:
@@ -102,7 +102,7 @@ class Drive:
         for component, value in step.load.get(name, {}).items():
             where = f"step {step.name!r}.load.{name}.{component}"
             i = component_number(component, where)
-            if self.held[i]:
+            if self.prescribed[i]:
                 raise InputError(
                     f"{COMPONENTS[i]} is fixed; a load acts on a component that motion frees",
                     where,

@@ -65,8 +65,8 @@ class FaceOnBody:
         body: The rigid body.
         nodes: Local numbers of the nodes, (n,).
         arms: Their places in the first configuration from the reference point, (n, 3), length.
-        follows: Which of their components follow; others are held by what the mesh is taken for,
-            (n, 3).
+        constrained: Which of their components follow; others are held by what the mesh is taken
+            for, (n, 3).
         skin: Nodes of the facets of this rank where the group is the whole boundary of its body,
             which then follows with all of its nodes, (m, k); else None.
     """
@@ -85,9 +85,9 @@ class FaceOnBody:
         self.nodes: Ints = np.setdiff1d(owned, tied)
         x = np.asarray(space.tabulate_dof_coordinates())[self.nodes]
         self.arms: Floats = x - spec.body.reference
-        self.follows: Flags = np.ones((len(self.nodes), 3), dtype=np.bool_)
+        self.constrained: Flags = np.ones((len(self.nodes), 3), dtype=np.bool_)
         for held, axis in model.idealisation.held(x):
-            self.follows[held, axis] = False
+            self.constrained[held, axis] = False
         #: Components of force and moment that have a meaning, (6,).
         self._known = np.isin(COMPONENTS, model.idealisation.motions)
         self._force = np.zeros((len(self.nodes), 3))
@@ -115,7 +115,7 @@ class FaceOnBody:
     @property
     def unknowns(self) -> Ints:
         """Local numbers of the unknowns that follow."""
-        return np.asarray((3 * self.nodes[:, None] + np.arange(3))[self.follows])
+        return np.asarray((3 * self.nodes[:, None] + np.arange(3))[self.constrained])
 
     def displacements(self) -> Floats:
         """Where the trial of the body has the nodes, (n, 3), length."""
@@ -129,13 +129,13 @@ class FaceOnBody:
 
         In the plane, and of a body of revolution, those that the whole has: others cancel.
         """
-        force = np.where(self.follows, force, 0.0)
+        force = np.where(self.constrained, force, 0.0)
         moment = np.cross(self._turned(), force).sum(axis=0)
         return np.where(self._known, np.concatenate([force.sum(axis=0), moment]), 0.0)
 
     def take(self, force: Floats) -> Floats:
         """The same of what the nodes need from outside, which is kept for `stiffness`."""
-        self._force = np.where(self.follows, force[self.nodes], 0.0)
+        self._force = np.where(self.constrained, force[self.nodes], 0.0)
         return self.wrench(self._force)
 
     def gathering(self, arms: Floats | None = None) -> Floats:
@@ -224,7 +224,7 @@ class CoupledFaces:
         return [face.whole for face in self.faces if face.whole]
 
     @property
-    def followers(self) -> Ints:
+    def dependents(self) -> Ints:
         """Unknowns of this rank that follow from those of bodies, local numbers."""
         return np.concatenate([np.zeros(0, dtype=np.int64), *(f.unknowns for f in self.faces)])
 
@@ -253,8 +253,8 @@ class CoupledFaces:
         """
         for face in self.faces:
             text = f"step {step!r}.displacement"
-            led = np.intersect1d(prescribed, face.unknowns)
-            self._refuse_shared(led // 3, face, "a prescribed displacement", text)
+            both = np.intersect1d(prescribed, face.unknowns)
+            self._refuse_shared(both // 3, face, "a prescribed displacement", text)
 
     def check_planes(self, on: Ints) -> None:
         """Refuse symmetry planes at nodes that follow a body: nodes on planes, local numbers."""
@@ -270,7 +270,7 @@ class CoupledFaces:
         out = np.zeros_like(u)
         for face in self.faces:
             at = face.unknowns
-            out[at] = u[at] - face.displacements()[face.follows]
+            out[at] = u[at] - face.displacements()[face.constrained]
         return out
 
     def transform(self, matrix: Mat, scale: float, like: Vec) -> None:
@@ -289,7 +289,7 @@ class CoupledFaces:
     def involved(self, like: Vec) -> Flags:
         """Unknowns of this rank that follow from others, or others from them."""
         found = np.zeros(like.getLocalSize(), dtype=np.bool_)
-        found[self.followers] = True
+        found[self.dependents] = True
         first, last = like.getOwnershipRange()
         for body_first, _ in self._places.values():
             if first <= body_first < last:
@@ -364,8 +364,8 @@ class CoupledFaces:
             at, scale = self._places[face.body.name]
             rows.append(np.repeat(first + face.unknowns, 6))
             columns.append(np.tile(at + np.arange(6), len(face.unknowns)))
-            followed.append((face.following()[face.follows] / scale).reshape(-1))
-            handed.append((face.gathering()[face.follows] / scale).reshape(-1))
+            followed.append((face.following()[face.constrained] / scale).reshape(-1))
+            handed.append((face.gathering()[face.constrained] / scale).reshape(-1))
         return Constraint(
             like,
             np.concatenate(rows),

@@ -21,23 +21,23 @@ FREE = 1e-9
 ALONG = 1.0 - 1e-6
 
 #: Nodes this rank owns and the direction along which they are held, (3,) or (nodes, 3).
-type Held = tuple[Ints, Floats]
+type Supported = tuple[Ints, Floats]
 
 
 @dataclass(frozen=True)
-class HeldFrame:
+class SupportedFrame:
     """Nodes that move as a rigid body, some components of whose motion are held.
 
     Attributes:
         nodes: Nodes this rank owns.
         point: Reference point of the body, (3,), length.
-        held: Components that are held, three translations and three turns, (6,).
+        supported: Components that are held, three translations and three turns, (6,).
         axes: Axes of these, rows, (3, 3).
     """
 
     nodes: Ints
     point: Floats
-    held: Flags
+    supported: Flags
     axes: Floats = field(default_factory=lambda: np.eye(3))
 
     def rows(self, body: ConnectedBody, comm: Any) -> Floats:
@@ -47,7 +47,7 @@ class HeldFrame:
         arm = (self.point - body.centre) / body.size
         shift = np.hstack([self.axes, np.cross(arm, self.axes)])
         turn = np.hstack([np.zeros((3, 3)), self.axes])
-        return np.asarray(np.vstack([shift, turn])[self.held])
+        return np.asarray(np.vstack([shift, turn])[self.supported])
 
 
 @dataclass(frozen=True)
@@ -171,7 +171,10 @@ def _fields(arms: Floats) -> Floats:
 
 
 def free_modes(
-    body: ConnectedBody, held: Iterable[Held], comm: Any, frames: Iterable[HeldFrame] = ()
+    body: ConnectedBody,
+    supported: Iterable[Supported],
+    comm: Any,
+    frames: Iterable[SupportedFrame] = (),
 ) -> Floats:
     """Rigid motions of a body that meet no support.
 
@@ -180,7 +183,7 @@ def free_modes(
 
     Args:
         body: The body.
-        held: What is held; nodes of other bodies do not count.
+        supported: What is held; nodes of other bodies do not count.
         comm: Communicator of the mesh.
         frames: What is held of nodes that move as rigid bodies.
 
@@ -188,7 +191,7 @@ def free_modes(
         Translation t and rotation w (times the size of the body) of each, (k, 6).
     """
     sums = body.count * body.resisted.T @ body.resisted
-    for nodes, direction in held:
+    for nodes, direction in supported:
         _, own, at = np.intersect1d(nodes, body.nodes, return_indices=True)
         along = np.broadcast_to(direction, (len(nodes), 3))[own]
         rows = np.hstack([along, np.cross(body.arms[at], along)])

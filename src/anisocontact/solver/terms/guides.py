@@ -118,7 +118,7 @@ class Guides:
         """The same before the first step, to go through the steps without solving."""
         return Guides(self._model, self._planes, self._like, self._tied, self._ties)
 
-    def held(self) -> list[tuple[Ints, Floats]]:
+    def supported(self) -> list[tuple[Ints, Floats]]:
         """Nodes this rank owns that have a support, and the directions, (3,) or (nodes, 3)."""
         return [(guide.nodes, guide.direction) for guide in self._guides]
 
@@ -164,10 +164,10 @@ class Guides:
             return
         values = self._rows.values(self._guides, factor)
         offsets = np.einsum("msr,mr->ms", self._found.gain, values)
-        led = np.zeros(self._like.getLocalSize())
+        offset = np.zeros(self._like.getLocalSize())
         node, component = np.nonzero(self._found.slave)
-        led[3 * self._rows.nodes[node] + component] = offsets[node, component]
-        self.constraint.offset = led
+        offset[3 * self._rows.nodes[node] + component] = offsets[node, component]
+        self.constraint.offset = offset
 
     def check(self, prescribed: Ints, values: Floats, step: str, share: float = 1.0) -> Elimination:
         """Which unknowns follow from which, and that nothing contradicts.
@@ -182,13 +182,13 @@ class Guides:
             InputError: Some of what is prescribed contradicts the rest.
         """
         owned = self._model.space.dofmap.index_map.size_local
-        held, led = np.zeros(3 * owned, dtype=bool), np.zeros(3 * owned)
-        held[prescribed], led[prescribed] = True, values
+        supported, ends = np.zeros(3 * owned, dtype=bool), np.zeros(3 * owned)
+        supported[prescribed], ends[prescribed] = True, values
         rows = self._rows
-        found = eliminated(rows.directions, held.reshape(-1, 3)[rows.nodes])
+        found = eliminated(rows.directions, supported.reshape(-1, 3)[rows.nodes])
         given = rows.values(self._guides, share)
-        largest = max(np.abs(led).max(initial=0.0), np.abs(given).max(initial=0.0))
-        off = np.abs(found.left(led.reshape(-1, 3)[rows.nodes], given))
+        largest = max(np.abs(ends).max(initial=0.0), np.abs(given).max(initial=0.0))
+        off = np.abs(found.left(ends.reshape(-1, 3)[rows.nodes], given))
         if np.any(off > OUT * largest):
             node, row = np.unravel_index(int(np.argmax(off)), off.shape)
             guide = self._guides[rows.guides[node, row]]

@@ -50,7 +50,7 @@ def work(bodies: Sequence[ConnectedBody], force: Floats) -> Floats:
     return np.concatenate([np.zeros(0), *parts])
 
 
-def unheld(
+def unsupported(
     bodies: Sequence[ConnectedBody],
     free: Sequence[Floats],
     stiff: Floats,

@@ -15,7 +15,7 @@ def middle_nodes(model: Model) -> Ints:
     return np.unique(shares_of_corners(model)[0])
 
 
-def follow_corners(model: Model, like: Vec) -> Constraint | None:
+def constrain_middles(model: Model, like: Vec) -> Constraint | None:
     """Constraint of the bodies whose displacement is of order 1.
 
     At a middle node `u = mean of u at the corners of its edge, face or cell`, so that the

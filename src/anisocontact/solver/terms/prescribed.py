@@ -59,7 +59,7 @@ class Prescribed:
         self._courses = {}
 
     @property
-    def follows(self) -> bool:
+    def varies(self) -> bool:
         """Whether a component follows a course."""
         return bool(self._courses)
 

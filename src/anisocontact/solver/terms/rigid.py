@@ -15,7 +15,7 @@ from anisocontact.rigid import RigidBody
 from anisocontact.rigid.body import Pose
 from anisocontact.solver.terms.drive import Drive
 from anisocontact.solver.terms.faces import CoupledFaces, FaceOnBody
-from anisocontact.solver.terms.free_modes import HeldFrame
+from anisocontact.solver.terms.free_modes import SupportedFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import SingularError, Term
@@ -98,7 +98,7 @@ class RigidBodies(Term):
         for _ in self.rehearsed(steps):
             pass
 
-    def rehearsed(self, steps: Iterable[Step]) -> Iterator[list[HeldFrame]]:
+    def rehearsed(self, steps: Iterable[Step]) -> Iterator[list[SupportedFrame]]:
         """What each of the steps holds of the motion of faces, without solving.
 
         Raises:
@@ -148,7 +148,7 @@ class RigidBodies(Term):
     def values(self) -> Floats:
         """Unknowns with the values that are prescribed at this level, zero for others, (size,)."""
         parts = [
-            np.where(self._drives[b].held, self._drives[b].values(self._load_factor), 0.0)
+            np.where(self._drives[b].prescribed, self._drives[b].values(self._load_factor), 0.0)
             * self._scales[b]
             for b in self.free
         ]
@@ -171,7 +171,7 @@ class RigidBodies(Term):
             outside = (self._outside + self._of_faces)[self.bodies.index(body)]
             row = (outside - drive.load(self._load_factor)) / scale
             off = unknowns[6 * i : 6 * i + 6] - drive.values(self._load_factor) * scale
-            rows[6 * i : 6 * i + 6] = np.where(drive.held, support_scale * off, row)
+            rows[6 * i : 6 * i + 6] = np.where(drive.prescribed, support_scale * off, row)
         return rows
 
     def multiplier_residual(self, forces: Floats) -> Floats:
@@ -189,7 +189,7 @@ class RigidBodies(Term):
             )
             row = on_faces[self.bodies.index(body)] - np.asarray(self._comm.allreduce(local))
             row = row / self._scales[body]
-            rows[6 * i : 6 * i + 6] = np.where(self._drives[body].held, 0.0, row)
+            rows[6 * i : 6 * i + 6] = np.where(self._drives[body].prescribed, 0.0, row)
         return rows
 
     def loads(self) -> Floats:
@@ -208,7 +208,8 @@ class RigidBodies(Term):
 
     def prescribed(self) -> Flags:
         """Which of the unknowns are prescribed, (size,)."""
-        return np.concatenate([np.zeros(0, dtype=bool), *(self._drives[b].held for b in self.free)])
+        own = [self._drives[body].prescribed for body in self.free]
+        return np.concatenate([np.zeros(0, dtype=bool), *own])
 
     def body_couplings(self, first: int) -> list[Couplings]:
         """Blocks of the tangent in rows or columns of free bodies, of the contacts of this rank.
@@ -297,7 +298,7 @@ class RigidBodies(Term):
         """Force and moment of what prescribes the accepted motion of a body, (6,)."""
         i = self.bodies.index(body)
         reaction = self._accepted_outside[i] + self._accepted_of_faces[i] - self._accepted_load[i]
-        return np.where(self._drives[body].held, reaction, 0.0)
+        return np.where(self._drives[body].prescribed, reaction, 0.0)
 
     def contact_force(self, body: RigidBody) -> Floats:
         """Force of contacts and faces on a body, moment about its reference point, (6,)."""
@@ -305,13 +306,15 @@ class RigidBodies(Term):
         needed = self._accepted_outside[i] + self._accepted_of_faces[i]
         return np.asarray(body.springs * body.accepted.values - needed)
 
-    def held_frames(self) -> list[HeldFrame]:
+    def supported_frames(self) -> list[SupportedFrame]:
         """What this step prescribes, or springs hold, of the motion of faces."""
         return self._frames(self._drives)
 
-    def _frames(self, drives: Mapping[RigidBody, Drive]) -> list[HeldFrame]:
+    def _frames(self, drives: Mapping[RigidBody, Drive]) -> list[SupportedFrame]:
         return [
-            HeldFrame(face.nodes, body.reference, drives[body].held | (body.springs > 0.0))
+            SupportedFrame(
+                face.nodes, body.reference, drives[body].prescribed | (body.springs > 0.0)
+            )
             for body, faces in self.coupled.items()
             for face in faces
         ]
@@ -372,16 +375,16 @@ class RigidBodies(Term):
         turn = np.abs(body.trial.turn - body.accepted.turn)
         if not float(np.linalg.norm(turn)) >= np.pi:
             return ""
-        return self._unheld(body, [_NAMES[3 + int(np.argmax(turn))]])
+        return self._unsupported(body, [_NAMES[3 + int(np.argmax(turn))]])
 
-    def _unheld(self, body: RigidBody, named: Sequence[str]) -> str:
+    def _unsupported(self, body: RigidBody, named: Sequence[str]) -> str:
         why = _SLIDES if self._touched(body) else _APART
         return f"nothing holds the rigid body {body.name!r} {', '.join(named)}: {why}"
 
     def _check_support(self, body: RigidBody, stiff: Floats) -> None:
         if told := self._whirls(body):
             raise SingularError(told)
-        free = ~self._drives[body].held
+        free = ~self._drives[body].prescribed
         triangles = self._comm.allgather(np.linalg.qr(stiff, mode="r"))
         everything = np.concatenate(triangles)
         _, sizes, axes = np.linalg.svd(everything[:, free], full_matrices=True)
@@ -390,7 +393,7 @@ class RigidBodies(Term):
         if len(loose):
             part = (loose**2).sum(axis=0)
             named = [_NAMES[i] for i, p in zip(np.flatnonzero(free), part, strict=True) if p > 0.01]
-            raise SingularError(self._unheld(body, named))
+            raise SingularError(self._unsupported(body, named))
 
     def _touched(self, body: RigidBody) -> bool:
         local = sum(int(np.count_nonzero(c.current.response.status)) for c in self.contacts[body])

@@ -25,10 +25,10 @@ from anisocontact.mesh import Model
 from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.flow import Flow
 from anisocontact.solver.terms.free_body import FreeBody
-from anisocontact.solver.terms.free_modes import Held, HeldFrame
+from anisocontact.solver.terms.free_modes import Supported, SupportedFrame
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import Term
-from anisocontact.solver.terms.unheld_bodies import UnheldBodies
+from anisocontact.solver.terms.unsupported_bodies import UnsupportedBodies
 
 #: Force of the springs over the forces at work that an accepted state may have.
 SHARE = 1e-7
@@ -84,15 +84,15 @@ class Stabilisation(Term):
         self._scale = scale
         self._comm = model.mesh.comm
         self._attached = attached
-        self._unheld = UnheldBodies(model, contacts, scale, attached, sprung, coupled)
+        self._unsupported = UnsupportedBodies(model, contacts, scale, attached, sprung, coupled)
         self._free: list[FreeBody] = []
         self._loose: list[FreeBody] = []
         self._falling: list[FreeBody] = []
         self._fell = False
         self._where: Flags | None = None
         self._caught = False
-        self._held: list[Held] = []
-        self._frames: list[HeldFrame] = []
+        self._held: list[Supported] = []
+        self._frames: list[SupportedFrame] = []
         self._begun: Floats = np.zeros((0, 3))
         self._anchor: Floats = self._begun
         self._spent = 0.0
@@ -132,16 +132,16 @@ class Stabilisation(Term):
 
     def find_free(
         self,
-        held: Sequence[Held],
+        supported: Sequence[Supported],
         step: str,
         load: Floats | None = None,
         now: bool = True,
-        frames: Sequence[HeldFrame] = (),
+        frames: Sequence[SupportedFrame] = (),
     ) -> None:
         """Find out what a step leaves free.
 
         Args:
-            held: Nodes and directions that are held.
+            supported: Nodes and directions that are held.
             step: Name of the step.
             load: Forces at its end, contributions of this rank to the local nodes, (nodes, 3);
                 springs are weighed against them.
@@ -152,8 +152,8 @@ class Stabilisation(Term):
             InputError: A body is free and nothing can hold it.
         """
         self.clear()
-        self._held, self._frames = list(held), list(frames)
-        for free in self._unheld.found(held, step, load, frames):
+        self._held, self._frames = list(supported), list(frames)
+        for free in self._unsupported.found(supported, step, load, frames):
             self._add(free, step, now)
 
     def take_notes(self) -> list[str]:

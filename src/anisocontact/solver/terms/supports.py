@@ -85,13 +85,13 @@ class Supports:
         self.start = self.values = u[self.unknowns]
         self.end = taken[-1, self.unknowns]
         self._turned = [
-            (goal, held, self._positions(held // 3, u))
-            for key, held in owner.items()
+            (goal, supported, self._positions(supported // 3, u))
+            for key, supported in owner.items()
             if isinstance(goal := self._goals[key], Turn)
         ]
         self._courses = [
-            (goal, np.searchsorted(self.unknowns, held))
-            for key, held in owner.items()
+            (goal, np.searchsorted(self.unknowns, supported))
+            for key, supported in owner.items()
             if isinstance(goal := self._goals[key], Course)
         ]
 
@@ -101,7 +101,7 @@ class Supports:
         count = _PLACES if any(isinstance(g, Course) for g in self._goals.values()) else 1
         return np.arange(1, count + 1) / count
 
-    def held(self) -> list[tuple[Ints, Floats]]:
+    def supported(self) -> list[tuple[Ints, Floats]]:
         """Nodes that are held along each axis, and the axis."""
         nodes, axes = np.divmod(self.unknowns, 3)
         return [(nodes[axes == i], np.eye(3)[i]) for i in range(3)]
@@ -109,8 +109,8 @@ class Supports:
     def resting(self) -> list[tuple[Ints, Floats]]:
         """Nodes that are held where they are all along the step along each axis, and the axis."""
         still = np.abs(self.end - self.start) <= self._same
-        for _, held, _ in self._turned:
-            still[np.searchsorted(self.unknowns, held)] = False
+        for _, turned, _ in self._turned:
+            still[np.searchsorted(self.unknowns, turned)] = False
         for _, place in self._courses:
             still[place] = False
         nodes, axes = np.divmod(self.unknowns[still], 3)
@@ -128,10 +128,10 @@ class Supports:
     def set_load_factor(self, factor: float) -> None:
         """Go to a fraction of the step."""
         values = (1.0 - factor) * self.start + factor * self.end
-        for turn, held, start in self._turned:
-            place = np.searchsorted(self.unknowns, held)
+        for turn, supported, start in self._turned:
+            place = np.searchsorted(self.unknowns, supported)
             moved = turn.path(start, factor) - start
-            values[place] = self.start[place] + moved[np.arange(len(held)), held % 3]
+            values[place] = self.start[place] + moved[np.arange(len(supported)), supported % 3]
         for course, place in self._courses:
             values[place] = course.at(factor, self._duration, self.start[place])
         self.values = values
@@ -203,7 +203,7 @@ class Supports:
         shared: Ints,
         values: tuple[float, float],
     ) -> InputError:
-        found = (g for (g, a), held in owner.items() if a == axis and np.isin(shared, held).any())
+        found = (g for (g, a), own in owner.items() if a == axis and np.isin(shared, own).any())
         other = next(found, self._model.idealisation.entry.name)
         return InputError(
             f"{other!r} prescribes {values[0]:g} and {group!r} {values[1]:g} for "
@@ -216,5 +216,5 @@ def _fixed(model: Model) -> Ints:
     """Unknowns this rank owns that what the mesh is taken for holds at zero."""
     owned = model.space.dofmap.index_map.size_local
     x = np.asarray(model.space.tabulate_dof_coordinates())[:owned]
-    held = [3 * nodes + axis for nodes, axis in model.idealisation.held(x)]
-    return np.concatenate([np.zeros(0, dtype=np.int64), *held])
+    supported = [3 * nodes + axis for nodes, axis in model.idealisation.held(x)]
+    return np.concatenate([np.zeros(0, dtype=np.int64), *supported])

@@ -22,7 +22,7 @@ from anisocontact.contact.tied_surfaces import WholeGroups
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.constraint import Constraint
 from anisocontact.solver.terms.cyclic import CutFaces, CyclicSymmetry
-from anisocontact.solver.terms.free_modes import HeldFrame
+from anisocontact.solver.terms.free_modes import SupportedFrame
 from anisocontact.solver.terms.middles import shares_of_corners
 
 type Sparse = scipy.sparse.csr_array
@@ -107,13 +107,15 @@ class TiedFaces:
         of = self._model.body_of
         return [(of(pair.slave), of(pair.master)) for pair in self._pairs.values()]
 
-    def frames(self) -> list[HeldFrame]:
+    def frames(self) -> list[SupportedFrame]:
         """Cut faces as nodes that move along and about the axis alone where nothing is strained."""
         found = []
         for cut in self._cuts.values():
             held = np.array([True, True, False] * 2)
             nodes = self._own(np.union1d(*cut.sides))
-            found.append(HeldFrame(nodes, np.array(cut.turning.point), held, cut.turning.frame))
+            found.append(
+                SupportedFrame(nodes, np.array(cut.turning.point), held, cut.turning.frame)
+            )
         return found
 
     def on_axes(self) -> list[tuple[str, Ints, Floats]]:
@@ -186,7 +188,7 @@ class TiedFaces:
         first = self._model.space.dofmap.index_map.local_range[0]
         return np.asarray(self._groups.nodes[own] - first)
 
-    def check_led(
+    def check_prescribed(
         self, unknowns: Ints, values: Floats, planes: Sequence[tuple[Ints, Floats]], step: str
     ) -> None:
         """Refuse supports at cut faces that are not the same in every sector; collective.
@@ -203,21 +205,21 @@ class TiedFaces:
         for nodes, normal in planes:
             own[nodes] = np.where(np.abs(normal) > 1.0 - ALONG, 0.0, own[nodes])
         own.reshape(-1)[unknowns] = values
-        led = self._everywhere(own, np.nan)
+        values_everywhere = self._everywhere(own, np.nan)
         for cut in self._cuts.values():
-            cut.check_led(led, step)
+            cut.check_prescribed(values_everywhere, step)
 
-    def begin(self, held: Sequence[tuple[Ints, Floats]], followers: Ints) -> None:
+    def begin(self, held: Sequence[tuple[Ints, Floats]], dependents: Ints) -> None:
         """Take over what else holds the nodes in a step.
 
         Args:
             held: Nodes this rank owns that are held along directions.
-            followers: Unknowns of this rank that follow rigid bodies, local numbers.
+            dependents: Unknowns of this rank that follow rigid bodies, local numbers.
 
         Raises:
             InputError: All that could be tied is held.
         """
-        flags = self._flags(held, followers)
+        flags = self._flags(held, dependents)
         if self._held is not None and np.array_equal(flags, self._held):
             return
         found = eliminated(self._conditions, flags, self._of_corners)
@@ -227,16 +229,16 @@ class TiedFaces:
         self.constraint = self._constraint(found)
         self._pattern = _closed(found)
 
-    def check(self, held: Sequence[tuple[Ints, Floats]], followers: Ints) -> None:
+    def check(self, held: Sequence[tuple[Ints, Floats]], dependents: Ints) -> None:
         """The check of `begin` alone, and that no cut face follows a rigid body; collective."""
         first = self._model.space.dofmap.index_map.local_range[0]
         for name, cut in self._cuts.items():
             nodes = self._groups.nodes[np.union1d(*cut.sides)] - first
-            shared = len(np.intersect1d(nodes, followers // 3))
+            shared = len(np.intersect1d(nodes, dependents // 3))
             if self._model.mesh.comm.allreduce(shared):
                 text = "faces of a rigid body share nodes with the cut faces: take a displacement"
                 raise InputError(text, name)
-        eliminated(self._conditions, self._flags(held, followers), self._of_corners)
+        eliminated(self._conditions, self._flags(held, dependents), self._of_corners)
 
     def left_out(self) -> list[str]:
         """A line for each tie with nodes that are not tied."""
@@ -322,7 +324,7 @@ class TiedFaces:
         alone = scipy.sparse.diags_array(1.0 * ~flags)
         return flags, (scipy.sparse.csr_array(entries, shape=shape) + alone).tocsr()
 
-    def _flags(self, held: Sequence[tuple[Ints, Floats]], followers: Ints) -> Flags:
+    def _flags(self, held: Sequence[tuple[Ints, Floats]], dependents: Ints) -> Flags:
         """Components of all nodes that do not follow in a step, (n, 3).
 
         A plane that is not along the axes takes all three: its own constraint has them.
@@ -332,7 +334,7 @@ class TiedFaces:
         for nodes, direction in held:
             axis = np.abs(np.broadcast_to(direction, (len(nodes), 3))) > ALONG
             own[nodes] |= axis | ~axis.any(axis=1, keepdims=True)
-        own.reshape(-1)[followers] = True
+        own.reshape(-1)[dependents] = True
         flags = self._everywhere(own, False)
         for cut in self._cuts.values():
             flags[cut.on_axis] = True

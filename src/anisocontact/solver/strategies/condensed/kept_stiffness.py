@@ -59,7 +59,7 @@ class KeptStiffness:
         missed = problem.constraints.tied(problem.assembly.bodies.missed())
         missed[held[held < len(missed)]] = 0.0
         moved, norm = balance.residual[held], float(np.linalg.norm(balance.residual))
-        if problem.contact_term.follows:
+        if problem.contact_term.simultaneous:
             norm = balance.norm
         left = max(norm**2 - float(moved @ moved), 0.0) ** 0.5
         return bool(np.linalg.norm(missed) < SHARE * left)

@@ -65,7 +65,7 @@ class CondensedStrategy:
         problem = task.problem
         if not problem.linear and problem.unknowns < LEAST_LAGGED:
             yield f"{problem.unknowns} unknowns: a factorisation costs no more than iterations"
-        if problem.linear and problem.check_held(task.steps) and not _touches(problem):
+        if problem.linear and problem.check_supported(task.steps) and not _touches(problem):
             yield "contact alone will hold a body, and does not touch it yet"
         touched = touched_nodes(problem, task.steps)
         count = 3 * int(touched.sum())

@@ -166,7 +166,7 @@ class ContactSystem(AssembledSystem):
             self._magnitudes(own),
             MPI.COMM_SELF,
             failed=self._assembly.reactions.failed or self.outgrown,
-            correction=self._multiplier_residual() if self.contact_term.follows else None,
+            correction=self._multiplier_residual() if self.contact_term.simultaneous else None,
         )
         return self.balance.residual.copy()
 

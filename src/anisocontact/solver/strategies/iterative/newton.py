@@ -112,7 +112,7 @@ class IterativeNewton(Newton):
     def _precision(self, snes: SNES) -> float:
         """Residual of the next correction over that of its start."""
         residual = self._residuals[-1]
-        if self._problem.contact_term.follows:
+        if self._problem.contact_term.simultaneous:
             # forces that take violations away are large beside those that are out of balance
             size = max(snes.getFunction()[0].norm(), TINY)
             return float(max(FINE * min(self._problem.balance.norm / size, 1.0), FINEST))

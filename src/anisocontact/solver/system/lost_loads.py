@@ -9,7 +9,7 @@ import numpy as np
 from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.solver.system.layout import Layout
-from anisocontact.solver.terms.free_modes import Held
+from anisocontact.solver.terms.free_modes import Supported
 from anisocontact.solver.terms.pressure import Given
 from anisocontact.solver.terms.step import Step
 
@@ -19,14 +19,16 @@ NOTHING = 1e-20
 SAME = 1e-12
 
 
-def check_swallowed(layout: Layout, step: Step, given: Iterable[Given], held: list[Held]) -> None:
+def check_lost_loads(
+    layout: Layout, step: Step, given: Iterable[Given], supported: list[Supported]
+) -> None:
     """Refuse loads that act on nothing but prescribed displacements.
 
     Args:
         layout: Where the unknowns are.
         step: The step.
         given: What it gives, other than zero.
-        held: Nodes this rank owns and the directions along which each is held.
+        supported: Nodes this rank owns and the directions along which each is held.
 
     Raises:
         InputError: Names group, component and step.
@@ -35,7 +37,7 @@ def check_swallowed(layout: Layout, step: Step, given: Iterable[Given], held: li
     comm = layout.comm
     for one in given:
         force = layout.assembled(one.force)[: 3 * count].reshape(-1, 3)
-        rest = not_held(force, held)
+        rest = unsupported(force, supported)
         total, left = comm.allreduce(np.array([(force**2).sum(), (rest**2).sum()]))
         if total > 0.0 and left <= NOTHING * total:
             along = f".{one.axis}" if one.axis else ""
@@ -48,16 +50,16 @@ def check_swallowed(layout: Layout, step: Step, given: Iterable[Given], held: li
             )
 
 
-def not_held(force: Floats, held: Iterable[Held]) -> Floats:
+def unsupported(force: Floats, supported: Iterable[Supported]) -> Floats:
     """Forces on the nodes this rank owns without what acts along held directions, (nodes, 3)."""
-    onto = _held_space(len(force), held)
+    onto = _supported_space(len(force), supported)
     return np.asarray(force - np.einsum("nij,nj->ni", onto, force))
 
 
-def _held_space(count: int, held: Iterable[Held]) -> Floats:
+def _supported_space(count: int, supported: Iterable[Supported]) -> Floats:
     """Projectors on what is held of each node, (nodes, 3, 3): directions made orthonormal."""
     onto = np.zeros((count, 3, 3))
-    for nodes, direction in held:
+    for nodes, direction in supported:
         along = np.broadcast_to(direction, (len(nodes), 3))
         d = along - np.einsum("nij,nj->ni", onto[nodes], along)
         size = np.einsum("ni,ni->n", d, d)

@@ -58,7 +58,7 @@ def parts(space: Any) -> list[MeshPart]:
     return found
 
 
-def loose_motions(
+def unconstrained_modes(
     part: MeshPart, stiffness: Mat, scale: float, fixed: Ints, unknowns: NodeUnknowns
 ) -> str:
     """Motions of a part that meet no stiffness and no condition, in words; empty if there is none.

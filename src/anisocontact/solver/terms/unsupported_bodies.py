@@ -15,21 +15,21 @@ from anisocontact.solver.terms.attachments import Attachments
 from anisocontact.solver.terms.free_body import FreeBody
 from anisocontact.solver.terms.free_modes import (
     ConnectedBody,
-    Held,
-    HeldFrame,
+    Supported,
+    SupportedFrame,
     bodies,
     free_modes,
     joined,
     named,
 )
-from anisocontact.solver.terms.holding import NOTHING, stiffness, unheld, work
+from anisocontact.solver.terms.holding import NOTHING, stiffness, unsupported, work
 
 #: Sizes of a body by which the loads may carry it on its springs: beyond, contact is to hold it, or
 #: where there is none the springs count as none.
 FAR, LOST = 2.0, 100.0
 
 
-class UnheldBodies:
+class UnsupportedBodies:
     """Finds what a step leaves without support.
 
     Args:
@@ -64,15 +64,15 @@ class UnheldBodies:
 
     def found(
         self,
-        held: Sequence[Held],
+        supported: Sequence[Supported],
         step: str,
         load: Floats | None,
-        frames: Sequence[HeldFrame],
+        frames: Sequence[SupportedFrame],
     ) -> Iterator[FreeBody]:
         """Bodies that only contact can hold.
 
         Args:
-            held: Nodes and directions that are held.
+            supported: Nodes and directions that are held.
             step: Name of the step.
             load: Forces at its end, contributions of this rank to the local nodes, (nodes, 3);
                 springs are weighed against them.
@@ -81,14 +81,14 @@ class UnheldBodies:
         Raises:
             InputError: A body is free and nothing can hold it.
         """
-        free = [free_modes(body, held, self._comm, frames) for body in self._joined]
+        free = [free_modes(body, supported, self._comm, frames) for body in self._joined]
         for far in (np.inf, LOST):
-            loose = self._unheld(self._joined, free, self._joined_springs, load, far)
+            loose = self._unsupported(self._joined, free, self._joined_springs, load, far)
             for body, modes in zip(self._joined, loose, strict=True):
                 if len(modes):
                     self._refuse(body, named(modes), step, weak=far == LOST)
-        free = [free_modes(body, held, self._comm, frames) for body in self._bodies]
-        loose = self._unheld(self._bodies, free, self._springs, load, FAR)
+        free = [free_modes(body, supported, self._comm, frames) for body in self._bodies]
+        loose = self._unsupported(self._bodies, free, self._springs, load, FAR)
         for i, (body, modes) in enumerate(zip(self._bodies, loose, strict=True)):
             if len(modes) and self._of(body):
                 own = self._springs[6 * i : 6 * i + 6, 6 * i : 6 * i + 6]
@@ -100,7 +100,7 @@ class UnheldBodies:
         left: Floats,
         motions: Floats,
         springs: Floats,
-        frames: Sequence[HeldFrame],
+        frames: Sequence[SupportedFrame],
     ) -> FreeBody:
         contacts = self._of(body)
         size = min(facet_size(self._model, c.slave) for c in contacts)
@@ -109,7 +109,7 @@ class UnheldBodies:
         sprung = motions @ springs @ motions.T if weighed else None
         return FreeBody(body, named(left), contacts, size, motions, left, sprung, self._least)
 
-    def _unheld(
+    def _unsupported(
         self,
         group: list[ConnectedBody],
         free: list[Floats],
@@ -117,13 +117,13 @@ class UnheldBodies:
         load: Floats | None,
         far: float,
     ) -> list[Floats]:
-        """Motions of bodies that neither supports nor springs hold, see `unheld`."""
+        """Motions of bodies that neither supports nor springs hold, see `unsupported`."""
         if not springs.any():
             return free
         force = np.zeros(len(springs))
         if load is not None:
             force = self._comm.allreduce(work(group, load))
-        return unheld(group, free, springs, force, self._least, far)
+        return unsupported(group, free, springs, force, self._least, far)
 
     def _refuse(self, body: ConnectedBody, modes: str, step: str, weak: bool) -> NoReturn:
         several = len(body.parts) > 1
