@@ -115,7 +115,7 @@ def test_a_form_keeps_its_name_whatever_was_made_before(monkeypatch, name):
 
     from anisocontact.bulk import make_material
     from anisocontact.mesh import BoxSpec, build_box
-    from anisocontact.results.paraview import Bodies
+    from anisocontact.results.paraview import BodyGrid
     from anisocontact.solver import Problem
 
     names, signature = [], ffcx.naming.compute_signature
@@ -131,7 +131,7 @@ def test_a_form_keeps_its_name_whatever_was_made_before(monkeypatch, name):
         model = build_box({"bar": BoxSpec((0, 0, 0), (1, 1, 1), (2, 2, 2))})
         more = {"yield_stress": 1.0} if name == "plastic" else {}
         law = make_material(name, E=1.0, nu=0.3, **more)
-        Bodies(Problem(model, {"bar": law}))
+        BodyGrid(Problem(model, {"bar": law}))
         return set(names)
 
     first, second, third = made(), made(), made()

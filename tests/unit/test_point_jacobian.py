@@ -13,7 +13,7 @@ from anisocontact.anisotropy import make_directions
 from anisocontact.interface import Interface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.point import Group
-from anisocontact.point.balance import Control, PointBalance, Pose
+from anisocontact.point.balance import Control, GroupPose, PointBalance
 from anisocontact.point.device import Advance, Dashpot, Device, DraggedSpring, FixedPlace
 from anisocontact.point.foot import foot
 from anisocontact.point.group import turned_arms
@@ -41,7 +41,7 @@ def _balance(device: str, orientation: str, control: str) -> PointBalance:
         Adhesion(stiffness=(2e3, 8e2), directions=marks),
         Friction(coefficients=(0.35, 0.15), directions=marks),
     )
-    pose = Pose(START, foot(TORUS, START), ARMS)
+    pose = GroupPose(START, foot(TORUS, START), ARMS)
     return PointBalance(
         interface=interface,
         state=interface.initial_state(pose.points),

@@ -8,7 +8,7 @@ import pytest
 from anisocontact.base.errors import InputError
 from anisocontact.results import Results
 from anisocontact.results.files import OWN, check_folder, clear, replacing, write_text
-from anisocontact.results.history import History, flat, read_history
+from anisocontact.results.history import HistoryTable, flat, read_history
 
 
 def test_a_file_is_replaced_at_once_or_stays(tmp_path):
@@ -82,7 +82,7 @@ def test_history_reads_back_bit_for_bit(tmp_path):
     values = np.random.default_rng(7).normal(size=(5, 3)) * 10.0 ** np.arange(-8, 7)[:15].reshape(
         5, 3
     )
-    history = History(tmp_path / "history.csv")
+    history = HistoryTable(tmp_path / "history.csv")
     for i, row in enumerate(values):
         history.append({"step": "drag, along x", "increment": i, "force": row.tolist()})
     table = read_history(tmp_path / "history.csv")
@@ -93,7 +93,7 @@ def test_history_reads_back_bit_for_bit(tmp_path):
 
 def test_history_can_be_read_while_a_row_is_written(tmp_path):
     path = tmp_path / "history.csv"
-    history = History(path)
+    history = HistoryTable(path)
     history.append({"step": "a", "time": 1.0})
     with path.open("a") as file:
         file.write("a,2.")

@@ -24,7 +24,7 @@ from anisocontact.case.build import build
 from anisocontact.results import Results
 from anisocontact.results.beside import report_beside
 from anisocontact.results.deformed import SHOWN, magnification
-from anisocontact.results.paraview import Bodies
+from anisocontact.results.paraview import BodyGrid
 from anisocontact.results.quantities import von_mises
 from anisocontact.results.report import maps, shape, write_report
 from anisocontact.results.report.halves import attempts
@@ -219,7 +219,7 @@ def test_grid_of_every_cell_and_order(tmp_path, case_text, cell, order):
     u = problem.u.x.array.reshape(-1, 3)
     u[:, 2] = 1e-3 * x[: len(u), 2]
     pyvista = pytest.importorskip("pyvista")
-    (tmp_path / "grid.vtu").write_bytes(Bodies(problem).grid().encoded())
+    (tmp_path / "grid.vtu").write_bytes(BodyGrid(problem).grid().encoded())
     grid = pyvista.read(tmp_path / "grid.vtu")
     sized = grid.compute_cell_sizes(length=False, area=False)
     assert sized.cell_data["Volume"].sum() == pytest.approx(0.5, rel=ROUND_OFF)

@@ -14,7 +14,7 @@ from anisocontact.bulk.cell_energy import volumes
 from anisocontact.cli import main
 from anisocontact.mesh import Axisymmetric, Body, build_mesh, make_shape
 from anisocontact.results import Results
-from anisocontact.results.paraview import Bodies
+from anisocontact.results.paraview import BodyGrid
 from anisocontact.solver import Problem, Solver, Step
 
 E, NU = 1000.0, 0.3
@@ -59,7 +59,7 @@ def test_of_a_uniform_state(kind: str, more: dict[str, float], cell: str, order:
     Tolerance: Newton's; of laws at finite strain the strain, 0.5 %, times three.
     """
     problem = pulled(kind, cell, order, **more)
-    found = Bodies(problem).now().energy_density
+    found = BodyGrid(problem).now().energy_density
     assert found == pytest.approx(np.full(len(found), found.mean()), rel=1e-8)
     assert found @ volumes(problem.model) == pytest.approx(problem.energies()["elastic"], rel=1e-9)
     small = kind in ("linear-elastic", "plastic")
@@ -74,7 +74,7 @@ def test_of_a_body_of_revolution():
     problem = Problem(model, {"ring": make_material("linear-elastic", E=E, nu=NU)})
     held = {"ring.bottom": {"y": 0.0}, "ring.top": {"y": 0.01}}
     list(Solver(problem, [Step("pull", 1, held)], options={"snes_rtol": 1e-12}).run())
-    found = Bodies(problem).now().energy_density
+    found = BodyGrid(problem).now().energy_density
     assert found == pytest.approx(np.full(4, E * 0.01**2 / 2.0), rel=1e-8)
 
 

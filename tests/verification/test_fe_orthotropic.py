@@ -12,7 +12,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 from anisocontact.base.errors import InputError
 from anisocontact.bulk import LinearBulk, LinearElastic, NonlinearBulk, make_material
 from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh, node_near
-from anisocontact.results.paraview import Bodies
+from anisocontact.results.paraview import BodyGrid
 from anisocontact.solver import Problem, Solver, Step
 
 #: Spruce, N/mm2: E along the grain, outwards, around.
@@ -251,4 +251,4 @@ def test_stress_on_the_axis_of_the_directions(name: str) -> None:
     for _ in Solver(problem, [Step("pull", 1, held)]).run():
         pass
     exact = 1e-3 * E_BAR * (np.arange(6) == 2)
-    assert np.abs(Bodies(problem).stress() - exact).max() < 1e-8 * exact.max()
+    assert np.abs(BodyGrid(problem).stress() - exact).max() < 1e-8 * exact.max()

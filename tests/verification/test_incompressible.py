@@ -25,7 +25,7 @@ from anisocontact.mesh import (
     build_mesh,
     make_shape,
 )
-from anisocontact.results.paraview import Bodies
+from anisocontact.results.paraview import BodyGrid
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.surfaces import make_surface
 
@@ -65,7 +65,7 @@ def test_patch(name: str, nu: float, cell: str, order: int) -> None:
     problem = Problem(_distorted(cell, order), {"bar": bar})
     held = {"bar.bottom": {"z": 0.0}, "bar.left": {"x": 0.0}, "bar.front": {"y": 0.0}}
     run(problem, Step("pull", 2, {**held, "bar.top": {"z": 0.1}}))
-    stress = Bodies(problem).stress()
+    stress = BodyGrid(problem).stress()
     exact = 0.1 * E if name == LINEAR else _true_stress(bar, 1.1)
     assert np.abs(stress - exact * (np.arange(6) == 2)).max() < 1e-8 * exact
 
@@ -108,7 +108,7 @@ def test_thick_tube(order: int) -> None:
         problem = _tube(LINEAR, order, n, way)
         force = -problem.reactions()["b.left"][0]
         errors.append(abs(abs(force) / (2.0 * np.pi * 0.5) / pressure - 1.0))
-        stress = Bodies(problem).stress()
+        stress = BodyGrid(problem).stress()
         assert stress[:, :3].mean(axis=1) == pytest.approx(pressure / 3.0, rel=0.2 / n**order)
     assert errors[0] > (3.5 if order == 1 else 12.0) * errors[1]
     assert errors[1] < 0.002

@@ -17,7 +17,7 @@ from anisocontact.cli import main
 from anisocontact.mesh import BoxSpec, build_box
 from anisocontact.results import Results
 from anisocontact.results.history import read_history
-from anisocontact.results.paraview import Bodies
+from anisocontact.results.paraview import BodyGrid
 from anisocontact.solver import ElasticSupport, Problem, Solver, Step
 
 E, NU, EXPANSION = 200.0, 0.3, 1e-4
@@ -87,7 +87,7 @@ def test_free_expansion(name: str) -> None:
     x = problem.model.space.tabulate_dof_coordinates()
     u = problem.u.x.array.reshape(-1, 3)
     np.testing.assert_allclose(u, 0.01 * x, atol=1e-10)
-    stress = Bodies(problem).stress()
+    stress = BodyGrid(problem).stress()
     assert np.abs(stress).max() < 1e-8 * 0.01 * problem.materials["bar"].young
 
 
@@ -132,7 +132,7 @@ def test_temperature_that_is_linear_in_place() -> None:
     for _ in Solver(problem, [Step("heat", 1, temperature={"bar": 100.0})]).run():
         pass
     assert np.abs(problem.u.x.array).max() > 0.004
-    assert np.abs(Bodies(problem).stress()).max() < 1e-6 * E * 0.01
+    assert np.abs(BodyGrid(problem).stress()).max() < 1e-6 * E * 0.01
 
 
 def test_tangent_is_exact() -> None:

@@ -24,7 +24,7 @@ from anisocontact.mesh import (
     build_mesh,
     make_shape,
 )
-from anisocontact.results.paraview import Bodies
+from anisocontact.results.paraview import BodyGrid
 from anisocontact.solver import Problem, Solver, Spring, Step, Turn
 from anisocontact.surfaces import make_surface
 
@@ -100,7 +100,7 @@ def test_stress_at_nodes_on_the_axis(material):
     """
     problem = Problem(rectangle(Axisymmetric()), {"b": material})
     run(problem, Step("press", 1, {"b.bottom": {"y": 0.0}, "b.top": {"y": -0.01}}))
-    stress = Bodies(problem).stress()
+    stress = BodyGrid(problem).stress()
     radius = 2.0 + problem.u.x.array.reshape(-1, 3)[:, 0].max()
     area = 4.0 * np.pi if material is STEEL else np.pi * radius**2
     exact = np.array([0.0, problem.reactions()["b.top"][1] / area, 0.0, 0.0, 0.0, 0.0])

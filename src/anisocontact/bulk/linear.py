@@ -14,7 +14,7 @@ from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.cell_energy import CellIntegrals
 from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.materials import Material, body_measure, linear_parts
-from anisocontact.bulk.pressures import Pressures
+from anisocontact.bulk.pressures import CellPressures
 from anisocontact.mesh import Model
 
 
@@ -53,14 +53,14 @@ class LinearBulk:
         form = compiled(self._bilinear, model.mesh.comm)
         self.stiffness = create_stiffness(form)
         self._u: Any = fem.Function(model.space)
-        self._pressures = Pressures(model, materials, self._u, dx)
+        self._pressures = CellPressures(model, materials, self._u, dx)
         self._pressures.add_tangent(self.stiffness)
-        #: As of `Pressures`.
+        #: As of `CellPressures`.
         self.pressures = self._pressures.of
         self._force = self.stiffness.createVecLeft()
         #: Diagonal of K: the scale of forces that displacements of one unit make.
         self.diagonal = self.stiffness.getDiagonal()
-        #: The same for surfaces that give way by shear, as of `Pressures`.
+        #: The same for surfaces that give way by shear, as of `CellPressures`.
         self.yielding = self._pressures.yielding(self.diagonal)
 
     def force(self, u: Vec) -> Vec:

@@ -26,7 +26,7 @@ from anisocontact.bulk.expansion import Expanding, Heated, bare
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure, linear_parts
 from anisocontact.bulk.point_law import BodyPoints
-from anisocontact.bulk.pressures import Pressures
+from anisocontact.bulk.pressures import CellPressures
 from anisocontact.mesh import Idealisation, Model
 
 
@@ -56,8 +56,8 @@ class NonlinearBulk:
         heating = {name: law for name, law in materials.items() if isinstance(law, Expanding)}
         self.heated = {name: Heated(law, model) for name, law in heating.items()}
         dx = body_measure(model)
-        self._pressures = Pressures(model, given, self._u, dx, self.heated)
-        #: As of `Pressures`.
+        self._pressures = CellPressures(model, given, self._u, dx, self.heated)
+        #: As of `CellPressures`.
         self.pressures = self._pressures.of
         self.histories = self._histories(model, given, full)
         self._points = [b for b in self.histories.values() if isinstance(b, BodyPoints)]
@@ -82,7 +82,7 @@ class NonlinearBulk:
         #: Diagonal of the tangent at rest: the scale of forces that displacements of one unit make.
         self.diagonal = self.stiffness.getDiagonal()
         _check_stiff(model, materials, self.diagonal)
-        #: The same for surfaces that give way by shear, as of `Pressures`.
+        #: The same for surfaces that give way by shear, as of `CellPressures`.
         self.yielding = self._pressures.yielding(self.diagonal)
 
     def _histories(
@@ -266,7 +266,7 @@ def cell_size(mesh: Any) -> float:
 class _Forms:
     """Virtual work of the stresses, and the energies as far as materials tell them.
 
-    Changes of volume that materials keep apart are not in it, see `Pressures`.
+    Changes of volume that materials keep apart are not in it, see `CellPressures`.
 
     Attributes:
         work: Linear form.

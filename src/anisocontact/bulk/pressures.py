@@ -58,7 +58,7 @@ def pressure_element(space: Any) -> Any:
     return basix.ufl.element(kind[0], element.cell_type, kind[1], dtype=np.float64)
 
 
-class Pressures:
+class CellPressures:
     """Pressures of all bodies whose material keeps its change of volume apart.
 
     Args:

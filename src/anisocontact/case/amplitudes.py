@@ -61,7 +61,7 @@ class Scheduled(Section):
     ] = False
 
 
-class Prescribed(Quantity):
+class PrescribedQuantity(Quantity):
     """Annotation of a prescribed number: at the end of the step, or as a table `Scheduled`."""
 
     def check(self, given: object) -> Any:
@@ -93,9 +93,9 @@ def times(value: float | Scheduled, factor: float) -> float | Scheduled:
     return factor * value
 
 
-def prescribed(unit: str, doc: str, **more: Any) -> Prescribed:
+def prescribed(unit: str, doc: str, **more: Any) -> PrescribedQuantity:
     """Annotation of a component that a step prescribes."""
-    return Prescribed(Parameter("", "scalar", unit, doc), **more)
+    return PrescribedQuantity(Parameter("", "scalar", unit, doc), **more)
 
 
 def amplitude_table(known: tuple[Entry, ...]) -> Any:

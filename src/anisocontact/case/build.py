@@ -17,7 +17,7 @@ from anisocontact.bulk import materials
 from anisocontact.case import objects
 from anisocontact.case.amplitudes import times
 from anisocontact.case.contacts import contact
-from anisocontact.case.courses import Schedule
+from anisocontact.case.courses import CaseCourses
 from anisocontact.case.cyclic import CyclicSection
 from anisocontact.case.law_file import law_of
 from anisocontact.case.material_file import material_of
@@ -145,7 +145,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
         contact(case, section, model, materials, carriers, f"contact[{i}]", law)
         for i, (section, law) in enumerate(zip(case.contact, own, strict=True))
     ]
-    steps = _steps(case, model, Schedule(case, file.resolve, python))
+    steps = _steps(case, model, CaseCourses(case, file.resolve, python))
     _check_options(case.solver.options)
     problem = Problem(
         model,
@@ -322,7 +322,7 @@ def _faces(case: Case, model: Model, bodies: Mapping[str, RigidBody]) -> list[Co
     return found
 
 
-def _steps(case: Case, model: Model, schedule: Schedule) -> list[Step]:
+def _steps(case: Case, model: Model, schedule: CaseCourses) -> list[Step]:
     steps, begun = [], 0.0
     for i, section in enumerate(case.step):
         place = f"step[{i}]"
@@ -348,7 +348,7 @@ def _weights(case: Case, section: StepSection) -> dict[str, dict[str, Any]]:
     }
 
 
-def _cylinders(section: StepSection, schedule: Schedule, begun: float) -> dict[str, Cylindrical]:
+def _cylinders(section: StepSection, schedule: CaseCourses, begun: float) -> dict[str, Cylindrical]:
     """Displacements prescribed along cylindrical directions."""
     found = {}
     for name, given in section.cylindrical.items():
@@ -360,7 +360,7 @@ def _cylinders(section: StepSection, schedule: Schedule, begun: float) -> dict[s
 
 def _step(
     section: StepSection,
-    schedule: Schedule,
+    schedule: CaseCourses,
     begun: float,
     weights: Mapping[str, Any],
     until: Until | None,

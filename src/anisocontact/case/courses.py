@@ -18,7 +18,7 @@ from anisocontact.case.quantity import FREE
 from anisocontact.case.section import near
 
 
-class Schedule:
+class CaseCourses:
     """Amplitudes and paths of a case.
 
     Args:

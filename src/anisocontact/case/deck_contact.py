@@ -35,7 +35,7 @@ MOST = 12
 ALONG = 1.0 - 1.5e-6
 
 
-class Contacts:
+class DeckContacts:
     """What a deck says of contact.
 
     Args:
@@ -260,15 +260,15 @@ def table_lines(head: str, values: dict[str, object]) -> Iterator[str]:
 
 
 #: Keyword -> what takes it.
-_READERS: dict[str, Callable[[Contacts, Card], None]] = {
-    "SURFACEINTERACTION": Contacts.read_interaction,
-    "FRICTION": Contacts.read_friction,
-    "SURFACEBEHAVIOR": Contacts.read_behaviour,
-    "SURFACEBEHAVIOUR": Contacts.read_behaviour,
-    "CONTACTPAIR": Contacts.read_pair,
-    "CONTACT": Contacts.read_general,
-    "CONTACTINCLUSIONS": Contacts.read_inclusions,
-    "CONTACTPROPERTYASSIGNMENT": Contacts.read_assignment,
+_READERS: dict[str, Callable[[DeckContacts, Card], None]] = {
+    "SURFACEINTERACTION": DeckContacts.read_interaction,
+    "FRICTION": DeckContacts.read_friction,
+    "SURFACEBEHAVIOR": DeckContacts.read_behaviour,
+    "SURFACEBEHAVIOUR": DeckContacts.read_behaviour,
+    "CONTACTPAIR": DeckContacts.read_pair,
+    "CONTACT": DeckContacts.read_general,
+    "CONTACTINCLUSIONS": DeckContacts.read_inclusions,
+    "CONTACTPROPERTYASSIGNMENT": DeckContacts.read_assignment,
 }
 #: Those that may stand in the first step.
 _IN_FIRST_STEP = ("CONTACTPAIR", "CONTACT", "CONTACTINCLUSIONS", "CONTACTPROPERTYASSIGNMENT")

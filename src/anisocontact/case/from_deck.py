@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from anisocontact.base.errors import InputError
-from anisocontact.case.deck_contact import Contacts, table_lines
+from anisocontact.case.deck_contact import DeckContacts, table_lines
 from anisocontact.case.deck_coupling import Couplings, of_ideal
 from anisocontact.case.deck_cyclic import Sectors
 from anisocontact.case.deck_materials import Materials, Temperatures
@@ -97,7 +97,7 @@ class _Case:
         kinds = {kind for kind, _ in self.deck.elements.values()}
         turned = bool(kinds) and {kind[:3] for kind in kinds} <= {"CAX"}
         self._tools = Tools(self.deck.profiles, self.mesh.points, turned)
-        self._contacts = Contacts(self.mesh, self._named, self._tools, self._leave)
+        self._contacts = DeckContacts(self.mesh, self._named, self._tools, self._leave)
         self._couplings = Couplings(
             self.deck, self.mesh, self._named, self._tools, of_ideal(kinds), self._leave
         )

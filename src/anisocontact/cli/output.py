@@ -12,7 +12,7 @@ from typing import Any, Protocol, TextIO, cast
 from anisocontact.base.errors import printable
 
 
-class Stream(Protocol):
+class TextStream(Protocol):
     """Where lines can go."""
 
     def write(self, text: str, /) -> object:
@@ -119,7 +119,7 @@ def outputs() -> Iterator[tuple[Output, Output]]:
         sys.stdout, sys.stderr = before
 
 
-def say(line: str, stream: Stream | None = None) -> None:
+def say(line: str, stream: TextStream | None = None) -> None:
     """Print a line at once; what does not print in it is written as an escape.
 
     Args:

@@ -10,7 +10,13 @@ import numpy.typing as npt
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.typed import typed
 from anisocontact.contact.defaults import WithoutPenalty, exact
-from anisocontact.contact.making import Before, Options, SurfaceMaster, before_this, parts_of
+from anisocontact.contact.making import (
+    DeprecatedArguments,
+    Options,
+    SurfaceMaster,
+    before_this,
+    parts_of,
+)
 from anisocontact.contact.one_pass import Pass
 from anisocontact.contact.quadrature import FacetQuadrature
 from anisocontact.contact.sagitta import sagitta
@@ -118,7 +124,7 @@ class Contact(Pass):
         apart: float | None = None,
         mortar: bool | None = None,
         name: str = "",
-        **before: Unpack[Before],
+        **before: Unpack[DeprecatedArguments],
     ) -> None:
         master, of_before = before_this(master, before)
         law, augmentation = exact(law, augmentation)

@@ -22,7 +22,13 @@ import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Flags, Floats, Locals
-from anisocontact.contact.plane_axes import Carried, Turned, dual, in_tangents, unit_normal
+from anisocontact.contact.plane_axes import (
+    CarriedAxes,
+    TurnedTangents,
+    dual,
+    in_tangents,
+    unit_normal,
+)
 
 #: Nodes that stand for a slave node and its planes: the slave with two tangents, the plane of now
 #: and that of the accepted increment.
@@ -86,7 +92,7 @@ class Opposite:
             np.tile(np.eye(2, 3), (n, 1, 1)),
         )
 
-    def with_axes(self, plane: Turned) -> Opposite:
+    def with_axes(self, plane: TurnedTangents) -> Opposite:
         """The same, to carry the axes of a plane along with the master."""
         return replace(self, carried=plane.carried)
 
@@ -182,9 +188,9 @@ class ContactPlanes:
     slave: Floats
     tangents: Floats
     mean: Floats
-    now: Turned
+    now: TurnedTangents
     mean_then: Floats
-    then: Carried
+    then: CarriedAxes
     held: Floats
 
     @classmethod
@@ -208,8 +214,8 @@ class ContactPlanes:
         normal = across(held, averaged_normal(tangents))
         means = (one.mean(now) for one in opposite)
         mean, mean_then = (y + along(held, slave - y) for y in means)
-        turned = Turned(opposite[0].tangents(now), normal)
-        carried = Carried(opposite[1].tangents(now), opposite[1].carried)
+        turned = TurnedTangents(opposite[0].tangents(now), normal)
+        carried = CarriedAxes(opposite[1].tangents(now), opposite[1].carried)
         return cls(slave, tangents, mean, turned, mean_then, carried, held)
 
     @property
@@ -261,7 +267,7 @@ class ContactPlanes:
 
         Returns:
             Coordinates in planes that contain held directions, of what is across these, and the
-            axes of these planes as `Carried.by_master`; None where all is as it should be.
+            axes of these planes as `CarriedAxes.by_master`; None where all is as it should be.
         """
         axes = self.then.axes
         normal, away = unit_normal(axes), np.einsum("na,nai->ni", xi, axes)
@@ -270,7 +276,7 @@ class ContactPlanes:
         new = far | (np.linalg.norm(upright - normal, axis=1) > ROUNDING)
         if not new.any():
             return None
-        axes = Turned(axes, upright).axes
+        axes = TurnedTangents(axes, upright).axes
         coordinates = np.einsum("nai,ni->na", dual(axes), away - kept)
         by_master = np.where(
             new[:, None, None], in_tangents(self.then.tangents, axes), self.then.by_master

@@ -24,7 +24,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.contact.multipliers import RATIO, ContactTrial, Frames
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.interface import STATUS, Response, State
-from anisocontact.interface.series import History
+from anisocontact.interface.series import SeriesHistory
 
 #: Change of the multipliers over the tractions that is good enough to go on with a stiffer layer,
 #: or with none.
@@ -57,7 +57,7 @@ class Layer:
     def __init__(
         self,
         compliance: float,
-        histories: tuple[History, History],
+        histories: tuple[SeriesHistory, SeriesHistory],
         normal: Semismooth | None,
         master: Callable[[State], tuple[Floats, Floats]],
         comm: Any,
@@ -91,7 +91,7 @@ class Layer:
         self._shift(begun, self._histories[0], self._way.under(self._force), frames)
         return begun
 
-    def stiffer(self, compliance: float, histories: tuple[History, History]) -> None:
+    def stiffer(self, compliance: float, histories: tuple[SeriesHistory, SeriesHistory]) -> None:
         """Go on with a stiffer layer and the multipliers found so far."""
         way = replace(self._way, compliance=self._way.compliance * compliance / self._compliance)
         self._compliance, self._histories = compliance, histories
@@ -153,7 +153,7 @@ class Layer:
         force = step.now.vector(step.answer.state["traction"])
         return np.where((step.answer.status != _OPEN)[:, None], force, 0.0)
 
-    def _shift(self, state: State, history: History, way: Floats, now: Frames) -> None:
+    def _shift(self, state: State, history: SeriesHistory, way: Floats, now: Frames) -> None:
         """Let the slip of a state count from places farther on.
 
         Args:
@@ -177,7 +177,7 @@ class Layer:
         state["stored"] = np.einsum("nid,nd->ni", tangents, turned)
         state["origin"] = self._own["origin"] + state["xi"] - self._own["xi"]
 
-    def _start(self, history: History, before: Frames, now: Frames) -> Floats:
+    def _start(self, history: SeriesHistory, before: Frames, now: Frames) -> Floats:
         """Force that a law in series starts from, turned to where the points are, (n, 3)."""
         own, axes = self._own, self._way.axes
         force = before.turned_to(now, before.vector(own["stored"]))

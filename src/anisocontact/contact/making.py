@@ -89,7 +89,7 @@ class Options:
         }
 
 
-class Before(TypedDict, total=False):
+class DeprecatedArguments(TypedDict, total=False):
     """Arguments of `Contact` of before, for one more version."""
 
     interface: Interface
@@ -99,14 +99,14 @@ class Before(TypedDict, total=False):
 
 
 def before_this(
-    master: str | SurfaceMaster | None, before: Before
+    master: str | SurfaceMaster | None, before: DeprecatedArguments
 ) -> tuple[str | SurfaceMaster | None, bool | None]:
     """The master, also from arguments of before, and whether these mean slave nodes or points.
 
     Raises:
         TypeError: There are other arguments.
     """
-    if unknown := sorted(set(before) - set(Before.__annotations__)):
+    if unknown := sorted(set(before) - set(DeprecatedArguments.__annotations__)):
         raise TypeError(f"Contact() got an unexpected keyword argument {unknown[0]!r}")
     mortar = before.pop("two_half", False) or before.pop("overlaps", False)
     if mortar:

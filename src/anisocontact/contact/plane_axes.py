@@ -12,7 +12,7 @@ from anisocontact.base.array_types import Floats
 
 
 @dataclass(frozen=True)
-class Turned:
+class TurnedTangents:
     """Tangents of the master turned from its normal to that of the contact plane.
 
     The turn is the least one, e = d - (d . n) / (1 + m . n) (m + n), m the normal of d_1, d_2.
@@ -43,7 +43,7 @@ class Turned:
 
     @property
     def carried(self) -> Floats:
-        """The axes in both tangents and their normal, (n, 2, 3): what `Carried` takes."""
+        """The axes in both tangents and their normal, (n, 2, 3): what `CarriedAxes` takes."""
         return in_tangents(self.tangents, self.axes)
 
     @cached_property
@@ -59,7 +59,7 @@ class Turned:
 
 
 @dataclass(frozen=True)
-class Carried:
+class CarriedAxes:
     """Axes of the contact plane of the accepted increment, carried along with the master.
 
     e_a = A_ab d_b + B_a m, m the normal of d_1, d_2: what turned since is the angle between the
@@ -82,7 +82,7 @@ class Carried:
 
 
 def in_tangents(tangents: Floats, axes: Floats) -> Floats:
-    """Vectors e, (n, 2, 3), in two tangents d and their normal, (n, 2, 3), see `Carried`."""
+    """Vectors e, (n, 2, 3), in two tangents d and their normal, (n, 2, 3), see `CarriedAxes`."""
     both = np.concatenate([dual(tangents), unit_normal(tangents)[:, None]], axis=1)
     return np.asarray(np.einsum("nai,nbi->nab", axes, both, order="C"))
 

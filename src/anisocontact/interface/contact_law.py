@@ -13,7 +13,7 @@ from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.interface import series
 from anisocontact.interface.python_law import Look, PythonLaw, Update
-from anisocontact.interface.series import History
+from anisocontact.interface.series import SeriesHistory
 from anisocontact.interface.states import STATE, State, as_state, raw_state
 from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw, carried
 
@@ -87,7 +87,7 @@ class AdhesionAndFriction(Remade):
         adhesion = self.adhesion if times == 1.0 else self.adhesion.stiffened(times)
         return AdhesionAndFriction(adhesion, self.friction)
 
-    def in_series(self, compliance: float, dt: float) -> tuple[AdhesionAndFriction, History]:
+    def in_series(self, compliance: float, dt: float) -> tuple[AdhesionAndFriction, SeriesHistory]:
         """The law with a compliant layer behind adhesion, see `anisocontact.interface.series`."""
         adhesion, start = series.in_series(self.adhesion, compliance, dt)
         return AdhesionAndFriction(adhesion, self.friction), start
@@ -190,7 +190,7 @@ class ContactLaw(Remade):
         stiffer = self.tangential.stiffened(tangential)
         return ContactLaw(self.normal.stiffened(normal), stiffer, evolution=self.evolution)
 
-    def in_series(self, compliance: float, dt: float) -> tuple[ContactLaw, History]:
+    def in_series(self, compliance: float, dt: float) -> tuple[ContactLaw, SeriesHistory]:
         """The law with a compliant layer behind its tangential part.
 
         Args:

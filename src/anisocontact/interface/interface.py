@@ -14,7 +14,7 @@ from anisocontact.base.remade import Remade
 from anisocontact.base.typed import typed
 from anisocontact.interface.contact_law import VECTOR_FORMS, ContactLaw
 from anisocontact.interface.python_law import PythonLaw
-from anisocontact.interface.series import History
+from anisocontact.interface.series import SeriesHistory
 from anisocontact.interface.states import FAILURE, Response, SlaveSurface, State, as_state
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.surfaces import Surface, default_threads, points
@@ -101,7 +101,7 @@ class Interface(Remade):
         """The interface with other penalties, see `ContactLaw.stiffened`."""
         return self._with(self.law.stiffened(normal, tangential))
 
-    def in_series(self, compliance: float, dt: float) -> tuple[Interface, History]:
+    def in_series(self, compliance: float, dt: float) -> tuple[Interface, SeriesHistory]:
         """The interface with a compliant layer behind adhesion, see `ContactLaw.in_series`."""
         law, start = self.law.in_series(compliance, dt)
         return self._with(law), start

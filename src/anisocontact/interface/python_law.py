@@ -20,7 +20,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.errors import InputError
 from anisocontact.base.typed import typed
 from anisocontact.interface.law_in_series import LawInSeries
-from anisocontact.interface.series import History
+from anisocontact.interface.series import SeriesHistory
 from anisocontact.interface.states import STATE, State, as_state, raw_state
 from anisocontact.interface.tangential_law import (
     LawKinematics,
@@ -126,11 +126,11 @@ class PythonLaw:
         """The law as it is: it has no penalty."""
         return self
 
-    def in_series(self, compliance: float, dt: float) -> tuple[PythonLaw, History]:
+    def in_series(self, compliance: float, dt: float) -> tuple[PythonLaw, SeriesHistory]:
         """The law with a compliant layer behind it, see `LawInSeries`."""
         (one,) = self.carried
         law = LawInSeries(self.law, compliance)
-        return PythonLaw(law, directions=one.field, directions_on=one.on), History.unchanged()
+        return PythonLaw(law, directions=one.field, directions_on=one.on), SeriesHistory.unchanged()
 
     def slip_stiffness(self, dt: float) -> float:
         """Stiffness of the law against slip, see `law_stiffness`, stress/length."""

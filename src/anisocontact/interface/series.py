@@ -17,7 +17,7 @@ from anisocontact.laws import Adhesion
 
 
 @dataclass(frozen=True)
-class History:
+class SeriesHistory:
     """Force at no slip, `a = keeps T_n - recovers xi_el`, along the axes of an adhesion model.
 
     Attributes:
@@ -29,12 +29,12 @@ class History:
     recovers: Floats
 
     @classmethod
-    def unchanged(cls) -> History:
+    def unchanged(cls) -> SeriesHistory:
         """The force before."""
         return cls(np.eye(2), np.zeros((2, 2)))
 
 
-def trial_force(adhesion: Adhesion, dt: float) -> tuple[History, Floats]:
+def trial_force(adhesion: Adhesion, dt: float) -> tuple[SeriesHistory, Floats]:
     """What the trial force of an adhesion model is made of, by backward Euler.
 
     Args:
@@ -54,7 +54,7 @@ def trial_force(adhesion: Adhesion, dt: float) -> tuple[History, Floats]:
     w, a, b, c = _core.linear_model(*adhesion.named)
     inverse = np.linalg.inv(w * np.eye(2) + dt * np.asarray(a))
     recovers = inverse @ (-dt * np.asarray(c))
-    return History(w * inverse, recovers), inverse @ -np.asarray(b) + recovers
+    return SeriesHistory(w * inverse, recovers), inverse @ -np.asarray(b) + recovers
 
 
 def slip_stiffness(adhesion: Adhesion, dt: float) -> float:
@@ -72,7 +72,7 @@ def slip_stiffness(adhesion: Adhesion, dt: float) -> float:
     return float(np.linalg.norm(stiffness, ord=2)) if least >= 0.0 else 0.0
 
 
-def in_series(adhesion: Adhesion, compliance: float, dt: float) -> tuple[Adhesion, History]:
+def in_series(adhesion: Adhesion, compliance: float, dt: float) -> tuple[Adhesion, SeriesHistory]:
     """A model with a compliant layer behind it, for one increment of time.
 
     Args:
@@ -91,7 +91,7 @@ def in_series(adhesion: Adhesion, compliance: float, dt: float) -> tuple[Adhesio
     before, stiffness = trial_force(adhesion, dt)
     share = np.linalg.inv(np.eye(2) + compliance * stiffness)
     softer = share @ stiffness
-    start = History(share @ before.keeps, share @ before.recovers)
+    start = SeriesHistory(share @ before.keeps, share @ before.recovers)
     model, values = "elastic", {"stiffness": np.diag(softer).tolist()}
     if softer[0, 1] != 0.0 or softer[1, 0] != 0.0:
         model = "general-linear"

@@ -52,7 +52,7 @@ def solid(element: str) -> str:
 
 
 @dataclass(frozen=True)
-class Section:
+class SolidSection:
     """What a `*SOLID SECTION` says.
 
     Attributes:
@@ -95,7 +95,7 @@ class Deck:
     element_sets: dict[str, list[int]] = field(default_factory=dict)
     surfaces: dict[str, list[tuple[str, str]]] = field(default_factory=dict)
     profiles: dict[str, Profile] = field(default_factory=dict)
-    sections: dict[str, Section] = field(default_factory=dict)
+    sections: dict[str, SolidSection] = field(default_factory=dict)
     left_out: dict[str, int] = field(default_factory=dict)
     offsets: dict[str, int] = field(default_factory=dict)
     cards: list[tuple[int, Card]] = field(default_factory=list)
@@ -179,7 +179,7 @@ class Deck:
         first = next(card.fields(), [])
         thickness = first[0] if first else ""
         material, turn = (card.options.get(key, "") for key in ("MATERIAL", "ORIENTATION"))
-        self.sections[name] = Section(name.upper(), material, thickness, turn)
+        self.sections[name] = SolidSection(name.upper(), material, thickness, turn)
 
     def add_card(self, step: int, card: Card) -> None:
         """Keep what is not of the mesh.

@@ -19,7 +19,7 @@ from anisocontact.base.words import hint
 from anisocontact.mesh.arrays import MeshArrays, check_boundary, facet_owners
 from anisocontact.mesh.idealisation import SOLID, Idealisation
 from anisocontact.mesh.model import Model
-from anisocontact.mesh.msh import Block, MshFile, read_msh
+from anisocontact.mesh.msh import ElementBlock, MshFile, read_msh
 from anisocontact.mesh.quality import check_cells
 from anisocontact.mesh.split import Route, Split, arranged
 from anisocontact.mesh.stream import MshError
@@ -179,7 +179,9 @@ def _points_and_edges(mesh: MeshArrays, groups: dict[str, list[Ints]]) -> dict[s
     return found
 
 
-def _volumes(msh: MshFile, dim: int, bodies: Sequence[str] | None) -> list[tuple[str, Block]]:
+def _volumes(
+    msh: MshFile, dim: int, bodies: Sequence[str] | None
+) -> list[tuple[str, ElementBlock]]:
     named = [(name, block) for name, block in _named(msh, dim) if block.count]
     if not named:
         raise InputError("no named volume group; give each body a physical volume with a name")
@@ -200,7 +202,7 @@ def _volumes(msh: MshFile, dim: int, bodies: Sequence[str] | None) -> list[tuple
     return [(name, block) for name, block in named if bodies is None or name in bodies]
 
 
-def _named(msh: MshFile, dim: int) -> Iterator[tuple[str, Block]]:
+def _named(msh: MshFile, dim: int) -> Iterator[tuple[str, ElementBlock]]:
     for block in msh.blocks:
         if block.dim == dim:
             for group in block.groups:
@@ -208,7 +210,7 @@ def _named(msh: MshFile, dim: int) -> Iterator[tuple[str, Block]]:
                     yield msh.names[dim, group], block
 
 
-def _kind(blocks: list[Block]) -> tuple[str, int]:
+def _kind(blocks: list[ElementBlock]) -> tuple[str, int]:
     kinds = {block.kind for block in blocks}
     if not kinds <= set(CELLS):
         raise InputError(

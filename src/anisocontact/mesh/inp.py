@@ -13,7 +13,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Ints
 from anisocontact.base.errors import InputError
-from anisocontact.mesh.deck_contents import IDEAL, KNOWN, PLANE, SOLIDS, Deck, Section
+from anisocontact.mesh.deck_contents import IDEAL, KNOWN, PLANE, SOLIDS, Deck, SolidSection
 from anisocontact.mesh.deck_reader import read_deck
 from anisocontact.mesh.deck_supports import support_lines
 from anisocontact.mesh.tetrahedra import EDGES, FACES
@@ -172,7 +172,7 @@ def _notes(by_kind: dict[str, list[int]]) -> tuple[str, ...]:
 
 def bodies_of(deck: Deck) -> dict[int, str]:
     """Body of each element: of the last section that names it."""
-    sections = deck.sections or _apart(deck) or {"body": Section("")}
+    sections = deck.sections or _apart(deck) or {"body": SolidSection("")}
     found: dict[int, str] = {}
     for body, section in sections.items():
         key = section.elements
@@ -181,7 +181,7 @@ def bodies_of(deck: Deck) -> dict[int, str]:
     return found
 
 
-def _apart(deck: Deck) -> dict[str, Section]:
+def _apart(deck: Deck) -> dict[str, SolidSection]:
     """Sets that have every solid once and share no node: bodies where there are no sections."""
     solids = {number for number, (kind, _) in deck.elements.items() if kind in SOLIDS}
     left, found = set(solids), []
@@ -194,7 +194,7 @@ def _apart(deck: Deck) -> dict[str, Section]:
                 return {}
             left, taken = left - own, taken | nodes
             found.append(name)
-    return {} if left else {name: Section(name) for name in reversed(found)}
+    return {} if left else {name: SolidSection(name) for name in reversed(found)}
 
 
 def plain(name: str) -> str:

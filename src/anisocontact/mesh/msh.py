@@ -51,7 +51,7 @@ PIECE = 1 << 14
 
 
 @dataclass
-class Block:
+class ElementBlock:
     """Elements of one type with the same physical groups.
 
     Attributes:
@@ -82,7 +82,7 @@ class MshFile:
     """
 
     points: Floats = field(default_factory=lambda: np.zeros((0, 3)))
-    blocks: list[Block] = field(default_factory=list)
+    blocks: list[ElementBlock] = field(default_factory=list)
     names: dict[Entity, str] = field(default_factory=dict)
 
 
@@ -152,7 +152,7 @@ class _Sections:
     """How a version of the format writes nodes and elements."""
 
     nodes: Callable[[Stream, Any], tuple[Ints, Floats]]
-    elements: Callable[[Stream, Groups, Any], list[Block]]
+    elements: Callable[[Stream, Groups, Any], list[ElementBlock]]
 
 
 def _format(stream: Stream) -> _Sections:
@@ -214,7 +214,7 @@ def _part(own: tuple[int, int], before: int, count: int, last: bool) -> tuple[in
     return first, count if last else min(max(own[1] - before, first), count)
 
 
-def _elements_4(stream: Stream, entities: Groups, comm: Any) -> list[Block]:
+def _elements_4(stream: Stream, entities: Groups, comm: Any) -> list[ElementBlock]:
     blocks = []
     for _ in range(int(stream.sizes(4)[0])):
         dim, entity, kind = (int(v) for v in stream.ints(3))
@@ -222,7 +222,7 @@ def _elements_4(stream: Stream, entities: Groups, comm: Any) -> list[Block]:
         own = share_of(comm, count)
         rows = stream.rows(count, 1 + _node_count(kind), SIZE, own)
         groups = entities.get((dim, entity), ())
-        blocks.append(Block(kind, rows[:, 1:], groups, np.arange(*own), count))
+        blocks.append(ElementBlock(kind, rows[:, 1:], groups, np.arange(*own), count))
     return blocks
 
 
@@ -237,7 +237,7 @@ def _nodes_2(stream: Stream, comm: Any) -> tuple[Ints, Floats]:
     return table[:, 0].astype(np.int64), table[:, 1:]
 
 
-def _elements_2(stream: Stream, entities: Groups, comm: Any) -> list[Block]:
+def _elements_2(stream: Stream, entities: Groups, comm: Any) -> list[ElementBlock]:
     """Elements of the old format: an element of several groups is listed once for each."""
     rows: dict[tuple[int, int], _Growing] = {}
     left = stream.count() if stream.binary else int(stream.ints()[0])
@@ -278,9 +278,9 @@ class _Growing:
             self._nodes.append(nodes[own])
             self._places.append(places[own])
 
-    def block(self, kind: int, group: int) -> Block:
+    def block(self, kind: int, group: int) -> ElementBlock:
         places = np.concatenate(self._places)
-        return Block(kind, np.concatenate(self._nodes), (group,), places, self._count)
+        return ElementBlock(kind, np.concatenate(self._nodes), (group,), places, self._count)
 
 
 _VERSIONS = {

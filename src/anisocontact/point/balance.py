@@ -45,7 +45,7 @@ class PointInterface(Protocol):
 
 
 @dataclass(frozen=True)
-class Pose:
+class GroupPose:
     """Where the group is: reference, its foot, and arms in space.
 
     Args:
@@ -100,7 +100,7 @@ class Trial:
     """
 
     q: Floats
-    pose: Pose
+    pose: GroupPose
     response: Response
     force: Floats
     d_force: Floats
@@ -131,7 +131,7 @@ class PointBalance:
 
     interface: PointInterface
     state: State
-    pose: Pose
+    pose: GroupPose
     group: Group
     device: Device
     control: Control
@@ -188,7 +188,7 @@ class PointBalance:
             jacobian[-1, :3] = -self.stiffness * direction
         return Trial(
             q=q,
-            pose=Pose(q[:3], here, arms.vectors, self.pose.turn + turn),
+            pose=GroupPose(q[:3], here, arms.vectors, self.pose.turn + turn),
             response=response,
             force=force,
             d_force=d_force,

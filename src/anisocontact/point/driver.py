@@ -13,9 +13,9 @@ from anisocontact.base.typed import typed
 from anisocontact.interface import State
 from anisocontact.point.balance import (
     Control,
+    GroupPose,
     PointBalance,
     PointInterface,
-    Pose,
     StepError,
     Trial,
     shown,
@@ -115,7 +115,7 @@ class _Accepted:
 
     time: float
     state: State
-    pose: Pose
+    pose: GroupPose
     traction: Floats
     rows: Table
     step: Table
@@ -140,7 +140,7 @@ class _Runner:
                 f"it begins at {shown(start)}, where there is no surface under it", "load"
             )
         x = under.position + max(under.gap, 0.0) * under.normal
-        pose = Pose(x, foot(surface, x), self.group.arms(under))
+        pose = GroupPose(x, foot(surface, x), self.group.arms(under))
         state = self.interface.initial_state(pose.points)
         n = len(state)
         step = np.zeros((), dtype=STEP)

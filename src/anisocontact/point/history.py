@@ -14,7 +14,7 @@ import numpy.typing as npt
 from anisocontact.base.array_types import Floats
 from anisocontact.base.limits import FOLLOWED
 from anisocontact.interface import STATUS, Response
-from anisocontact.point.balance import Pose
+from anisocontact.point.balance import GroupPose
 from anisocontact.surfaces import Surface
 
 Table = npt.NDArray[np.void]
@@ -197,7 +197,7 @@ class StoppedError(RuntimeError):
         self.history = history
 
 
-def point_rows(surface: Surface, pose: Pose, response: Response) -> Table:
+def point_rows(surface: Surface, pose: GroupPose, response: Response) -> Table:
     """Rows of all points of a step, (n,) of `POINT`."""
     s, n = response.state, len(response.state)
     rows: Table = np.zeros(n, dtype=POINT)

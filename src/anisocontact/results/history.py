@@ -16,7 +16,7 @@ import numpy.typing as npt
 TEXT = ("step",)
 
 
-class History:
+class HistoryTable:
     """The table, a row appended at a time; a row is on disk before the next increment starts.
 
     Args:

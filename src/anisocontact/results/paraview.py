@@ -30,7 +30,7 @@ from anisocontact.solver import Problem
 _SYMMETRIC = ((0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2))
 
 
-class Bodies:
+class BodyGrid:
     """Displacement and stress of all bodies as a grid of VTK.
 
     Args:
@@ -145,7 +145,7 @@ class BodiesNow:
         trial: Whether it is the last trial.
     """
 
-    def __init__(self, bodies: Bodies, trial: bool = False) -> None:
+    def __init__(self, bodies: BodyGrid, trial: bool = False) -> None:
         self._bodies, self.problem, self._trial = bodies, bodies.problem, trial
 
     @property

@@ -12,8 +12,8 @@ import numpy as np
 from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import closest_cells, fem, reference_place, scalar_element
-from anisocontact.results.history import History
-from anisocontact.results.paraview import Bodies
+from anisocontact.results.history import HistoryTable
+from anisocontact.results.paraview import BodyGrid
 from anisocontact.results.quantities import NODE, quantities
 
 #: Distance over the size of the mesh by which a point may lie outside of all bodies.
@@ -42,7 +42,7 @@ class Probe:
         places = np.linspace(start, end, count)
         return cls(tuple((x, y, z) for x, y, z in places.tolist()), quantities=names)
 
-    def places(self, model: Any, field: str) -> Places:
+    def places(self, model: Any, field: str) -> ProbedPoints:
         """Where the points are in a mesh; collective.
 
         Raises:
@@ -56,11 +56,11 @@ class Probe:
         points = np.array(self.points, dtype=float).reshape(-1, 3)
         if self.group:
             points = _nodes_of(model, self.group, f"{field}.group")
-        return Places(points, *_interpolation(model, points, field))
+        return ProbedPoints(points, *_interpolation(model, points, field))
 
 
 @dataclass(frozen=True)
-class Places:
+class ProbedPoints:
     """Points in a mesh.
 
     Attributes:
@@ -88,7 +88,7 @@ class ProbeValues:
         InputError: A point lies in no body, or there is no such group or quantity.
     """
 
-    def __init__(self, probe: Probe, bodies: Bodies, field: str) -> None:
+    def __init__(self, probe: Probe, bodies: BodyGrid, field: str) -> None:
         self._bodies, self._comm = bodies, bodies.problem.comm
         self._places = probe.places(bodies.problem.model, field)
         self._quantities = [q for q in quantities(NODE) if q.name in probe.quantities]
@@ -121,9 +121,9 @@ class ProbeTable(ProbeValues):
         InputError: A point lies in no body, or there is no such group or quantity.
     """
 
-    def __init__(self, path: Path, probe: Probe, bodies: Bodies, name: str) -> None:
+    def __init__(self, path: Path, probe: Probe, bodies: BodyGrid, name: str) -> None:
         super().__init__(probe, bodies, f"output.probe.{name}")
-        self.history = History(path)
+        self.history = HistoryTable(path)
 
     def rows(self, when: Mapping[str, Any], values: Mapping[str, Floats]) -> list[dict[str, Any]]:
         """The rows of an increment."""
@@ -167,7 +167,7 @@ class Peak:
     def __call__(self, problem: Any, trial: bool) -> float:
         """The value in a state of the problem; collective."""
         if id(problem) not in self._values:
-            self._values = {id(problem): ProbeValues(self._probe, Bodies(problem), self._field)}
+            self._values = {id(problem): ProbeValues(self._probe, BodyGrid(problem), self._field)}
         values = self._values[id(problem)].values(trial)[self.quantity]
         names = _components(self.quantity, values.shape[1:])
         found = [i for i, name in enumerate(names) if name == self._component]

@@ -61,7 +61,7 @@ class Surfaces:
 
 
 @dataclass(frozen=True)
-class Patch:
+class MasterPatch:
     """A patch of an analytic master where it is now.
 
     Attributes:
@@ -75,12 +75,12 @@ class Patch:
     directions: Floats
 
 
-def _moved(number: int, contact: Contact, points: Floats, directions: Floats) -> Patch:
+def _moved(number: int, contact: Contact, points: Floats, directions: Floats) -> MasterPatch:
     """A patch where the rigid body is that carries it."""
     if contact.body is not None:
         points = contact.body.out_of_body(points)
         directions = contact.body.to_space(directions)
-    return Patch(np.full(len(points), number, dtype=np.int32), points, directions)
+    return MasterPatch(np.full(len(points), number, dtype=np.int32), points, directions)
 
 
 def _patch(contact: Any, comm: Any) -> tuple[Floats, Floats]:

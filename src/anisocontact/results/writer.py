@@ -22,9 +22,9 @@ from anisocontact.results.checkpoint import keep_checkpoint
 from anisocontact.results.dataset import DataSet
 from anisocontact.results.fields import FieldFiles
 from anisocontact.results.files import FAILED, Disk, clear, clear_drafts, write_text
-from anisocontact.results.history import History
+from anisocontact.results.history import HistoryTable
 from anisocontact.results.no_energy import energies_by_name
-from anisocontact.results.paraview import Bodies, slave_points
+from anisocontact.results.paraview import BodyGrid, slave_points
 from anisocontact.results.probes import Probe, ProbeTable
 from anisocontact.results.read import Results
 from anisocontact.results.resultants import Resultant
@@ -101,9 +101,9 @@ class Writer:
         self._disk.write(lambda: self._open(case, resumed is not None))
         self._observer = Observer(problem, self._steps, resultants)
         self._constants = _constants(problem, masters or [c.name for c in problem.contacts])
-        self._history = History(self.folder / "history.csv")
+        self._history = HistoryTable(self.folder / "history.csv")
         comm = problem.model.mesh.comm
-        self._bodies = Bodies(problem, quantities)
+        self._bodies = BodyGrid(problem, quantities)
         self._probes = self._probe_tables(probes)
         now = self._now(quantities)
         self._fields = FieldFiles(

@@ -47,10 +47,10 @@ def test_a_full_disk_loses_nothing(monkeypatch, capsys, case, whole, victim, sam
     The named file fails from the third accepted increment on.
     """
     from anisocontact.results import collection, writer
-    from anisocontact.results.history import History
+    from anisocontact.results.history import HistoryTable
 
     owner, name = {
-        "history": (History, "append"),
+        "history": (HistoryTable, "append"),
         "fields": (collection, "_write"),
         "summary": (writer, "write_text"),
         "checkpoint": (checkpoint, "save_checkpoint"),

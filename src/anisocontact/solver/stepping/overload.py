@@ -29,7 +29,7 @@ NONE = 1e-9
 
 
 @dataclass(frozen=True)
-class _Carried:
+class _ContactLoad:
     """What contact carries of a body.
 
     Attributes:
@@ -90,7 +90,7 @@ def _found(problem: Problem, load: Floats, over: float, by: Contact | None) -> I
             )
 
 
-def _holding(problem: Problem, free: FreeBody) -> _Carried | None:
+def _holding(problem: Problem, free: FreeBody) -> _ContactLoad | None:
     """Contact of a body in the accepted state; None where it is not flat, or there is none."""
     total, sizes, pairs = np.zeros(3), 0.0, []
     for contact in free.contacts:
@@ -104,7 +104,9 @@ def _holding(problem: Problem, free: FreeBody) -> _Carried | None:
     pushed = float(np.linalg.norm(total))
     if not pushed > FLAT * sizes > 0.0:
         return None
-    return _Carried(total / pushed, pushed, [(contact, size / sizes) for contact, size in pairs])
+    return _ContactLoad(
+        total / pushed, pushed, [(contact, size / sizes) for contact, size in pairs]
+    )
 
 
 def _limit(problem: Problem, contact: Contact, along: Floats) -> float:

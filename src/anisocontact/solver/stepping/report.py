@@ -11,7 +11,7 @@ from anisocontact.base.array_types import Floats
 from anisocontact.interface.failed_point import FailedPoint
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.imbalance import Imbalance
-from anisocontact.solver.system.rotations import Turned
+from anisocontact.solver.system.rotations import BodyRotation
 from anisocontact.solver.system.sides_kept import Behind
 
 
@@ -92,7 +92,7 @@ class Accepted:
     reactions: dict[str, Floats]
     energies: dict[str, float]
     ran_off: dict[str, Floats]
-    turned: dict[str, Turned]
+    turned: dict[str, BodyRotation]
     imbalance: Imbalance
     behind: tuple[Behind, ...] = ()
     relaxed: bool = False

@@ -24,7 +24,7 @@ from anisocontact.solver.terms.rigid import RigidBodies
 from anisocontact.solver.terms.term import Term, TermGroup
 
 
-class Prescribed(Protocol):
+class PrescribedUnknowns(Protocol):
     """Unknowns with prescribed values; see `Supports` and `Dirichlet`."""
 
     @property
@@ -79,7 +79,7 @@ class Assembly:
         layout: Layout,
         bodies: Bodies,
         contacts: Contacts,
-        conditions: Prescribed,
+        conditions: PrescribedUnknowns,
         constraints: Constraints,
         rigid: RigidBodies,
         holders: Sequence[Term] = (),

@@ -28,7 +28,7 @@ from anisocontact.solver.system.memory import BEGUN, Memory
 from anisocontact.solver.system.parts import make_parts
 from anisocontact.solver.system.reduction import Reduction
 from anisocontact.solver.system.reported import ReportedSystem
-from anisocontact.solver.system.rotations import Rotations, Turned
+from anisocontact.solver.system.rotations import BodyRotation, Rotations
 from anisocontact.solver.system.step_begin import begin_step, check_steps, contact_must_hold
 from anisocontact.solver.system.tangent import Tangent
 from anisocontact.solver.system.whole import Whole
@@ -308,7 +308,7 @@ class Problem(ReportedSystem):
     def behind_a_master(self, x: Vec) -> Culprit | None:
         return self.sides.objection(self.reduction.nodal(x), self.reduction.whole)
 
-    def turned(self, x: Vec) -> dict[str, Turned]:
+    def turned(self, x: Vec) -> dict[str, BodyRotation]:
         """How far bodies at small strain have turned in a state in equilibrium, by name."""
         if not self.rotations:
             return {}

@@ -6,7 +6,7 @@ from typing import Protocol
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import Vec
-from anisocontact.solver.system.rotations import Rotations, Turned
+from anisocontact.solver.system.rotations import BodyRotation, Rotations
 from anisocontact.solver.terms.persistent import Arrays
 
 
@@ -61,7 +61,7 @@ class Reduction(Protocol):
         """
         ...
 
-    def turned(self, rotations: Rotations, x: Vec, last: bool) -> dict[str, Turned]:
+    def turned(self, rotations: Rotations, x: Vec, last: bool) -> dict[str, BodyRotation]:
         """How far bodies have turned in a trial state in equilibrium, by name.
 
         Args:

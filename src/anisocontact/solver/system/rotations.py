@@ -43,7 +43,7 @@ _CHUNK = 20_000
 
 
 @dataclass(frozen=True)
-class Turned:
+class BodyRotation:
     """How far a body at small strain has turned from where it was made.
 
     Attributes:
@@ -142,8 +142,8 @@ class Rotations:
         self._model = model
         self._young = {n: law.young for n, law in sorted(materials.items()) if small_strain(law)}
         self._looked: dict[str, float] = {}
-        self._now: tuple[dict[str, Turned], dict[str, float]] = ({}, {})
-        self.accepted: dict[str, Turned] = {}
+        self._now: tuple[dict[str, BodyRotation], dict[str, float]] = ({}, {})
+        self.accepted: dict[str, BodyRotation] = {}
 
     def __bool__(self) -> bool:
         return bool(self._young)
@@ -152,7 +152,7 @@ class Rotations:
     def _bodies(self) -> dict[str, _Cells]:
         return {name: _Cells(self._model, name) for name in self._young}
 
-    def at(self, u: Floats) -> dict[str, Turned]:
+    def at(self, u: Floats) -> dict[str, BodyRotation]:
         """Rotation of every body in a state, kept as the trial.
 
         Args:
@@ -167,7 +167,7 @@ class Rotations:
         self._now = (found, {})
         return found
 
-    def reduced(self, known: PartlyKnown, x: Vec, last: bool) -> dict[str, Turned]:
+    def reduced(self, known: PartlyKnown, x: Vec, last: bool) -> dict[str, BodyRotation]:
         """Rotation of every body of which only some unknowns are kept up to date.
 
         The mean gradient is known without the interior. Rotations of cells need all
@@ -211,13 +211,13 @@ class Rotations:
         """Go on from what `persistent` gave."""
         for name, row in zip(self._young, kept.tolist(), strict=False):
             whole, largest, stress, turns, bent, self._looked[name] = row
-            self.accepted[name] = Turned(whole, largest, stress, bool(turns), bent)
+            self.accepted[name] = BodyRotation(whole, largest, stress, bool(turns), bent)
 
-    def _turned(self, name: str, gradient: Floats, largest: float, bent: float) -> Turned:
+    def _turned(self, name: str, gradient: Floats, largest: float, bent: float) -> BodyRotation:
         whole = polar_angle(gradient)
         strain = 0.5 * float(np.linalg.norm(gradient + gradient.T))
         stress = self._young[name] * spurious(max(whole, largest))
-        return Turned(whole, largest, stress, whole >= OF_STRAIN * strain, bent)
+        return BodyRotation(whole, largest, stress, whole >= OF_STRAIN * strain, bent)
 
 
 class _Cells:

@@ -11,7 +11,7 @@ from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.configuration import Configuration
 from anisocontact.solver.system.interior import with_interior
 from anisocontact.solver.system.parts import Parts
-from anisocontact.solver.system.rotations import Rotations, Turned
+from anisocontact.solver.system.rotations import BodyRotation, Rotations
 from anisocontact.solver.terms.persistent import Arrays
 
 
@@ -105,6 +105,6 @@ class Whole:
             self._system.evaluate_at(x)
         return np.asarray(self._parts.layout.comm.allreduce(weights @ self._bodies.nodal))
 
-    def turned(self, rotations: Rotations, x: Vec, last: bool) -> dict[str, Turned]:
+    def turned(self, rotations: Rotations, x: Vec, last: bool) -> dict[str, BodyRotation]:
         """As of `Reduction`."""
         return rotations.at(self.nodal(x))

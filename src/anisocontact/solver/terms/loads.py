@@ -13,7 +13,7 @@ from anisocontact.bulk import Material
 from anisocontact.contact import facet_quadrature
 from anisocontact.mesh import Model
 from anisocontact.solver.terms.prescribed import Prescribed
-from anisocontact.solver.terms.pressure import Given, Pressures
+from anisocontact.solver.terms.pressure import Given, PressureLoads
 from anisocontact.solver.terms.step import AXES, Goal, Step
 from anisocontact.solver.terms.term import Term, TermGroup
 
@@ -130,7 +130,7 @@ class Loads(TermGroup):
     """
 
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
-        self._dead, self._pressures = DeadLoads(model), Pressures(model, materials)
+        self._dead, self._pressures = DeadLoads(model), PressureLoads(model, materials)
         super().__init__([self._dead, self._pressures])
 
     def given(self, step: Step) -> Iterator[Given]:

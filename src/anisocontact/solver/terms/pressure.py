@@ -18,7 +18,7 @@ from anisocontact.solver.terms.step import Step
 from anisocontact.solver.terms.term import Term
 
 
-class Pressures(Term):
+class PressureLoads(Term):
     """Forces `-p n` on the area of now, n the outward normal of now.
 
     The force at node a is `-integral of N_a p (t_1 x t_2)` over the coordinates of the facet, with

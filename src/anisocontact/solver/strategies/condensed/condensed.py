@@ -16,7 +16,7 @@ from anisocontact.solver.strategies.condensed.patterns import InteriorState, Pro
 from anisocontact.solver.strategies.condensed.reach import Reach
 from anisocontact.solver.strategies.condensed.system import ContactSystem
 from anisocontact.solver.system.problem import Problem
-from anisocontact.solver.system.rotations import Kept, Rotations, Turned
+from anisocontact.solver.system.rotations import BodyRotation, Kept, Rotations
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
 
@@ -186,7 +186,7 @@ class Condensed:
         """Displacement of the nodes in a vector of all unknowns, (nodes, 3), length."""
         return np.array(x.array_r[: self._stiffness.shape[0]]).reshape(-1, 3)
 
-    def turned(self, rotations: Rotations, x: Vec, last: bool) -> dict[str, Turned]:
+    def turned(self, rotations: Rotations, x: Vec, last: bool) -> dict[str, BodyRotation]:
         """As of `Reduction`."""
         return rotations.reduced(self, x, last)
 

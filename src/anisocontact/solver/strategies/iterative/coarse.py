@@ -10,7 +10,7 @@ import numpy as np
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
-from anisocontact.solver.strategies.iterative.split import Split, sparse
+from anisocontact.solver.strategies.iterative.split import UnknownSplit, sparse
 from anisocontact.solver.strategies.newton import Database
 
 #: Diagonal over its largest entry below which a coarse unknown moves nothing.
@@ -45,7 +45,7 @@ class CoarseLevel:
         self,
         tangent: Mat,
         prolong: Mat,
-        split: Split,
+        split: UnknownSplit,
         scale: float,
         prefix: str,
         single: bool = True,

@@ -8,7 +8,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.solver.strategies.iterative.split import Split, sparse, weights
+from anisocontact.solver.strategies.iterative.split import UnknownSplit, sparse, weights
 from anisocontact.solver.system.problem import Problem
 
 #: Damping of the smoothed aggregation over the largest eigenvalue of the scaled matrix.
@@ -19,7 +19,9 @@ LANCZOS = 15
 DEPENDENT = 1e-8
 
 
-def interpolation(problem: Problem, tangent: Mat, split: Split, interior: Mat, prefix: str) -> Mat:
+def interpolation(
+    problem: Problem, tangent: Mat, split: UnknownSplit, interior: Mat, prefix: str
+) -> Mat:
     """From the coarse level to all unknowns.
 
     `P = (1 - w M J) T`: T takes the rigid motions of aggregates of the interior, and the patch as
@@ -103,7 +105,7 @@ def set_rigid_modes(interior: Mat, places: Floats) -> None:
     interior.setNearNullSpace(PETSc.NullSpace().create(vectors=modes, comm=comm))
 
 
-def _tentative(problem: Problem, split: Split, interior: Mat, prefix: str) -> Mat:
+def _tentative(problem: Problem, split: UnknownSplit, interior: Mat, prefix: str) -> Mat:
     """Rigid motions of the aggregates and the patch, without smoothing; given unknowns empty."""
     rows, columns, values, own = _aggregates(split, interior, prefix)
     inner, patch = split.interior.getIndices(), split.patch.getIndices()
@@ -129,7 +131,7 @@ def _tentative(problem: Problem, split: Split, interior: Mat, prefix: str) -> Ma
     )
 
 
-def _aggregates(split: Split, interior: Mat, prefix: str) -> tuple[Ints, Ints, Floats, int]:
+def _aggregates(split: UnknownSplit, interior: Mat, prefix: str) -> tuple[Ints, Ints, Floats, int]:
     """Entries of the rigid motions of aggregates of nodes, as GAMG makes them.
 
     Returns:

@@ -9,7 +9,7 @@ from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.solver.system.problem import Problem
 
 
-class Split:
+class UnknownSplit:
     """Where the unknowns of the interior and of the patch are.
 
     Args:
@@ -49,7 +49,9 @@ class Split:
         return PETSc.IS().createBlock(3, (self.first // 3 + nodes).astype(PETSc.IntType), comm)
 
 
-def interior_matrix(tangent: Mat, split: Split, scale: float, before: Mat | None = None) -> Mat:
+def interior_matrix(
+    tangent: Mat, split: UnknownSplit, scale: float, before: Mat | None = None
+) -> Mat:
     """Tangent of the interior, rows and columns of given unknowns emptied.
 
     Args:

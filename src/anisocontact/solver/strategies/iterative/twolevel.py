@@ -10,7 +10,7 @@ from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
 from anisocontact.solver.strategies.iterative.interpolation import interpolation
 from anisocontact.solver.strategies.iterative.patch import Patch
-from anisocontact.solver.strategies.iterative.split import Split, interior_matrix
+from anisocontact.solver.strategies.iterative.split import UnknownSplit, interior_matrix
 from anisocontact.solver.system.problem import Problem
 
 #: Given unknowns follow from given ones at most so often, with ties on a symmetry plane.
@@ -37,7 +37,7 @@ class TwoLevel:
         self, problem: Problem, patch: Patch, prefix: str, note: Callable[[str], None]
     ) -> None:
         self._problem, self._patch, self._prefix, self._note = problem, patch, prefix, note
-        self._split: Split | None = None
+        self._split: UnknownSplit | None = None
         self._interior: Mat | None = None
         self._smoother: PETSc.KSP | None = None
         self._coarse: CoarseLevel | None = None
@@ -101,7 +101,7 @@ class TwoLevel:
     def _build(self, tangent: Mat) -> None:
         self.close()
         problem, scale = self._problem, self._problem.assembly.scale
-        self._split = split = Split(problem, self._patch.select())
+        self._split = split = UnknownSplit(problem, self._patch.select())
         self._interior = interior = interior_matrix(tangent, split, scale)
         prolong = interpolation(problem, tangent, split, interior, f"{self._prefix}aggregates_")
         prefix = f"{self._prefix}coarse_"
