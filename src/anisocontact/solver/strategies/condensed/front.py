@@ -50,6 +50,7 @@ class Front:
         self.factor_operations = 2.0 / 3.0 * f**3
         self.operations = 2.0 * r * (r**2 / 3.0 + r * f + f**2)
         self._matrix: Singles | None = None
+        self._identity = scipy.sparse.diags_array(stays.astype(np.float32)).tocsr()
         if r:
             self._eliminate()
         elif shares.nnz:
@@ -77,8 +78,10 @@ class Front:
 
     def shares_with(self, now: Sparse) -> Sparse:
         """P of now, and that of this front where nothing is opposite any more."""
-        gone = scipy.sparse.diags_array((np.diff(now.indptr) == 0).astype(np.float32))
-        return (now + gone @ self.shares).tocsr()
+        gone = (np.diff(now.indptr) == 0) & (np.diff(self.shares.indptr) > 0)
+        if not gone.any():
+            return now
+        return (now + scipy.sparse.diags_array(gone.astype(np.float32)) @ self.shares).tocsr()
 
     def held(self, contact: Sparse, now: Sparse) -> Sparse:
         """What contacts do in v, in the unknowns that are not eliminated, (c, c).
@@ -89,9 +92,11 @@ class Front:
         """
         if not self.shares.nnz:
             return contact
-        stays = scipy.sparse.diags_array(self.stays.astype(np.float32))
-        moves = (self.shares_with(now) @ stays + stays).tocsr()
-        return (moves.T @ contact @ moves).tocsr()
+        moves = self.shares_with(now).copy()
+        moves.data *= self.stays[moves.indices]
+        moves.eliminate_zeros()
+        moves = (moves + self._identity).tocsr()
+        return moves.T.tocsr() @ contact @ moves
 
     def factor(self, held: Sparse) -> Callable[[Singles], Singles]:
         """LU with a matrix of `held`, as a function that solves for v with it.

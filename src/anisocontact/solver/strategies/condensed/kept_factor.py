@@ -63,6 +63,8 @@ class KeptFactor:
         self._front: Front | None = None
         self._solve: Callable[[Singles], Singles] | None = None
         self._made_of = self._none()
+        # the last of `_held`, and what it is of
+        self._last: tuple[Front, Sparse, Sparse] | None = None
         self._wear, self._front_wear = Wear(_LAST, _MARGIN), Wear(_LAST, _MARGIN)
         self.factors = 0
         self.iterations = 0
@@ -151,7 +153,7 @@ class KeptFactor:
         front = self._front
         if front is not None and (least <= _PRECISE or not self._moved(front)):
             return False
-        self._front = self._solve = front = None  # gives the memory back
+        self._front = self._solve = self._last = front = None  # gives the memory back
         self._begin(self._tangent.front())
         return True
 
@@ -164,7 +166,7 @@ class KeptFactor:
         """Make a factor with nothing eliminated."""
         if least < _USEFUL or (self._front is not None and self._front.stays.all()):
             return False
-        self._front = self._solve = None  # gives the memory back
+        self._front = self._solve = self._last = None  # gives the memory back
         self._begin(self._tangent.front(whole=True))
         return True
 
@@ -182,7 +184,10 @@ class KeptFactor:
 
     def _held(self, front: Front) -> Sparse:
         """What contacts of now do where slave nodes move against what is opposite, (c, c)."""
-        return front.held(self._tangent.summed, self._tangent.shares)
+        contact, last = self._tangent.summed, self._last
+        if last is None or last[0] is not front or last[1] is not contact:
+            last = self._last = front, contact, front.held(contact, self._tangent.shares)
+        return last[2]
 
     def _solutions(self, operations: float) -> float:
         """How many solutions with the whole cost as much as operations."""
