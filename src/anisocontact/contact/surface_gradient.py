@@ -14,6 +14,7 @@ import numpy as np
 
 from anisocontact import _core
 from anisocontact.base.array_types import Floats, Ints, Locals
+from anisocontact.base.arrays import connected
 from anisocontact.contact.facet_mesh import FacetMesh, facet_corners
 from anisocontact.surfaces import default_threads
 from anisocontact.surfaces.facets import FacetSurface
@@ -154,10 +155,6 @@ def _vertices(mesh: FacetMesh) -> Locals:
 
 def _smooth(topology: str, normals: Floats, nodes: Locals) -> Ints:
     """Groups of facets at a vertex between which the surface is smooth, (s,)."""
-    # SciPy takes a while to be imported
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     once = facet_corners(topology)
     first, second = once, once[1:] + once[:1]
     vertices = nodes.astype(np.int64)
@@ -171,9 +168,7 @@ def _smooth(topology: str, normals: Floats, nodes: Locals) -> Ints:
     same = np.flatnonzero((edge[1:] == edge[:-1]).all(axis=1))
     one, other = place[same].reshape(-1), place[same + 1].reshape(-1)
     fits = np.einsum("si,si->s", normals[one], normals[other]) > SHARP
-    pairs = one[fits], other[fits]
-    graph = coo_array((np.ones(len(pairs[0])), pairs), shape=(vertices.size, vertices.size))
-    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.int64)
+    return connected(vertices.size, np.stack([one[fits], other[fits]], axis=1))
 
 
 def _listed(owner: Ints, nodes: Locals, count: int) -> tuple[Locals, Ints]:
