@@ -196,6 +196,37 @@ nb::dict update(const FacetInterface& h, const Input& q) {
   return d;
 }
 
+/// Derivatives of the tractions of points that lie on the first node of their facets, with areas of one:
+/// columns of the nodes of the slave, of the master and of the facet on which the history was committed.
+template <bool tangent>
+nb::dict tractions(const FacetInterface& h, const Input& q) {
+  const std::size_t ks = q.batch.slave.width, km = q.batch.mesh.width, n = q.points;
+  const std::size_t near = 3 * (ks + km), columns = near + 3 * km;
+  Output out(n, q.batch);
+  Array<double> slopes({tangent ? n : 0, 3, columns}, h.pool);
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_for(n, q.threads, [&](std::size_t p) {
+      const kernel::PointState old = q.states[p];
+      Seen s;
+      q.batch.see(old, p, s);
+      kernel::PairSlopes by;
+      const auto r = q.update<tangent>(h, p, old, s.point, &by);
+      out.put(p, r, tangent ? &by : nullptr, s);
+      if constexpr (tangent) {
+        double* const to = slopes.data + 3 * p * columns;
+        if (touches(r))
+          kernel::traction_slopes(r, by, s.shapes, to);
+        else
+          std::fill_n(to, 3 * columns, 0.0);
+      }
+    });
+  }
+  nb::dict d = out.result();
+  d["slopes"] = slopes.array;
+  return d;
+}
+
 }  // namespace
 
 void bind_facet_interface(nb::module_& m) {
@@ -208,6 +239,9 @@ void bind_facet_interface(nb::module_& m) {
             []<bool>(const FacetInterface& h, const Input& q) { return law_input(h, q); });
   def_batch(c, "update", []<bool tangent>(const FacetInterface& h, const Input& q) {
     return update<tangent>(h, q);
+  });
+  def_batch(c, "tractions", []<bool tangent>(const FacetInterface& h, const Input& q) {
+    return tractions<tangent>(h, q);
   });
   def_batch(c, "assemble", []<bool tangent>(const FacetInterface& h, const Input& q) {
     return assemble<tangent>(h, q);

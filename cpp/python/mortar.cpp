@@ -143,39 +143,39 @@ nb::tuple MortarWeights::tangent(const Indices& which, const Cube& by, const Cub
   for (const auto& [first, named, values] : moving)
     parts.push_back(
         {first, values.shape(1), values.shape(2), named ? named->data() : nullptr, values.data()});
-  mortar::FacetRows of_facets(facets_, slaves);
+  std::vector<std::int32_t> chosen_at(facets_.size() * slaves, -1);
+  for (std::size_t q = 0; q < p; ++q)
+    for (std::size_t e = 0, i = chosen.node(q); e < patches_.facet.size(i); ++e)
+      chosen_at[static_cast<std::size_t>(patches_.facet.begin(i)[e]) * slaves +
+                static_cast<std::size_t>(patches_.local.begin(i)[e])] =
+          static_cast<std::int32_t>(q);
+  mortar::FacetRows of_facets(n, chosen, chosen_at);
   mortar::NodeRows of_nodes(n, chosen);
   const Array<double> by_facet({of_facets.size()}, given_.pool),
       by_node({of_nodes.size()}, given_.pool);
   Array<double> slopes({p, 3, n.columns(), mortar::column_size}, given_.pool);
   of_facets.use(by_facet.data);
   of_nodes.use(by_node.data, slopes.data);
-  std::vector<std::int32_t> chosen_at(facets_.size() * slaves, -1);
   std::vector<std::vector<std::int32_t>> columns;
   std::optional<mortar::ForceRows> rows;
   std::vector<std::size_t> offset{0};
   {
     nb::gil_scoped_release free;
-    for (std::size_t q = 0; q < p; ++q)
-      for (std::size_t e = 0, i = chosen.node(q); e < patches_.facet.size(i); ++e)
-        chosen_at[static_cast<std::size_t>(patches_.facet.begin(i)[e]) * slaves +
-                  static_cast<std::size_t>(patches_.local.begin(i)[e])] =
-            static_cast<std::int32_t>(q);
     kernel::parallel_pieces(facets_.size(), threads, [&](std::size_t first, std::size_t last) {
       mortar::WeightMemory memory;
       mortar::DualWeights one;
+      mortar::RowMemory kept(0);
       for (std::size_t f = first; f < last; ++f) {
-        const std::int32_t* const own = chosen_at.data() + f * slaves;
-        if (std::all_of(own, own + slaves, [](std::int32_t q) { return q < 0; })) continue;
+        if (!of_facets.any(f)) continue;
         find(f, true, memory, one);
-        of_facets.put(f, one);
+        of_facets.put(f, one, kept);
       }
     });
     kernel::parallel_pieces(p, threads, [&](std::size_t first, std::size_t last) {
       mortar::RowMemory memory(nodes);
       for (std::size_t q = first; q < last; ++q) of_nodes.find(q, of_facets, parts, memory);
     });
-    rows.emplace(n, chosen, chosen_at, of_nodes, of_facets, nodes);
+    rows.emplace(n, chosen, of_nodes, of_facets, nodes);
     columns.resize(rows->nodes().size());
     kernel::parallel_pieces(columns.size(), threads, [&](std::size_t first, std::size_t last) {
       std::vector<std::int32_t> seen(nodes, -1), found;

@@ -1,5 +1,6 @@
 // Surfaces of facets: closest points, neighbours, geometry.
 
+#include "anisocontact/projection/along_normal.hpp"
 #include "anisocontact/search/facing.hpp"
 
 #include <nanobind/stl/string.h>
@@ -111,6 +112,28 @@ nb::dict project(const FacetSurface& s, const Points& x, const Indices& hint,
   r["entity"] = entity.array;
   r["edge"] = edge.array;
   return r;
+}
+
+/// Where lines through points along unit vectors meet facets, and which do.
+nb::tuple met_along(const FacetSurface& s, const Indices& facet, const Coordinates& xi,
+                    const Points& x, const Points& normal, double opposed, std::size_t threads) {
+  check_facets(s, facet);
+  const std::size_t n = facet.shape(0);
+  Array<double> at({n, 2}, unset);
+  Array<bool> met({n}, unset);
+  {
+    nb::gil_scoped_release free;
+    kernel::parallel_for(n, threads, [&](std::size_t i) {
+      const std::int32_t f = facet.data()[i];
+      const projection::Meeting m = projection::along_normal(
+          [&](const std::array<double, 2>& at_xi) { return s.jet(f, at_xi); },
+          {xi.data()[2 * i], xi.data()[2 * i + 1]}, row3(x.data(), i), row3(normal.data(), i),
+          opposed);
+      std::copy(m.xi.begin(), m.xi.end(), at.data + 2 * i);
+      met.data[i] = m.met;
+    });
+  }
+  return nb::make_tuple(at.array, met.array);
 }
 
 nb::dict shapes(const FacetSurface& s, const Indices& facet, const Coordinates& xi) {
@@ -295,6 +318,8 @@ void bind_search(nb::module_& m) {
           "update", [](FacetSurface& s, const Points& x) { s.update(rows(x)); }, nb::arg("points"))
       .def("project", &project, nb::arg("x"), nb::arg("hint"), nb::arg("start"), nb::arg("limit"),
            nb::arg("offsets"), nb::arg("excluded"), nb::arg("threads"))
+      .def("met_along", &met_along, nb::arg("facet"), nb::arg("xi"), nb::arg("x"),
+           nb::arg("normal"), nb::arg("opposed"), nb::arg("threads"))
       .def("shapes", &shapes, nb::arg("facet"), nb::arg("xi"))
       .def(
           "jet",

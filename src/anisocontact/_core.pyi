@@ -184,6 +184,15 @@ class FacetSurface:
         excluded: NDArray[numpy.int32],
         threads: int,
     ) -> dict[str, NDArray[Any]]: ...
+    def met_along(
+        self,
+        facet: NDArray[numpy.int32],
+        xi: NDArray[numpy.float64],
+        x: NDArray[numpy.float64],
+        normal: NDArray[numpy.float64],
+        opposed: float,
+        threads: int,
+    ) -> Any: ...
     def shapes(
         self, facet: NDArray[numpy.int32], xi: NDArray[numpy.float64]
     ) -> dict[str, NDArray[Any]]: ...
@@ -259,6 +268,30 @@ class FacetInterface:
         outputs: NDArray[numpy.float64] | None = None,
     ) -> dict[str, NDArray[Any]]: ...
     def update(
+        self,
+        state: NDArray[numpy.uint8],
+        dt: float,
+        slave_nodes: NDArray[numpy.int32],
+        slave_shape: NDArray[numpy.float64],
+        slave_gradient: NDArray[numpy.float64],
+        weight: NDArray[numpy.float64],
+        current_area: bool,
+        now: NDArray[numpy.float64],
+        reference: NDArray[numpy.float64],
+        connectivity: NDArray[numpy.int32],
+        topology: NDArray[numpy.int8],
+        flip: NDArray[numpy.bool_],
+        facet: NDArray[numpy.int32],
+        xi: NDArray[numpy.float64],
+        feature: NDArray[numpy.int8],
+        edge: NDArray[numpy.float64],
+        held: NDArray[numpy.float64],
+        near: NDArray[numpy.bool_],
+        tangent: bool,
+        threads: int,
+        outputs: NDArray[numpy.float64] | None = None,
+    ) -> dict[str, NDArray[Any]]: ...
+    def tractions(
         self,
         state: NDArray[numpy.uint8],
         dt: float,

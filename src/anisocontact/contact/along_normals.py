@@ -156,29 +156,11 @@ def _across(v: Floats, normal: Floats) -> Floats:
 
 
 def _met(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple[Flags, Floats]:
-    """Whether normals meet facets inside, (n,), and where, (n, 2), by Newton's method."""
+    """Whether normals meet facets inside, (n,), and where, (n, 2)."""
     inside = at.feature == FEATURES.index("interior")
     xi = np.where(inside[:, None], at.xi, np.clip(at.xi, 0.0, 1.0))
-    flat = np.zeros(len(xi), dtype=bool)
-    for _ in range(MOST):
-        jet = sides.surface.jet(at.facet, xi)
-        first, second = _across(jet.d1[:, 0], normal), _across(jet.d1[:, 1], normal)
-        rest = _across(x - jet.position, normal)
-        metric = _dot(first, first), _dot(first, second), _dot(second, second)
-        own = [_dot(jet.d1[:, a], jet.d1[:, b]) for a, b in ((0, 0), (0, 1), (1, 1))]
-        area, below = (one[0] * one[2] - one[1] ** 2 for one in (own, metric))
-        flat |= below <= OPPOSED**2 * area
-        p, q, r = (one - _dot(jet.d2[:, k], rest) for k, one in enumerate(metric))
-        right = _dot(first, rest), _dot(second, rest)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            step = np.stack([r * right[0] - q * right[1], p * right[1] - q * right[0]], axis=1)
-            step /= (p * r - q * q)[:, None]
-        flat |= ~(np.abs(step).max(axis=1, initial=0.0) < 1.0 / ROUNDING)
-        step[flat] = 0.0
-        xi = xi + step
-        if np.abs(step).max(initial=0.0) <= ENOUGH:
-            break
-    return ~flat & (beyond_sides(sides.master.topology, xi) <= ROUNDING), xi
+    xi, met = sides.surface.met_along(at.facet, xi, x, normal, OPPOSED)
+    return met & (beyond_sides(sides.master.topology, xi) <= ROUNDING), xi
 
 
 def _ahead(sides: Sides, x: Floats, normal: Floats, at: FacetProjections) -> tuple[Floats, Flags]:

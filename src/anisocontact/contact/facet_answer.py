@@ -16,7 +16,7 @@ from anisocontact.contact.master_surface import MasterSurface
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.sides import Sides, located
 from anisocontact.interface import Response, State
-from anisocontact.interface.contact_law import FacetBatch, FacetLaw
+from anisocontact.interface.contact_law import FacetBatch, FacetLaw, Parts
 from anisocontact.surfaces.facets import FACET_STATUS, FacetProjections
 
 #: Code of the kernel for a point without a facet below it.
@@ -169,7 +169,8 @@ class Evaluation:
         """
         slave, hit = self.sides.points, self.hit
         batch = self.batch(state, tangent)
-        found = found_on_all(self.sides.comm, law, state, dt, batch, self.by_points)
+        of: Parts = "update" if self.by_points else "assemble"
+        found = found_on_all(self.sides.comm, law, state, dt, batch, of)
         lost = hit.status == FACET_STATUS.index("failed")
         response = response_of(found, lost)
         snapshot = Snapshot(slave.positions(self.now), found["area"], response)
@@ -226,7 +227,7 @@ def response_of(found: Mapping[str, Any], lost: Flags) -> Response:
 
 
 def found_on_all(
-    comm: Any, law: FacetLaw, state: State, dt: float, batch: FacetBatch, by_points: bool = True
+    comm: Any, law: FacetLaw, state: State, dt: float, batch: FacetBatch, of: Parts
 ) -> dict[str, Any]:
     """What a law answers for a batch; a mistake in a Python law is raised on every rank.
 
@@ -236,9 +237,9 @@ def found_on_all(
         state: History of the points.
         dt: Time increment.
         batch: Points and facets.
-        by_points: Whether every point is to have a block, or those of one pair of facets share one.
+        of: As of `FacetLaw.evaluate`.
     """
-    evaluate = partial(law.evaluate, state, by_points, dt, batch)
+    evaluate = partial(law.evaluate, state, of, dt, batch)
     return _on_all(comm, evaluate) if law.in_python else evaluate()
 
 

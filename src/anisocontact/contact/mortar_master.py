@@ -214,7 +214,7 @@ class MortarMaster(MeshedMaster):
     def _answer(self, law: FacetLaw, state: State, dt: float, tangent: bool) -> MortarAnswer:
         at = self._at
         batch = self._batch(state, tangent)
-        found = found_on_all(self._comm, law, state, dt, batch)
+        found = found_on_all(self._comm, law, state, dt, batch, "tractions")
         failed = self._hint.status == FACET_STATUS.index("failed")
         # supports carry what there is along directions that they hold
         held = at.planes.held
@@ -224,7 +224,7 @@ class MortarMaster(MeshedMaster):
         snapshot = Snapshot(at.planes.slave, at.weights.area, response)
         by_nodes, by_held = np.zeros((len(which), 3, 27)), np.zeros((len(which), 3, 3))
         if tangent:
-            by_nodes = -found["tangent"][which, :3]
+            by_nodes = found["slopes"][which]
             sliding = response.status[which] == SLIP
             by_held[sliding] = found["by_held"][which[sliding]]
         stiffness = found["stiffness"] * at.weights.area

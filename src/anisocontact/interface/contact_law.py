@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, TypedDict
+from typing import Any, Literal, TypedDict
 
 from anisocontact import _core
 from anisocontact.base import registry
@@ -20,6 +20,10 @@ from anisocontact.laws import Adhesion, Carried, Friction, NormalLaw, carried
 #: Forms of evolution whose history is turned as vectors: those that meshed masters, directions on
 #: the slave and multipliers can have.
 VECTOR_FORMS = ("transport", "backward-euler")
+#: What the core gives of slave points on facets, see `FacetLaw.evaluate`.
+type Parts = Literal["update", "assemble", "tractions"]
+#: How many stiffer laws a law keeps.
+_KEPT = 4
 
 
 @typed
@@ -147,6 +151,7 @@ class ContactLaw(Remade):
             self.tangential = AdhesionAndFriction(adhesion, friction)
         self.tangential.check_evolution(evolution)
         self.normal, self.evolution = normal, evolution
+        self._stiffer: dict[tuple[float, float], ContactLaw] = {}  # see `stiffened`
         self.dtype, self.carried = self.tangential.dtype, self.tangential.carried
         self.core = self.tangential.core(normal, evolution)
 
@@ -187,8 +192,13 @@ class ContactLaw(Remade):
         Returns:
             The law; the one given is unchanged.
         """
-        stiffer = self.tangential.stiffened(tangential)
-        return ContactLaw(self.normal.stiffened(normal), stiffer, evolution=self.evolution)
+        factors = normal, tangential
+        if factors not in self._stiffer:  # trials ask for the same again and again
+            stiffer = self.normal.stiffened(normal), self.tangential.stiffened(tangential)
+            if len(self._stiffer) == _KEPT:
+                self._stiffer.clear()
+            self._stiffer[factors] = ContactLaw(*stiffer, evolution=self.evolution)
+        return self._stiffer[factors]
 
     def in_series(self, compliance: float, dt: float) -> tuple[ContactLaw, SeriesHistory]:
         """The law with a compliant layer behind its tangential part.
@@ -246,15 +256,13 @@ class FacetLaw:
         self._tangential, self.in_python = law.tangential, law.tangential.in_python
         self.core = _core.FacetInterface(law.core)
 
-    def evaluate(
-        self, state: State, by_points: bool, dt: float, batch: FacetBatch
-    ) -> dict[str, Any]:
+    def evaluate(self, state: State, of: Parts, dt: float, batch: FacetBatch) -> dict[str, Any]:
         """Forces, blocks and the trial state.
 
         Args:
             state: Committed state, (n,).
-            by_points: Whether every point is to have a block, or those of one pair of facets share
-                one.
+            of: What is wanted of the points: forces, with a block for each of them or one for those
+                of a pair of facets, or derivatives of tractions.
             dt: Time increment.
             batch: The points and facets.
 
@@ -264,7 +272,7 @@ class FacetLaw:
         Raises:
             InputError: A law in Python failed, or returned arrays that cannot be.
         """
-        update = self.core.update if by_points else self.core.assemble
+        update = getattr(self.core, of)
         return self._tangential.through(
             state,
             dt,

@@ -144,7 +144,7 @@ class OnFacets(FailedPoint):
     def evaluate(self, shift: Floats | None = None) -> Evaluated:
         batch = self.batch if shift is None else self._moved(shift)
         law = self.law.on_facets()
-        found = law.evaluate(self.state, True, self.dt, batch)
+        found = law.evaluate(self.state, "update", self.dt, batch)
         own = self.batch["slave_nodes"].shape[1]
         block = found["tangent"][0, : 3 * own, : 3 * own].reshape(own, 3, own, 3)
         tangent = -block.sum(axis=(0, 2)) / found["area"][0]

@@ -251,6 +251,30 @@ class FacetSurface(Remade):
         r = self.core.shapes(*self._at(facet, xi))
         return r["value"], r["d1"], r["d2"]
 
+    def met_along(
+        self, facet: npt.ArrayLike, xi: npt.ArrayLike, x: Floats, normal: Floats, opposed: float
+    ) -> tuple[Floats, npt.NDArray[np.bool_]]:
+        """Where lines meet facets, or what these go on as beyond their sides.
+
+        Args:
+            facet: Facets, (n,).
+            xi: Coordinates from which to search, (n, 2).
+            x: Points of the lines, (n, 3), length.
+            normal: Unit vectors along them, (n, 3).
+            opposed: Least cosine of the angle to the normal of a facet that is met.
+
+        Returns:
+            Coordinates, (n, 2), and whether there is such a place, (n,).
+        """
+        found: tuple[Floats, npt.NDArray[np.bool_]] = self.core.met_along(
+            *self._at(facet, xi),
+            np.ascontiguousarray(x),
+            np.ascontiguousarray(normal),
+            opposed,
+            default_threads(),
+        )
+        return found
+
     def within(self, x: npt.ArrayLike, distance: float, threads: int | None = None) -> FacetSets:
         """Facets within a distance of each x; in the reference state, what self-contact excludes.
 

@@ -337,4 +337,24 @@ inline void add_tangent(const PairResult& r, const PairSlopes& d, const PairShap
   });
 }
 
+/// Writes the derivative of a point's traction times its area, three rows, by the nodes of the slave, of the
+/// master and of the facet on which the history was committed.
+inline void traction_slopes(const PairResult& r, const PairSlopes& d, const PairShapes& s,
+                            double* out) noexcept {
+  detail::with_counts(s.slave.count, s.master.count, [&](auto slaves, auto masters) {
+    with_longest([&]() ANISOCONTACT_INLINE_LAMBDA {
+      detail::ColumnRows rows;
+      detail::Columns columns(r, d, s);
+      const auto length = detail::entries(detail::total(slaves, masters));
+      const auto part = detail::entries(masters);
+      columns.own(slaves, masters, length, false, rows);
+      for (std::size_t i = 0; i < 3; ++i)
+        std::copy_n(rows.acting[0][i].data(), length, out + i * (length + part));
+      columns.before(masters, part, rows);
+      for (std::size_t i = 0; i < 3; ++i)
+        std::copy_n(rows.acting[0][i].data(), part, out + i * (length + part) + length);
+    });
+  });
+}
+
 }  // namespace anisocontact::kernel

@@ -24,12 +24,10 @@ class ForceRows {
     std::size_t of, master;
   };
 
-  /// `chosen_at` has the number of the nodes of each facet among those that are chosen, -1 for none.
-  ForceRows(const Nodes& n, const Chosen& chosen, const std::vector<std::int32_t>& chosen_at,
-            const NodeRows& slopes, const FacetRows& facets, std::size_t nodes)
+  ForceRows(const Nodes& n, const Chosen& chosen, const NodeRows& slopes, const FacetRows& facets,
+            std::size_t nodes)
       : n_(n),
         chosen_(chosen),
-        chosen_at_(chosen_at),
         slopes_(slopes),
         facets_(facets),
         by_node_(nodes),
@@ -68,8 +66,16 @@ class ForceRows {
     for (std::size_t c = 0; c < columns.size(); ++c)
       in.place[static_cast<std::size_t>(columns[c])] = static_cast<std::int32_t>(3 * c);
     with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
-      for (const NodeTerm& term : by_node_.of(row)) add(term, in);
-      for (const FacetTerm& term : by_facet_.of(row)) add(term, in);
+      const auto nodes = by_node_.of(row);
+      for (std::size_t j = 0; j < nodes.size(); ++j) {
+        if (j + 1 < nodes.size()) slopes_.prefetch(nodes[j + 1].of);
+        add(nodes[j], in);
+      }
+      const auto facets = by_facet_.of(row);
+      for (std::size_t j = 0; j < facets.size(); ++j) {
+        if (j + 1 < facets.size()) facets_.prefetch_force(facets[j + 1].of, facets[j + 1].master);
+        add(facets[j], in);
+      }
     });
     for (std::size_t x = 0; x < in.sums.size(); ++x)
       std::memcpy(out + 3 * x, &in.sums[x], 3 * sizeof *out);
@@ -97,19 +103,11 @@ class ForceRows {
   ANISOCONTACT_INLINE void add(const FacetTerm& term, RowMemory& in) const {
     const auto& masters = n_.facets[term.of].masters;
     const std::size_t slaves = n_.in.slave.width(), columns = slaves + masters.size();
-    std::array<detail::Outer, most> outer;
-    std::size_t count = 0;
-    for (std::size_t s = 0; s < slaves; ++s)
-      if (const std::int32_t q = chosen_at_[term.of * slaves + s]; q >= 0)
-        outer[count++] = {chosen_.traction + 3 * static_cast<std::size_t>(q),
-                          facets_.weight(term.of, s, term.master)};
-    in.rows.resize(9 * columns + column_size);
-    detail::sum_outers(count, [&](std::size_t o) { return outer[o]; }, 3 * columns, in.rows.data());
+    const double* const rows = facets_.force(term.of, term.master);
     for (std::size_t c = 0; c < columns; ++c) {
       const std::int32_t node = c < slaves ? n_.in.slave.node(term.of, c) : masters[c - slaves];
       Three* const to = in.sums.data() + in.place[static_cast<std::size_t>(node)];
-      for (std::size_t x = 0; x < 3; ++x)
-        to[x].add(1.0, Three::from(in.rows.data() + 3 * (x * columns + c)));
+      for (std::size_t x = 0; x < 3; ++x) to[x].add(1.0, Three::from(rows + 3 * (x * columns + c)));
     }
   }
 
@@ -130,12 +128,8 @@ class ForceRows {
   /// The same of facets.
   template <class Put>
   void each_facet(const Put& put) const {
-    const std::size_t slaves = n_.in.slave.width();
     for (std::size_t f = 0; f < n_.facets.size(); ++f) {
-      const auto first = chosen_at_.begin() + static_cast<std::ptrdiff_t>(f * slaves);
-      if (std::all_of(first, first + static_cast<std::ptrdiff_t>(slaves),
-                      [](std::int32_t q) { return q < 0; }))
-        continue;
+      if (!facets_.any(f)) continue;
       for (std::size_t k = 0; k < n_.facets[f].masters.size(); ++k)
         put(n_.facets[f].masters[k], FacetTerm{f, k});
     }
@@ -166,7 +160,6 @@ class ForceRows {
 
   const Nodes& n_;
   const Chosen& chosen_;
-  const std::vector<std::int32_t>& chosen_at_;
   const NodeRows& slopes_;
   const FacetRows& facets_;
   Sorted<NodeTerm> by_node_;

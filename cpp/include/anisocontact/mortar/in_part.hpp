@@ -41,11 +41,12 @@ class InPart {
                std::numeric_limits<double>::min();
   }
 
-  /// Solves for the coordinates of points, from the middle of the part.
+  /// Solves for the coordinates of points.
   ANISOCONTACT_INLINE bool locate(const PlanePoints& x, PlanePoints& s) const {
     constexpr int iterations = 20;
     constexpr double converged = 1e-14, enough = 1e-10;
     s[0] = s[1] = Batch(part_.corners == 3 ? 0.3 : 0.5);
+    if (bend_ >= converged) begin(x, s);
     for (int it = 0; it < iterations; ++it) {
       const Slopes j = slopes(s);
       const Batch r0 = x[0] - at(0, s), r1 = x[1] - at(1, s),
@@ -128,6 +129,21 @@ class InPart {
       out.by[i] = {Batch(c_[i][1]) + c_[i][3] * s[1], Batch(c_[i][2]) + c_[i][3] * s[0]};
     out.inverse = Batch(1.0) / (out.by[0][0] * out.by[1][1] - out.by[0][1] * out.by[1][0]);
     return out;
+  }
+  /// Coordinates of points from the quadratic equation (r - c_2 t) x (c_1 + c_3 t) = 0, r = x - c_0, but for
+  /// rounding; none where it has no solution.
+  ANISOCONTACT_INLINE void begin(const PlanePoints& x, PlanePoints& s) const {
+    const auto &a = c_[0], &b = c_[1];
+    const Batch r0 = x[0] - Batch(a[0]), r1 = x[1] - Batch(b[0]),
+                linear = b[3] * r0 - a[3] * r1 + Batch(a[1] * b[2] - b[1] * a[2]),
+                last = b[1] * r0 - a[1] * r1;
+    const double square = a[3] * b[2] - b[3] * a[2];
+    const Batch t = (-2.0 * last) / (linear + sqrt(linear * linear - (4.0 * square) * last)),
+                w0 = Batch(a[1]) + a[3] * t, w1 = Batch(b[1]) + b[3] * t,
+                u = ((r0 - a[2] * t) * w0 + (r1 - b[2] * t) * w1) / (w0 * w0 + w1 * w1);
+    double sum = 0.0;
+    for (std::size_t l = 0; l < batch; ++l) sum += u[l] * t[l];
+    if (std::isfinite(sum)) s = {u, t};
   }
   ANISOCONTACT_INLINE Batch at(std::size_t i, const PlanePoints& s) const {
     const auto& c = c_[i];

@@ -2,6 +2,7 @@
 // Numbers side by side that share vector registers.
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <type_traits>
@@ -78,6 +79,12 @@ class alignas(W * sizeof(double)) Lanes {
   }
   ANISOCONTACT_INLINE friend Lanes operator/(const Lanes& x, const Lanes& y) {
     return each(x, y, [](auto& a, const auto& b) ANISOCONTACT_INLINE_LAMBDA { a /= b; });
+  }
+  ANISOCONTACT_INLINE friend Lanes sqrt(const Lanes& x) {
+    std::array<double, L> roots;
+    x.to(roots.data());
+    for (double& one : roots) one = std::sqrt(one);
+    return from(roots.data());
   }
 
  private:

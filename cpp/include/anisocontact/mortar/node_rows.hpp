@@ -57,45 +57,15 @@ struct Nodes {
   }
 };
 
-/// Derivatives of the weights of facets, by the nodes of the facet and then its masters, (3 c): of the
-/// weights of its nodes, then of each of these on each master.
-class FacetRows {
- public:
-  FacetRows(const std::vector<DualWeights>& facets, std::size_t slaves)
-      : facets_(facets), slaves_(slaves), first_{0} {
-    for (const DualWeights& one : facets) {
-      const std::size_t k = one.masters.size();
-      first_.push_back(first_.back() + (k == 0 ? 0 : slaves * (1 + k) * 3 * (slaves + k)));
-    }
-  }
-  /// How many numbers there are, in memory that is handed over; what is read last ends behind them.
-  std::size_t size() const { return first_.back() + column_size; }
-  void use(double* memory) { memory_ = memory; }
-
-  /// Keeps those of a facet.
-  void put(std::size_t f, const DualWeights& own) const {
-    if (own.masters.empty()) return;
-    double* const to = memory_ + first_[f];
-    std::copy_n(own.d_area.data(), own.d_area.size(), to);
-    std::copy_n(own.d_weight.data(), own.d_weight.size(), to + own.d_area.size());
-  }
-  const double* area(std::size_t f, std::size_t s) const {
-    return memory_ + first_[f] + s * width(f);
-  }
-  const double* weight(std::size_t f, std::size_t s, std::size_t k) const {
-    return area(f, slaves_ + s * facets_[f].masters.size() + k);
-  }
-
- private:
-  std::size_t width(std::size_t f) const { return 3 * (slaves_ + facets_[f].masters.size()); }
-
-  const std::vector<DualWeights>& facets_;
-  std::size_t slaves_;
-  std::vector<std::size_t> first_;
-  double* memory_{nullptr};
-};
-
 namespace detail {
+
+/// Has numbers read that are needed soon: short runs of them far apart are not foreseen.
+inline void prefetch([[maybe_unused]] const double* first, [[maybe_unused]] std::size_t count) {
+#if defined(__GNUC__)
+  constexpr std::size_t line = 8;
+  for (std::size_t j = 0; j < count; j += line) __builtin_prefetch(first + j);
+#endif
+}
 
 /// A vector times a row.
 struct Outer {
@@ -129,7 +99,110 @@ struct RowMemory {
   explicit RowMemory(std::size_t nodes) : place(nodes, -1) {}
   std::vector<std::int32_t> place;
   std::vector<Three> sums;
-  std::vector<double> rows;
+  std::vector<const double*> lifts;
+};
+
+/// What follows of the derivatives of the weights of facets, by the nodes of a facet and then its masters,
+/// (3 c): of the weight and of the traction of each of its nodes, and of the force on each master. Weights
+/// have far more derivatives than what is kept of them, and these are put together while they are at hand.
+class FacetRows {
+ public:
+  /// `chosen_at` has the number of the nodes of each facet among those that are chosen, -1 for none.
+  FacetRows(const Nodes& n, const Chosen& chosen, const std::vector<std::int32_t>& chosen_at)
+      : n_(n), chosen_(chosen), chosen_at_(chosen_at), first_{0} {
+    const std::size_t slaves = n.in.slave.width();
+    for (std::size_t f = 0; f < n.facets.size(); ++f)
+      first_.push_back(first_.back() +
+                       (any(f) ? (4 * slaves + 3 * n.facets[f].masters.size()) * width(f) : 0));
+  }
+  /// How many numbers there are, in memory that is handed over; what is read last ends behind them.
+  std::size_t size() const { return first_.back() + column_size; }
+  void use(double* memory) { memory_ = memory; }
+
+  /// Whether a facet has masters and a node that is chosen.
+  bool any(std::size_t f) const {
+    const std::size_t slaves = n_.in.slave.width();
+    const std::int32_t* const own = chosen_at_.data() + f * slaves;
+    return !n_.facets[f].masters.empty() &&
+           std::any_of(own, own + slaves, [](std::int32_t q) { return q >= 0; });
+  }
+
+  /// Keeps those of a facet with its weights.
+  void put(std::size_t f, const DualWeights& own, RowMemory& memory) const {
+    const std::size_t slaves = n_.in.slave.width(), masters = own.masters.size(), size = width(f);
+    const double* const slope = own.d_weight.data();
+    double* const to = memory_ + first_[f];
+    std::copy_n(own.d_area.data(), own.d_area.size(), to);
+    memory.lifts.resize(slaves * masters);
+    std::array<detail::Outer, most> tractions;
+    std::array<std::size_t, most> node;
+    std::size_t count = 0;
+    for (std::size_t s = 0; s < slaves; ++s)
+      if (const std::int32_t q = chosen_at_[f * slaves + s]; q >= 0) {
+        const auto chosen = static_cast<std::size_t>(q);
+        lifts(chosen, own.masters, memory.lifts.data() + s * masters);
+        tractions[count] = {chosen_.traction + 3 * chosen, slope + s * masters * size};
+        node[count++] = s;
+      }
+    with_longest([&]() ANISOCONTACT_INLINE_LAMBDA {
+      for (std::size_t o = 0; o < count; ++o) {
+        const std::size_t s = node[o];
+        detail::sum_outers(
+            masters,
+            [&](std::size_t k) {
+              return detail::Outer{memory.lifts[s * masters + k], tractions[o].row + k * size};
+            },
+            size, to + (slaves + 3 * s) * size);
+      }
+      for (std::size_t k = 0; k < masters; ++k)
+        detail::sum_outers(
+            count,
+            [&](std::size_t o) {
+              return detail::Outer{tractions[o].v, tractions[o].row + k * size};
+            },
+            size, to + (4 * slaves + 3 * k) * size);
+    });
+  }
+  const double* area(std::size_t f, std::size_t s) const {
+    return memory_ + first_[f] + s * width(f);
+  }
+  /// Has the rows of a node read that are needed soon.
+  void prefetch_node(std::size_t f, std::size_t s) const {
+    detail::prefetch(area(f, s), width(f));
+    detail::prefetch(traction(f, s), 3 * width(f));
+  }
+  void prefetch_force(std::size_t f, std::size_t k) const {
+    detail::prefetch(force(f, k), 3 * width(f));
+  }
+  /// Of the traction of a node, (3, 3 c).
+  const double* traction(std::size_t f, std::size_t s) const {
+    return area(f, n_.in.slave.width() + 3 * s);
+  }
+  /// Of the force of the chosen nodes of a facet on a master, (3, 3 c), less what follows of tractions.
+  const double* force(std::size_t f, std::size_t k) const {
+    return area(f, 4 * n_.in.slave.width() + 3 * k);
+  }
+
+ private:
+  std::size_t width(std::size_t f) const {
+    return 3 * (n_.in.slave.width() + n_.facets[f].masters.size());
+  }
+  /// Derivatives of a traction by the weights on some of the masters of its node, both ascending.
+  void lifts(std::size_t q, const std::vector<std::int32_t>& masters, const double** to) const {
+    const std::int32_t* const all = n_.masters(chosen_.node(q));
+    const double* const lift = chosen_.lift + 3 * q * n_.weights.most;
+    std::size_t at = 0;
+    for (const std::int32_t node : masters) {
+      while (all[at] != node) ++at;
+      *to++ = lift + 3 * at;
+    }
+  }
+
+  const Nodes& n_;
+  const Chosen& chosen_;
+  const std::vector<std::int32_t>& chosen_at_;
+  std::vector<std::size_t> first_;
+  double* memory_{nullptr};
 };
 
 /// Derivatives at chosen slave nodes by their columns: of the weight, and of the traction.
@@ -144,6 +217,11 @@ class NodeRows {
     tractions_ = tractions;
   }
 
+  void prefetch(std::size_t q) const {
+    const std::size_t used = n_.patches.width + n_.count(chosen_.node(q));
+    for (std::size_t x = 0; x < 3; ++x)
+      detail::prefetch(traction(q) + x * width(), column_size * used);
+  }
   const double* area(std::size_t q) const { return areas_ + q * width(); }
   const double* traction(std::size_t q) const { return tractions_ + q * 3 * width(); }
 
@@ -156,6 +234,9 @@ class NodeRows {
     std::fill_n(areas_ + q * width(), width(), 0.0);
     std::fill_n(tractions_ + q * 3 * width(), 3 * width(), 0.0);
     with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
+      for (std::size_t e = 0; e < n_.patches.facet.size(i); ++e)
+        facets.prefetch_node(static_cast<std::size_t>(n_.patches.facet.begin(i)[e]),
+                             static_cast<std::size_t>(n_.patches.local.begin(i)[e]));
       for (std::size_t e = 0; e < n_.patches.facet.size(i); ++e) add_facet(q, e, facets, memory);
       for (const MovingPart& part : parts) add_part(q, part, memory.place);
     });
@@ -172,24 +253,17 @@ class NodeRows {
 
   /// Adds what follows of the weights on a facet around a node.
   ANISOCONTACT_INLINE void add_facet(std::size_t q, std::size_t e, const FacetRows& facets,
-                                     RowMemory& memory) const {
+                                     const RowMemory& memory) const {
     const std::size_t i = chosen_.node(q),
                       f = static_cast<std::size_t>(n_.patches.facet.begin(i)[e]),
                       s = static_cast<std::size_t>(n_.patches.local.begin(i)[e]);
     const auto& masters = n_.facets[f].masters;
     if (masters.empty()) return;
     const std::size_t slaves = n_.in.slave.width(), columns = slaves + masters.size();
-    const double* const lift = chosen_.lift + 3 * q * n_.weights.most;
     const auto place = [&](std::int32_t master) {
       return static_cast<std::size_t>(memory.place[static_cast<std::size_t>(master)]);
     };
-    memory.rows.resize(9 * columns + column_size);
-    detail::sum_outers(
-        masters.size(),
-        [&](std::size_t k) {
-          return detail::Outer{lift + 3 * place(masters[k]), facets.weight(f, s, k)};
-        },
-        3 * columns, memory.rows.data());
+    const double* const rows = facets.traction(f, s);
     double *const area = areas_ + q * width(), *const out = tractions_ + q * 3 * width();
     for (std::size_t c = 0; c < columns; ++c) {
       const std::size_t to =
@@ -197,8 +271,7 @@ class NodeRows {
                                     : n_.patches.width + place(masters[c - slaves]));
       add_three(1.0, Three::from(facets.area(f, s) + 3 * c), area + to);
       for (std::size_t x = 0; x < 3; ++x)
-        add_three(1.0, Three::from(memory.rows.data() + 3 * (x * columns + c)),
-                  out + x * width() + to);
+        add_three(1.0, Three::from(rows + 3 * (x * columns + c)), out + x * width() + to);
     }
   }
 
