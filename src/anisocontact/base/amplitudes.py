@@ -91,11 +91,9 @@ class Ramp:
         _KIND,
         "from 0 to 1 between two times, held before and after",
         (
-            Parameter("start", "scalar", "time", "where it leaves 0", required=False, default=(0,)),
+            Parameter("start", "scalar", "time", "where it leaves 0", default=(0,)),
             Parameter("end", "scalar", "time", "where it reaches 1"),
-            Parameter(
-                "smooth", "flag", "1", "without kinks at both ends", required=False, default=(0,)
-            ),
+            Parameter("smooth", "flag", "1", "without kinks at both ends", default=(0,)),
         ),
     )
 
@@ -127,10 +125,8 @@ class Sine:
         "offset + sin(2 pi t / period + phase)",
         (
             Parameter("period", "scalar", "time", "time of a cycle", "positive"),
-            Parameter(
-                "phase", "scalar", "angle", "angle at the time 0", required=False, default=(0,)
-            ),
-            Parameter("offset", "scalar", "1", "mean, added to it", required=False, default=(0,)),
+            Parameter("phase", "scalar", "angle", "angle at the time 0", default=(0,)),
+            Parameter("offset", "scalar", "1", "mean, added to it", default=(0,)),
         ),
     )
 
@@ -166,7 +162,6 @@ class Cycles:
                 "choice",
                 "1",
                 "straight, or smooth as (1 - cos(2 pi t / period)) / 2",
-                required=False,
                 default=(1,),
                 choices=("triangle", "haversine"),
             ),
@@ -175,7 +170,6 @@ class Cycles:
                 "flag",
                 "1",
                 "whether a cycle goes to 1 and to -1: 0, 1, 0, -1, 0",
-                required=False,
                 default=(0,),
             ),
             Parameter(

@@ -27,8 +27,8 @@ class Parameter:
         unit: Dimension, such as "length" or "stress/length"; "1" where there is none.
         doc: One line.
         bound: "any", "nonzero", "positive" or "non-negative".
-        required: Whether it must be given.
-        default: Value where it is not required.
+        required: Whether it must be given; never where there is a default.
+        default: Value where it is not given.
         choices: The words a "choice" may be.
         count: How many numbers a list must have, if its kind does not say so.
         isotropic: What one number is multiplied with where it is given in the place of a list, to
@@ -45,6 +45,10 @@ class Parameter:
     choices: tuple[str, ...] = ()
     count: int | None = None
     isotropic: tuple[float, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.default:
+            object.__setattr__(self, "required", False)
 
     @property
     def alike(self) -> tuple[float, ...]:

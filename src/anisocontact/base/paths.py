@@ -108,7 +108,6 @@ class Polyline:
                 "time",
                 "time from the first point to the last",
                 "positive",
-                required=False,
                 default=(1,),
             ),
         ),
@@ -152,21 +151,12 @@ class Circle:
         "a circle at one speed, begun anywhere on it",
         (
             Parameter("radius", "scalar", "length", "radius", "positive"),
-            Parameter(
-                "period",
-                "scalar",
-                "time",
-                "time of a turn",
-                "positive",
-                required=False,
-                default=(1,),
-            ),
+            Parameter("period", "scalar", "time", "time of a turn", "positive", default=(1,)),
             Parameter(
                 "start",
                 "scalar",
                 "angle",
                 "where on the circle it begins, counted from x (from y where the axis is x)",
-                required=False,
                 default=(0,),
             ),
             Parameter(
@@ -175,7 +165,6 @@ class Circle:
                 "1",
                 "direction it goes about, right-handed",
                 "nonzero",
-                required=False,
                 default=(0, 0, 1),
             ),
         ),

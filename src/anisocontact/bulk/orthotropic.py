@@ -29,7 +29,6 @@ _STRAIN = Parameter(
     "choice",
     "1",
     "strain that the stress is linear in: small, or of Green and Lagrange for bodies that turn",
-    required=False,
     default=(0.0,),
     choices=_STRAINS,
 )

@@ -138,7 +138,6 @@ STRAIN = Parameter(
     "choice",
     "1",
     "strain the law is written in: small, or logarithmic for bodies that turn or are strained far",
-    required=False,
     default=(0.0,),
     choices=tuple(STRAINS),
 )

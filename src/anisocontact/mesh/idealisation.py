@@ -35,7 +35,6 @@ _LATERAL = Parameter(
     "flag",
     "1",
     "whether displacements across the plane are unknowns (antiplane shear, twist), or zero",
-    required=False,
     default=(0.0,),
 )
 

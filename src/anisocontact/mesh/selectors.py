@@ -264,13 +264,7 @@ def _cylinder(
     "Facets whose outward normal is within an angle of a direction.",
     Parameter("direction", "vector", "1", "the direction", "nonzero"),
     Parameter(
-        "angle",
-        "scalar",
-        "angle",
-        "largest angle",
-        "positive",
-        required=False,
-        default=(math.radians(10.0),),
+        "angle", "scalar", "angle", "largest angle", "positive", default=(math.radians(10.0),)
     ),
 )
 def _normal(boundary: Boundary, direction: Sequence[float], angle: float) -> Flags:
@@ -288,7 +282,6 @@ def _normal(boundary: Boundary, direction: Sequence[float], angle: float) -> Fla
         "angle",
         "neighbouring facets whose normals differ by more have an edge between them",
         "positive",
-        required=False,
         default=(math.radians(30.0),),
     ),
 )

@@ -88,16 +88,10 @@ class RingSpec:
                 "scalar",
                 "angle",
                 "angle at which a sector starts, from x towards y",
-                required=False,
                 default=(0.0,),
             ),
             Parameter(
-                "end",
-                "scalar",
-                "angle",
-                "angle at which a sector ends",
-                required=False,
-                default=(2.0 * math.pi,),
+                "end", "scalar", "angle", "angle at which a sector ends", default=(2.0 * math.pi,)
             ),
             ratio_parameter("through the wall", "around", "along z"),
             focus_parameter("in the middle between start and end"),

@@ -59,19 +59,19 @@ def ratio_parameter(*axes: str) -> Parameter:
     doc = f"size of the last cell over the first {', '.join(axes)}"
     one = (1.0,) * len(axes)
     kind = {1: "scalar", 2: "pair", 3: "vector"}[len(axes)]
-    return Parameter("ratio", kind, "1", doc, "positive", required=False, default=one)
+    return Parameter("ratio", kind, "1", doc, "positive", default=one)
 
 
 def core_parameter() -> Parameter:
     """Parameter `core`: size of the blocks in the middle of round shapes."""
     doc = "distance of the corners of the inner block from the middle, as a share of the radius"
-    return Parameter("core", "scalar", "1", doc, "positive", required=False, default=(0.5,))
+    return Parameter("core", "scalar", "1", doc, "positive", default=(0.5,))
 
 
 def focus_parameter(where: str) -> Parameter:
     """Parameter `focus`: how fine cells are where contact is expected."""
     doc = f"size of the cells {where} over that of those farthest from there, around the shape"
-    return Parameter("focus", "scalar", "1", doc, "positive", required=False, default=(1.0,))
+    return Parameter("focus", "scalar", "1", doc, "positive", default=(1.0,))
 
 
 def check_focus(focus: float) -> None:
@@ -117,15 +117,7 @@ def spaced(shape: Shape, name: str, cells: int, ratio: float) -> Floats:
 
 def part_parameter(parts: Iterable[str]) -> Parameter:
     """Parameter `part`: how much of a round shape, all of it by default."""
-    return Parameter(
-        "part",
-        "choice",
-        "1",
-        "how much of it",
-        required=False,
-        default=(0.0,),
-        choices=tuple(parts),
-    )
+    return Parameter("part", "choice", "1", "how much of it", default=(0.0,), choices=tuple(parts))
 
 
 def check_shape(shape: Shape) -> None:
