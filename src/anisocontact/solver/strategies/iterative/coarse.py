@@ -1,82 +1,97 @@
-"""The coarse level: what the bodies give is kept, contact comes new with every tangent.
-
-Its factor is in single precision, in half of the memory and of the time, while that tells stiff
-contacts from soft bodies: Krylov iterations need no more of a preconditioner.
-"""
+"""A coarse level: what the bodies give is kept, contact comes new with every tangent."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Protocol
 
 import numpy as np
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
-from anisocontact.base.petsc_calls import check_memory
-from anisocontact.solver.strategies.iterative.split import UnknownSplit, sparse
-from anisocontact.solver.strategies.newton import Database
+from anisocontact.solver.strategies.iterative.split import sparse
 
 #: Diagonal over its largest entry below which a coarse unknown moves nothing.
 IDLE = 1e-13
-#: Error of a known solution, over it, up to which a factor in single precision is trusted.
-TRUSTED = 0.05
-#: Stiffness against motions of the aggregates that depend on each other, over the largest one.
-SHIFT = 1e-9
-#: Share of such a motion that is left of it in the bodies, up to which they are at rest.
-AT_REST = 1e-3
+
+
+class Inverse(Protocol):
+    """Exact or approximate inverse of the matrix of a coarse level."""
+
+    @property
+    def single(self) -> bool:
+        """Whether the factor at its end is in single precision."""
+
+    def renew(self, matrix: Mat, grown: bool, bodies: bool) -> bool:
+        """Take another matrix.
+
+        Args:
+            matrix: The matrix.
+            grown: Whether it has more entries than the last one.
+            bodies: Whether not only contact is another one.
+
+        Returns:
+            Whether it has an inverse.
+        """
+
+    def solve(self, right: Vec) -> Vec:
+        """Solution for a right-hand side; overwritten by the next call."""
+
+    def destroy(self) -> None:
+        """Give back PETSc's objects."""
 
 
 class CoarseLevel:
-    """Factor of `P^T J P`.
+    """Correction on the columns of an interpolation P from the matrix A of a level.
 
-    With E the rows of P in the patch and the patch's block of J, `P^T J P = G + E^T J_pp E`; G
+    With E the rows of P in the patch and the patch's block of A, `P^T A P = G + E^T A_pp E`; G
     changes with the bodies alone.
 
     Args:
-        tangent: Tangent J of all unknowns.
+        matrix: Matrix A of the finer level.
         prolong: P, which is taken over.
-        split: Where the patch is.
+        patch: Where the patch is on the finer level.
         scale: Diagonal of coarse unknowns that move nothing, force/length.
-        prefix: Prefix of the options of the solver.
-        single: Whether its factor is in single precision, where this PETSc can.
-
-    Attributes:
-        single: Whether it still is: from where that is not enough on it is in double precision.
+        inverse: Makes the inverse for the first matrix.
     """
 
     def __init__(
         self,
-        tangent: Mat,
+        matrix: Mat,
         prolong: Mat,
-        split: UnknownSplit,
+        patch: PETSc.IS,
         scale: float,
-        prefix: str,
-        single: bool = True,
+        inverse: Callable[[Mat], Inverse],
     ) -> None:
-        self._prolong, self._patch, self._scale = prolong, split.patch, scale
+        self._prolong, self._patch, self._scale = prolong, patch, scale
         first, last = prolong.getOwnershipRangeColumn()
         columns = PETSc.IS().createStride(last - first, first, 1, prolong.getComm())
-        self._lift = prolong.createSubMatrix(split.patch, columns)
+        self._lift = prolong.createSubMatrix(patch, columns)
         self._entries, self._grown = -1.0, False
         self._block: Mat | None = None
         self._contact: Mat | None = None
         self._matrix: Mat | None = None
-        self.single, self._prefix = single, prefix
-        self._solver = self._new_solver(tangent.getComm())
-        self._right, self._rest = prolong.createVecs()
-        self._left, self._correction = self._right.duplicate(), self._rest.duplicate()
-        self._bodies = self._without_contact(tangent)
+        self._make_inverse = inverse
+        self._inverse: Inverse | None = None
+        self._right, self._correction = prolong.createVecs()
+        self._bodies, self._other_bodies = self._without_contact(matrix), False
 
-    def renew(self, tangent: Mat) -> None:
+    @property
+    def single(self) -> bool:
+        """Whether the factor at the end of the levels is in single precision."""
+        assert self._inverse is not None
+        return self._inverse.single
+
+    def renew_bodies(self, matrix: Mat) -> None:
         """Take bodies that have changed."""
         self._bodies.destroy()
-        self._bodies = self._without_contact(tangent)
+        self._bodies, self._other_bodies = self._without_contact(matrix), True
 
-    def factorise(self, tangent: Mat) -> bool:
-        """Take the contact of a tangent; whether the coarse level has an inverse."""
-        self._take_contact(tangent)
-        if self._matrix is None or self._grown:
-            self._grown = False
+    def renew(self, matrix: Mat) -> bool:
+        """Take the contact of a matrix of the finer level; whether there is an inverse."""
+        self._take_contact(matrix)
+        grown, self._grown = self._grown, False
+        if self._matrix is None or grown:
             if self._matrix is not None:
-                # on several processes PETSc would keep the symbolic factorisation
-                self._solver.reset()
                 self._matrix.destroy()
             self._matrix = self._bodies.copy()
             different = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
@@ -86,107 +101,50 @@ class CoarseLevel:
             self._matrix.zeroEntries()
             for part in (self._bodies, self._contact):
                 self._matrix.axpy(1.0, part, structure=subset)
-        found = self._factorised()
-        if self.single and not (found and self._trusted()):
-            self.single = False
-            self._solver.destroy()
-            self._solver = self._new_solver(tangent.getComm())
-            found = self._factorised()
-        return found or self._factorised_with_shift()
+        if self._inverse is None:
+            self._inverse = self._make_inverse(self._matrix)
+        bodies, self._other_bodies = self._other_bodies, False
+        return self._inverse.renew(self._matrix, grown, bodies)
 
     def solve(self, rest: Vec) -> Vec:
-        """Correction of all unknowns for a residual; overwritten by the next call."""
+        """Correction of all unknowns of the finer level; overwritten by the next call."""
+        assert self._inverse is not None
         self._prolong.multTranspose(rest, self._right)
-        self._solver.solve(self._right, self._left)
-        self._prolong.mult(self._left, self._correction)
+        self._prolong.mult(self._inverse.solve(self._right), self._correction)
         return self._correction
 
     def destroy(self) -> None:
         """Give back PETSc's objects."""
-        parts = (self._solver, self._matrix, self._bodies, self._contact, self._block)
+        parts = (self._inverse, self._matrix, self._bodies, self._contact, self._block)
         for part in (*parts, self._lift, self._prolong):
             if part is not None:
                 part.destroy()
 
-    def _new_solver(self, comm: object) -> PETSc.KSP:
-        solver = PETSc.KSP().create(comm)
-        solver.setOptionsPrefix(self._prefix)
-        solver.setFromOptions()
-        return solver
-
-    def _factorised(self) -> bool:
-        """Factorise the matrix; whether it has an inverse."""
-        self._solver.setOperators(self._matrix)
-        with Database(self._prefix, {"pc_precision": "single" if self.single else "double"}):
-            self._solver.setUp()
-        failed = self._solver.getPC().getFailedReason() != 0
-        if failed:  # else every later factorisation would be said to have failed too
-            check_memory(self._solver.getPC())
-            self._solver.reset()
-        return not failed
-
-    def _factorised_with_shift(self) -> bool:
-        """Factorise where motions of aggregates depend on each other, as those of few nodes may.
-
-        Their combination moves nothing, so that any stiffness serves for it.
-
-        Returns:
-            Whether there are such motions alone that nothing holds.
-        """
-        assert self._matrix is not None
-        diagonal = self._matrix.getDiagonal()
-        diagonal.abs()
-        self._matrix.shift(SHIFT * diagonal.max()[1])
-        if not self._factorised():
-            return False
-        _set_any(self._right)
-        self._solver.solve(self._right, self._left)
-        self._prolong.mult(self._left, self._correction)
-        return bool(self._correction.norm() <= AT_REST * self._left.norm())
-
-    def _trusted(self) -> bool:
-        """Whether the factor finds a known solution: of pivots that are rounding nothing tells."""
-        assert self._matrix is not None
-        known = self._left.duplicate()
-        _set_any(known)
-        self._matrix.mult(known, self._right)
-        self._solver.solve(self._right, self._left)
-        self._left.axpy(-1.0, known)
-        error, size = self._left.norm(), known.norm()
-        known.destroy()
-        return bool(error <= TRUSTED * size)
-
-    def _take_contact(self, tangent: Mat) -> None:
-        """Set `E^T J_pp E`."""
-        entries = tangent.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"]
+    def _take_contact(self, matrix: Mat) -> None:
+        """Set `E^T A_pp E`."""
+        entries = matrix.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"]
         if entries != self._entries:
             self._entries, self._grown = entries, True
             for part in (self._block, self._contact):
                 if part is not None:
                     part.destroy()
             self._block = self._contact = None
-        self._block = tangent.createSubMatrix(self._patch, self._patch, self._block)
+        self._block = matrix.createSubMatrix(self._patch, self._patch, self._block)
         self._contact = self._block.ptap(self._lift, self._contact)
 
-    def _without_contact(self, tangent: Mat) -> Mat:
+    def _without_contact(self, matrix: Mat) -> Mat:
         """G, with a diagonal where neither the bodies nor contact have one."""
-        whole = tangent.ptap(self._prolong)
+        whole = matrix.ptap(self._prolong)
         diagonal = np.abs(whole.getDiagonal().array_r)
-        comm = tangent.getComm()
+        comm = matrix.getComm()
         largest = max(comm.tompi4py().allgather(float(diagonal.max(initial=0.0))))
         first, _ = whole.getOwnershipRange()
         idle = first + np.flatnonzero(diagonal <= IDLE * largest)
         own, _ = whole.getLocalSize()
         unit = sparse(own, own, comm, (idle, idle), np.full(len(idle), self._scale))
-        self._take_contact(tangent)
+        self._take_contact(matrix)
         different = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
         for factor, part in ((1.0, unit), (-1.0, self._contact)):
             whole.axpy(factor, part, structure=different)
         unit.destroy()
         return whole
-
-
-def _set_any(vector: Vec) -> None:
-    """Any numbers without symmetry, the same on any number of processes."""
-    first, last = vector.getOwnershipRange()
-    vector.array[:] = np.modf(np.arange(first, last) * 0.754877666)[0] - 0.5

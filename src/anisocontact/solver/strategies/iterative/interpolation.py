@@ -1,15 +1,15 @@
-"""The coarse level: aggregates of the interior, and the patch as it is."""
+"""From one level to the next: aggregates of its interior, and the patch as it is."""
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Protocol
 
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.solver.strategies.iterative.split import UnknownSplit, sparse, weights
-from anisocontact.solver.system.problem import Problem
+from anisocontact.solver.strategies.iterative.split import Split, sparse, weights
 
 #: Damping of the smoothed aggregation over the largest eigenvalue of the scaled matrix.
 DAMPING = 4.0 / 3.0
@@ -19,35 +19,105 @@ LANCZOS = 15
 DEPENDENT = 1e-8
 
 
-def interpolation(
-    problem: Problem, tangent: Mat, split: UnknownSplit, interior: Mat, prefix: str
-) -> Mat:
-    """From the coarse level to all unknowns.
+@dataclass(frozen=True)
+class Aggregates:
+    """Rigid motions of the aggregates of a level's interior, as GAMG makes them.
 
-    `P = (1 - w M J) T`: T takes the rigid motions of aggregates of the interior, and the patch as
-    it is; one Jacobi step smooths it in the interior, where M is the inverse diagonal and w is 4/3
-    over the largest eigenvalue of M J [Vanek, Mandel, Brezina 1996]. Given unknowns are left out,
-    constrained ones follow.
+    Attributes:
+        rows: Row of each entry in this rank's part of the interior.
+        columns: Motion of each entry, numbered over all ranks.
+        values: The entries.
+        own: Number of motions of this rank.
+        count: Number of motions of all ranks.
+    """
+
+    rows: Ints
+    columns: Ints
+    values: Floats
+    own: int
+    count: int
+
+
+_NONE = np.zeros(0, dtype=np.int64)
+NOTHING = Aggregates(_NONE, _NONE, np.zeros(0), 0, 0)
+
+
+class Parts(Protocol):
+    """Where the unknowns of a level are."""
+
+    @property
+    def interior(self) -> PETSc.IS:
+        """Unknowns that have aggregates."""
+
+    @property
+    def patch(self) -> PETSc.IS:
+        """Unknowns that stay."""
+
+    @property
+    def given(self) -> Ints:
+        """Unknowns with a row of their own, local numbers."""
+
+
+def tentative(found: Aggregates, parts: Parts, matrix: Mat) -> Mat:
+    """T: from motions of aggregates and the patch to the unknowns of a level, without smoothing.
+
+    Columns of a process are its aggregates, then its patch. Given unknowns have empty rows.
 
     Args:
-        problem: The problem.
-        tangent: Tangent J of all unknowns.
-        split: Interior and patch.
-        interior: Tangent of the interior.
-        prefix: Prefix of the options of GAMG.
+        found: The aggregates.
+        parts: Where the unknowns of the level are.
+        matrix: Matrix of the level.
     """
-    tentative = problem.constraints.spread(_tentative(problem, split, interior, prefix))
-    if split.empty:
-        return tentative
-    diagonal = interior.getDiagonal()
-    size = DAMPING / largest_eigenvalue(interior)
-    scaled = weights(problem.new_vector(), split.interior, 1.0 / diagonal)
-    scaled.array[split.given] = 0.0
-    step = tangent.matMult(tentative)
+    comm, patch = matrix.getComm().tompi4py(), parts.patch.getIndices()
+    counts = np.array(comm.allgather((found.own, len(patch)))).reshape(-1, 2)
+    starts = np.concatenate([[0], np.cumsum(counts[:, 0])])
+    shift = np.concatenate([[0], np.cumsum(counts[:, 1])])
+    owner = np.searchsorted(starts, found.columns, side="right") - 1
+    behind = starts[comm.rank] + shift[comm.rank] + found.own
+    rows = np.concatenate([parts.interior.getIndices()[found.rows], patch])
+    columns = np.concatenate([found.columns + shift[owner], behind + np.arange(len(patch))])
+    values = np.concatenate([found.values, np.ones(len(patch))])
+    first, last = matrix.getOwnershipRange()
+    moves = np.ones(last - first, dtype=bool)
+    moves[parts.given] = False
+    kept = moves[rows - first]
+    at = (rows[kept], columns[kept])
+    return sparse(last - first, found.own + len(patch), comm, at, values[kept])
+
+
+def smoothed(rough: Mat, matrix: Mat, inside: Mat, parts: Parts) -> Mat:
+    """`P = (1 - w M A) T` from a tentative interpolation T, which is taken over.
+
+    M is the inverse diagonal in the interior and zero elsewhere, w is 4/3 over the largest
+    eigenvalue of M A [Vanek, Mandel, Brezina 1996]. M is zero, too, in rows that the patch is
+    coupled with: smoothed, they would couple all of the patch that is near an aggregate.
+
+    Args:
+        rough: T.
+        matrix: Matrix A of the level.
+        inside: Its interior.
+        parts: Where the unknowns of the level are.
+    """
+    if parts.interior.getSize() == 0:
+        return rough
+    size = DAMPING / largest_eigenvalue(inside)
+    inverse = 1.0 / inside.getDiagonal()
+    inverse.array[_beside(matrix, parts)] = 0.0
+    scaled = weights(matrix.createVecLeft(), parts.interior, inverse)
+    scaled.array[parts.given] = 0.0
+    step = matrix.matMult(rough)
     step.diagonalScale(L=scaled)
-    tentative.axpy(-size, step, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+    rough.axpy(-size, step, PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
     step.destroy()
-    return _without_zeros(tentative)
+    return _without_zeros(rough)
+
+
+def _beside(matrix: Mat, parts: Parts) -> Ints:
+    """Unknowns of the interior that the patch is coupled with, local numbers in it."""
+    block = matrix.createSubMatrix(parts.interior, parts.patch)
+    starts, _, values = block.getValuesCSR()
+    block.destroy()
+    return np.unique(np.repeat(np.arange(len(starts) - 1), np.diff(starts))[values != 0.0])
 
 
 def _without_zeros(matrix: Mat) -> Mat:
@@ -105,41 +175,10 @@ def set_rigid_modes(interior: Mat, places: Floats) -> None:
     interior.setNearNullSpace(PETSc.NullSpace().create(vectors=modes, comm=comm))
 
 
-def _tentative(problem: Problem, split: UnknownSplit, interior: Mat, prefix: str) -> Mat:
-    """Rigid motions of the aggregates and the patch, without smoothing; given unknowns empty."""
-    rows, columns, values, own = _aggregates(split, interior, prefix)
-    inner, patch = split.interior.getIndices(), split.patch.getIndices()
-    comm = problem.comm
-    # columns of this rank: its aggregates, then its patch
-    counts = np.array(comm.allgather((own, len(patch)))).reshape(-1, 2)
-    starts = np.concatenate([[0], np.cumsum(counts[:, 0])])
-    shift = np.concatenate([[0], np.cumsum(counts[:, 1])])
-    owner = np.searchsorted(starts, columns, side="right") - 1
-    first = starts[comm.rank] + shift[comm.rank] + own
-    at_rows = np.concatenate([inner[rows], patch])
-    at_columns = np.concatenate([columns + shift[owner], first + np.arange(len(patch))])
-    entries = np.concatenate([values, np.ones(len(patch))])
-    given = np.zeros(split.last - split.first, dtype=bool)
-    given[split.given] = True
-    kept = ~given[at_rows - split.first]
-    return sparse(
-        split.last - split.first,
-        own + len(patch),
-        comm,
-        (at_rows[kept], at_columns[kept]),
-        entries[kept],
-    )
-
-
-def _aggregates(split: UnknownSplit, interior: Mat, prefix: str) -> tuple[Ints, Ints, Floats, int]:
-    """Entries of the rigid motions of aggregates of nodes, as GAMG makes them.
-
-    Returns:
-        Row in this rank's part of the interior, column, value, and number of columns of this rank.
-    """
-    nothing = np.zeros(0, dtype=np.int64)
+def aggregates(split: Split, interior: Mat, prefix: str) -> list[Aggregates]:
+    """Aggregates of the interior, aggregates of those, and so on, the finest ones first."""
     if split.empty:
-        return nothing, nothing, np.zeros(0), 0
+        return [NOTHING]
     set_rigid_modes(interior, split.places)
     pc = PETSc.PC().create(interior.getComm())
     pc.setOptionsPrefix(prefix)
@@ -147,12 +186,14 @@ def _aggregates(split: UnknownSplit, interior: Mat, prefix: str) -> tuple[Ints, 
     pc.setType(PETSc.PC.Type.GAMG)
     pc.setFromOptions()
     pc.setUp()
-    if pc.getMGLevels() < 2:
-        pc.destroy()
-        return nothing, nothing, np.zeros(0), 0
-    found = pc.getMGInterpolation(pc.getMGLevels() - 1)
-    starts, columns, values = found.getValuesCSR()
-    rows = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
-    (_, _), (own, _) = found.getSizes()
+    levels = range(pc.getMGLevels() - 1, 0, -1)
+    found = [_aggregates(pc.getMGInterpolation(level)) for level in levels]
     pc.destroy()
-    return rows, columns.astype(np.int64), values, int(own)
+    return found or [NOTHING]
+
+
+def _aggregates(matrix: Mat) -> Aggregates:
+    starts, columns, values = matrix.getValuesCSR()
+    rows = np.repeat(np.arange(len(starts) - 1), np.diff(starts))
+    (_, _), (own, count) = matrix.getSizes()
+    return Aggregates(rows, columns.astype(np.int64), values, int(own), int(count))

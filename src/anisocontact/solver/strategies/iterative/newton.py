@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
+from anisocontact.solver.strategies.iterative.levels import Levels
 from anisocontact.solver.strategies.iterative.patch import Patch
-from anisocontact.solver.strategies.iterative.twolevel import TwoLevel
 from anisocontact.solver.strategies.newton import Newton, NewtonResult, OptionValue
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step
@@ -16,9 +16,9 @@ DEFAULTS: dict[str, OptionValue] = {
     "ksp_gmres_restart": 60,
     "ksp_max_it": 180,
     "pc_type": "python",
-    # aggregates alone: they are smoothed with what is known of the patch, and need no levels
+    # aggregates alone: they are smoothed with what is known of the patch
     "aggregates_pc_gamg_agg_nsmooths": 0,
-    "aggregates_pc_gamg_coarse_eq_limit": 10**9,
+    "aggregates_pc_gamg_coarse_eq_limit": 1000,
     "smoother_ksp_type": "chebyshev",
     "smoother_ksp_max_it": 2,
     "smoother_pc_type": "jacobi",
@@ -39,7 +39,7 @@ TOLD = 3
 
 
 class IterativeNewton(Newton):
-    """SNES with FGMRES and two levels, see `TwoLevel`.
+    """SNES with FGMRES and levels, see `Levels`.
 
     A correction is as precise as Newton's next residual asks for: with the residual r over the
     forces at work, `min(1e-4, r)`, and never more than what Newton's tolerance needs.
@@ -73,9 +73,9 @@ class IterativeNewton(Newton):
         self._adapts = "ksp_rtol" not in given
         ksp = self.snes.getKSP()
         ksp.setPostSolve(self._count)
-        self._levels: TwoLevel | None = None
+        self._levels: Levels | None = None
         if ksp.getPC().getType() == PETSc.PC.Type.PYTHON:
-            self._levels = TwoLevel(problem, Patch(problem, steps), prefix, note)
+            self._levels = Levels(problem, Patch(problem, steps), prefix, note)
             ksp.getPC().setPythonContext(self._levels)
 
     def solve(

@@ -1,14 +1,21 @@
-"""Two-level preconditioner: Chebyshev smoothing of the interior, a factorised coarse level."""
+"""Levels of the preconditioner: the interior of each is smoothed, the last one is factorised."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
-from anisocontact.solver.strategies.iterative.interpolation import interpolation
+from anisocontact.solver.strategies.iterative.cycle import Smoother, cycle, residual
+from anisocontact.solver.strategies.iterative.interpolation import (
+    Aggregates,
+    aggregates,
+    smoothed,
+    tentative,
+)
+from anisocontact.solver.strategies.iterative.nested import Below
 from anisocontact.solver.strategies.iterative.patch import Patch
 from anisocontact.solver.strategies.iterative.split import UnknownSplit, interior_matrix
 from anisocontact.solver.system.problem import Problem
@@ -17,14 +24,19 @@ from anisocontact.solver.system.problem import Problem
 CHAIN = 3
 #: Krylov iterations over those with a new interpolation at which an old one is given up.
 WORN = 1.5
+#: Motions of aggregates over the unknowns of the patch from which on they get a further level.
+MANY = 1.0
+#: The same, in themselves: a factor of so few takes less than a level.
+FEW = 6000
 
 
-class TwoLevel:
+class Levels:
     """Preconditioner of the tangent J of a problem, as a Python context of PETSc.
 
     Given unknowns are solved from their rows. The rest takes one multiplicative cycle: smoothing of
     the interior, the coarse level `P^T J P`, smoothing again. Contact lies in the patch, which P
-    leaves as it is, so the coarse level has all of it and the smoother nothing.
+    leaves as it is, so the coarse level has all of it and the smoother nothing. Where most of the
+    coarse level are aggregates it is solved by such a cycle in its turn.
 
     Args:
         problem: The problem.
@@ -39,7 +51,7 @@ class TwoLevel:
         self._problem, self._patch, self._prefix, self._note = problem, patch, prefix, note
         self._split: UnknownSplit | None = None
         self._interior: Mat | None = None
-        self._smoother: PETSc.KSP | None = None
+        self._smoother: Smoother | None = None
         self._coarse: CoarseLevel | None = None
         self._bulk: object = None
         self._fresh = 0
@@ -63,7 +75,7 @@ class TwoLevel:
             self._renew(tangent)
         self._bulk = bulk
         assert self._coarse is not None
-        found = self._coarse.factorise(tangent)
+        found = self._coarse.renew(tangent)
         if self._single and not self._coarse.single:
             self._single = False
             self._note("the factor of the coarse level is in double precision from now on")
@@ -73,15 +85,11 @@ class TwoLevel:
     def apply(self, pc: PETSc.PC, b: Vec, x: Vec) -> None:
         """One cycle from zero."""
         tangent, _ = pc.getOperators()
-        assert self._coarse is not None
+        assert self._coarse is not None and self._smoother is not None
         x.zeroEntries()
         rest = b.copy()
         self._solve_given(tangent, b, rest, x)
-        self._smooth(rest, x)
-        self._residual(tangent, b, x, rest)
-        x.axpy(1.0, self._coarse.solve(rest))
-        self._residual(tangent, b, x, rest)
-        self._smooth(rest, x)
+        cycle(tangent, self._smoother, self._coarse, b, rest, x)
 
     def close(self) -> None:
         """Give back PETSc's objects."""
@@ -103,16 +111,25 @@ class TwoLevel:
         problem, scale = self._problem, self._problem.assembly.scale
         self._split = split = UnknownSplit(problem, self._patch.select())
         self._interior = interior = interior_matrix(tangent, split, scale)
-        prolong = interpolation(problem, tangent, split, interior, f"{self._prefix}aggregates_")
-        prefix = f"{self._prefix}coarse_"
-        self._coarse = CoarseLevel(tangent, prolong, split, scale, prefix, self._single)
-        self._smoother = self._new_smoother()
+        found = aggregates(split, interior, f"{self._prefix}aggregates_")
+        rough = problem.constraints.spread(tentative(found[0], split, tangent))
+        prolong = smoothed(rough, tangent, interior, split)
+        kept = split.patch.getSize()
+        levels = _worth_it(found, kept)
+        below = Below(split.patch.getLocalSize(), scale, self._prefix, self._single)
+        self._coarse = CoarseLevel(
+            tangent,
+            prolong,
+            split.patch,
+            scale,
+            lambda matrix: below.inverse(matrix, levels, (prolong,)),
+        )
+        self._smoother = Smoother(interior, split.interior, self._prefix)
         self._fresh, self._worn = 0, False
-        inside, kept = split.interior.getSize(), split.patch.getSize()
-        aggregated = prolong.getSize()[1] - kept
+        counts = " on ".join(str(level.count) for level in levels)
         self._note(
-            f"two levels: {inside} unknowns of the interior on {aggregated}, "
-            f"{kept} that contact can couple are kept"
+            f"{1 + len(levels)} levels: {split.interior.getSize()} unknowns of the interior "
+            f"on {counts}, {kept} that contact can couple are kept"
         )
 
     def _renew(self, tangent: Mat) -> None:
@@ -123,18 +140,10 @@ class TwoLevel:
         # on several processes emptied rows and columns are left out of what could be overwritten
         again = before if self._problem.comm.size == 1 else None
         self._interior = interior_matrix(tangent, self._split, scale, again)
-        self._smoother.setOperators(self._interior)
+        self._smoother.renew(self._interior)
         if again is None and before is not None:
             before.destroy()
-        self._coarse.renew(tangent)
-
-    def _new_smoother(self) -> PETSc.KSP:
-        smoother = PETSc.KSP().create(self._problem.comm)
-        smoother.setOptionsPrefix(f"{self._prefix}smoother_")
-        smoother.setOperators(self._interior)
-        smoother.setNormType(PETSc.KSP.NormType.NONE)
-        smoother.setFromOptions()
-        return smoother
+        self._coarse.renew_bodies(tangent)
 
     def _solve_given(self, tangent: Mat, b: Vec, rest: Vec, x: Vec) -> None:
         """Unknowns with a row of their own, and what they leave of the other rows."""
@@ -145,19 +154,11 @@ class TwoLevel:
             if not self._problem.comm.allreduce(bool(left.any())):
                 return
             x.array[given] += left / self._problem.assembly.scale
-            self._residual(tangent, b, x, rest)
+            residual(tangent, b, x, rest)
 
-    def _residual(self, tangent: Mat, b: Vec, x: Vec, out: Vec) -> None:
-        assert self._split is not None
-        tangent.mult(x, out)
-        out.aypx(-1.0, b)
 
-    def _smooth(self, rest: Vec, x: Vec) -> None:
-        assert self._split is not None and self._smoother is not None
-        if self._split.empty:
-            return
-        part = rest.getSubVector(self._split.interior)
-        correction = part.duplicate()
-        self._smoother.solve(part, correction)
-        rest.restoreSubVector(self._split.interior, part)
-        x.isaxpy(self._split.interior, 1.0, correction)
+def _worth_it(found: Sequence[Aggregates], kept: int) -> list[Aggregates]:
+    """The levels down to the first on which a factor is a matter of the patch."""
+    few = max(FEW, MANY * kept)
+    number = next((n for n, level in enumerate(found, 1) if level.count <= few), len(found))
+    return list(found[:number])

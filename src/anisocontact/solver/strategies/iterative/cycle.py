@@ -1,0 +1,74 @@
+"""One multiplicative cycle on a level: smoothing of its interior around a correction from below."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from anisocontact.base.fenicsx import Mat, PETSc, Vec
+
+
+class Correction(Protocol):
+    """What corrects a residual on the level below."""
+
+    def solve(self, rest: Vec) -> Vec:
+        """Correction of a level's unknowns; overwritten by the next call."""
+
+
+class Smoother:
+    """Chebyshev's iteration with the diagonal on the unknowns of an interior.
+
+    Args:
+        matrix: Matrix of the interior.
+        unknowns: Where its unknowns are among those of the level.
+        prefix: Prefix of the options of the iteration.
+    """
+
+    def __init__(self, matrix: Mat, unknowns: PETSc.IS, prefix: str) -> None:
+        self._unknowns, self._empty = unknowns, unknowns.getSize() == 0
+        self._solver = PETSc.KSP().create(matrix.getComm())
+        self._solver.setOptionsPrefix(f"{prefix}smoother_")
+        self._solver.setNormType(PETSc.KSP.NormType.NONE)
+        self.renew(matrix)
+        self._solver.setFromOptions()
+
+    def renew(self, matrix: Mat) -> None:
+        """Take another matrix of the interior."""
+        self._solver.setOperators(matrix)
+
+    def smooth(self, rest: Vec, x: Vec) -> None:
+        """Add to unknowns what the interior finds for a residual."""
+        if self._empty:
+            return
+        part = rest.getSubVector(self._unknowns)
+        correction = part.duplicate()
+        self._solver.solve(part, correction)
+        rest.restoreSubVector(self._unknowns, part)
+        x.isaxpy(self._unknowns, 1.0, correction)
+
+    def destroy(self) -> None:
+        """Give back PETSc's objects."""
+        self._solver.destroy()
+
+
+def residual(matrix: Mat, b: Vec, x: Vec, out: Vec) -> None:
+    """Set `out` to `b - A x`."""
+    matrix.mult(x, out)
+    out.aypx(-1.0, b)
+
+
+def cycle(matrix: Mat, smoother: Smoother, below: Correction, b: Vec, rest: Vec, x: Vec) -> None:
+    """Smooth, correct from below, smooth again.
+
+    Args:
+        matrix: Matrix of the level.
+        smoother: Smoother of its interior.
+        below: What corrects the residual on the level below.
+        b: Right-hand side.
+        rest: Residual of `x`, overwritten.
+        x: Solution so far, improved in place.
+    """
+    smoother.smooth(rest, x)
+    residual(matrix, b, x, rest)
+    x.axpy(1.0, below.solve(rest))
+    residual(matrix, b, x, rest)
+    smoother.smooth(rest, x)

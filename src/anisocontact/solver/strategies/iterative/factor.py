@@ -1,0 +1,120 @@
+"""Factor of the coarsest level.
+
+It is in single precision, in half of the memory and of the time, while that tells stiff contacts
+from soft bodies: Krylov iterations need no more of a preconditioner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from anisocontact.base.fenicsx import Mat, PETSc, Vec
+from anisocontact.base.petsc_calls import check_memory
+from anisocontact.solver.strategies.newton import Database
+
+#: Error of a known solution, over it, up to which a factor in single precision is trusted.
+TRUSTED = 0.05
+#: Stiffness against motions of the aggregates that depend on each other, over the largest one.
+SHIFT = 1e-9
+#: Share of such a motion that is left of it in the bodies, up to which they are at rest.
+AT_REST = 1e-3
+
+
+class Factor:
+    """Inverse of a matrix by factorisation.
+
+    Args:
+        matrix: The matrix, which is overwritten in place from one tangent to the next.
+        prolongs: Interpolations from here to all unknowns, the finest one last.
+        prefix: Prefix of the options of the solver.
+        single: Whether it is in single precision, where this PETSc can.
+
+    Attributes:
+        single: Whether it still is: from where that is not enough on it is in double precision.
+    """
+
+    def __init__(self, matrix: Mat, prolongs: Sequence[Mat], prefix: str, single: bool) -> None:
+        self.single, self._prefix, self._prolongs = single, prefix, prolongs
+        self._matrix = matrix
+        self._solver = self._new_solver()
+        self._right, self._left = matrix.createVecs()
+
+    def renew(self, matrix: Mat, grown: bool, bodies: bool) -> bool:
+        """See `Inverse.renew`."""
+        if grown:  # on several processes PETSc would keep the symbolic factorisation
+            self._solver.reset()
+        self._matrix = matrix
+        found = self._factorised()
+        if self.single and not (found and self._trusted()):
+            self.single = False
+            self._solver.destroy()
+            self._solver = self._new_solver()
+            found = self._factorised()
+        return found or self._factorised_with_shift()
+
+    def solve(self, right: Vec) -> Vec:
+        """Solution for a right-hand side; overwritten by the next call."""
+        self._solver.solve(right, self._left)
+        return self._left
+
+    def destroy(self) -> None:
+        """Give back PETSc's objects."""
+        self._solver.destroy()
+
+    def _new_solver(self) -> PETSc.KSP:
+        solver = PETSc.KSP().create(self._matrix.getComm())
+        solver.setOptionsPrefix(self._prefix)
+        solver.setFromOptions()
+        return solver
+
+    def _factorised(self) -> bool:
+        """Factorise the matrix; whether it has an inverse."""
+        self._solver.setOperators(self._matrix)
+        with Database(self._prefix, {"pc_precision": "single" if self.single else "double"}):
+            self._solver.setUp()
+        failed = self._solver.getPC().getFailedReason() != 0
+        if failed:  # else every later factorisation would be said to have failed too
+            check_memory(self._solver.getPC())
+            self._solver.reset()
+        return not failed
+
+    def _factorised_with_shift(self) -> bool:
+        """Factorise where motions of aggregates depend on each other, as those of few nodes may.
+
+        Their combination moves nothing, so that any stiffness serves for it.
+
+        Returns:
+            Whether there are such motions alone that nothing holds.
+        """
+        diagonal = self._matrix.getDiagonal()
+        diagonal.abs()
+        self._matrix.shift(SHIFT * diagonal.max()[1])
+        if not self._factorised():
+            return False
+        set_any(self._right)
+        self._solver.solve(self._right, self._left)
+        motion = self._left
+        for prolong in self._prolongs:
+            finer = prolong.createVecLeft()
+            prolong.mult(motion, finer)
+            motion = finer
+        return bool(motion.norm() <= AT_REST * self._left.norm())
+
+    def _trusted(self) -> bool:
+        """Whether the factor finds a known solution: of pivots that are rounding nothing tells."""
+        known = self._left.duplicate()
+        set_any(known)
+        self._matrix.mult(known, self._right)
+        self._solver.solve(self._right, self._left)
+        self._left.axpy(-1.0, known)
+        error, size = self._left.norm(), known.norm()
+        known.destroy()
+        return bool(error <= TRUSTED * size)
+
+
+def set_any(vector: Vec) -> None:
+    """Any numbers without symmetry, the same on any number of processes."""
+    first, last = vector.getOwnershipRange()
+    vector.array[:] = np.modf(np.arange(first, last) * 0.754877666)[0] - 0.5
