@@ -20,7 +20,7 @@ from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.parts import Condensation
 from anisocontact.solver.strategies.condensed.patterns import InteriorState, Patterns
-from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
+from anisocontact.solver.strategies.iterative.factor import Factor
 from anisocontact.solver.terms.term import SingularError
 
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
@@ -376,7 +376,7 @@ def test_a_factorisation_that_failed_once_is_tried_again(
     failed: list[int] = []
     owner, name, nothing = {
         "condensed": (KeptFactor, "solve", None),
-        "iterative": (CoarseLevel, "factorise", False),
+        "iterative": (Factor, "renew", False),
     }[how]
     right = getattr(owner, name)
 

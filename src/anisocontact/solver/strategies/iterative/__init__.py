@@ -1,1 +1,1 @@
-"""FGMRES on the whole system; what can be touched stays on the coarse level of two."""
+"""FGMRES on the whole system; what can be touched stays on all levels."""

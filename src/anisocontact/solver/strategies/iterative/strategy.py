@@ -1,4 +1,4 @@
-"""Krylov iterations on the whole system with two levels."""
+"""Krylov iterations on the whole system with levels whose last one is factorised."""
 
 from __future__ import annotations
 
@@ -41,6 +41,6 @@ class IterativeStrategy:
         note: Callable[[str], None],
         kept: Arrays,
     ) -> IterativeNewton:
-        """Newton's method with two levels."""
+        """Newton's method with levels whose last one is factorised."""
         problem, steps, options = task.problem, task.steps, task.options
         return IterativeNewton(problem, steps, task.prefix, options, on_iteration, note)
