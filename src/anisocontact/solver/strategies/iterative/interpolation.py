@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.solver.strategies.iterative.split import Split, sparse, weights
+from anisocontact.solver.strategies.iterative.split import UnknownSplit, sparse, weights
 
 #: Damping of the smoothed aggregation over the largest eigenvalue of the scaled matrix.
 DAMPING = 4.0 / 3.0
@@ -175,7 +175,7 @@ def set_rigid_modes(interior: Mat, places: Floats) -> None:
     interior.setNearNullSpace(PETSc.NullSpace().create(vectors=modes, comm=comm))
 
 
-def aggregates(split: Split, interior: Mat, prefix: str) -> list[Aggregates]:
+def aggregates(split: UnknownSplit, interior: Mat, prefix: str) -> list[Aggregates]:
     """Aggregates of the interior, aggregates of those, and so on, the finest ones first."""
     if split.empty:
         return [NOTHING]
