@@ -187,6 +187,10 @@ class LinearElasticIncompressible(LinearElastic):
 
     Raises:
         InputError: A value is out of range.
+
+    Example:
+        >>> round(LinearElasticIncompressible(E=3.0, nu=0.5).shear, 6)
+        1.0
     """
 
     entry = Entry(

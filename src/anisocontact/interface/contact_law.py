@@ -41,6 +41,11 @@ class AdhesionAndFriction(Remade):
         model: Name of the adhesion model.
         sliding_rule: Name of the rule.
         friction_directions: Directions of friction, if it has any.
+
+    Example:
+        >>> law = AdhesionAndFriction(Adhesion(stiffness=9.0), Friction(coefficients=0.3))
+        >>> law.model, law.sliding_rule, law.in_python
+        ('elastic', 'maximum-dissipation', False)
     """
 
     in_python = False
