@@ -247,11 +247,11 @@ void put_connection_slopes(const InterfaceLaw& l, const ContactFrame& in, const 
     for (std::size_t a = 0; a < 2; ++a) r.slope(Slope::connection, k)[a] += change[k][a];
 }
 
-/// Slopes of the force that was `solved`; `share` and `time` are those in contact by the gap,
-/// `whole` the increment of the whole step.
+/// Slopes of the force that was `solved`; `time` is that in contact by the gap, `whole` the increment
+/// of the whole step.
 void put_slopes(const InterfaceLaw& l, const ContactFrame& in, const FrameTrial& t,
                 const law::SlideProblem<double>& p, const law::SlideResult<double>& solved,
-                const Dual<1>& share, const Dual<1>& time, const Flat& whole, Reaction& r) {
+                const Dual<1>& time, const Flat& whole, Reaction& r) {
   const TrialSlopes by_angle = trial_slopes(in, t);
   const bool slips = r.status == Contact::slip;
   std::array<Flat, 3> by_force{Flat{1.0, 0.0}, Flat{0.0, 1.0}, Flat{0.0, 0.0}};
@@ -271,8 +271,8 @@ void put_slopes(const InterfaceLaw& l, const ContactFrame& in, const FrameTrial&
     double& by_gap = r.slope(Slope::gap, 0)[a];
     by_gap = by_force[2][a] * in.d_pressure + later[a] * time.d[0];
     for (std::size_t j = 0; j < 2; ++j) {
-      by_gap += r.slope(Slope::increment, j)[a] * whole[j] * share.d[0];
-      r.slope(Slope::increment, j)[a] *= share.v;
+      by_gap += r.slope(Slope::increment, j)[a] * whole[j] * in.fraction.d[0];
+      r.slope(Slope::increment, j)[a] *= in.fraction.v;
     }
   }
 }
@@ -280,14 +280,13 @@ void put_slopes(const InterfaceLaw& l, const ContactFrame& in, const FrameTrial&
 /// Writes what the law answers to `r`, which is new.
 template <bool tangent>
 void react(const InterfaceLaw& l, const PointState& state, ContactFrame in, Reaction& r) noexcept {
-  Dual<1> share(1.0), time(in.dt);
+  Dual<1> time(in.dt);
   const Flat whole = in.increment;
   if (!remembers(state)) {
-    share = contact_fraction(state, Dual<1>::variable(in.gap, 0));
-    time = time_in_contact(share, in.dt);
+    time = time_in_contact(in.fraction, in.dt);
     in.dt = time.v;
-    for (double& x : in.increment) x *= share.v;
   }
+  for (double& x : in.increment) x *= in.fraction.v;
   const FrameTrial t = frame_trial(adhesion_at(l, state), in);
   law::SlideProblem<double> p;
   put_friction(l, fixed<double>(in.friction_axes), second_axes<double>(l, in), p);
@@ -301,18 +300,19 @@ void react(const InterfaceLaw& l, const PointState& state, ContactFrame in, Reac
     r.failure = Failure::law;
     return;
   }
-  const Vector<double> elastic = p.elastic - solved.slip;
+  const Vector<double> slip = in.real * solved.slip, increment = in.real * p.increment;
+  const Vector<double> elastic = in.real * (p.elastic - solved.slip);
   const auto energies = law::energies(t.model, frame_axes(in.adhesion_axes), solved.stored, elastic,
-                                      p.increment - solved.slip, in.dt);
+                                      increment - slip, in.dt);
   r.traction = solved.traction.c;
   r.stored = solved.stored.c;
   r.elastic = elastic.c;
-  r.slip = solved.slip.c;
-  r.increment = in.increment;
-  r.dissipation = -dot(solved.traction, solved.slip);
+  r.slip = slip.c;
+  r.increment = increment.c;
+  r.dissipation = -dot(solved.traction, slip);
   r.viscous = energies.viscous;
   r.energy = energies.elastic;
-  if constexpr (tangent) put_slopes(l, in, t, p, solved, share, time, whole, r);
+  if constexpr (tangent) put_slopes(l, in, t, p, solved, time, whole, r);
 }
 
 }  // namespace

@@ -127,21 +127,21 @@ PointState opened(const PointState& old, const Motion<S>& k) {
 
 /// History and increment as the law needs them; a point that comes into contact has no history.
 template <class S>
-Turned<S> history(const AnyEvolution& evolution, const PointState& state, const Motion<S>& k) {
-  Turned<S> t = turned(evolution, state, k);
+Turned<S> history(const InterfaceLaw& l, const PointState& state, const Motion<S>& k) {
+  Turned<S> t = turned(l.evolution, state, k);
   if (state.status == static_cast<std::int64_t>(Contact::open)) {
     t.stored = {};
     t.elastic = {};
-    t.increment = contact_fraction(state, k.gap) * t.increment;
   }
+  t.increment = contact_fraction(law::normal_model(l.normal), state, k.gap) * t.increment;
   return t;
 }
 
 /// Time that adhesion acts: the whole step where the point was in contact.
 template <class S>
-S time_of_law(const PointState& state, const Motion<S>& k) {
+S time_of_law(const InterfaceLaw& l, const PointState& state, const Motion<S>& k) {
   if (state.status != static_cast<std::int64_t>(Contact::open)) return S(k.dt);
-  return time_in_contact(contact_fraction(state, k.gap), k.dt);
+  return time_in_contact(contact_fraction(law::normal_model(l.normal), state, k.gap), k.dt);
 }
 
 /// Axes of the tensors of a step. A law in rates takes those halfway from the committed axes, turned
@@ -199,7 +199,7 @@ inline PointState advanced(const InterfaceLaw& l, const PointState& old, const S
 /// Where the contact began: now, or as the history says.
 inline std::array<double, 2> origin(const PointState& old, const std::array<double, 2>& xi,
                                     const Vector<double>& increment) {
-  const bool begins = old.status == static_cast<std::int64_t>(Contact::open);
+  const bool begins = !remembers(old) || old.gap > 0.0;
   return begins ? (Vector<double>{xi} - increment).c : old.origin;
 }
 
@@ -227,8 +227,8 @@ Answer<S> react(const InterfaceLaw& l, const PointState& state, const Motion<S>&
   const auto halfway = law::AxesComponents<S>::of(
       k.now, axes_of_rate(l.evolution, model, state, k, r.adhesion_axes.e));
   const auto tensors = law::pull_back(model, halfway);
-  const Turned<S> t = history(l.evolution, state, k);
-  const S time = time_of_law(state, k);
+  const Turned<S> t = history(l, state, k);
+  const S time = time_of_law(l, state, k);
   const auto trial =
       law::trial(tensors, unit<S, Place::co>(), t.stored, t.elastic, t.increment, time);
   const auto axes = k.now.project_contra(r.friction_axes.e);
@@ -244,12 +244,13 @@ Answer<S> react(const InterfaceLaw& l, const PointState& state, const Motion<S>&
     return r;
   }
   r.traction = solved.traction;
+  const double real = share_of_penetration(law::normal_model(l.normal), state, value(k.gap));
   r.state = advanced(l, state,
                      {value(solved.traction),
                       value(solved.stored),
-                      value(p.elastic),
-                      value(t.increment),
-                      value(solved.slip),
+                      real * value(p.elastic),
+                      real * value(t.increment),
+                      real * value(solved.slip),
                       value(k.now.a_co),
                       {value(adhesion.lower), value(adhesion.upper)},
                       value(k.gap),
@@ -258,7 +259,7 @@ Answer<S> react(const InterfaceLaw& l, const PointState& state, const Motion<S>&
                       value(time),
                       status});
   r.state.xi = value(k.xi).c;
-  r.state.origin = origin(state, r.state.xi, value(t.increment));
+  r.state.origin = origin(state, r.state.xi, real * value(t.increment));
   return r;
 }
 

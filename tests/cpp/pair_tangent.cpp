@@ -133,6 +133,10 @@ kernel::PointState history(Random& r) {
   s.status = s.facet < 0 || r(0.0, 1.0) < 0.2 ? 0 : 1;
   s.xi = {r(0.2, 0.8), r(0.2, 0.8)};
   s.gap = s.status == 0 ? r(0.0, 0.02) : -0.02;
+  if (r(0.0, 1.0) < 0.3) {  // a multiplier holds it where its gap closes
+    s.gap = r(0.0, 0.03);
+    s.multiplier = r(0.0, 3.0);
+  }
   if (s.status == 0) return s;
   s.stored = s.traction = r.pair(0.3);
   s.elastic = r.pair(0.01);

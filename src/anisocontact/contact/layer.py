@@ -21,7 +21,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from anisocontact.base.array_types import Floats
-from anisocontact.contact.multipliers import RATIO, ContactTrial, Frames
+from anisocontact.contact.frames import Frames
+from anisocontact.contact.multipliers import RATIO, ContactTrial
 from anisocontact.contact.semismooth import Semismooth
 from anisocontact.interface import STATUS, Response, State
 from anisocontact.interface.series import SeriesHistory

@@ -18,6 +18,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.errors import InputError
+from anisocontact.contact.frames import Frames
 from anisocontact.interface import STATUS, VECTOR_FORMS, ContactLaw, Interface, Response, State
 from anisocontact.interface.augmentation import NEWTON, Augmentation
 
@@ -36,6 +37,8 @@ SHARED_RATIO = 3e2
 ROUNDING = 1e-3
 #: What the gap of a point that is apart is multiplied with at the start of an increment.
 FAR = 1e8
+#: Least way of a gap that closes, as a share of the gap.
+SMALLEST = 1e-9
 #: Sliding rule whose history is another force than the one that acts: no fixed point of a step.
 _EXPLICIT = "explicit"
 
@@ -86,56 +89,6 @@ def simultaneous(augmentation: Augmentation, law: AugmentedLaw) -> bool:
     return law.tangential.sliding_rule != _EXPLICIT
 
 
-# Half the squared sum of two unit normals below which they are opposite.
-_OPPOSITE = 1e-12
-
-
-@dataclass(frozen=True)
-class Frames:
-    """Tangents of the master and its normal at n points.
-
-    Attributes:
-        tangents: First derivatives of the position, (n, 2, 3), length.
-        normal: Unit normal, (n, 3).
-    """
-
-    tangents: Floats
-    normal: Floats
-
-    @classmethod
-    def of(cls, tangents: Floats) -> Frames:
-        """Frames with the normal of the tangents, (n, 2, 3)."""
-        cross = np.cross(tangents[:, 0], tangents[:, 1])
-        return cls(tangents, cross / np.linalg.norm(cross, axis=1)[:, None])
-
-    def vector(self, covector: Floats) -> Floats:
-        """Vectors (n, 3) of covariant components (n, 2)."""
-        metric = np.einsum("nid,njd->nij", self.tangents, self.tangents)
-        contra = np.linalg.solve(metric, covector[..., None])[..., 0]
-        return self.moved(contra)
-
-    def moved(self, contra: Floats) -> Floats:
-        """Vectors (n, 3) of contravariant components (n, 2)."""
-        return np.asarray(np.einsum("ni,nid->nd", contra, self.tangents))
-
-    def chord(self, path: Floats, spin: Floats) -> Floats:
-        """Chords (n, 3) of the paths that they span where the slave turns by `spin`, (n,)."""
-        half = 0.5 * spin
-        along = np.divide(half, np.tan(half), out=np.ones_like(half), where=half != 0.0)
-        across = np.cross(self.normal, path)
-        return np.asarray(
-            (along[:, None] * path - half[:, None] * across) / (along**2 + half**2)[:, None]
-        )
-
-    def turned_to(self, other: Frames, vectors: Floats) -> Floats:
-        """Tangent vectors turned with the least rotation of the normal, (n, 3)."""
-        both = self.normal + other.normal
-        # Opposite normals have no least rotation: there a tangent vector stays as it is.
-        squared = 0.5 * np.einsum("nd,nd->n", both, both)
-        share = np.einsum("nd,nd->n", vectors, other.normal) / np.maximum(squared, _OPPOSITE)
-        return np.asarray(vectors - share[:, None] * both)
-
-
 @dataclass(frozen=True)
 class ContactTrial:
     """A trial of the points and what it started from.
@@ -153,6 +106,7 @@ class ContactTrial:
         shared: Points that are slaves of other contacts with multipliers as well, (n,).
         held: Projection on directions along which supports hold points and what they meet,
             (n, 3, 3), or none: tractions have nothing along them, multipliers have.
+        closeness: Of points whose gap closes, see `Multipliers.closeness`, else infinite, (n,).
     """
 
     start: State
@@ -165,6 +119,7 @@ class ContactTrial:
     covered: Floats
     shared: Flags
     held: Floats | None
+    closeness: Floats
 
     @property
     def supported(self) -> Floats:
@@ -176,18 +131,25 @@ class ContactTrial:
 
     @property
     def kept(self) -> Floats:
-        """What multipliers are of the tractions, (n, 1): a little less where points are shared.
+        """What compliance leaves of the tractions for multipliers, normal and tangential, (n, 2).
 
         Several contacts would say more of one node than it can do: compliance, `SHARED_RATIO` times
         as stiff as the penalties, makes their multipliers unique. Where it is hardly felt, which of
-        the contacts sticks is a matter of rounding, and corrections find no end.
+        the contacts sticks is a matter of rounding, and corrections find no end. Where a gap closes
+        friction has that of the way there.
         """
-        return np.where(self.shared, 1.0 - self.covered / SHARED_RATIO, 1.0)[:, None]
+        shared = np.where(self.shared, 1.0 - self.covered / SHARED_RATIO, 1.0)
+        return np.column_stack([shared, shared * left_by(self.closeness)])
 
     @property
     def remembers(self) -> Flags:
         """Points that were in contact and have a tangential history, (n, 1)."""
         return np.asarray(self.start["status"] != OPEN)[:, None]
+
+
+def left_by(closeness: Floats) -> Floats:
+    """What tangential multipliers are of the friction of points so near, (n,)."""
+    return np.asarray(1.0 - 1.0 / np.maximum(closeness, 1.0))
 
 
 class Multipliers:
@@ -228,19 +190,53 @@ class Multipliers:
 
         A point nearer than the tolerance counts as touching: it bears a pressure that closes the
         tolerance, or rounding of its gap would say whether it is held, and friction acts from the
-        start. One that is apart comes to lie at no gap, so that nothing of the increment is left
-        for friction: it counts as far away, or the part that is left were that of the gap's
-        rounding.
+        start. Friction of one that is apart is that of a point which comes to lie on its way, see
+        `closeness`; where adhesion is physical it counts as far away, and there is none.
         """
         start = state.copy()
         start["multiplier"] = state["pressure"]
-        touching = located & (state["status"] == OPEN) & (state["gap"] <= self._limit)
-        start["gap"][touching] = np.minimum(state["gap"][touching], 0.0)
+        apart = state["status"] == OPEN
+        touching = located & apart & (state["gap"] <= self._limit)
+        start["gap"] = np.where(touching | ~apart, np.minimum(state["gap"], 0.0), state["gap"])
         start["multiplier"][touching] = self._penalties[0] * self.factors[0] * self._limit
-        start["gap"][(state["status"] == OPEN) & ~touching] *= FAR
-        if self.tangential:
-            start["status"][touching] = STICK
+        apart &= ~touching
+        if not self.tangential:
+            start["gap"][apart] *= FAR
+            return start
+        start["status"][touching | (apart & located)] = STICK
+        normal, tangential = np.array(self._penalties) * self.factors
+        start["stiffer"][apart, 1] = normal / tangential - 1.0
         return start
+
+    def closeness(self, start: State, pressure: Floats, gap: Floats) -> Floats:
+        """How near points whose gap closes in the increment were, infinite for others, (n,).
+
+        Where it sticks from the touch on, the force of such a point has the direction of its way,
+        T = - N dxi / g_n, as on springs of one stiffness along the normal and the surface: the core
+        answers so up to the stiffness of the penalties, see `contact_fraction`. This is how many
+        times as stiff N / g_n is. Above 1 penalties act in series with what is left of the
+        compliance g_n / N, and a multiplier holds what that is short of the force: so which points
+        slip is decided with moderate penalties, as it is at other points.
+
+        Args:
+            start: What the trials start from.
+            pressure: N, (n,), stress.
+            gap: Gap of the trial, (n,), length.
+        """
+        way = np.maximum(start["gap"] - gap, SMALLEST * start["gap"])
+        closing = self.tangential & (start["gap"] > 0.0)
+        stands_for = pressure / (self._penalties[0] * self.factors[0])
+        return np.asarray(np.where(closing, stands_for / np.where(closing, way, 1.0), np.inf))
+
+    def let_go(self, start: State, points: Flags) -> None:
+        """Leave points to their penalty: no multiplier, nor what one holds of a gap that closes.
+
+        Args:
+            start: What the trials start from, changed.
+            points: Which, (n,).
+        """
+        start["multiplier"][points] = 0.0
+        start["stored"][points & (start["gap"] > 0.0)] = 0.0
 
     def extrapolated(self, start: State, change: Floats, frames: Frames) -> State:
         """What the trials start from where tractions go on as before.
@@ -315,8 +311,12 @@ class Multipliers:
         Supports hold these along the normal: they keep their penalty. Shared ones are compliant.
         """
         given, found = self.answers(step)
-        found *= step.kept
+        found *= step.kept[:, [0, 1, 1, 1]]
         found[step.immovable, 0] = given[step.immovable, 0]
+        if step.held is not None:  # nothing comes along supports: no compliance of a way there
+            closing = np.isfinite(step.closeness)[:, None]
+            along = step.held @ (found - given)[:, 1:, None]
+            found[:, 1:] -= np.where(closing, along[..., 0], 0.0)
         return given, found
 
     def answers(self, step: ContactTrial) -> tuple[Floats, Floats]:

@@ -20,6 +20,7 @@ from typing import ClassVar
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Floats
+from anisocontact.contact.frames import Frames
 from anisocontact.contact.master import Linear
 from anisocontact.contact.multipliers import (
     OPEN,
@@ -28,8 +29,8 @@ from anisocontact.contact.multipliers import (
     SHARED_RATIO,
     STICK,
     ContactTrial,
-    Frames,
     Multipliers,
+    left_by,
 )
 from anisocontact.interface import State
 
@@ -42,7 +43,7 @@ class Base:
         multiplier: lambda as a vector, (n, 3), stress.
         traction: P, (n, 3), stress.
         residual: Change of P that takes the violation away, (n, 3), stress.
-        kept: What lambda is of P, (n, 1).
+        kept: What lambda is of P where no gap closes, (n, 1).
     """
 
     multiplier: Floats
@@ -103,28 +104,39 @@ class Semismooth(Multipliers):
         return self.ratio * normal, self.ratio * tangential if self.tangential else 1.0
 
     def begin_from(self, step: ContactTrial) -> State:
-        """What the trials start from after equilibrium with penalties: what it answers.
-
-        A point whose gap has closed carries friction from where it came to lie.
-        """
-        _, found = self.values(step)
+        """What the trials start from after equilibrium with penalties: what it answers."""
+        _, found = self.answers(step)
         self.share = 1.0
         new = step.start.copy()
-        new["multiplier"] = found[:, 0]
-        if not self.tangential:
-            return new
-        new["stored"] = np.einsum("nid,nd->ni", step.before.tangents, found[:, 1:])
-        closed = (new["status"] == OPEN) & (step.answer.status != OPEN)
+        new["multiplier"] = found[:, 0] * step.kept[:, 0]
+        new["multiplier"][step.immovable] = step.start["multiplier"][step.immovable]
+        if self.tangential:
+            self._hold(new, step.kept[:, :1] * found[:, 1:], step.before)
+        return new
+
+    def _hold(self, start: State, force: Floats, before: Frames) -> None:
+        """Let points carry friction, those that close a gap but what its compliance leaves.
+
+        Args:
+            start: State of the trials, with the multipliers of the pressure, changed.
+            force: At the committed coordinates, (n, 3), stress.
+            before: Frames there.
+        """
+        pressure = np.maximum(start["multiplier"], 0.0)
+        left = left_by(self.closeness(start, pressure, np.zeros(len(start))))
+        start["stored"] = np.einsum("nid,nd->ni", before.tangents, left[:, None] * force)
+
+    def settled(self, step: ContactTrial) -> State | None:
+        """As of `Multipliers.settled`: springs let a body glide on that nothing rubs against."""
+        new = self.begin_from(step)
+        closed = self.tangential & (new["gap"] > 0.0) & (step.answer.status != OPEN)
         for name in ("xi", "origin", "facet"):
             new[name][closed] = step.answer.state[name][closed]
         for name in ("gap", "elastic", "stored"):
             new[name][closed] = 0.0
+        new["stiffer"][closed] = 0.0
         new["status"][closed] = STICK
         return new
-
-    def settled(self, step: ContactTrial) -> State | None:
-        """As of `Multipliers.settled`: springs let a body glide on that nothing rubs against."""
-        return self.begin_from(step)
 
     def begin(self, state: State, located: Flags) -> State:
         """What the trials of the next increment start from, see `Multipliers.begin`."""
@@ -153,16 +165,19 @@ class Semismooth(Multipliers):
             displacement of the slave points that would make the trial exact, (n, 3), length.
         """
         given, found = self.answers(step)
-        ratio = self._ratios(step)
-        shifted = given + (1.0 - ratio[:, [0, 1, 1, 1]]) * (found - given)
+        ratio, closing = self._ratios(step), np.isfinite(step.closeness)
+        times = ratio.copy()
+        times[closing, 1] = step.closeness[closing].clip(1.0, ratio[closing, 1])
+        shifted = given + (1.0 - times[:, [0, 1, 1, 1]]) * (found - given)
         # an open point stays open, however little its gap may be closed
         apart = step.answer.pressure == 0.0
         shifted[apart, 0] = np.minimum(shifted[apart, 0], 0.0)
         shifted[apart, 1:] = 0.0
         state, trial = step.start.copy(), step.answer.state
         state["multiplier"] = shifted[:, 0]
-        state["stiffer"] = ratio / self.ratio - 1.0
+        state["stiffer"] = (1.0 + step.start["stiffer"]) * ratio / self.ratio - 1.0
         left = np.where(step.shared[:, None], 1.0, 1.0 - 1.0 / ratio)
+        left[closing, 1] = 1.0
         deep = left[:, 0] * (given[:, 0] - step.kept[:, 0] * found[:, 0])
         deep /= self.factors[0] * self._penalties[0]
         deep[step.immovable] = 0.0
@@ -171,8 +186,10 @@ class Semismooth(Multipliers):
             state["stored"] = np.einsum("nid,nd->ni", step.before.tangents, shifted[:, 1:])
             kept = step.before.turned_to(step.now, step.before.moved(step.start["elastic"]))
             more = step.now.moved(trial["elastic"]) - kept
-            given_way = (1.0 - step.kept) * step.now.vector(trial["stored"])
-            more = left[:, 1:] * more + given_way / (self.factors[1] * self._penalties[1])
+            stiffness = self.factors[1] * self._penalties[1] * (1.0 + step.start["stiffer"][:, 1:])
+            held = step.before.turned_to(step.now, given[:, 1:] - found[:, 1:]) / stiffness
+            more = left[:, 1:] * np.where(closing[:, None], held, more)
+            more += (1.0 - step.kept[:, 1:]) * step.now.vector(trial["stored"]) / stiffness
             slip += np.where(step.remembers, step.now.chord(more, trial["spin"]), 0.0)
         slip[apart] = 0.0
         return state, slip
@@ -189,6 +206,9 @@ class Semismooth(Multipliers):
         ratio[step.immovable, 0] = 1.0
         if not self.tangential:
             ratio[:, 1] = self.ratio
+        else:
+            closing = np.isfinite(step.closeness)
+            ratio[closing, 1] = ratio[closing, 0]
         return ratio
 
     def advance(self, start: State, traction: Floats, now: Frames, before: Frames) -> State:
@@ -205,13 +225,15 @@ class Semismooth(Multipliers):
         new["multiplier"] = normal
         if self.tangential:
             tangential = now.turned_to(before, traction - normal[:, None] * now.normal)
-            new["stored"] = np.einsum("nid,nd->ni", before.tangents, tangential)
+            self._hold(new, tangential, before)
         return new
 
     def vector(self, step: ContactTrial) -> Floats:
         """The multipliers of a trial as vectors where it is, (n, 3), stress."""
-        given, _ = self.values(step)
-        turned = step.before.turned_to(step.now, given[:, 1:])
+        given, found = self.answers(step)
+        closing = np.isfinite(step.closeness)
+        held = np.where(closing[:, None], found[:, 1:], given[:, 1:])
+        turned = step.before.turned_to(step.now, held)
         return np.asarray(given[:, :1] * step.now.normal + turned)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.contact.frames import Frames
 from anisocontact.contact.history import Snapshot
 from anisocontact.contact.layer import Layer
 from anisocontact.contact.master import Answer, Master
@@ -16,7 +17,6 @@ from anisocontact.contact.multipliers import (
     STICK,
     AugmentedLaw,
     ContactTrial,
-    Frames,
     Multipliers,
 )
 from anisocontact.contact.points import SlavePoints
@@ -146,11 +146,10 @@ class Trials:
 
     def answer(self, dt: float) -> Answer:
         """The trial where the master is, with the derivative of a Newton step."""
-        semismooth, answer = self._semismooth, None
-        if semismooth is None:
-            answer = self.master.answer(self.start, dt)
-        else:
+        if (semismooth := self._semismooth) is not None:
             answer = self._linearised(semismooth, dt)
+        else:
+            answer = self.master.answer(self.start, dt)
         self._now = answer.snapshot
         return answer
 
@@ -225,7 +224,7 @@ class Trials:
         traction = master.into_frame(trial.snapshot.response.traction)
         if semismooth.tangential:
             traction = traction + step.supported
-        base = Base(semismooth.vector(step), traction, linear.slipped(slip), step.kept)
+        base = Base(semismooth.vector(step), traction, linear.slipped(slip), step.kept[:, :1])
         self._linear = Linearised(linear, base, slip)
         return answer
 
@@ -251,7 +250,7 @@ class Trials:
 
     def _let_go_of_immovable(self) -> None:
         if self._multipliers is not None:
-            self.start["multiplier"][self.immovable | self._slight] = 0.0
+            self._multipliers.let_go(self.start, self.immovable | self._slight)
 
     def add_multiplier_residual(self, out: Floats) -> None:
         """Add the condensed residual of the multipliers: what a step takes beyond the trial.
@@ -381,17 +380,19 @@ class Trials:
 
     def _step(self, trial: Snapshot) -> ContactTrial:
         """A trial with the frames of the master."""
+        own, answer, far = self._multipliers, trial.response, np.full(len(self.start), np.inf)
         return ContactTrial(
             self.start,
-            trial.response,
+            answer,
             trial.areas,
-            self._frames(trial.response.state),
+            self._frames(answer.state),
             self._frames(self.start),
-            self.master.axes(trial.response),
+            self.master.axes(answer),
             self.immovable | self._slight,
             self._points.covered(trial.areas).clip(LEAST, 1.0),
             self.shared,
             self.master.held,
+            far if own is None else own.closeness(self.start, answer.pressure, answer.gap),
         )
 
     def _frames(self, state: State) -> Frames:

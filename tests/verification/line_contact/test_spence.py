@@ -123,15 +123,15 @@ def test_pressed_with_friction(line: Any, share: float, n: int, bound: float) ->
     grown.check_status()
 
 
-@pytest.mark.slow
-def test_few_increments(line: Any) -> None:
-    """From 4 to 16 increments the mean error falls at first order at least, to a quarter.
+@pytest.mark.parametrize(("increments", "bound"), [(1, 0.1), (4, 0.03)])
+def test_few_increments(line: Any, increments: int, bound: float) -> None:
+    """In one increment the shear is right to a tenth of mu p0, in four to 3 %, as root mean square.
 
-    Source: with multipliers a node carries no friction in the increment in which it closes its gap,
-    which is of first order. Measured 0.22 and 0.04 of mu p0.
+    Source: points that touch and stick carry what their way against the gap gives, see
+    `test_closing_increment`; of first order in what the contact grows by, 0.054 and 0.020 are left,
+    and 0.007 in eight and more. Without friction in the increment of the touch it is 0.59 and 0.16.
     """
-    few, more = (pressed(line, 8, BETA, increments).mean for increments in (4, 16))
-    assert more < 0.25 * few
+    assert pressed(line, 8, BETA, increments).mean < bound
 
 
 @pytest.mark.slow

@@ -60,7 +60,7 @@ inline void advance(const InterfaceLaw& l, const PointState& old, const ContactF
   s.elastic = g.project_contra(at.plane.spatial(r.elastic)).c;
   s.slip = g.project_contra(at.plane.spatial(r.slip)).c;
   const Vector<double> way = g.project_contra(at.plane.spatial(r.increment));
-  s.origin = remembers(old) ? old.origin : (Vector<double>{s.xi} - way).c;
+  s.origin = remembers(old) && !(old.gap > 0.0) ? old.origin : (Vector<double>{s.xi} - way).c;
   const auto normal = normal_energies(law::normal_model(l.normal), old, in.gap, in.pressure, in.dt);
   s.pressure = in.pressure;
   s.slip_accumulated += std::sqrt(r.slip[0] * r.slip[0] + r.slip[1] * r.slip[1]);

@@ -36,6 +36,8 @@ inline constexpr std::size_t slope_count = 17;
 struct ContactFrame {
   double gap, dt;
   double pressure, d_pressure;        ///< N and dN/dg
+  Dual<1> fraction;                   ///< of the step in contact, by the gap
+  double real;                        ///< share of the slip in contact that is no multiplier's
   Flat stored, elastic;               ///< committed, turned to here
   Flat increment;                     ///< of the slip over the whole step
   std::array<Flat, 2> adhesion_axes;  ///< unit vectors

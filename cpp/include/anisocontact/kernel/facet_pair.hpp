@@ -152,7 +152,7 @@ PairResult update_pair(const InterfaceLaw& law, const Law& reacts, const PointSt
     history.emplace(plane, surface::tangent_plane(p.before), p.master.now.position, state, &p.own,
                     looks_back(law.evolution));
   const CommittedPoint* committed = history ? &*history : nullptr;
-  ContactFrame in = contact_frame(law, gap, dt, pressure, committed, axes, plane);
+  ContactFrame in = contact_frame(law, state, gap, dt, pressure, committed, axes, plane);
   const detail::HeldDirections held(p.held, plane);
   in.increment = held.rest(in.increment);
   Reaction r = reacts.evaluate(state, in, tangent);

@@ -45,21 +45,15 @@ struct OwnAxes {
   }
 };
 
-/// The part of a step that a point spent in contact, by the gap.
-inline Dual<1> part_in_contact(const PointState& state, double gap) {
-  return contact_fraction(state, Dual<1>::variable(gap, 0));
-}
-
-inline LawInput law_input(const PointState& state, const ContactFrame& in, const OwnAxes& axes) {
-  const double part = part_in_contact(state, in.gap).v;
-  return {in.gap, in.pressure, axes.in_axes(scaled(part, in.increment)), axes.in_axes(in.stored),
-          axes.in_axes(in.elastic)};
+inline LawInput law_input(const ContactFrame& in, const OwnAxes& axes) {
+  return {in.gap, in.pressure, axes.in_axes(scaled(in.fraction.v, in.increment)),
+          axes.in_axes(in.stored), axes.in_axes(in.elastic)};
 }
 
 /// Slopes in the contact plane from those in the axes of the law, which turn by an angle of their
 /// own: vectors then change in the axes by minus a quarter of a turn, the force in the plane by one.
-inline void put_slopes_of(const LawOutput& a, const PointState& state, const ContactFrame& in,
-                          const OwnAxes& axes, const LawInput& seen, Reaction& r) {
+inline void put_slopes_of(const LawOutput& a, const ContactFrame& in, const OwnAxes& axes,
+                          const LawInput& seen, Reaction& r) {
   const auto put = [&](Slope s, const std::array<Flat, 2>& by) {
     for (std::size_t j = 0; j < 2; ++j)
       r.slope(s, j) =
@@ -73,13 +67,12 @@ inline void put_slopes_of(const LawOutput& a, const PointState& state, const Con
       plus(times(a.by_stored, quarter(seen.stored)), times(a.by_elastic, quarter(seen.elastic))));
   r.slope(Slope::friction, 0) =
       plus(quarter(axes.in_plane(a.traction)), axes.in_plane(scaled(-1.0, turned)));
-  const Dual<1> part = part_in_contact(state, in.gap);
   Flat& by_gap = r.slope(Slope::gap, 0);
   by_gap = scaled(in.d_pressure, axes.in_plane(a.by_pressure));
   for (std::size_t j = 0; j < 2; ++j) {
     Flat& by = r.slope(Slope::increment, j);
-    by_gap = plus(by_gap, scaled(in.increment[j] * part.d[0], by));
-    by = scaled(part.v, by);
+    by_gap = plus(by_gap, scaled(in.increment[j] * in.fraction.d[0], by));
+    by = scaled(in.fraction.v, by);
   }
 }
 
@@ -90,8 +83,8 @@ class Recorder final : public Law {
  public:
   explicit Recorder(LawInput& to) noexcept : to_(to) {}
 
-  Reaction evaluate(const PointState& state, const ContactFrame& in, bool) const noexcept override {
-    to_ = detail::law_input(state, in, detail::OwnAxes(in));
+  Reaction evaluate(const PointState&, const ContactFrame& in, bool) const noexcept override {
+    to_ = detail::law_input(in, detail::OwnAxes(in));
     return {};
   }
 
@@ -104,10 +97,10 @@ class GivenLaw final : public Law {
  public:
   explicit GivenLaw(const LawOutput& output) noexcept : output_(output) {}
 
-  Reaction evaluate(const PointState& state, const ContactFrame& in,
+  Reaction evaluate(const PointState&, const ContactFrame& in,
                     bool tangent) const noexcept override {
     const detail::OwnAxes axes(in);
-    const LawInput seen = detail::law_input(state, in, axes);
+    const LawInput seen = detail::law_input(in, axes);
     const Flat elastic = detail::plus(detail::plus(seen.elastic, seen.increment),
                                       detail::scaled(-1.0, output_.slip));
     Reaction r;
@@ -119,7 +112,7 @@ class GivenLaw final : public Law {
     r.dissipation = output_.dissipation;
     r.energy = output_.energy;
     r.status = output_.slip == Flat{} ? Contact::stick : Contact::slip;
-    if (tangent) detail::put_slopes_of(output_, state, in, axes, seen, r);
+    if (tangent) detail::put_slopes_of(output_, in, axes, seen, r);
     return r;
   }
 

@@ -33,14 +33,32 @@ struct InterfaceLaw {
   AnyEvolution evolution{};
 };
 
-/// Part of a step that a point spent in contact: 1 where it was in contact before, else what is
-/// left after the gap closed, the motion taken as straight; nothing where a multiplier holds it at
-/// no gap, the limit of a stiff law.
+/// Penetration that stands for a pressure: what it is but for a multiplier, which stands for that of
+/// the penalty beside it.
 template <class S>
-S contact_fraction(const PointState& state, const S& gap) {
-  if (remembers(state) || !(state.gap > 0.0)) return S(1.0);
-  if (!(value(gap) < 0.0)) return S(0.0);
-  return gap / (gap - S(state.gap));
+S depth(const law::NormalModel& m, const PointState& state, const S& gap) {
+  if (state.multiplier == 0.0) return -gap;
+  return S(-state.multiplier / ((1.0 + state.stiffer[0]) * m.c)) - gap;
+}
+
+/// Part of a step that a point spent in contact: 1 where there was no gap before, else what is left
+/// after it closed, the motion taken as straight. Where a multiplier holds a point at no gap, it is what
+/// the penetration that stands for the pressure makes of the way of the gap, at most 1: times a stiffness
+/// against slip like that of the penalty, N / g_n.
+template <class S>
+S contact_fraction(const law::NormalModel& m, const PointState& state, const S& gap) {
+  if (!(state.gap > 0.0)) return S(1.0);
+  const S deep = depth(m, state, gap), way = S(state.gap) - gap;
+  if (!(value(deep) > 0.0)) return S(0.0);
+  return value(deep) < value(way) ? deep / way : S(1.0);
+}
+
+/// Share of the slip in contact that is left where multipliers hold a point that was apart at no gap:
+/// none, as in the limit of stiff penalties.
+inline double share_of_penetration(const law::NormalModel& m, const PointState& state, double gap) {
+  if (!(state.gap > 0.0) || state.multiplier == 0.0) return 1.0;
+  const double deep = depth(m, state, gap);
+  return deep > 0.0 ? std::clamp(-gap / deep, 0.0, 1.0) : 0.0;
 }
 
 /// Time that the law of a point acts in a step: from where the gap closed. Never nothing, so that
@@ -59,7 +77,7 @@ S normal_pressure(const law::NormalModel& m, const PointState& state, const S& g
     const law::NormalModel here{m.w, m.a, m.b, (1.0 + state.stiffer[0]) * m.c};
     return law::pressure(here, gap, state.gap, state.pressure, dt, state.multiplier);
   }
-  const S time = time_in_contact(contact_fraction(state, gap), dt);
+  const S time = time_in_contact(contact_fraction(m, state, gap), dt);
   return law::pressure(m, gap, state.gap, state.pressure, time, state.multiplier);
 }
 
@@ -71,7 +89,7 @@ inline Dual<1> pressure_of(const InterfaceLaw& l, const PointState& state, doubl
 /// Elastic energy and viscous loss of the normal law in a step that ends at a gap.
 inline law::Energies normal_energies(const law::NormalModel& m, const PointState& old, double gap,
                                      double pressure, double dt) {
-  const double time = m.w == 0.0 ? dt : time_in_contact(contact_fraction(old, gap), dt);
+  const double time = m.w == 0.0 ? dt : time_in_contact(contact_fraction(m, old, gap), dt);
   return law::energies(m, gap, gap - std::min(old.gap, 0.0), pressure, time);
 }
 

@@ -135,7 +135,7 @@ PointResult update(const Interface& itf, const Law& reacts, const PointState& st
   else
     kept.emplace(itf.law.evolution, itf.surface, state, foot.xi, gap, plane);
   const CommittedPoint* committed = turned ? &*turned : nullptr;
-  ContactFrame in = contact_frame(itf.law, gap, dt, pressure, committed, axes, plane);
+  ContactFrame in = contact_frame(itf.law, state, gap, dt, pressure, committed, axes, plane);
   if (kept) kept->put(in);
   const Reaction r = reacts.evaluate(state, in, tangent);
   if (r.failure != Failure::none) return fail(r.failure);
