@@ -16,4 +16,5 @@ NB_MODULE(_core, m) {
   anisocontact::bindings::bind_facet_interface(m);
   anisocontact::bindings::bind_mortar(m);
   anisocontact::bindings::bind_contact_planes(m);
+  anisocontact::bindings::bind_blocks(m);
 }

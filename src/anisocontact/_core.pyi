@@ -430,3 +430,6 @@ def plane_slopes(
     by_nodes: NDArray[numpy.float64],
     threads: int,
 ) -> Any: ...
+def block_entries(
+    row: NDArray[numpy.int64], column: NDArray[numpy.int64], number: NDArray[numpy.int64], size: int
+) -> Any: ...

@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from anisocontact import _core
 from anisocontact.contact.quadrature import Couplings
 
 Ints = npt.NDArray[np.int64]
@@ -45,8 +46,8 @@ class Places:
         if not len(key):
             return scipy.sparse.csr_array((size, size))
         sums = self._sum @ np.concatenate(blocks)
-        parts = (sums.ravel()[self._entry.data], self._entry.indices, self._entry.indptr)
-        return scipy.sparse.csr_array(parts, shape=(size, size))
+        number, columns, begin = self._entry
+        return scipy.sparse.csr_array((sums.ravel()[number], columns, begin), shape=(size, size))
 
     def shares(
         self, opposite: Sequence[Opposite], size: int
@@ -87,16 +88,8 @@ class Places:
         self._sum = scipy.sparse.csr_array(
             (np.ones(len(key)), order, starts), shape=(len(first), len(key))
         )
-        pairs = np.divmod(key[order][first], len(self._number))
-        row, column = (self._number[node] for node in pairs)
-        shape = (len(first), 3, 3)
-        rows, columns = (
-            np.broadcast_to(row[:, :, None], shape),
-            np.broadcast_to(column[:, None, :], shape),
-        )
-        there = (rows >= 0) & (columns >= 0)
-        entry = np.arange(there.size).reshape(shape)[there]
-        self._entry = scipy.sparse.csr_array((entry, (rows[there], columns[there])), (size, size))
+        row, column = np.divmod(key[order][first], len(self._number))
+        self._entry = _core.block_entries(row, column, self._number, size)
 
 
 def _pairs(values: Floats, r: int, c: int) -> Floats:
