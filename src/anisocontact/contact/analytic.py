@@ -19,6 +19,7 @@ from anisocontact.interface import Interface, SlaveSurface, State
 from anisocontact.interface.failed_point import OnSurface
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.rigid import MovingInterface, RigidBody
+from anisocontact.rigid.body import Pose
 from anisocontact.surfaces import PROJECTION_STATUS
 
 _INTERIOR = PROJECTION_STATUS.index("interior")
@@ -188,14 +189,25 @@ class AnalyticMaster(Master):
     def out_of_frame(self, vectors: Floats) -> Floats:
         return vectors if self.body is None else self.body.to_space(vectors)
 
-    def displaced(self) -> Floats:
-        """Displacements of the points as seen from the surface, (n, 3), length."""
-        if self.body is None:
-            return self._way
-        pose, arms = self.body.trial, self._slave.quadrature.reference - self.body.reference
-        return np.asarray(
-            arms @ (pose.rotation - np.eye(3)) + (self._way - pose.translation) @ pose.rotation
-        )
+    def displaced(self) -> tuple[Floats, Pose | None]:
+        """Displacements of the points, (n, 3), length, and the pose of the body."""
+        return self._way, None if self.body is None else self.body.trial
+
+    def moved_since(self, way: Floats, pose: Pose | None) -> Floats:
+        """Ways of the points as seen from the surface since they were displaced, (n, 3), length.
+
+        Where the body has rested they are those of the nodes, without the rounding of its motion.
+
+        Args:
+            way: Displacements then, (n, 3), length.
+            pose: Pose of the body then.
+        """
+        if self.body is None or pose is None:
+            return self._way - way
+        now = self.body.trial
+        arms = self._slave.quadrature.reference - self.body.reference + way - pose.translation
+        moved = self._way - way - (now.translation - pose.translation)
+        return np.asarray(arms @ (now.rotation - pose.rotation) + moved @ now.rotation)
 
     def slave_tangents(self) -> Floats | None:
         """Tangents of the slave in the frame of the surface, (n, 2, 3); None where none is seen."""
@@ -289,7 +301,7 @@ class AnalyticLinear:
         )
         response = answer.snapshot.response
         turn = np.eye(3) if master.body is None else master.body.trial.rotation
-        self._way, self._slave = master.displaced(), master.slave_tangents()
+        self._then, self._slave = master.displaced(), master.slave_tangents()
         self._tangent = turn.T @ response.tangent @ turn
         self._traction, self._normal = response.traction @ turn, response.normal @ turn
         self._jet = master.interface.surface.jet(response.state["xi"])
@@ -297,10 +309,10 @@ class AnalyticLinear:
 
     def change(self) -> Floats | None:
         """As of `Linear`."""
-        way, slave = self._master.displaced(), self._master.slave_tangents()
-        if np.array_equal(way, self._way):
+        way, slave = self._master.moved_since(*self._then), self._master.slave_tangents()
+        if not way.any():
             return None
-        change = np.einsum("nij,nj->ni", self._tangent, way - self._way)
+        change = np.einsum("nij,nj->ni", self._tangent, way)
         if slave is not None and self._slave is not None:
             change += np.einsum("nkij,nkj->ni", self._by_slave, slave - self._slave)
         return np.asarray(change)
