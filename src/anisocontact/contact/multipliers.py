@@ -28,8 +28,11 @@ type AugmentedLaw = Interface | ContactLaw
 
 #: Change of the multipliers over the tractions, both as norms over the area, that is good enough.
 SHARE = 1e-5
-#: What the penalties are multiplied with in the derivative of multipliers that follow.
-RATIO = 1e4
+#: What the penalties are multiplied with in the derivative of multipliers that follow, at most and
+#: at least; displacements are rounded, and what that makes of tractions goes with it.
+RATIO, LEAST_RATIO = 1e4, 1e3
+#: Share of the tractions that is the tolerance of equilibrium, and of positions that is rounded.
+EXACT, ROUNDED = 1e-8, 16.0 * float(np.finfo(np.float64).eps)
 #: The same at points that are slaves of several contacts: what makes their multipliers unique.
 SHARED_RATIO = 3e2
 #: Tractions that are none, as a share of what the tolerance stands for: 1e-9 of the stiffness of
@@ -104,6 +107,7 @@ class ContactTrial:
             gap, or of which next to nothing is covered: they keep a penalty, (n,).
         covered: Share of the weight of each point that the master covers, above 0, (n,).
         shared: Points that are slaves of other contacts with multipliers as well, (n,).
+        far: Distances of the points from the origin, (n,), length.
         held: Projection on directions along which supports hold points and what they meet,
             (n, 3, 3), or none: tractions have nothing along them, multipliers have.
         closeness: Of points whose gap closes, see `Multipliers.closeness`, else infinite, (n,).
@@ -118,6 +122,7 @@ class ContactTrial:
     immovable: Flags
     covered: Floats
     shared: Flags
+    far: Floats
     held: Floats | None
     closeness: Floats
 

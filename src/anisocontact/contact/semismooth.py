@@ -23,8 +23,11 @@ from anisocontact.base.array_types import Flags, Floats
 from anisocontact.contact.frames import Frames
 from anisocontact.contact.master import Linear
 from anisocontact.contact.multipliers import (
+    EXACT,
+    LEAST_RATIO,
     OPEN,
     RATIO,
+    ROUNDED,
     SHARE,
     SHARED_RATIO,
     STICK,
@@ -201,7 +204,7 @@ class Semismooth(Multipliers):
         hold a point along the normal its penalty is what it is. At shared points it is that of
         their compliance, see `ContactTrial.kept`.
         """
-        most = np.where(step.shared, SHARED_RATIO, self.ratio)
+        most = np.where(step.shared, SHARED_RATIO, self._resolved(step))
         ratio = np.repeat((most / step.covered)[:, None], 2, axis=1)
         ratio[step.immovable, 0] = 1.0
         if not self.tangential:
@@ -210,6 +213,18 @@ class Semismooth(Multipliers):
             closing = np.isfinite(step.closeness)
             ratio[closing, 1] = ratio[closing, 0]
         return ratio
+
+    def _resolved(self, step: ContactTrial) -> float:
+        """What penalties are multiplied with so that corrections of displacements are felt.
+
+        A correction is rounded as the displacement is that it is added to, by up to a share of the
+        places. Of bodies that have moved far under small pressures that would be felt.
+        """
+        sizes = [step.start["pressure"].max(initial=0.0), step.far.max(initial=0.0)]
+        pressure, far = np.max(self._comm.allgather(sizes), axis=0)
+        rounded = ROUNDED * self.factors[0] * self._penalties[0] * far
+        most = self.ratio if pressure * far == 0.0 else LEAST_RATIO * EXACT * pressure / rounded
+        return float(np.clip(most, LEAST_RATIO, self.ratio))
 
     def advance(self, start: State, traction: Floats, now: Frames, before: Frames) -> State:
         """State with other multipliers.

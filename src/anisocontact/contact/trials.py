@@ -391,6 +391,7 @@ class Trials:
             self.immovable | self._slight,
             self._points.covered(trial.areas).clip(LEAST, 1.0),
             self.shared,
+            np.linalg.norm(trial.points, axis=1),
             self.master.held,
             far if own is None else own.closeness(self.start, answer.pressure, answer.gap),
         )
