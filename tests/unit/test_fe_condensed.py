@@ -20,6 +20,7 @@ from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
 from anisocontact.solver.strategies.condensed.krylov import gmres
 from anisocontact.solver.strategies.condensed.parts import Condensation
 from anisocontact.solver.strategies.condensed.patterns import InteriorState, Patterns
+from anisocontact.solver.strategies.condensed.updated import UpdatedFactor
 from anisocontact.solver.strategies.iterative.factor import Factor
 from anisocontact.solver.terms.term import SingularError
 
@@ -313,6 +314,104 @@ def test_slave_nodes_that_follow_many_times_over() -> None:
     kept, b = KeptFactor(tangent), rng.random(210)
     rest = b - tangent.times(kept.solve(b, 1e-9))
     assert np.linalg.norm(rest) <= 1e-9 * np.linalg.norm(b)
+
+
+def _held(values: np.ndarray) -> scipy.sparse.csr_array:
+    return scipy.sparse.csr_array(np.diag(values))
+
+
+def test_rows_that_have_changed_since_a_factor() -> None:
+    """Constraints of a thousand times the stiffness come and go.
+
+    Requirement: the solution with the changed matrix to 1e-9, as all is in double precision. Rows
+    that change again cost no solution with the factor; too many are refused, but those that
+    change least, which are left. What goes on from `persistent` has the same bits.
+    """
+    rng = np.random.default_rng(2)
+    n = 60
+    half = rng.random((n, n)) / n
+    matrix, first = half @ half.T + np.eye(n), np.where(np.arange(n) < 30, 1e3, 0.0)
+
+    def solve(b: np.ndarray) -> np.ndarray:
+        return np.linalg.solve(matrix + np.diag(first), b)
+
+    def made() -> UpdatedFactor:
+        return UpdatedFactor(solve, _held(first), np.diagonal(matrix))
+
+    factor, b = made(), rng.random(n)
+    for changed, expected in (([3, 40], 2), ([40, 41, 42], 2), ([3], 0), ([], 0)):
+        now = first.copy()
+        now[changed] = 1e3 - now[changed]
+        assert factor.take(_held(now), 10) == expected
+        np.testing.assert_allclose(
+            factor(b), np.linalg.solve(matrix + np.diag(now), b), rtol=1e-9, atol=1e-12
+        )
+        np.testing.assert_array_equal(factor.held.toarray(), np.diag(now))
+    assert factor.take(_held(1e3 - first), 10) is None
+    slight = np.where(np.arange(n) < 30, 1.3e3, 0.0)
+    slight[0] = 0.0
+    assert factor.take(_held(slight), 10) == 1
+    again = made()
+    again.restore(factor.persistent())
+    again.take(_held(slight), 10)
+    np.testing.assert_array_equal(again(b), factor(b))
+
+
+def test_points_that_open_close_and_turn_need_no_new_factor() -> None:
+    """A body of 900 unknowns on a rigid surface: 250 nodes slide, and their directions turn.
+
+    Requirement: one factorisation for ten corrections, of at most 20 iterations each. Nodes that
+    open or close are put right in it, and directions of slip that turn by a few degrees act on
+    what normal constraints leave. Counted by rows that change, every correction had its own.
+    """
+    rng = np.random.default_rng(7)
+    half = rng.random((900, 900)) / 900.0
+    tangent = ContactTangent([(slice(0, 900), half @ half.T + np.eye(900))], np.arange(900), 900)
+    kept, node = KeptFactor(tangent), np.arange(250, dtype=np.int32)[:, None]
+    normal = np.array([0.0, 0.0, 1.0])
+    angle = rng.random(250)
+    for k in range(10):
+        angle += 0.02 * rng.random(250)
+        slip = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
+        values = 1e4 * np.einsum("ni,j->nij", normal + 0.2 * slip, normal)
+        values[4 * k : 4 * k + 8] = 0.0
+        tangent.take([(node, node, values)])
+        b, before = rng.random(900), kept.iterations
+        rest = b - tangent.times(kept.solve(b, 1e-9))
+        assert np.linalg.norm(rest) <= 1e-9 * np.linalg.norm(b)
+        assert kept.iterations - before <= 20
+    assert kept.factors == 1
+
+
+@pytest.mark.parametrize(("told", "kind"), [(False, np.float64), (True, np.float32)])
+def test_gaps_that_are_those_of_several_nodes(told: bool, kind: type) -> None:
+    """Slave nodes at the middle of edges, whose gaps take 0.2 of those at the ends off.
+
+    Requirement: the residual, 1e-8, in single precision where unknowns are those of gaps;
+    in displacements constraints of 1e4 times the stiffness are lost in rounding, which is found
+    and all goes on in double precision. Source: [Popp Wohlmuth Gitterle Wall 2012, sec. 3.2].
+    """
+    rng = np.random.default_rng(9)
+    middle = np.arange(100, 300, dtype=np.int32)
+    ends = np.stack([rng.permutation(100)[:2] for _ in middle]).astype(np.int32)
+    half = rng.random((900, 900)) / 900.0
+    tangent = ContactTangent([(slice(0, 900), half @ half.T + np.eye(900))], np.arange(900), 900)
+    kept, corner = KeptFactor(tangent), np.arange(100, dtype=np.int32)[:, None]
+    rows = np.concatenate([middle[:, None], ends], axis=1)
+    weights, normal = np.array([1.0, -0.2, -0.2]) / 0.6, np.array([0.0, 0.0, 1.0])
+    beside = [(middle, ends, np.full((200, 2), 0.2))] if told else []
+    angle = rng.random(300)
+    for _ in range(3):
+        angle += 0.02 * rng.random(300)
+        slip = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
+        each = 1e4 * np.einsum("ni,j->nij", normal + 0.2 * slip, normal)
+        each[rng.permutation(300)[:8]] = 0.0
+        of_edges = np.einsum("a,b,nij->naibj", weights, weights, each[100:]).reshape(-1, 9, 9)
+        tangent.take([(rows, rows, of_edges), (corner, corner, each[:100])], (), beside)
+        b = rng.random(900)
+        rest = b - tangent.times(kept.solve(b, 1e-9))
+        assert np.linalg.norm(rest) <= 1e-8 * np.linalg.norm(b)
+    assert tangent.kind is kind
 
 
 def test_gmres() -> None:

@@ -191,6 +191,20 @@ class Contact(Pass):
         """Local nodes that the contact acts on; all ranks together have all of them."""
         return self.master.couplable()
 
+    def beside(self) -> tuple[Locals, Locals, Floats] | None:
+        """What else the gap of each slave node is made of, see `slave_nodes.EDGE_SHARE`.
+
+        Returns:
+            Local slave nodes (n,), other slave nodes (n, k), and how the first follow them where
+            no gap changes; None where a gap is that of one node, or of a point.
+        """
+        points = self.slave_points.quadrature
+        count = points.rows or 1
+        if not self.slave_points.at_nodes or count < 2:
+            return None
+        named, basis = self.master.local_names(points.nodes[:, :count]), points.basis[:, 0, :count]
+        return named[:, 0], named[:, 1:], -basis[:, 1:] / basis[:, :1]
+
     def projected_facets(self) -> Ints:
         """As of `Master`."""
         return self.master.projected_facets(len(self.state))

@@ -290,7 +290,9 @@ class MortarMaster(MeshedMaster):
     @override
     def opposite(self) -> tuple[Locals, Locals, Floats]:
         named, weights = self._gathered.local_names, self._at.weights
-        return named(self._at.quadrature.nodes[:, 0]), named(weights.masters), weights.shares
+        points = self._at.quadrature
+        shares = weights.shares / points.basis[:, 0, :1]
+        return named(points.nodes[:, 0]), named(weights.masters), shares
 
     @override
     def whereabouts(self, u: Floats, before: Snapshot, state: State, now: Snapshot) -> Whereabouts:

@@ -113,6 +113,11 @@ class Contacts(Term):
         found = [contact.master.opposite() for contact in self.meshed]
         return [one for one in found if one is not None]
 
+    def beside(self) -> list[tuple[Locals, Locals, Floats]]:
+        """Slave nodes whose gaps are theirs less a share of others, see `Contact.beside`."""
+        found = [contact.beside() for contact in self._all]
+        return [one for one in found if one is not None]
+
     def improve(self) -> bool:
         """Better multipliers from equilibrium; whether any changed.
 

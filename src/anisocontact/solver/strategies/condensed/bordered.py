@@ -11,10 +11,11 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import call_petsc, check_memory, has_petsc
 from anisocontact.solver.strategies.condensed.factor import aij, singular
-from anisocontact.solver.strategies.condensed.front import Flags, Front, Singles, Sparse
+from anisocontact.solver.strategies.condensed.front import Front, Reals, Sparse
 from anisocontact.solver.strategies.condensed.mumps import (
     TOO_SMALL,
     WORKSPACE,
@@ -110,7 +111,7 @@ class BorderedLU:
         self._front: Front | None = None
         self._held: Sparse | None = None
         self._shares: Sparse = whole(len(border))[0]
-        self._solve_border: Callable[[Singles], Singles] | None = None
+        self._solve_border: Callable[[Reals], Reals] | None = None
         self._callback = _MatSolve(self._answer)
         call_petsc("MatFactorRestoreSchurComplement", self._factor, None, _FACTORED)
         call_petsc("MatSetOperation", handle, _MAT_SOLVE, self._callback)
@@ -167,7 +168,7 @@ class BorderedLU:
         none, _ = whole(len(self.border))
         return Front(self._copy, none, np.ones(len(self.border), dtype=np.bool_))
 
-    def _copy(self) -> Singles:
+    def _copy(self) -> Reals:
         return np.array(self._schur, order="F")
 
     def _clearly(self, change: Sparse) -> Flags:

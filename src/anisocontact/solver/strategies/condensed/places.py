@@ -63,21 +63,28 @@ class Places:
             nodes; and which unknowns are those of slave nodes.
         """
         slaves = np.zeros(size + 1, dtype=np.bool_)
+        for slave, _, _ in opposite:
+            slaves[self._number[slave]] = True
+        slaves = slaves[:size]
+        found = self.following(opposite, size).tocoo()
+        again = np.isin(found.row, found.row[slaves[found.col]])
+        parts = (found.data[~again], (found.row[~again], found.col[~again]))
+        return scipy.sparse.csr_array(parts, shape=(size, size)), slaves
+
+    def following(self, opposite: Sequence[Opposite], size: int) -> scipy.sparse.csr_array:
+        """Shares of unknowns in those of nodes that follow them, single precision, (size, size)."""
         rows, columns = np.zeros(0, np.int64), np.zeros(0, np.int64)
         values = np.zeros(0, np.float32)
         for slave, masters, shares in opposite:
-            own = self._number[slave]
-            slaves[own] = True
             row, column, share = np.broadcast_arrays(
-                own[:, None], self._number[masters], shares[..., None].astype(np.float32)
+                self._number[slave][:, None],
+                self._number[masters],
+                shares[..., None].astype(np.float32),
             )
             there = (row >= 0) & (column >= 0) & (share != 0.0)
             rows, columns = np.append(rows, row[there]), np.append(columns, column[there])
             values = np.append(values, share[there])
-        slaves = slaves[:size]
-        again = np.isin(rows, rows[slaves[columns]])
-        found = (values[~again], (rows[~again], columns[~again]))
-        return scipy.sparse.csr_array(found, shape=(size, size)), slaves
+        return scipy.sparse.csr_array((values, (rows, columns)), shape=(size, size))
 
     def _locate(self, key: Ints, size: int) -> None:
         """Sort pairs of nodes, each of them a number."""

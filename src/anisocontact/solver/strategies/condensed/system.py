@@ -191,7 +191,8 @@ class ContactSystem(AssembledSystem):
         self.evaluate(x)
         couplings = self._rigid.body_couplings(len(self._v) // 3)
         couplings += [*self._assembly.acting.blocks(), *self._assembly.acting.couplings()]
-        self._tangent.take(couplings, self.contact_term.opposite())
+        term = self.contact_term
+        self._tangent.take(couplings, term.opposite(), term.beside())
         out.assemble()
         return False
 

@@ -63,6 +63,9 @@ class Touched:
         alone = problem.constraints.gathering() is None
         opposite = problem.contact_term.opposite() if alone else []
         shares, slaves = self._places.shares(opposite, problem.unknowns)
+        if shares.nnz:
+            beside = self._places.following(problem.contact_term.beside(), problem.unknowns)
+            shares = shares + beside @ shares
         own = shares[self.unknowns][:, self.unknowns]
         return (self._free(np.float32) @ own).tocsr(), slaves[self.unknowns]
 

@@ -35,6 +35,7 @@ class Wear:
     def __init__(self, last: int, margin: float) -> None:
         self._last, self._margin = last, margin
         self.spent: list[tuple[float, float]] = []
+        self._ahead = 0.0
 
     def begin(self, cost: float) -> None:
         """Take it that a factor has been made.
@@ -42,7 +43,11 @@ class Wear:
         Args:
             cost: What it has cost, in solutions.
         """
-        self.spent = [(cost, 0.0)]
+        self.spent, self._ahead = [(cost, 0.0)], 0.0
+
+    def spend(self, cost: float) -> None:
+        """Count what the next correction costs beside its iterations, in solutions."""
+        self._ahead += cost
 
     def add(self, cost: float, left: float) -> None:
         """Count a correction.
@@ -51,7 +56,8 @@ class Wear:
             cost: What it has cost, in solutions.
             left: Residual over the right-hand side.
         """
-        self.spent.append((cost, -np.log10(max(left, 1e-16))))
+        self.spent.append((cost + self._ahead, -np.log10(max(left, 1e-16))))
+        self._ahead = 0.0
 
     @property
     def worn(self) -> bool:
