@@ -253,7 +253,7 @@ class FacetSurface(Remade):
 
     def met_along(
         self, facet: npt.ArrayLike, xi: npt.ArrayLike, x: Floats, normal: Floats, opposed: float
-    ) -> tuple[Floats, npt.NDArray[np.bool_]]:
+    ) -> tuple[Floats, Flags]:
         """Where lines meet facets, or what these go on as beyond their sides.
 
         Args:
@@ -266,7 +266,7 @@ class FacetSurface(Remade):
         Returns:
             Coordinates, (n, 2), and whether there is such a place, (n,).
         """
-        found: tuple[Floats, npt.NDArray[np.bool_]] = self.core.met_along(
+        found: tuple[Floats, Flags] = self.core.met_along(
             *self._at(facet, xi),
             np.ascontiguousarray(x),
             np.ascontiguousarray(normal),

@@ -1,4 +1,4 @@
-"""Levels of the preconditioner: the interior of each is smoothed, the last one is factorised."""
+"""Multilevel preconditioner: the interior of each level is smoothed, the last is factorised."""
 
 from __future__ import annotations
 

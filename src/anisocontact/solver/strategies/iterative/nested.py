@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Ints
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel, Inverse
 from anisocontact.solver.strategies.iterative.cycle import Smoother, cycle
@@ -17,8 +17,6 @@ from anisocontact.solver.strategies.iterative.interpolation import (
     smoothed,
     tentative,
 )
-
-Ints = npt.NDArray[np.int64]
 
 
 @dataclass(frozen=True)
