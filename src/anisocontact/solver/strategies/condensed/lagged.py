@@ -93,8 +93,8 @@ class LaggedFactor:
         self._touched = Touched(self._problem, unknowns)
 
     def outgrow(self) -> None:
-        """Take it that contacts couple other nodes than before."""
-        self._due = True
+        """Take it that contacts couple other nodes than before; those may be in the border."""
+        self._due = self._due or self._touched is None or self._touched.outgrown()
 
     def solve(self, tangent: Mat, b: Floats, rtol: float) -> Floats | None:
         """Correction for a right-hand side; None where the tangent is singular.

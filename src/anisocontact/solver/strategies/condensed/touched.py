@@ -50,6 +50,10 @@ class Touched:
         own = total[self.unknowns][:, self.unknowns]
         return (self._free() @ own).tocsr()
 
+    def outgrown(self) -> bool:
+        """Whether contacts of now couple other unknowns than these."""
+        return not np.isin(self._select(), self.unknowns).all()
+
     def without(self, tangent: Sparse) -> Sparse:
         """A tangent of all unknowns less `tangent`: of the bodies, and of nodes that are new."""
         count = len(self.unknowns)
