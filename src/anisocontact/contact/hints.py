@@ -10,6 +10,7 @@ import numpy as np
 from anisocontact.base.errors import ModelWarning
 from anisocontact.contact.contact import Contact
 from anisocontact.contact.defaults import FINER, STIFF
+from anisocontact.contact.facet_mesh import node_positions
 from anisocontact.contact.initial import initial_overlap
 from anisocontact.contact.sharp_edges import SMOOTH
 
@@ -19,6 +20,10 @@ COARSE, MISSED = 3.0, 1.5
 #: Height of arcs over flat facets over an overlap at the start that is worth a word: a press fit of
 #: two rings whose arcs are 1.3 times as high as the overlap carries 15 to 19 % too much.
 FLAT = 0.1
+#: Distance of nodes over the height of arcs up to which meshes of both sides match.
+MATCHING = 0.1
+#: Share of the nodes of the slave that do, from which on they do.
+MATCHED = 0.5
 
 
 def coarse_slaves(contacts: Sequence[Contact], ratio: float = COARSE) -> list[str]:
@@ -118,6 +123,46 @@ def uneven(contacts: Sequence[Contact]) -> list[str]:
     ]
     plain = any(found) and contacts[0].space.element.basix_element.degree == 1
     return [UNEVEN] if plain else []
+
+
+def faceted(contacts: Sequence[Contact]) -> list[str]:
+    """Contacts whose pressures are less than what closes the gaps between their flat facets.
+
+    Where chords of two bodies stand for one round face and do not match, they are apart by the
+    height of their arcs, here more, there less. Collective.
+
+    Args:
+        contacts: The contacts, in their accepted state.
+
+    Returns:
+        A line for each of them.
+    """
+    found = []
+    for one in contacts:
+        comm = one.space.mesh.comm
+        peak = max(comm.allgather(float(one.last.pressure.max(initial=0.0))))
+        made = one.sagitta * one.body_stiffness
+        if not one.of_two_groups or not 0.0 < peak < made or any(comm.allgather(_match(one))):
+            continue
+        found.append(
+            f"contact of {one.name}: arcs over its flat facets are {one.sagitta:.3g} high, which "
+            f"bodies as stiff as these close under {made:.3g}, and the largest pressure is "
+            f"{peak:.3g}: pressures at points are those of the meshes, resultants are not; round "
+            "cells (order 2), finer facets or nodes that match mend it"
+        )
+    return found
+
+
+def _match(contact: Contact) -> bool:
+    """Whether most nodes of the slave lie on nodes of the master; those of each process."""
+    from scipy.spatial import cKDTree  # slow to import, and few get here
+
+    x = node_positions(contact.space)
+    slave, master = (x[nodes] for nodes in contact.nodes_of_groups)
+    if not (len(slave) and len(master)):
+        return False
+    near = cKDTree(master).query(slave)[0] <= MATCHING * contact.sagitta
+    return bool(near.mean() > MATCHED)
 
 
 def pressed_aside(contacts: Sequence[Contact]) -> list[str]:

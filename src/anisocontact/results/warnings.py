@@ -8,7 +8,7 @@ from typing import Any
 
 from anisocontact.base.limits import FOLLOWED
 from anisocontact.contact import Contact, coarse_slaves, doubtful_sides
-from anisocontact.contact.hints import MISSED, jumping_rules, overlapping, pressed_aside
+from anisocontact.contact.hints import MISSED, faceted, jumping_rules, overlapping, pressed_aside
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
 from anisocontact.solver.stepping.turned import MARGIN
@@ -158,7 +158,7 @@ def at_end(
         if entry["points"]["open"] == sum(entry["points"][name] for name in STATUS):
             swap = [line.partition(": ")[2] for line in coarse_slaves([contact], MISSED)]
             found.append("; ".join([f"{_pair(entry)}: no point touches at the end", *swap]))
-    found += pressed_aside(contacts)
+    found += [*pressed_aside(contacts), *faceted(contacts)]
     for name, text in _TAKEN.items():
         taken, work = abs(energy[name]), abs(energy["external"])
         if taken > STABILISED * work:
