@@ -25,9 +25,10 @@ Flags = npt.NDArray[np.bool_]
 #: Contact unknowns beyond which their dense matrix costs more than it saves.
 MOST_CONTACT = 8000
 #: Contact unknowns beyond which a dense factorisation takes longer than one of all n unknowns, over
-#: n^0.6: at 8 n^0.6 runs of sheets of 12 x 12 to 30 x 30 hexahedra, one to four of them thick, take
-#: 0.8 to 1.3 times what they take with `direct`, at 12.5 n^0.6 three times.
-WIDEST, POWER = 8.0, 0.6
+#: n^0.6. Runs of sheets of 12 x 12 to 30 x 30 hexahedra, one to four of them thick, take 0.8 to 1.3
+#: times what they take with `direct` at 8 n^0.6 where bodies are not linear. Where they are, many
+#: corrections share a factor: 1.1 times at 10.5 n^0.6, twice from 11.7 on.
+WIDEST, WIDEST_LINEAR, POWER = 8.0, 10.0, 0.6
 #: Unknowns up to which a factorisation of bodies that are not linear is as cheap.
 LEAST_LAGGED = 2000
 #: Gap over the facet size up to which a contact holds what it is about to hold.
@@ -76,7 +77,8 @@ class CondensedStrategy:
             )
         needed = condensing_bytes(_condensable(task, touched))
         yield from too_large(f"condensing on {count} contact unknowns", needed)
-        if count > min(0.5 * problem.unknowns, WIDEST * problem.unknowns**POWER):
+        widest = WIDEST_LINEAR if problem.linear else WIDEST
+        if count > min(0.5 * problem.unknowns, widest * problem.unknowns**POWER):
             yield (
                 f"{count} of {problem.unknowns} unknowns are contact unknowns: a factorisation of "
                 "all costs less than their dense matrix"
