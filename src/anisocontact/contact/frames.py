@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from anisocontact.base.array_types import Floats
+from anisocontact.contact.plane_axes import unit_normal
 
 # Half the squared sum of two unit normals below which they are opposite.
 _OPPOSITE = 1e-12
@@ -27,8 +28,7 @@ class Frames:
     @classmethod
     def of(cls, tangents: Floats) -> Frames:
         """Frames with the normal of the tangents, (n, 2, 3)."""
-        cross = np.cross(tangents[:, 0], tangents[:, 1])
-        return cls(tangents, cross / np.linalg.norm(cross, axis=1)[:, None])
+        return cls(tangents, unit_normal(tangents))
 
     def vector(self, covector: Floats) -> Floats:
         """Vectors (n, 3) of covariant components (n, 2)."""

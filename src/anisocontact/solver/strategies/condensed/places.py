@@ -84,7 +84,9 @@ class Places:
             there = (row >= 0) & (column >= 0) & (share != 0.0)
             rows, columns = np.append(rows, row[there]), np.append(columns, column[there])
             values = np.append(values, share[there])
-        return scipy.sparse.csr_array((values, (rows, columns)), shape=(size, size))
+        # numbers as in `total`: SciPy would convert one of the two for every product
+        places = tuple(one.astype(np.int32) for one in (rows, columns))
+        return scipy.sparse.csr_array((values, places), shape=(size, size))
 
     def _locate(self, key: Ints, size: int) -> None:
         """Sort pairs of nodes, each of them a number."""
