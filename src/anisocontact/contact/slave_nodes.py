@@ -101,7 +101,7 @@ def patches(mesh: FacetMesh, owned: int | None = None) -> Patches:
     rows = max((len(one) for one, _ in support), default=1)
     lists = []
     for node, a, b, (own, _) in zip(nodes, offsets[:-1], offsets[1:], support, strict=True):
-        around = np.setdiff1d(mesh.nodes[facets[a:b]], own)
+        around = sorted({*mesh.nodes[facets[a:b]].ravel().tolist()} - {*own})
         lists.append([*own, *[node] * (rows - len(own)), *around, node])
     width = max((len(one) - 1 for one in lists), default=1)
     padded = np.array([[*one[:-1], *[one[-1]] * (width + 1 - len(one))] for one in lists])
