@@ -182,7 +182,7 @@ inline Result update(const InterfaceLaw& law, const PointState& state, const Pai
   PointState& t = out.state;
   for (auto* c : {&t.traction, &t.stored}) *c = f.project_co(g.spatial(Covector<double>{*c})).c;
   for (auto* c : {&t.elastic, &t.slip}) *c = f.project_contra(g.spatial(Vector<double>{*c})).c;
-  if (state.status == 0) {
+  if (state.status == 0 || state.gap > 0.0) {
     const Vector<double> way = Vector<double>{t.xi} - Vector<double>{t.origin};
     t.origin = (Vector<double>{t.xi} - f.project_contra(g.spatial(way))).c;
   }
