@@ -56,7 +56,7 @@ def test_sheets_that_are_touched_all_over_are_factorised(fe: Any, thick: int, ta
     """Where contact unknowns are many beside all, their dense matrix is what takes the time.
 
     Source: measured, 20 x 20 hexahedra on a plane take with `condensed` 2.0, 1.4 and 0.6 to 0.8
-    times the processor time of `direct` where they are one, two and four thick.
+    times the processor time of `direct` where they are one, two and four thick; three, 0.7.
     """
     model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.05 * thick), (20, 20, thick))})
     contact = Contact(model, "block.bottom", MovingSurface(fe.interface(), None))

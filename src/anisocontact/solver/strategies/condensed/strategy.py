@@ -25,10 +25,11 @@ Flags = npt.NDArray[np.bool_]
 #: Contact unknowns beyond which their dense matrix costs more than it saves.
 MOST_CONTACT = 8000
 #: Contact unknowns beyond which a dense factorisation takes longer than one of all n unknowns, over
-#: n^0.6. Runs of sheets of 12 x 12 to 30 x 30 hexahedra, one to four of them thick, take 0.8 to 1.3
-#: times what they take with `direct` at 8 n^0.6 where bodies are not linear. Where they are, many
-#: corrections share a factor: 1.1 times at 10.5 n^0.6, twice from 11.7 on.
-WIDEST, WIDEST_LINEAR, POWER = 8.0, 10.0, 0.6
+#: n^(2/3): work grows as their cube and as n^2. Runs of sheets of 12 x 12 to 30 x 30 hexahedra, one
+#: to four of them thick, take 0.7 times what they take with `direct` at 4.4 n^(2/3), a milled block
+#: 0.6 times at 4.8, sheets 1.1 to 2 times from 5.3 on and two to five times from 6.8 on. Where
+#: bodies are not linear a factor serves for less: 0.9 times at 3.8, 1.2 at 4.4, 1.35 at 4.9.
+WIDEST_LINEAR, WIDEST, POWER = 5.0, 4.2, 2.0 / 3.0
 #: Unknowns up to which a factorisation of bodies that are not linear is as cheap.
 LEAST_LAGGED = 2000
 #: Gap over the facet size up to which a contact holds what it is about to hold.
