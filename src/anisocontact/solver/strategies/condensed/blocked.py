@@ -5,15 +5,12 @@ from __future__ import annotations
 from typing import override
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import PETSc
 from anisocontact.base.petsc_calls import check_memory
 from anisocontact.solver.strategies.condensed.factor import Eliminated, aij, singular, solves
-
-Ints = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 #: Right-hand sides at a time: enough for products of matrices, few beside the factor.
 _COLUMNS = 64

@@ -8,10 +8,9 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
-from anisocontact.base.array_types import Flags
+from anisocontact.base.array_types import Flags, Ints
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import call_petsc, check_memory, has_petsc
 from anisocontact.solver.strategies.condensed.factor import aij, singular
@@ -23,9 +22,6 @@ from anisocontact.solver.strategies.condensed.mumps import (
     schur_matrix,
 )
 from anisocontact.solver.strategies.newton import Database
-
-Ints = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 #: PETSc: the Schur complement has a factor of its own; the place of "solve for a dense matrix".
 _FACTORED, _MAT_SOLVE = 1, 100

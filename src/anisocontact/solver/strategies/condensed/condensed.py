@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise, starmap
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.arrays import connected
 from anisocontact.base.fenicsx import Vec
 from anisocontact.solver.strategies.condensed.parts import Condensation
@@ -19,9 +19,6 @@ from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.system.rotations import BodyRotation, Kept, Rotations
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step
-
-Floats = npt.NDArray[np.float64]
-Flags = npt.NDArray[np.bool_]
 
 
 class Condensed:

@@ -7,14 +7,11 @@ from functools import cache
 from typing import override
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.solver.strategies.condensed import mumps, pardiso
 from anisocontact.solver.strategies.condensed.blocked import BlockedFactor
 from anisocontact.solver.strategies.condensed.factor import Eliminated, Way
-
-Floats = npt.NDArray[np.float64]
-
 
 #: Name of each way, whether it is there, and who goes it.
 WAYS: tuple[tuple[str, Callable[[], bool], Way], ...] = (

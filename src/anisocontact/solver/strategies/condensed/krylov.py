@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
-Floats = npt.NDArray[np.float64]
+from anisocontact.base.array_types import Floats
 
 
 def gmres[T: (np.float32, np.float64)](

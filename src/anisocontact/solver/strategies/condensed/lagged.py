@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.base.petsc_calls import check_memory
 from anisocontact.solver.strategies.condensed.bordered import PARTS, BorderedLU
@@ -18,9 +18,6 @@ from anisocontact.solver.strategies.condensed.wear import Wear
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
-
-Floats = npt.NDArray[np.float64]
-Ints = npt.NDArray[np.int64]
 
 #: What is kept of the factor, and of its border.
 _MATRIX, _BORDER = "lagged.matrix", "lagged.border."

@@ -7,9 +7,9 @@ from functools import cache
 from typing import Any, override
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
 from anisocontact.base.petsc_calls import call_petsc, check_memory, has_petsc
 from anisocontact.solver.strategies.condensed.factor import (
@@ -19,9 +19,6 @@ from anisocontact.solver.strategies.condensed.factor import (
     singular,
     solves,
 )
-
-Ints = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 #: MUMPS: what a solution does with the Schur complement, and "the interior alone".
 _ICNTL_SCHUR_SOLUTION, _INTERIOR_ALONE = 26, 0

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import PETSc, Vec
 from anisocontact.solver.strategies.condensed.condensed import Condensed
 from anisocontact.solver.strategies.condensed.system import ContactSystem
@@ -44,7 +44,7 @@ class CondensedNewton:
         self._size = 0
 
     @property
-    def residual(self) -> npt.NDArray[np.float64]:
+    def residual(self) -> Floats:
         """Residual of all unknowns at the last iterate; the interior is in equilibrium."""
         out = np.zeros(self._size)
         if self._newton is not None and self._system is not None:

@@ -11,10 +11,8 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Floats, Ints
 from anisocontact.solver.strategies.condensed.factor import Eliminated, mirror, singular
-
-Ints = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
 
 #: Real, symmetric, positive definite.
 _KIND = 2

@@ -6,16 +6,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.solver.strategies.condensed.dense import blocks_times
 from anisocontact.solver.strategies.condensed.eliminate import WholeBorder, chosen
 from anisocontact.solver.strategies.condensed.factor import Eliminated
-
-Ints = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
-Flags = npt.NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -61,7 +57,7 @@ class Condensation:
     def __init__(
         self,
         stiffness: scipy.sparse.csr_array,
-        part_of: npt.NDArray[np.int64],
+        part_of: Ints,
         touched: Flags,
         prescribed: Flags,
         before: Condensation | None = None,

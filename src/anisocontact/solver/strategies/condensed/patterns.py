@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Floats
 from anisocontact.solver.strategies.condensed.parts import Condensation
 from anisocontact.solver.terms.persistent import Arrays
-
-Floats = npt.NDArray[np.float64]
 
 #: Share of a load that may be missing from its combination of patterns: rounding.
 _ROUNDING = 1e-13

@@ -5,17 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
 from anisocontact import _core
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.contact.quadrature import Couplings
 
-Ints = npt.NDArray[np.int64]
-Floats = npt.NDArray[np.float64]
-Flags = npt.NDArray[np.bool_]
 #: Slave nodes, master nodes and their shares, as of `Contacts.opposite`.
-Opposite = tuple[npt.NDArray[np.int32], npt.NDArray[np.int32], Floats]
+Opposite = tuple[Locals, Locals, Floats]
 
 
 class Places:

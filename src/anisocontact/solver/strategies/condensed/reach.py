@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.course import Course
 from anisocontact.contact import Contact
 from anisocontact.contact.far_nodes import node_count
@@ -15,9 +15,6 @@ from anisocontact.mesh import Model
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import AXES, Step
-
-Floats = npt.NDArray[np.float64]
-Flags = npt.NDArray[np.bool_]
 
 #: Motion allowed beyond that of the supports, over the size of a slave facet.
 _SLACK = 0.1
@@ -41,7 +38,7 @@ class Reach:
         model: Model,
         contacts: Sequence[Contact],
         steps: Sequence[Step],
-        others: npt.NDArray[np.int32],
+        others: Locals,
     ) -> None:
         self._contacts, self._others = contacts, others
         self._ranges = {body: _prescribed_range(steps, body) for body in model.body_names()}
@@ -93,7 +90,7 @@ class Reach:
                 return False
         return True
 
-    def _moved(self, facets: npt.NDArray[np.int32], u: Floats) -> float:
+    def _moved(self, facets: Locals, u: Floats) -> float:
         """Longest way of a node of the facets that are in reach."""
         nodes = np.unique(facets[self.nodes[facets].all(axis=1)])
         step = np.linalg.norm(u[nodes] - self._start[nodes], axis=1)
@@ -123,7 +120,7 @@ class Reach:
         self.nodes[master.below(contact.state)] = True
 
 
-def _alike(limit: Floats) -> list[npt.NDArray[np.int64]]:
+def _alike(limit: Floats) -> list[Ints]:
     """Which of some positive lengths differ by less than a quarter."""
     level = np.floor(np.log(limit) / np.log(1.25))
     return [np.flatnonzero(level == one) for one in np.unique(level)]

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 import numpy as np
-import numpy.typing as npt
 
+from anisocontact.base.array_types import Flags
 from anisocontact.base.strategies import CONDENSED, strategy_entry
 from anisocontact.solver.strategies.condensed import bordered
 from anisocontact.solver.strategies.condensed.condensed import Condensed
@@ -19,8 +19,6 @@ from anisocontact.solver.strategies.strategy import Task
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.supports import Supports
-
-Flags = npt.NDArray[np.bool_]
 
 #: Contact unknowns beyond which their dense matrix costs more than it saves.
 MOST_CONTACT = 8000

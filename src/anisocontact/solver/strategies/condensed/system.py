@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any, override
 
 import numpy as np
-import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.solver.strategies.condensed.dense import ContactTangent
 from anisocontact.solver.strategies.condensed.kept_factor import KeptFactor
@@ -19,9 +19,6 @@ from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.culprit import Culprit
 from anisocontact.solver.system.force_balance import ForceBalance, Magnitudes, closed
 from anisocontact.solver.system.problem import Problem
-
-Floats = npt.NDArray[np.float64]
-Flags = npt.NDArray[np.bool_]
 
 #: Random patterns of signs that measure the norm of the forces at the supports.
 _SAMPLES = 8

@@ -8,12 +8,10 @@ import numpy as np
 import numpy.typing as npt
 import scipy
 
+from anisocontact.base.array_types import Flags, Ints
 from anisocontact.solver.strategies.condensed.front import Sparse
 from anisocontact.solver.strategies.condensed.places import Places
 from anisocontact.solver.system.problem import Problem
-
-Ints = npt.NDArray[np.int64]
-Flags = npt.NDArray[np.bool_]
 
 
 class Touched:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
+
+from anisocontact.base.array_types import Floats
 
 
 class Wear:
@@ -66,10 +67,10 @@ class Wear:
         dearer = last[0] * total[1] > self._margin * last[1] * total[0]
         return len(self.spent) > self._last and bool(dearer)
 
-    def persistent(self) -> npt.NDArray[np.float64]:
+    def persistent(self) -> Floats:
         """What `restore` goes on from, (k, 2)."""
         return np.array(self.spent).reshape(-1, 2)
 
-    def restore(self, kept: npt.NDArray[np.float64]) -> None:
+    def restore(self, kept: Floats) -> None:
         """Go on from what `persistent` gave."""
         self.spent = [(float(cost), float(gained)) for cost, gained in kept]
