@@ -237,7 +237,7 @@ def supported_nodes(card: Card) -> dict[str, list[int]]:
         Name of a set, by the line of the card -> numbers; none where the data cannot be read.
 
     Example:
-        >>> held_nodes(Card("BOUNDARY", {}, ("1, 1, 3", "2, 1, 3", "4, 2"), 12))
+        >>> supported_nodes(Card("BOUNDARY", {}, ("1, 1, 3", "2, 1, 3", "4, 2"), 12))
         {'HELD_12': [1, 2]}
     """
     alike: dict[tuple[tuple[int, float], ...], list[int]] = {}

@@ -77,7 +77,7 @@ def unsupported(
         >>> node, arms = np.arange(1), np.zeros((1, 3))
         >>> block = ConnectedBody(("b",), node, arms, 1, node, np.zeros((6, 1, 3)), size=1.0)
         >>> pull = np.eye(6)[0]
-        >>> [len(unheld([block], [np.eye(6)], np.diag(k * pull), pull, 1e-9, far=2.0)[0])
+        >>> [len(unsupported([block], [np.eye(6)], np.diag(k * pull), pull, 1e-9, far=2.0)[0])
         ...  for k in (10.0, 1e-3)]
         [5, 6]
     """

@@ -51,6 +51,8 @@ _COLUMNS = 0.2
 CONSTRAINT = 10.0
 #: Names of sparse matrices that are kept: of the factor and of the front; and of their wear.
 _FACTOR, _FRONT = "tangent", "tangent_shares"
+#: The same of the bases, see `ContactTangent`, that both were made in.
+_BASES = ("tangent_shares_basis", "tangent_basis")
 _STAYS, _SPENT, _FRONT_SPENT = "tangent_stays", "tangent_spent", "tangent_shares_spent"
 #: The same of flags.
 _FLAGS = "tangent_flags"
@@ -72,6 +74,8 @@ class KeptFactor:
         self._front: Front | None = None
         self._factor: UpdatedFactor | None = None
         self._rounded = False
+        # bases in which front and factor were made
+        self._bases: list[Sparse | None] = [None, None]
         # the last of `_held`, and what it is of
         self._last: tuple[Front, Sparse, Sparse] | None = None
         self._wear, self._front_wear = Wear(_LAST, _MARGIN), Wear(_LAST, _MARGIN)
@@ -108,7 +112,8 @@ class KeptFactor:
         if factor is None or front is None:
             return {}
         spent = {_SPENT: self._wear.persistent(), _FRONT_SPENT: self._front_wear.persistent()}
-        matrices = {_FACTOR: factor.first, _FRONT: front.shares}
+        bases = {n: one for n, one in zip(_BASES, self._bases, strict=True) if one is not None}
+        matrices = {_FACTOR: factor.first, _FRONT: front.shares, **bases}
         flags = np.array([self._rounded, self._tangent.kind is np.float64])
         return spent | {
             _STAYS: front.stays,
@@ -125,17 +130,17 @@ class KeptFactor:
         """Make the factor of `persistent` again."""
         if _STAYS not in kept:
             return
-        made_of, shares = (
-            scipy.sparse.csr_array(
-                tuple(kept[f"{name}_{part}"] for part in ("data", "indices", "indptr")), (n, n)
-            )
-            for name, n in ((_FACTOR, int(kept[_STAYS].sum())), (_FRONT, self._tangent.count))
-        )
+        count = self._tangent.count
         self._rounded, double = map(bool, kept[_FLAGS])
         if double:
             self._tangent.double()
-        self._front = self._tangent.front_of(shares, kept[_STAYS])
-        self._factor = self._made(self._front, made_of)
+        # the tangent has none of a contact yet: its basis is that of the next one it takes
+        bases = [_matrix(kept, name, count) if f"{name}_data" in kept else None for name in _BASES]
+        self._tangent.basis = bases[0]
+        self._front = self._tangent.front_of(_matrix(kept, _FRONT, count), kept[_STAYS])
+        self._tangent.basis = bases[1]
+        self._factor = self._made(self._front, _matrix(kept, _FACTOR, int(kept[_STAYS].sum())))
+        self._bases = bases
         begin = len(_FACTOR) + 1
         self._factor.restore(
             {name[begin:]: one for name, one in kept.items() if name.startswith(f"{_FACTOR}_")}
@@ -216,12 +221,14 @@ class KeptFactor:
 
     def _begin(self, front: Front) -> None:
         self._front, self._factor = front, None
+        self._bases[0] = self._tangent.basis
         self._front_wear.begin(self._solutions(front, front.operations))
         self._factorise(front)
 
     def _factorise(self, front: Front) -> None:
         self._factor = None  # gives the memory back
         self._factor = self._made(front, front.own(self._held(front)))
+        self._bases[1] = self._tangent.basis
         self._wear.begin(self._solutions(front, front.factor_operations))
         self.factors += 1
 
@@ -282,3 +289,9 @@ class KeptFactor:
         size = float(np.linalg.norm(given)) or 1.0
         own, left, used = gmres(step, given, _OF_BASIS * goal / size, most)
         return basis @ own, left * size, used
+
+
+def _matrix(kept: Arrays, name: str, count: int) -> Sparse:
+    """A sparse matrix that was kept, (count, count)."""
+    parts = tuple(kept[f"{name}_{part}"] for part in ("data", "indices", "indptr"))
+    return scipy.sparse.csr_array(parts, (count, count))

@@ -27,7 +27,7 @@ MOST_CONTACT = 8000
 #: to four of them thick, take 0.7 times what they take with `direct` at 4.4 n^(2/3), a milled block
 #: 0.6 times at 4.8, sheets 1.1 to 2 times from 5.3 on and two to five times from 6.8 on. Where
 #: bodies are not linear a factor serves for less: 0.9 times at 3.8, 1.2 at 4.4, 1.35 at 4.9.
-WIDEST_LINEAR, WIDEST, POWER = 5.0, 4.2, 2.0 / 3.0
+WIDEST_LINEAR, WIDEST, POWER = 5.0, 4.5, 2.0 / 3.0
 #: Unknowns up to which a factorisation of bodies that are not linear is as cheap.
 LEAST_LAGGED = 2000
 #: Gap over the facet size up to which a contact holds what it is about to hold.
