@@ -181,8 +181,8 @@ class Surface(Remade):
         Example:
             >>> sphere = make_surface("sphere", centre=(0, 0, 0), radius=2.0)
             >>> p = sphere.project([[0.0, 3.0, 0.0]])
-            >>> p.gap.round(12).tolist(), p.dgap_dx.round(12).tolist()
-            ([1.0], [[0.0, 1.0, 0.0]])
+            >>> p.gap.round(12).tolist(), p.dgap_dx[0, 1].item()
+            ([1.0], 1.0)
         """
         x = points(x, 3)
         if guess is not None:
