@@ -21,6 +21,7 @@ from anisocontact.base.errors import InputError
 from anisocontact.contact.frames import Frames
 from anisocontact.interface import STATUS, VECTOR_FORMS, ContactLaw, Interface, Response, State
 from anisocontact.interface.augmentation import NEWTON, Augmentation
+from anisocontact.rigid import RigidBody
 
 #: Laws whose penalties can be augmented.
 type AugmentedLaw = Interface | ContactLaw
@@ -232,6 +233,25 @@ class Multipliers:
         closing = self.tangential & (start["gap"] > 0.0)
         stands_for = pressure / (self._penalties[0] * self.factors[0])
         return np.asarray(np.where(closing, stands_for / np.where(closing, way, 1.0), np.inf))
+
+    def coming_to(self, body: RigidBody | None, start: State) -> State:
+        """What the trials start from where points come to a rigid body.
+
+        The way to one that rolls is a cycloid, which ends along the normal: friction along a
+        straight way would be shear that a wheel which rolls freely does not have. Points whose gap
+        closes carry none there yet, as if they had been far away.
+
+        Args:
+            body: That carries the master, if one does.
+            start: What `begin` gave, changed.
+        """
+        if body is None or not body.rolls or not self.tangential:
+            return start
+        apart = start["gap"] > 0.0
+        start["gap"][apart] *= FAR
+        start["status"][apart] = OPEN
+        start["stiffer"][apart] = 0.0
+        return start
 
     def let_go(self, start: State, points: Flags) -> None:
         """Leave points to their penalty: no multiplier, nor what one holds of a gap that closes.

@@ -118,7 +118,8 @@ class Trials:
         self.master.begin()
         self._slight = self._points.covered(accepted.areas) < SLIGHT
         if self._multipliers is not None:
-            self._start_from(self._multipliers.begin(state, self.master.located(state)))
+            start = self._multipliers.begin(state, self.master.located(state))
+            self._start_from(self._multipliers.coming_to(self.master.body, start))
         if self._layer is not None:
             self.start = self._layer.begin(self.start, self.master.axes(accepted.response))
 
@@ -373,10 +374,9 @@ class Trials:
     def _start_from(self, start: State) -> None:
         """Let trials start from other multipliers, perhaps with other penalties."""
         self.master.anchor(start)
-        self.start = start
+        self.start, self._linear = start, None
         self._let_go_of_immovable()
         self._stiffen()
-        self._linear = None
 
     def _step(self, trial: Snapshot) -> ContactTrial:
         """A trial with the frames of the master."""

@@ -65,6 +65,8 @@ class RigidBody:
         name: Name in steps and output.
         reference: Reference point `c` in the configuration the surfaces are given in, (3,), length.
         free: Whether a step may free some of its components: it then has six unknowns.
+        rolls: Whether it is free to turn, so that points may come to it as to a wheel: these carry
+            no friction in the increment in which they close their gap under a multiplier.
         springs: Component of `COMPONENTS` -> stiffness of a spring to ground, force/length for
             translations and force length/radian for turns, >= 0.
 
@@ -89,6 +91,7 @@ class RigidBody:
         reference: npt.ArrayLike,
         *,
         free: bool = False,
+        rolls: bool = False,
         springs: Mapping[str, float] | None = None,
     ) -> None:
         point = np.array(reference, dtype=np.float64)
@@ -98,7 +101,7 @@ class RigidBody:
             raise InputError(f"{reference!r} given, needs three finite numbers", "reference")
         self.name = name
         self.reference = point
-        self.free = free
+        self.free, self.rolls = free, rolls
         self.springs: Floats = np.zeros(6)
         for component, value in (springs or {}).items():
             where = f"springs.{component}"
