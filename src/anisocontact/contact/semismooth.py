@@ -39,6 +39,8 @@ from anisocontact.interface import State
 
 #: Least part of an increment in contact that is divided by.
 LEAST_PART = 1e-9
+#: Way of a gap that closes, over the gap, from which on a trial says nothing of where it ends.
+FAR = 4.0
 
 
 @dataclass(frozen=True)
@@ -232,13 +234,13 @@ class Semismooth(Multipliers):
         return self.closeness(step.start, step.answer.pressure, np.zeros(len(step.start)))
 
     def _steep(self, step: ContactTrial) -> Flags:
-        """Points whose gap closes with a stiffness N / g_n beyond that of the penalties, (n,).
+        """Points far beyond a gap that closes with a stiffness N / g_n beyond the penalties', (n,).
 
         Corrections take it as what it is at no gap and as constant: a trial deep in the master has
         a way many times the gap, and a derivative by N and the way that says nothing of the end.
         """
         near = self._at_no_gap(step)
-        return np.asarray(np.isfinite(near) & (near > 1.0))
+        return np.asarray(np.isfinite(near) & (near > np.maximum(1.0, FAR * step.closeness)))
 
     def _resolved(self, step: ContactTrial) -> float:
         """What penalties are multiplied with so that corrections of displacements are felt.
