@@ -291,20 +291,18 @@ def _check_options(options: dict[str, str | int | float | bool]) -> None:
 
 def _rigid_bodies(case: Case) -> dict[str, RigidBody]:
     """The rigid bodies by name; free where a step frees them or faces follow them."""
-    freed, turning = set(), set()
-    for step in case.step:
-        for name, motion in step.motion.items():
-            components = {one for one, value in motion.components().items() if value is None}
-            freed |= {name} if components else set()
-            turning |= {name} if any(one.startswith("r") for one in components) else set()
+    freed = {
+        name
+        for step in case.step
+        for name, motion in step.motion.items()
+        if None in motion.components().values()
+    }
     bodies = {}
     for name, section in case.rigid.items():
         free = name in freed or bool(section.faces)
         with within(f"rigid.{name}"):
             springs = section.springs.given()
-            rolls = name in turning
-            body = RigidBody(name, section.reference, free=free, rolls=rolls, springs=springs)
-            bodies[name] = body
+            bodies[name] = RigidBody(name, section.reference, free=free, springs=springs)
     return bodies
 
 

@@ -237,15 +237,15 @@ class Multipliers:
     def coming_to(self, body: RigidBody | None, start: State) -> State:
         """What the trials start from where points come to a rigid body.
 
-        The way to one that rolls is a cycloid, which ends along the normal: friction along a
-        straight way would be shear that a wheel which rolls freely does not have. Points whose gap
-        closes carry none there yet, as if they had been far away.
+        The way to one that is free to turn, as a wheel, is a cycloid, which ends along the normal:
+        friction along a straight way would be shear that a wheel which rolls freely does not have.
+        Points whose gap closes carry none there yet, as if they had been far away.
 
         Args:
             body: That carries the master, if one does.
             start: What `begin` gave, changed.
         """
-        if body is None or not body.rolls or not self.tangential:
+        if body is None or not body.turns_freely or not self.tangential:
             return start
         apart = start["gap"] > 0.0
         start["gap"][apart] *= FAR

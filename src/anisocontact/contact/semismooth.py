@@ -40,7 +40,7 @@ from anisocontact.interface import State
 #: Least part of an increment in contact that is divided by.
 LEAST_PART = 1e-9
 #: Way of a gap that closes, over the gap, from which on a trial says nothing of where it ends.
-FAR = 4.0
+OVERSHOOT = 4.0
 
 
 @dataclass(frozen=True)
@@ -175,11 +175,11 @@ class Semismooth(Multipliers):
         given, found = self.answers(step)
         ratio, closing = self._ratios(step), np.isfinite(step.closeness)
         part = step.closeness.clip(LEAST_PART, 1.0)
-        steep = self._steep(step)
-        weak = closing & ~steep
+        overshot = self._overshot(step)
+        weak = closing & ~overshot
         times = ratio.copy()
         times[weak, 1] = step.closeness[weak].clip(1.0, ratio[weak, 1])
-        times[steep, 1] /= part[steep]
+        times[overshot, 1] /= part[overshot]
         shifted = given + (1.0 - times[:, [0, 1, 1, 1]]) * (found - given)
         # an open point stays open, however little its gap may be closed
         apart = step.answer.pressure == 0.0
@@ -190,7 +190,7 @@ class Semismooth(Multipliers):
         state["stiffer"] = (1.0 + step.start["stiffer"]) * ratio / self.ratio - 1.0
         left = np.where(step.shared[:, None], 1.0, 1.0 - 1.0 / ratio)
         left[weak, 1] = 1.0
-        left[steep, 1] = 1.0 / part[steep]
+        left[overshot, 1] = 1.0 / part[overshot]
         deep = left[:, 0] * (given[:, 0] - step.kept[:, 0] * found[:, 0])
         deep /= self.factors[0] * self._penalties[0]
         deep[step.immovable] = 0.0
@@ -203,9 +203,9 @@ class Semismooth(Multipliers):
             held = step.before.turned_to(step.now, given[:, 1:] - found[:, 1:]) / stiffness
             more = left[:, 1:] * np.where(closing[:, None], held, more)
             compliant = 1.0 - step.kept[:, 1:]
-            compliant[steep, 0] = 1.0 / ratio[steep, 1]
+            compliant[overshot, 0] = 1.0 / ratio[overshot, 1]
             more += compliant * step.now.vector(trial["stored"]) / stiffness
-            state["gap"][steep] = 0.0
+            state["gap"][overshot] = 0.0
             slip += np.where(step.remembers, step.now.chord(more, trial["spin"]), 0.0)
         slip[apart] = 0.0
         return state, slip
@@ -225,22 +225,22 @@ class Semismooth(Multipliers):
         else:
             closing = np.isfinite(step.closeness)
             ratio[closing, 1] = ratio[closing, 0]
-            steep = self._steep(step)
-            ratio[steep, 1] = np.minimum(self._at_no_gap(step), ratio[:, 0])[steep]
+            overshot = self._overshot(step)
+            ratio[overshot, 1] = np.minimum(self._at_no_gap(step), ratio[:, 0])[overshot]
         return ratio
 
     def _at_no_gap(self, step: ContactTrial) -> Floats:
         """How many times as stiff N / g_n is as penalties where the gap has closed, (n,)."""
         return self.closeness(step.start, step.answer.pressure, np.zeros(len(step.start)))
 
-    def _steep(self, step: ContactTrial) -> Flags:
+    def _overshot(self, step: ContactTrial) -> Flags:
         """Points far beyond a gap that closes with a stiffness N / g_n beyond the penalties', (n,).
 
         Corrections take it as what it is at no gap and as constant: a trial deep in the master has
         a way many times the gap, and a derivative by N and the way that says nothing of the end.
         """
         near = self._at_no_gap(step)
-        return np.asarray(np.isfinite(near) & (near > np.maximum(1.0, FAR * step.closeness)))
+        return np.asarray(np.isfinite(near) & (near > np.maximum(1.0, OVERSHOOT * step.closeness)))
 
     def _resolved(self, step: ContactTrial) -> float:
         """What penalties are multiplied with so that corrections of displacements are felt.

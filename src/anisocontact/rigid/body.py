@@ -65,14 +65,14 @@ class RigidBody:
         name: Name in steps and output.
         reference: Reference point `c` in the configuration the surfaces are given in, (3,), length.
         free: Whether a step may free some of its components: it then has six unknowns.
-        rolls: Whether it is free to turn, so that points may come to it as to a wheel: these carry
-            no friction in the increment in which they close their gap under a multiplier.
         springs: Component of `COMPONENTS` -> stiffness of a spring to ground, force/length for
             translations and force length/radian for turns, >= 0.
 
     Attributes:
         accepted: Pose of the accepted state.
         trial: Pose of the state that is tried.
+        turns_freely: Whether a step leaves it free to turn, so that points may come to it as to a
+            wheel.
 
     Raises:
         InputError: No name or one with a dot, a reference point that is no point, an unknown
@@ -91,7 +91,6 @@ class RigidBody:
         reference: npt.ArrayLike,
         *,
         free: bool = False,
-        rolls: bool = False,
         springs: Mapping[str, float] | None = None,
     ) -> None:
         point = np.array(reference, dtype=np.float64)
@@ -101,7 +100,7 @@ class RigidBody:
             raise InputError(f"{reference!r} given, needs three finite numbers", "reference")
         self.name = name
         self.reference = point
-        self.free, self.rolls = free, rolls
+        self.free, self.turns_freely = free, False
         self.springs: Floats = np.zeros(6)
         for component, value in (springs or {}).items():
             where = f"springs.{component}"

@@ -101,14 +101,17 @@ class RigidBodies(Term):
     def rehearsed(self, steps: Iterable[Step]) -> Iterator[list[SupportedFrame]]:
         """What each of the steps holds of the motion of faces, without solving.
 
+        Bodies learn from it whether a step leaves them free to turn.
+
         Raises:
             InputError: See `begin`.
         """
         drives = {body: Drive(body) for body in self.bodies}
         for step in steps:
             self._known(step)
-            for drive in drives.values():
+            for body, drive in drives.items():
                 drive.begin(step, drive.values(1.0), np.zeros(6))
+                body.turns_freely |= not drive.prescribed[3:].all()
             yield self._frames(drives)
 
     @override
