@@ -119,18 +119,24 @@ def test_another_preconditioner() -> None:
 
 
 def test_the_patch_is_on_the_coarse_level_without_zeros(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A row of the patch in P is one entry: places of zeros would fill the coarse factor."""
+    """A row and a column of the patch in P are one entry: more would fill the coarse factor.
+
+    Places of zeros would do so, and rows of the interior beside the patch that are smoothed.
+    """
     made: list[Any] = []
     right = levels.smoothed
 
     def looked(rough: Any, tangent: Any, interior: Any, split: Any) -> Any:
         prolong = right(rough, tangent, interior, split)
-        starts, _, values = prolong.getValuesCSR()
-        made.append((np.diff(starts)[split.patch.getIndices()], values))
+        starts, columns, values = prolong.getValuesCSR()
+        patch = split.patch.getIndices()
+        below = np.bincount(columns)[-len(patch) :]
+        made.append((np.diff(starts)[patch], below, values))
         return prolong
 
     monkeypatch.setattr(levels, "smoothed", looked)
     list(Solver(_problem(), [PRESS], strategy="iterative").run())
-    ((entries, values),) = made
+    ((entries, below, values),) = made
     assert entries.max() == 1
+    assert below.max() == 1
     assert values.all()

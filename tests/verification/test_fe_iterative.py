@@ -28,7 +28,7 @@ from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, RingSpec, build_box, build_mesh
 from anisocontact.rigid import MovingSurface, RigidBody
 from anisocontact.solver import Accepted, Problem, Solver, Spring, Step
-from anisocontact.solver.strategies.iterative import factor, levels, newton
+from anisocontact.solver.strategies.iterative import factor, levels, nested, newton
 from anisocontact.surfaces import make_surface
 
 MARKS = make_directions("constant", vector=(1, 0, 0), angle=np.pi / 6)
@@ -179,6 +179,39 @@ def test_every_level(monkeypatch: pytest.MonkeyPatch, case: str) -> None:
     all_levels = _same(make, steps)
     assert sum("3 levels: " in note or "4 levels: " in note for note in all_levels) > 0
     assert _counts(all_levels)[0] < 1.5 * _counts(two)[0]
+
+
+def test_cycle_of_a_coarse_level(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A cycle B with the same smoothing before and after, of a symmetric matrix A and of 2 A.
+
+    Requirement: `x B y = y B x`, as of any such cycle; B of 2 A is half of that of A, with all that
+    is kept of the bodies renewed. Tolerance: 1e-4, a factor in single precision.
+    """
+    made: list[nested.Nested] = []
+    right = nested.Nested.renew
+
+    def seen(self: nested.Nested, *given: Any) -> bool:
+        made.append(self)
+        return right(self, *given)
+
+    monkeypatch.setattr(nested.Nested, "renew", seen)
+    monkeypatch.setattr(levels, "FEW", 0)
+    monkeypatch.setattr(levels, "MANY", 0.0)
+    monkeypatch.setitem(newton.DEFAULTS, "aggregates_pc_gamg_coarse_eq_limit", 10)
+    monkeypatch.setattr(nested.Nested, "destroy", lambda self: None)
+    _run(_pair(4), [PRESS], "iterative")
+    cycle, matrix = made[-1], made[-1]._matrix.copy()
+    matrix.axpy(1.0, matrix.copy().transpose())
+    (x, y), answers = matrix.createVecs(), []
+    x.array[:], y.array[:] = np.random.default_rng(3).normal(size=(2, len(x.array)))
+    for _ in range(2):
+        assert right(cycle, matrix, False, True)
+        answers.append([cycle.solve(one).copy() for one in (x, y)])
+        matrix.scale(2.0)
+    (of_x, of_y), (half, _) = answers
+    size = abs(x.dot(of_x))
+    assert abs(x.dot(of_y) - y.dot(of_x)) < 1e-4 * size
+    assert (half * 2.0 - of_x).norm() < 1e-4 * of_x.norm()
 
 
 def test_a_coarse_factor_in_single_precision_that_is_not_enough(

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
+from anisocontact.solver.strategies.iterative.split import set_any
 from anisocontact.solver.strategies.newton import Database
 
 #: Error of a known solution, over it, up to which a factor in single precision is trusted.
@@ -112,9 +111,3 @@ class Factor:
         error, size = self._left.norm(), known.norm()
         known.destroy()
         return bool(error <= TRUSTED * size)
-
-
-def set_any(vector: Vec) -> None:
-    """Any numbers without symmetry, the same on any number of processes."""
-    first, last = vector.getOwnershipRange()
-    vector.array[:] = np.modf(np.arange(first, last) * 0.754877666)[0] - 0.5

@@ -9,7 +9,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.solver.strategies.iterative.split import UnknownSplit, sparse, weights
+from anisocontact.solver.strategies.iterative.split import UnknownSplit, set_any, sparse, weights
 
 #: Damping of the smoothed aggregation over the largest eigenvalue of the scaled matrix.
 DAMPING = 4.0 / 3.0
@@ -141,9 +141,7 @@ def largest_eigenvalue(matrix: Mat) -> float:
     ksp.setComputeSingularValues(True)
     ksp.setTolerances(rtol=0.0, atol=0.0, max_it=LANCZOS)
     x, b = matrix.createVecs()
-    first, last = b.getOwnershipRange()
-    # any vector without symmetry, the same on any number of processes
-    b.array[:] = np.modf(np.arange(first, last) * 0.754877666)[0] - 0.5
+    set_any(b)
     ksp.solve(b, x)
     largest, _ = ksp.computeExtremeSingularValues()
     ksp.destroy()
