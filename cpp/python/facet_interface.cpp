@@ -144,6 +144,22 @@ nb::dict assemble(const FacetInterface& h, const Input& q) {
   return d;
 }
 
+/// Updates each point by itself, and puts what it gives into `out` and where `put` puts it: for the
+/// number of the point, its result and slopes, what it has seen and the facet of its history.
+template <bool tangent, class Put>
+void update_each(const FacetInterface& h, const Input& q, Output& out, const Put& put) {
+  nb::gil_scoped_release free;
+  kernel::parallel_for(q.points, q.threads, [&](std::size_t p) {
+    const kernel::PointState old = q.states[p];
+    Seen s;
+    q.batch.see(old, p, s);
+    kernel::PairSlopes by;
+    const auto r = q.update<tangent>(h, p, old, s.point, &by);
+    out.put(p, r, tangent ? &by : nullptr, s);
+    put(p, r, by, s, old.facet);
+  });
+}
+
 /// Residual and tangent of each point by itself: rows of the slave's and the master's nodes, columns
 /// of these and of the facet on which the history was committed.
 template <bool tangent>
@@ -177,18 +193,7 @@ nb::dict update(const FacetInterface& h, const Input& q) {
       }
     }
   };
-  {
-    nb::gil_scoped_release free;
-    kernel::parallel_for(n, q.threads, [&](std::size_t p) {
-      const kernel::PointState old = q.states[p];
-      Seen s;
-      q.batch.see(old, p, s);
-      kernel::PairSlopes by;
-      const auto r = q.update<tangent>(h, p, old, s.point, &by);
-      out.put(p, r, tangent ? &by : nullptr, s);
-      put(p, r, by, s, old.facet);
-    });
-  }
+  update_each<tangent>(h, q, out, put);
   nb::dict d = out.result();
   d["nodes"] = nodes.array;
   d["residual"] = residual.array;
@@ -204,24 +209,18 @@ nb::dict tractions(const FacetInterface& h, const Input& q) {
   const std::size_t near = 3 * (ks + km), columns = near + 3 * km;
   Output out(n, q.batch);
   Array<double> slopes({tangent ? n : 0, 3, columns}, h.pool);
-  {
-    nb::gil_scoped_release free;
-    kernel::parallel_for(n, q.threads, [&](std::size_t p) {
-      const kernel::PointState old = q.states[p];
-      Seen s;
-      q.batch.see(old, p, s);
-      kernel::PairSlopes by;
-      const auto r = q.update<tangent>(h, p, old, s.point, &by);
-      out.put(p, r, tangent ? &by : nullptr, s);
-      if constexpr (tangent) {
-        double* const to = slopes.data + 3 * p * columns;
-        if (touches(r))
-          kernel::traction_slopes(r, by, s.shapes, to);
-        else
-          std::fill_n(to, 3 * columns, 0.0);
-      }
-    });
-  }
+  update_each<tangent>(
+      h, q, out,
+      [&](std::size_t p, const kernel::PairResult& r, [[maybe_unused]] const kernel::PairSlopes& by,
+          const Seen& s, std::int64_t) {
+        if constexpr (tangent) {
+          double* const to = slopes.data + 3 * p * columns;
+          if (touches(r))
+            kernel::traction_slopes(r, by, s.shapes, to);
+          else
+            std::fill_n(to, 3 * columns, 0.0);
+        }
+      });
   nb::dict d = out.result();
   d["slopes"] = slopes.array;
   return d;
