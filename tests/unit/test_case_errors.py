@@ -264,6 +264,21 @@ def test_wrong_petsc_option(tmp_path, capsys, case_text):
     assert "newtonx" in lines[0]
 
 
+@pytest.mark.parametrize(
+    ("strategy", "name", "more"),
+    [
+        ("iterative", "smother_ksp_max_it", ", smoother_, coarse_, aggregates_"),
+        ("direct", "smoother_ksp_max_it", ""),
+    ],
+)
+def test_petsc_option_that_nobody_reads(tmp_path, capsys, case_text, strategy, name, more):
+    text = case_text + f'[solver]\nstrategy = "{strategy}"\noptions = {{ {name} = 4 }}\n'
+    assert run_wrong(tmp_path, capsys, text) == [
+        f"error: solver.options.{name}: no part of the solver reads it: names begin with one of "
+        f"snes_, ksp_, pc_, mat_, vec_, sub_, mg_, fieldsplit_{more}"
+    ]
+
+
 def test_unknown_petsc_option(tmp_path, capsys, case_text):
     text = case_text + "[solver]\noptions = { snes_max_it = 30, snes_maxit = 30 }\n"
     assert run_wrong(tmp_path, capsys, text) == [

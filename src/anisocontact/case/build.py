@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.errors import InputError, ModelWarning, within
-from anisocontact.base.fenicsx import MPI, PETSc
+from anisocontact.base.fenicsx import MPI
 from anisocontact.base.limits import Limits
 from anisocontact.bulk import materials
 from anisocontact.case import objects
@@ -22,6 +22,7 @@ from anisocontact.case.cyclic import CyclicSection
 from anisocontact.case.law_file import law_of
 from anisocontact.case.material_file import material_of
 from anisocontact.case.model import MORTAR, Case, StepSection
+from anisocontact.case.petsc_options import check_options
 from anisocontact.case.read import CaseFile, load
 from anisocontact.case.ties import close_gaps_of
 from anisocontact.case.units import doubts
@@ -146,7 +147,7 @@ def build(file: CaseFile, python: bool = True) -> Built:
         for i, (section, law) in enumerate(zip(case.contact, own, strict=True))
     ]
     steps = _steps(case, model, CaseCourses(case, file.resolve, python))
-    _check_options(case.solver.options)
+    check_options(case.solver.options, case.solver.strategy)
     problem = Problem(
         model,
         materials,
@@ -260,33 +261,6 @@ def _name_nodes(case: Case, model: Model) -> None:
             found = nodes_along(model, body, start, end, place)
         with within(place):
             model.name_nodes(name, found)
-
-
-def _check_options(options: dict[str, str | int | float | bool]) -> None:
-    """Let PETSc read the options once: a wrong one is found before anything is written."""
-    prefix = "anisocontact_check_"
-    database = PETSc.Options()
-    for name, value in options.items():
-        database.setValue(prefix + name, value)
-    snes = PETSc.SNES().create()
-    snes.setOptionsPrefix(prefix)
-    try:
-        snes.setFromOptions()
-        snes.getKSP().setFromOptions()
-        snes.getKSP().getPC().setFromOptions()
-        for name in options:
-            # What the matrices and preconditioners read, they read when they are set up.
-            if name.startswith(("snes_", "ksp_")) and not database.used(prefix + name):
-                raise InputError(
-                    "PETSc's SNES and KSP know no such option", field=f"solver.options.{name}"
-                )
-    except PETSc.Error as error:
-        reason = str(error).splitlines()[-1]
-        raise InputError(f"PETSc refuses them: {reason}", field="solver.options") from None
-    finally:
-        snes.destroy()
-        for name in options:
-            database.delValue(prefix + name)
 
 
 def _rigid_bodies(case: Case) -> dict[str, RigidBody]:

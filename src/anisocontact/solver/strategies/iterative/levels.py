@@ -126,10 +126,10 @@ class Levels:
         )
         self._smoother = Smoother(interior, split.interior, self._prefix)
         self._fresh, self._worn = 0, False
-        counts = " on ".join(str(level.count) for level in levels)
+        counts = ", then ".join(str(level.count) for level in levels)
         self._note(
-            f"{1 + len(levels)} levels: {split.interior.getSize()} unknowns of the interior "
-            f"on {counts}, {kept} that contact can couple are kept"
+            f"preconditioner of {1 + len(levels)} levels: {split.interior.getSize()} unknowns of "
+            f"the interior become {counts}, {kept} that contact can couple stay on all of them"
         )
 
     def _renew(self, tangent: Mat) -> None:
