@@ -7,36 +7,96 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+import pyvista
+from matplotlib import colormaps
+from matplotlib.image import imread
 from matplotlib.text import Text
 
 pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.figure_style import new_figure
 from anisocontact.cli.main import main
+from anisocontact.results.cut import Cut
 from anisocontact.results.dataset import DataSet, polygons, vertices
-from anisocontact.results.deformed import SHOWN, surfaces
+from anisocontact.results.deformed import SHOWN, caption, surfaces
 from anisocontact.results.report import curves, maps
 from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import Moment, RunData
+from anisocontact.results.report.shape import Drawings
 from anisocontact.results.solids import Solid
 
 
 def test_stress_is_shown_where_it_is_largest():
     """A bar whose middle is at the stress 8 inside: it is cut open there, on the far side in y."""
-    pyvista = pytest.importorskip("pyvista")
     grid = pyvista.ImageData(dimensions=(5, 5, 5)).cast_to_unstructured_grid()
     inside = np.all(grid.points == 2.0, axis=1)
     grid.point_data["displacement"] = np.zeros((125, 3))
     grid.point_data["von_mises"] = np.where(inside, 8.0, 1.0)
     grid.point_data["principal_stress"] = np.where(inside[:, None], [1.0, 0.0, -8.0], [3.0, 2, 1])
     for name, most in (("von_mises", 8.0), ("principal_stress", -8.0)):
-        skin, before = surfaces(Solid(grid), 1.0, SHOWN[name])
+        drawn = surfaces(Solid(grid), 1.0, SHOWN[name])
+        skin, before = drawn.skin, drawn.before
         value = skin.values("value")
         assert value[np.argmax(abs(value))] == most
         assert skin.bounds[2] == 2.0
         assert before.bounds[2] == 0.0
     assert SHOWN["von_mises"].limits(np.array([1.0, 8.0])) == (0.0, 8.0)
     assert SHOWN["principal_stress"].limits(np.array([-8.0, 3.0])) == (-8.0, 8.0)
+
+
+def _block(*largest: float) -> pyvista.DataSet:
+    """A block of 4 by 4 by 4 without stress but at a node."""
+    grid = pyvista.ImageData(dimensions=(5, 5, 5)).cast_to_unstructured_grid()
+    there = np.all(grid.points == largest, axis=1)
+    grid.point_data["displacement"] = np.zeros((125, 3))
+    grid.point_data["principal_stress"] = np.where(there[:, None], [9.0, 0, 0], [0.0, 0, 0])
+    return grid
+
+
+@pytest.mark.parametrize(
+    ("largest", "cut", "bounds"),
+    [
+        ((2, 1, 2), (1, 1.0, -1.0), (0, 4, 1, 4)),
+        ((1, 4, 4), (0, 1.0, -1.0), (1, 4, 0, 4)),
+        ((3, 3, 0), (1, 3.0, 1.0), (0, 4, 0, 3)),
+        ((4, 4, 0), (1, 4.0, 1.0, False), (0, 4, 0, 4)),
+        ((4, 0, 2), None, (0, 4, 0, 4)),
+        ((0, 4, 2), None, (0, 4, 0, 4)),
+    ],
+)
+def test_a_cut_leaves_bodies_to_look_at(largest, cut, bounds):
+    """Largest in front, at the back on the left, at the back on the right, and on faces in sight.
+
+    Requirement: a cut through the largest value that leaves 0.45 of the nodes or more; the heading
+    says where it is and from where it is seen, and the largest value is on what is drawn. Source:
+    a cut along y alone left nothing but a face where the largest value was at the back.
+    """
+    grid = Solid(_block(*largest))
+    drawn = surfaces(grid, 1.0, SHOWN["principal_stress"])
+    assert drawn.cut == (None if cut is None else Cut(*cut))
+    assert drawn.skin.bounds[:4] == bounds
+    assert drawn.skin.values("value").max() == 9.0
+    heading = caption(1.0, drawn.cut)
+    assert ("cut open" in heading) == (cut is not None and len(cut) == 3)
+    if cut is not None:
+        name, side = "xyz"[cut[0]], "+" if cut[2] > 0 else "-"
+        assert len(cut) == 4 or f"cut open at {name} = {cut[1]:g} " in heading
+        assert f"seen from {side}{name}" in heading
+
+
+def test_a_body_without_stress_is_seen(tmp_path):
+    """A block whose stress is zero but at a node: it is not white on white, and has its colours.
+
+    Requirement: a tenth of the picture has the colour of zero, to the rounding of a byte, and that
+    colour is told from white. Source: the scale of colours, which light on the surface changed.
+    """
+    _block(2, 2, 2).save(tmp_path / "grid.vtu")
+    with Drawings(tmp_path / "grid.vtu", tmp_path, ["principal_stress"], {}) as drawings:
+        drawings.finish("principal_stress")
+    zero = np.round(255 * np.array(colormaps[SHOWN["principal_stress"].colours](0.5)[:3]))
+    assert zero.max() < 235
+    picture = np.round(255 * imread(tmp_path / "principal_stress.png")[..., :3])
+    assert np.mean(np.abs(picture - zero).max(axis=-1) <= 2) > 0.1
 
 
 def test_a_view_of_a_closed_master():

@@ -17,6 +17,7 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import GREY
+from anisocontact.results.cut import Cut, cut_of
 
 if TYPE_CHECKING:
     from anisocontact.results.scene import Scene
@@ -35,7 +36,8 @@ class Shown:
         label: Of the scale of colours, with a place for the unit.
         dimension: Of the unit.
         value: Makes a number for each node.
-        colours: Name of the scale of colours; one with a middle has zero there.
+        colours: Name of the scale of colours.
+        signed: Whether zero is in its middle, where it has to differ from the white behind.
         cut: Whether bodies are cut open at the largest value, towards who looks at them.
     """
 
@@ -44,13 +46,14 @@ class Shown:
     dimension: str
     value: Callable[[Floats], Floats]
     colours: str = "viridis"
+    signed: bool = False
     cut: bool = False
 
     def limits(self, values: Floats) -> tuple[float, float]:
         """Ends of the scale of colours."""
         low, high = float(np.nanmin(values)), float(np.nanmax(values))
         largest = max(abs(low), abs(high)) or 1.0
-        return (-largest, largest) if self.colours == "RdBu_r" else (min(low, 0.0), largest)
+        return (-largest, largest) if self.signed else (min(low, 0.0), largest)
 
 
 def _further(principal: Floats) -> Floats:
@@ -68,9 +71,17 @@ SHOWN = {
         "von_mises", "equivalent stress [{}]", "stress", lambda s: s, "inferno", cut=True
     ),
     "principal_stress": Shown(
-        "principal_stress", "principal stress [{}]", "stress", _further, "RdBu_r", cut=True
+        "principal_stress",
+        "principal stress [{}]",
+        "stress",
+        _further,
+        "coolwarm",
+        signed=True,
+        cut=True,
     ),
 }
+#: Direction from the bodies to who looks at them.
+FRONT = (-0.55, -1.0, 0.6)
 #: Size of the bodies in the picture, over all of it: labels of axes have the rest.
 ROOM = 0.86
 
@@ -87,20 +98,35 @@ def magnification(grid: Solid) -> float:
     return next(f * power for f in (5.0, 2.0, 1.0) if f * power <= wanted * (1.0 + 1e-12))
 
 
-def surfaces(grid: Solid, scale: float, shown: Shown) -> tuple[Solid, Solid]:
-    """Surface of the bodies as triangles: deformed, with the `value` that is shown, and not."""
+@dataclass(frozen=True)
+class Surfaces:
+    """Surfaces of the bodies as triangles.
+
+    Args:
+        skin: Deformed, with the `value` that is shown.
+        edges: Sharp edges of the bodies as meshed and the rim of the cut, deformed.
+        before: Not deformed, and whole.
+        cut: Where they are cut open; None where they are not.
+    """
+
+    skin: Solid
+    edges: list[Solid]
+    before: Solid
+    cut: Cut | None
+
+
+def surfaces(grid: Solid, scale: float, shown: Shown) -> Surfaces:
+    """Surfaces of bodies whose displacement is magnified, with what is shown of them."""
     values = shown.value(grid.values(shown.array))
     grid = grid.with_values("value", values)
     before = grid.skin()
-    cut = shown.cut and not in_plane(before)
-    skin = _opened(grid, values).skin() if cut else before
-    return skin.moved("displacement", scale), before
-
-
-def _opened(grid: Solid, values: Floats) -> Solid:
-    """Bodies without what is in front of the largest value, along y."""
-    behind = grid.behind(grid.points[int(np.nanargmax(abs(values)))])
-    return grid if behind.empty else behind
+    cut = cut_of(grid.points, values) if shown.cut and not in_plane(before) else None
+    if cut is None:
+        shapes = [before, before.edges()]
+    else:
+        shapes = [grid.behind(cut).skin(), before.edges().behind(cut), before.rim(cut)]
+    skin, *edges = [one.moved("displacement", scale) for one in shapes]
+    return Surfaces(skin, edges, before, cut)
 
 
 def in_plane(before: Solid) -> bool:
@@ -108,10 +134,11 @@ def in_plane(before: Solid) -> bool:
     return bool(before.bounds[4] == before.bounds[5])
 
 
-def caption(scale: float) -> str:
-    """Heading of the picture: how much the displacement is magnified."""
+def caption(scale: float, cut: Cut | None) -> str:
+    """Heading of the picture: how much the displacement is magnified, and what is left out."""
     times = "true to scale" if scale == 1.0 else f"displacement times {scale:g}"
-    return f"{times}; grey: before"
+    lines = [f"{times}; grey: before"]
+    return "\n".join(lines if cut is None else [*lines, str(cut)])
 
 
 def round_box(*meshes: Solid) -> tuple[Any, Any, Any]:
@@ -165,27 +192,32 @@ def _get_ready(scene: Scene) -> None:
 def _add(scene: Scene, grid: Solid, shown: Shown, unit: str, length: str, colours: bytes) -> None:
     """Add what is shown on a grid to a scene."""
     scale = magnification(grid)
-    skin, before = surfaces(grid, scale, shown)
+    drawn = surfaces(grid, scale, shown)
+    skin, before = drawn.skin, drawn.before
     bar = scene.add_coloured(
         skin.data,
         "value",
         np.frombuffer(colours, dtype=np.uint8).reshape(-1, 4),
         shown.limits(skin.values("value")),
-        ambient=0.6 if shown.cut else 0.25,
+        shaded=not shown.cut,  # colours that are read as numbers stay what they are
     )
     red, green, blue = (int(GREY[i : i + 2], 16) / 255.0 for i in (1, 3, 5))
     grey = (red, green, blue)
-    if not shown.cut:  # colours that are read as numbers stay what they are
+    if shown.cut:
+        for edges in drawn.edges:
+            scene.add_lines(edges.data, width=1.0)
+    else:
         scene.add_plain(before.data, grey, opacity=0.12)
     scene.add_outline(before.data, grey, width=2.0)
     low, high, labels = round_box(skin, before)
     scene.add_axes(low, high, labels, length)
     scene.add_bar(bar, shown.label.format(unit))
-    scene.add_heading(caption(scale))
+    scene.add_heading(caption(scale, drawn.cut))
     if in_plane(before):
         scene.look(low, high, (0.0, 0.0, 1.0), (0.0, 1.0, 0.0), ROOM)
     else:
-        scene.look(low, high, (-0.55, -1.0, 0.6), (0.0, 0.0, 1.0), ROOM)
+        along = FRONT if drawn.cut is None else drawn.cut.towards_viewer
+        scene.look(low, high, along, (0.0, 0.0, 1.0), ROOM)
 
 
 if __name__ == "__main__":

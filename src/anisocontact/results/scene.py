@@ -26,14 +26,15 @@ from vtkmodules.vtkRenderingCore import (
 )
 
 from anisocontact.base.array_types import Floats
+from anisocontact.results.solids import SHARP
 
 Colour = tuple[float, float, float]
 
 _BLACK: Colour = (0.0, 0.0, 0.0)
-#: Angle between facets from which on an edge is seen, degrees.
-_SHARP = 30.0
 #: Angle of the camera before it zooms, degrees.
 _VIEW = 30.0
+#: Share of the light that comes from everywhere.
+_AMBIENT = 0.25
 #: Height of letters: of the axes for VTK, of the scale of colours and of the heading in pixels.
 _OF_AXES, _OF_BAR, _OF_HEADING = 11.0, 20, 24
 
@@ -67,7 +68,7 @@ class Scene:
         name: str,
         colours: npt.NDArray[np.uint8],
         limits: tuple[float, float],
-        ambient: float,
+        shaded: bool,
     ) -> Any:
         """Add a surface with the colours of values at its points.
 
@@ -76,14 +77,14 @@ class Scene:
             name: Name of the array.
             colours: Scale of colours, (n, 4).
             limits: Values at its ends.
-            ambient: Share of the light that comes from everywhere.
+            shaded: Whether light falls on it; else its colours are those of the scale.
 
         Returns:
             What `add_bar` shows.
         """
         normals: Any = vtkPolyDataNormals()
         normals.SetInputData(mesh)
-        normals.SetFeatureAngle(_SHARP)
+        normals.SetFeatureAngle(SHARP)
         table: Any = vtkLookupTable()
         to_vtk: Any = numpy_to_vtk
         table.SetTable(to_vtk(np.ascontiguousarray(colours), deep=True))
@@ -95,7 +96,9 @@ class Scene:
         mapper.SetLookupTable(table)
         mapper.UseLookupTableScalarRangeOn()
         mapper.InterpolateScalarsBeforeMappingOn()
-        self._add(mapper).SetAmbient(ambient)
+        shown = self._add(mapper)
+        shown.SetLighting(shaded)
+        shown.SetAmbient(_AMBIENT if shaded else 0.0)
         return table
 
     def add_plain(self, mesh: Any, colour: Colour, opacity: float) -> None:
@@ -107,6 +110,12 @@ class Scene:
         shown.SetColor(*colour)
         shown.SetOpacity(opacity)
 
+    def add_lines(self, lines: Any, width: float) -> None:
+        """Add black lines."""
+        mapper: Any = vtkPolyDataMapper()
+        mapper.SetInputData(lines)
+        self._add_flat(mapper, _BLACK, width)
+
     def add_outline(self, mesh: Any, colour: Colour, width: float) -> None:
         """Add the outline of a surface as it is seen."""
         lines: Any = vtkPolyDataSilhouette()
@@ -115,11 +124,7 @@ class Scene:
         lines.SetEnableFeatureAngle(0)
         mapper: Any = vtkPolyDataMapper()
         mapper.SetInputConnection(lines.GetOutputPort())
-        mapper.ScalarVisibilityOff()
-        shown = self._add(mapper)
-        shown.SetColor(*colour)
-        shown.SetLineWidth(width)
-        shown.LightingOff()
+        self._add_flat(mapper, colour, width)
 
     def add_bar(self, table: Any, title: str) -> None:
         """Add a scale of colours beside what is drawn."""
@@ -206,6 +211,14 @@ class Scene:
         writer.SetInputConnection(image.GetOutputPort())
         writer.SetFileName(path)
         writer.Write()
+
+    def _add_flat(self, mapper: Any, colour: Colour, width: float) -> None:
+        """Add lines in one colour whatever light there is."""
+        mapper.ScalarVisibilityOff()
+        shown = self._add(mapper)
+        shown.SetColor(*colour)
+        shown.SetLineWidth(width)
+        shown.LightingOff()
 
     def _add(self, mapper: Any) -> Any:
         """Add what a mapper draws; how it looks."""

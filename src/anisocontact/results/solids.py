@@ -13,14 +13,19 @@ from vtkmodules.vtkCommonDataModel import (
     VTK_VOXEL,
     vtkPlane,
     vtkPointSet,
+    vtkPolyData,
     vtkUnstructuredGrid,
 )
-from vtkmodules.vtkFiltersCore import vtkTriangleFilter
+from vtkmodules.vtkFiltersCore import vtkClipPolyData, vtkCutter, vtkFeatureEdges, vtkTriangleFilter
 from vtkmodules.vtkFiltersGeneral import vtkTableBasedClipDataSet, vtkWarpVector
 from vtkmodules.vtkFiltersGeometry import vtkDataSetSurfaceFilter
 from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
 
 from anisocontact.base.array_types import Floats, Ints
+from anisocontact.results.cut import Cut
+
+#: Angle between facets from which on an edge is seen, degrees.
+SHARP = 30.0
 
 
 class Solid:
@@ -43,11 +48,6 @@ class Solid:
     def length(self) -> float:
         """Diagonal of the box around it, length."""
         return float(self.data.GetLength())
-
-    @property
-    def empty(self) -> bool:
-        """Whether there are no cells."""
-        return int(self.data.GetNumberOfCells()) == 0
 
     def values(self, name: str) -> Floats:
         """An array at the nodes, (n,) or (n, components)."""
@@ -73,13 +73,26 @@ class Solid:
         """The surface as triangles."""
         return _through(vtkTriangleFilter(), _through(vtkDataSetSurfaceFilter(), self))
 
-    def behind(self, place: Floats) -> Solid:
-        """What is not in front of a place, along y."""
-        plane, cut = vtkPlane(), vtkTableBasedClipDataSet()
-        plane.SetOrigin(*(float(x) for x in place))
-        plane.SetNormal(0.0, 1.0, 0.0)
-        cut.SetClipFunction(plane)
-        return _through(cut, self)
+    def edges(self) -> Solid:
+        """Sharp edges and borders of a skin, as lines."""
+        lines = vtkFeatureEdges()
+        lines.SetFeatureAngle(SHARP)
+        lines.NonManifoldEdgesOff()
+        lines.ColoringOff()
+        return _through(lines, self)
+
+    def behind(self, where: Cut) -> Solid:
+        """What is not in front of a cut."""
+        lines = isinstance(self.data, vtkPolyData)
+        clip: Any = vtkClipPolyData() if lines else vtkTableBasedClipDataSet()
+        clip.SetClipFunction(_plane(where))
+        return _through(clip, self)
+
+    def rim(self, where: Cut) -> Solid:
+        """Where a cut goes through a skin, as lines."""
+        cutter = vtkCutter()
+        cutter.SetCutFunction(_plane(where))
+        return _through(cutter, self)
 
     def moved(self, name: str, scale: float) -> Solid:
         """The same with nodes moved by an array."""
@@ -107,6 +120,13 @@ def one_cell() -> Solid:
     grid.SetPoints(points)
     grid.InsertNextCell(VTK_VOXEL, 8, range(8))
     return Solid(grid)
+
+
+def _plane(cut: Cut) -> vtkPlane:
+    plane = vtkPlane()
+    plane.SetOrigin(*(cut.place * (i == cut.axis) for i in range(3)))
+    plane.SetNormal(*cut.normal)
+    return plane
 
 
 def _floats(array: Any) -> Floats:

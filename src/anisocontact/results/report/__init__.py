@@ -65,11 +65,12 @@ _OF_BODIES = {
     "deformed": ("Deformed bodies", "Colour: size of the displacement."),
     "von_mises": (
         "Equivalent stress",
-        "Von Mises; bodies are cut open at the largest value, in front of which they are left out.",
+        "Von Mises; bodies are cut open through the largest value, the heading says where.",
     ),
     "principal_stress": (
         "Principal stress",
-        "The one that is largest in size, tension positive; bodies are cut open where it is.",
+        "The one that is largest in size, tension positive; bodies are cut open through it, the "
+        "heading says where.",
     ),
 }
 

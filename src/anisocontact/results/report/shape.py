@@ -7,6 +7,7 @@ asks for them; where that fails, matplotlib draws the same.
 from __future__ import annotations
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -17,7 +18,9 @@ from typing import TYPE_CHECKING, Any
 
 from anisocontact.base.figure_style import new_figure, save
 from anisocontact.base.whole_files import draft_of
+from anisocontact.results.cut import Cut
 from anisocontact.results.deformed import (
+    FRONT,
     SHOWN,
     Shown,
     caption,
@@ -138,7 +141,8 @@ def _by_matplotlib(grid: Solid, shown: Shown, picture: Path, unit: str, length: 
     )
 
     scale = magnification(grid)
-    skin, before = surfaces(grid, scale, shown)
+    drawn = surfaces(grid, scale, shown)
+    skin, before = drawn.skin, drawn.before
     values = skin.values("value")
     figure = new_figure(9.0, 6.0)
     axes: Any = figure.add_subplot(projection="3d", computed_zorder=False)
@@ -154,7 +158,13 @@ def _by_matplotlib(grid: Solid, shown: Shown, picture: Path, unit: str, length: 
     for axis, start, end in zip("xyz", low, high, strict=True):
         axes.set(**{f"{axis}lim": (start, end), f"{axis}label": f"{axis} [{length}]"})
     axes.set_box_aspect(high - low)
-    axes.view_init(*((90.0, -90.0) if flat else (25.0, -60.0)))
+    axes.view_init(*((90.0, -90.0) if flat else _angles(drawn.cut)))
     figure.colorbar(faces, ax=axes, label=shown.label.format(unit), shrink=0.6)
-    axes.set_title(caption(scale))
+    axes.set_title(caption(scale, drawn.cut))
     save(figure, picture)
+
+
+def _angles(cut: Cut | None) -> tuple[float, float]:
+    """Elevation and azimuth of who looks at the bodies, degrees."""
+    x, y, _ = FRONT if cut is None else cut.towards_viewer
+    return 25.0, math.degrees(math.atan2(y, x))
