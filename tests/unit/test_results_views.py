@@ -16,6 +16,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from anisocontact.base.figure_style import new_figure
 from anisocontact.cli.main import main
+from anisocontact.interface import STATUS
 from anisocontact.results.cut import Cut
 from anisocontact.results.dataset import DataSet, polygons, vertices
 from anisocontact.results.deformed import SHOWN, caption, surfaces
@@ -173,7 +174,7 @@ def test_no_text_of_a_map_is_cut_off(height):
     points.point_data["area"][:] = 1e-3
     view = ContactView(points, 0)
     moments = [Moment("drag, increment 4", 1, 1)]
-    run = SimpleNamespace(moments=moments, ends=lambda: moments, view=lambda *_: view)
+    run = SimpleNamespace(moments=moments, steps=[0], ends=lambda: moments, view=lambda *_: view)
     for drawn in (maps.traction, maps.pressure):
         figure = drawn(run, 0)
         figure.draw_without_rendering()
@@ -184,6 +185,36 @@ def test_no_text_of_a_map_is_cut_off(height):
             inside = [figure.bbox.x0 - 1 <= box.x0, box.x1 <= figure.bbox.x1 + 1]
             inside += [figure.bbox.y0 - 1 <= box.y0, box.y1 <= figure.bbox.y1 + 1]
             assert all(inside), text.get_text()
+
+
+def _words(figure):
+    """Texts of a figure and of its legend."""
+    return [text.get_text() for text in figure.findobj(Text) if text.get_text()]
+
+
+@pytest.mark.parametrize(
+    ("codes", "named"), [((1, 2), ["stick", "slip"]), ((0, 2), ["open", "slip"]), ((1,), ["stick"])]
+)
+def test_maps_name_what_is_there(codes, named):
+    """Requirement: the legend has the statuses of some point, and which state is shown is said."""
+    places = np.random.default_rng(3).uniform(size=(40, 3)) * [1.0, 1.0, 0.0]
+    points = _touching(places, np.tile([0.0, 0, 1], (40, 1)), pressure=np.ones(40))
+    points.point_data["status"][:] = np.resize(codes, 40)
+    points.point_data["area"][:] = 1e-3
+    view = ContactView(points, 0)
+    for steps in (2, 5):
+        moments = [Moment(f"step {i}", i, i) for i in range(steps)]
+        run = SimpleNamespace(
+            steps=range(steps),
+            ends=lambda moments=moments: moments,
+            mixed=lambda _, moments=moments: moments,
+            view=lambda *_: view,
+        )
+        words = _words(maps.status(run, 0))
+        assert [word for word in words if word in STATUS] == named
+        which = "of each step" if steps == 2 else "of each of the last 3 of 5 steps"
+        assert f"{which} the state in which stick and slip are most mixed" in words
+        assert ("open" in _words(maps.pressure(run, 0))) == (0 in codes)
 
 
 AROUND = """
@@ -230,3 +261,26 @@ def test_radial_forces_have_no_resultant(tmp_path, kind, named):
     assert [name for name in shown if not name.startswith("_")] == named
     across = np.linalg.norm([shown[name] for name in named[:-1]], axis=0)
     np.testing.assert_allclose(shown["size"], across, rtol=1e-12)
+
+
+@pytest.mark.parametrize("adhesion", ["", "adhesion = { stiffness = 50 }"])
+def test_no_domain_of_a_stiffness_that_multipliers_stand_for(tmp_path, adhesion):
+    """By default multipliers hold what sticks: there is no elastic slip that a domain could have.
+
+    Requirement: picture, caption and the table of laws of the report have the stiffness of an
+    adhesion that was given, and that of none other; the summary says which laws are exact.
+    """
+    case = tmp_path / "case.toml"
+    text = AROUND.replace("KIND", "plane-strain").replace("pictures = false", "pictures = true")
+    case.write_text(text.replace("friction =", f"{adhesion}\nfriction ="))
+    assert main(["run", str(case), "-o", str(tmp_path / "out")]) == 0
+    run = RunData(tmp_path / "out")
+    exact = ["normal"] if adhesion else ["normal", "adhesion"]
+    assert run.summary["contacts"][0]["multipliers"] == exact
+    figure = curves.domain(run, 0)
+    assert len(figure.axes) == (2 if adhesion else 1)
+    assert any("adhesion" in word for word in _words(figure)) == bool(adhesion)
+    report = (tmp_path / "out" / "report.html").read_text()
+    assert report.count("exact, by multipliers") == len(exact)
+    assert ("stiffness 50, 50" in report) == bool(adhesion)
+    assert ("no adhesion domain" in report) == (not adhesion)

@@ -230,3 +230,10 @@ def laws(contact: Contact) -> dict[str, Any]:
     interface = contact.interface
     named = {"normal": interface.normal.named, **interface.tangential.named()}
     return {what: {"name": name, **values} for what, (name, values) in named.items()}
+
+
+def exact_laws(contact: Contact) -> list[str]:
+    """Those of its laws that multipliers make exact, whose stiffness is no property then."""
+    trials = contact.trials
+    found = {"normal": trials.augmented, "adhesion": not trials.does_work}
+    return [name for name, exact in found.items() if exact]

@@ -28,7 +28,7 @@ from anisocontact.results.paraview import BodyGrid, slave_points
 from anisocontact.results.probes import Probe, ProbeTable
 from anisocontact.results.read import Results
 from anisocontact.results.resultants import Resultant
-from anisocontact.results.snapshot import Observer, laws
+from anisocontact.results.snapshot import Observer, exact_laws, laws
 from anisocontact.results.surfaces import Surfaces
 from anisocontact.results.vtkhdf import write_vtkhdf
 from anisocontact.results.warnings import at_end, at_start, of_models, soft, worst, worst_of_models
@@ -366,6 +366,7 @@ def _constants(problem: Problem, masters: Sequence[str]) -> list[dict[str, Any]]
             "master": master,
             "facet_size": facet_size(problem.model, contact.slave),
             "laws": laws(contact),
+            "multipliers": exact_laws(contact),
         }
         for contact, master in zip(problem.contacts, masters, strict=True)
     ]

@@ -31,13 +31,16 @@ _OF_CONTACT: tuple[tuple[str, Callable[[RunData, int], Figure], str, str], ...] 
         "pressure",
         maps.pressure,
         "Pressure",
-        "Pressure on the slave at the end of the steps, at the deformed position.",
+        "Pressure on the slave at the end of the steps, or of the last three, at the deformed "
+        "position.",
     ),
     (
         "status",
         maps.status,
         "Status",
-        "Open, sticking and slipping points, each step where stick and slip are most mixed.",
+        "Open, sticking and slipping points. Of each step, or of the last three, the written state "
+        "is shown in which stick and slip are most mixed: the smaller of the two numbers of points "
+        "is largest; where points only stick, or only slip, it is the last one.",
     ),
     (
         "traction",
@@ -59,6 +62,12 @@ _OF_CONTACT: tuple[tuple[str, Callable[[RunData, int], Figure], str, str], ...] 
         "Force over displacement",
         "Resultant of the contact on the slave; the steps are shaded.",
     ),
+)
+#: Heading and caption of the domain where multipliers hold.
+_WITHOUT_ADHESION = (
+    "Path of the resultant",
+    "The resultant tangential force over the normal force; it cannot leave the friction ellipse. "
+    "Multipliers hold what sticks: there is no elastic slip and no adhesion domain.",
 )
 #: Of the bodies: heading and caption by the name of the picture.
 _OF_BODIES = {
@@ -176,7 +185,9 @@ def _of_contact(run: RunData, number: int, album: _Album) -> list[_Wanted]:
     many, contact = len(contacts) > 1, contacts[number]
     pair = f": {contact['slave']} on {contact['master']}" if many else ""
     found = []
-    for name, draw, title, caption in _OF_CONTACT:
+    for name, draw, *texts in _OF_CONTACT:
+        without = name == "domain" and run.exact(number, "adhesion")
+        title, caption = _WITHOUT_ADHESION if without else texts
 
         def drawn(path: Path, draw: Callable[[RunData, int], Figure] = draw) -> None:
             save(labelled(draw(run, number), run.units), path)

@@ -10,6 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import ACCENT, GREY, STEP_COLOURS, new_figure, plain
+from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import RunData
 
 if TYPE_CHECKING:
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Distance of names of steps above a curve that leaves room for both, over its length.
 BESIDE = 0.04
+#: How an ellipse is drawn that the path on it must not hide: a broad band below it.
+_BEHIND: dict[str, Any] = {"lw": 7.0, "alpha": 0.3, "zorder": 1.5, "solid_capstyle": "butt"}
 _DOMAIN = "adhesion domain at the end of each step"
 
 
@@ -58,7 +61,8 @@ def domain(run: RunData, contact: int) -> Figure:
     """Path of the force and of the mean elastic slip, each with the ellipse it stays in.
 
     As figure 5 of the paper: the friction ellipse `T.FT = N^2` in the plane of the force, and what
-    it becomes on the tangent plane, the adhesion domain `e.(BFB)e = N^2` around its centre.
+    it becomes on the tangent plane, the adhesion domain `e.(BFB)e = N^2` around its centre. Where
+    multipliers hold there is no elastic slip, and the path of the force alone is drawn.
     """
     view = run.view(run.moments[-1].index, contact)
     frame = view.frame
@@ -66,39 +70,44 @@ def domain(run: RunData, contact: int) -> Figure:
     pressing = forces @ frame.normal
     pressed = pressing > 1e-9 * np.abs(pressing).max(initial=0.0)
     ratio = frame.of(forces) / np.where(pressed, pressing, np.inf)[:, None]
-    slip = frame.of(run.vectors(f"contacts.{contact}.elastic_slip"))
-    figure = new_figure(11.0, 6.4)
-    left, right = figure.subplots(1, 2)
     ellipse = _friction_ellipse(run, contact)
+    elastic = not run.exact(contact, "adhesion")
+    figure = new_figure(11.0 if elastic else 6.4, 6.4)
+    left, *right = figure.subplots(1, 2 if elastic else 1, squeeze=False)[0]
     if ellipse is not None:
-        left.plot(*ellipse.T, color=ACCENT, label="friction ellipse T.FT = N²")
-        _adhesion_domains(run, contact, right, pressing, ellipse)
+        left.plot(*ellipse.T, color=ACCENT, label="friction ellipse T.FT = N²", **_BEHIND)
     _path(run, left, ratio)
-    _path(run, right, slip)
-    right.plot(0.0, 0.0, "+", color="black", ms=10, label="centre")
     left.set_title("resultant tangential force over normal force")
-    right.set_title("mean elastic slip of the points in contact")
-    first, second = frame.names()
-    for axes, kind, what, unit in (
-        (left, "friction", "T/N", "1"),
-        (right, "adhesion", "elastic slip", "length"),
-    ):
-        _centre_view(axes)
-        _axis_lines(axes, view.mean_axes(kind), "axes of friction and of adhesion")
-        axes.set_xlabel(f"{what} along {first} [{unit}]")
-        axes.set_ylabel(f"{what} along {second} [{unit}]")
-        axes.set_aspect("equal")
-        axes.grid(alpha=0.3)
-        for axis in (axes.xaxis, axes.yaxis):
-            axis.set_major_locator(MaxNLocator(5))
-            axis.set_major_formatter("{x:.3g}")
+    _in_plane(left, view, "friction", "T/N", "1")
+    for axes in right:
+        if ellipse is not None:
+            _adhesion_domains(run, contact, axes, pressing, ellipse)
+        _path(run, axes, frame.of(run.vectors(f"contacts.{contact}.elastic_slip")))
+        axes.plot(0.0, 0.0, "+", color="black", ms=10, label="centre")
+        axes.set_title("mean elastic slip of the points in contact")
+        _in_plane(axes, view, "adhesion", "elastic slip", "length")
     shown = {
         label: line
-        for axes in (left, right)
+        for axes in (left, *right)
         for line, label in zip(*axes.get_legend_handles_labels(), strict=True)
     }
-    figure.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=3)
+    columns = 3 if elastic else 2
+    figure.legend(shown.values(), shown.keys(), loc="outside lower center", ncols=columns)
     return figure
+
+
+def _in_plane(axes: Axes, view: ContactView, law: str, what: str, unit: str) -> None:
+    """Finish a picture of vectors in the tangent plane: its view, axes and the lines of a law."""
+    first, second = view.frame.names()
+    _centre_view(axes)
+    _axis_lines(axes, view.mean_axes(law), f"axes of {law}")
+    axes.set_xlabel(f"{what} along {first} [{unit}]")
+    axes.set_ylabel(f"{what} along {second} [{unit}]")
+    axes.set_aspect("equal")
+    axes.grid(alpha=0.3)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(MaxNLocator(5))
+        axis.set_major_formatter("{x:.3g}")
 
 
 def _adhesion_domains(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from anisocontact.base.figure_style import STATUS_COLOURS, new_figure, plain
+from anisocontact.interface import STATUS
 from anisocontact.results.report.along import pressure_along, traction_along
 from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import Moment, RunData
@@ -32,7 +34,7 @@ ROOM = 1.5
 
 
 def pressure(run: RunData, contact: int) -> Figure:
-    """Pressure at the end of each step, one scale for all."""
+    """Pressure at the end of each step, or of the last ones, one scale for all."""
     moments = run.ends()[-MOST:]
     views = [run.view(moment.index, contact) for moment in moments]
     if views and all(view.one_curve for view in views):
@@ -45,18 +47,22 @@ def pressure(run: RunData, contact: int) -> Figure:
             axes, view.data["pressure"], cmap="viridis", vmin=0.0, vmax=top or 1.0
         )
     _scale(figure, [p[0] for p in panels], image, panels[0][1], "pressure [stress]")
-    _legend(figure, ["open"])
+    if len(run.steps) > MOST:
+        figure.suptitle(f"{_steps(run)} its end", fontsize=10)
+    _legend_of_open(figure, [view for _, view, _ in panels])
     return figure
 
 
 def status(run: RunData, contact: int) -> Figure:
-    """Open, sticking and slipping points, each step at its most mixed moment."""
+    """Open, sticking and slipping points, of each step where stick and slip are most mixed."""
     figure, panels = _panels(run, contact, run.mixed(contact)[-MOST:])
     colours = ListedColormap(STATUS_COLOURS)
     for axes, view, moment in panels:
         view.draw(axes, view.data["status"], cmap=colours, norm=BoundaryNorm([0, 1, 2, 3], 3))
         axes.set_title(_title(moment))
-    _legend(figure, ["open", "stick", "slip"])
+    figure.suptitle(f"{_steps(run)} the state in which stick and slip are most mixed", fontsize=10)
+    there = np.unique(np.concatenate([view.data["status"] for _, view, _ in panels]))
+    _legend(figure, [int(code) for code in there])
     return figure
 
 
@@ -76,13 +82,19 @@ def traction(run: RunData, contact: int) -> Figure:
         _arrows(axes, view, i)
     _scale(figure, [left, right], image, view, "tangential traction on the slave [stress]")
     figure.suptitle(f"{plain(run.moments[-1].title)}; arrows: direction of the axis")
-    _legend(figure, ["open"])
+    _legend_of_open(figure, [view])
     return figure
 
 
 def _title(moment: Moment) -> str:
     """Title of a panel, in lines that are no wider than it."""
     return "\n".join(wrap(plain(moment.title), LETTERS))
+
+
+def _steps(run: RunData) -> str:
+    """Which steps have a panel."""
+    count = len(run.steps)
+    return "of each step" if count <= MOST else f"of each of the last {MOST} of {count} steps"
 
 
 def _panels(
@@ -127,12 +139,19 @@ def _in_one_place(views: list[ContactView]) -> bool:
     return bool(np.all(together < ROOM * largest))
 
 
-def _legend(figure: Figure, names: list[str]) -> None:
+def _legend(figure: Figure, statuses: Sequence[int]) -> None:
+    """Names of the statuses that are there."""
     handles = [
-        Patch(facecolor=colour, edgecolor="black", label=name)
-        for colour, name in zip(STATUS_COLOURS, names, strict=False)
+        Patch(facecolor=STATUS_COLOURS[code], edgecolor="black", label=STATUS[code])
+        for code in statuses
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(names))
+    if handles:
+        figure.legend(handles=handles, loc="outside lower center", ncols=len(handles))
+
+
+def _legend_of_open(figure: Figure, views: Sequence[ContactView]) -> None:
+    """Name what is grey in maps of values, where anything is."""
+    _legend(figure, [] if all(view.touching.all() for view in views) else [0])
 
 
 def _arrows(axes: Axes, view: ContactView, which: int) -> None:

@@ -206,19 +206,21 @@ def _vector(name: str, values: Iterable[float | str], unit: str) -> dict[str, fl
 
 def _laws(summary: dict[str, Any]) -> list[dict[str, Any]]:
     return [
-        {
-            "slave": contact["slave"],
-            "law": what.replace("_", " "),
-            "model": law["name"],
-            "numbers": "; ".join(
-                f"{name} {', '.join(f'{v:.5g}' for v in values)}"
-                for name, values in law.items()
-                if name != "name"
-            ),
-        }
+        {"slave": contact["slave"], "law": what.replace("_", " ")}
+        | (_EXACT if what in contact.get("multipliers", ()) else _numbered(law))
         for contact in summary["contacts"]
         for what, law in contact["laws"].items()
     ]
+
+
+#: Of a law whose stiffness multipliers stand for.
+_EXACT = {"model": "exact, by multipliers", "numbers": ""}
+
+
+def _numbered(law: dict[str, Any]) -> dict[str, Any]:
+    numbers = {name: values for name, values in law.items() if name != "name"}
+    texts = [f"{name} {', '.join(f'{v:.5g}' for v in values)}" for name, values in numbers.items()]
+    return {"model": law["name"], "numbers": "; ".join(texts)}
 
 
 def table(rows: Sequence[dict[str, Any]]) -> str:

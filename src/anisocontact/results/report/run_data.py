@@ -95,6 +95,10 @@ class RunData:
         """Whether forces along an axis have a resultant: around an axis radial ones have none."""
         return self.summary.get("idealisation") != "axisymmetric" or abs(axis[0]) < RADIAL
 
+    def exact(self, contact: int, law: str) -> bool:
+        """Whether multipliers make a law of a contact exact: its stiffness is no property then."""
+        return law in self.summary["contacts"][contact].get("multipliers", ())
+
     @cache  # noqa: B019 (one object for one report)
     def view(self, index: int, contact: int) -> ContactView:
         """A contact in a written state."""
