@@ -261,10 +261,9 @@ def test_rotation(order: int) -> None:
 def test_what_friction_has_dissipated_stays_where_nodes_are_left_behind() -> None:
     """A short block dragged over a long slave by more than its width, in 12 and 24 increments.
 
-    Requirement: what friction has dissipated never falls, and the balance of energy leaves half as
-    much open with twice the increments: 4.0, 1.9 % of the work. Source: second law; friction is
-    booked with the force at the end of an increment, first order. As energies per area of
-    then on the areas of now it falls.
+    Requirement: what friction has dissipated never falls, and the balance of energy leaves less
+    than 0.2 % of the work open. Source: second law. As energies per area of then on the areas of
+    now it falls. Sliding begins within an increment: the mean of its ends left 4.0 and 1.9 %.
     """
     left = []
     for increments in (12, 24):
@@ -279,5 +278,4 @@ def test_what_friction_has_dissipated_stays_where_nodes_are_left_behind() -> Non
         found = [one.energies for one in Solver(problem, steps, strategy="direct").run()]
         assert min(after["friction"] - one["friction"] for one, after in pairwise(found)) >= 0.0
         left.append(abs(found[-1]["residual"]) / found[-1]["external"])
-    assert left[0] < 0.045
-    assert left[1] < 0.6 * left[0]
+    assert max(left) < 0.002

@@ -275,8 +275,12 @@ class Pass:
         """Remember the trial as a state that bodies which flow have gone through."""
         self._way.append(Slid.of(self.current.response.state))
 
-    def taken_up(self) -> float:
+    def taken_up(self, mean_pressure: bool = False) -> float:
         """What the laws store and dissipate from the accepted state to the trial, of this rank.
+
+        Args:
+            mean_pressure: Whether friction has the mean of the pressures of both ends, which a way
+                in equilibrium has; that of the end otherwise, with which it is counted.
 
         Returns:
             Energy; what friction dissipates is along the way that bodies which flow have gone.
@@ -285,6 +289,9 @@ class Pass:
         state, areas = now.response.state, now.areas
         friction = dissipated(self.state, self._way, state) if self._way else state["dissipation"]
         gained = friction - self.state["dissipation"]
+        if mean_pressure:
+            end = np.where(state["pressure"] > 0.0, state["pressure"], np.inf)
+            gained *= 0.5 * (1.0 + self.state["pressure"] / end)
         gained += state["dissipation_viscous"] - self.state["dissipation_viscous"]
         stored = [name for name in _STORED if self.trials.does_work or name != "adhesion"]
         held = [areas @ state[_STORED[n]] - before.areas @ self.state[_STORED[n]] for n in stored]

@@ -13,16 +13,19 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.contact import initial_overlap
+from anisocontact.interface import STATUS
 from anisocontact.solver.system.imbalance import Imbalance
 from anisocontact.solver.system.problem import Problem
 
-#: Share of points that begin or end contact in an increment beyond which they make the residual.
+#: Share of points that begin or end contact or sliding in an increment beyond which they make the
+#: residual.
 MANY = 0.05
 #: What makes a residual, the first that applies to an increment; the last one to the first.
 CAUSES = (
     "slave points slid off the end of a master",
     "bodies jumped to another equilibrium",
     "contact began or ended within increments, more of them are needed where it does",
+    "sliding began or ended within increments, more of them are needed where it does",
     "too few increments, forces at their ends stand for those on the way; or a body snaps through",
     "bodies overlapped at the start, what pushes them apart is no work from outside",
 )
@@ -39,7 +42,7 @@ class EnergyWatch:
     def __init__(self, problem: Problem) -> None:
         self._problem = problem
         self._work = self._external = self._residual = self._flow = 0.0
-        self._open = np.zeros(len(problem.contacts), dtype=np.int64)
+        self._counts: Ints = np.zeros((len(problem.contacts), len(STATUS)), dtype=np.int64)
         self._parts = np.zeros(len(CAUSES))
         self._begun = self._overlap = False
 
@@ -51,7 +54,7 @@ class EnergyWatch:
         energies = self._problem.energies()
         self._take(energies)
         self._work = abs(self._external)
-        self._open = self._counted()
+        self._counts = self._counted()
         self._overlap = any([initial_overlap(c, c.facet_size) for c in self._problem.contacts])
 
     def after(self, energies: Mapping[str, float], ran_off: bool) -> Imbalance:
@@ -64,9 +67,7 @@ class EnergyWatch:
         before = self._residual, self._external, self._flow
         self._take(energies)
         self._work += abs(self._external - before[1])
-        opened, self._open = self._open, self._counted()
-        changed = np.abs(self._open - opened).sum() > MANY * self._points()
-        signs = (ran_off, self._flow != before[2], changed, True)
+        signs = (ran_off, self._flow != before[2], *self._changed(), True)
         cause = len(CAUSES) - 1 if self._overlap else signs.index(True)
         self._parts[cause] += self._residual - before[0]
         self._overlap = False
@@ -76,14 +77,14 @@ class EnergyWatch:
     def persistent(self) -> Floats:
         """What the next increments depend on."""
         now = [float(self._begun), self._work, self._external, self._residual, self._flow]
-        return np.concatenate([now, self._parts, self._open])
+        return np.concatenate([now, self._parts, self._counts.reshape(-1)])
 
     def restore(self, kept: Floats) -> None:
         """Go on from what `persistent` gave."""
         begun, self._work, self._external, self._residual, self._flow = map(float, kept[:5])
         self._begun = bool(begun)
         self._parts, counted = np.split(kept[5:], [len(CAUSES)])
-        self._open = counted.astype(np.int64)
+        self._counts = counted.astype(np.int64).reshape(self._counts.shape)
 
     def _take(self, energies: Mapping[str, float]) -> None:
         self._external, self._residual = energies["external"], energies["residual"]
@@ -104,8 +105,15 @@ class EnergyWatch:
         u = self._problem.accepted().array_r[: len(diagonal)]
         return float(self._problem.comm.allreduce(float(diagonal @ u**2)))
 
-    def _counted(self) -> Ints:
-        return np.array([c.counts()["open"] for c in self._problem.contacts], dtype=np.int64)
+    def _changed(self) -> tuple[bool, bool]:
+        """Whether many points have begun or ended contact, or sliding, and more than the other."""
+        before, self._counts = self._counts, self._counted()
+        change = np.abs(self._counts - before)
+        touched = int(change[:, 0].sum())
+        slid = (int(change[:, 1:].sum()) - touched) // 2
+        many = MANY * int(before.sum())
+        return touched > many and touched >= slid, slid > many
 
-    def _points(self) -> int:
-        return sum(sum(contact.counts().values()) for contact in self._problem.contacts)
+    def _counted(self) -> Ints:
+        counts = [[c.counts()[name] for name in STATUS] for c in self._problem.contacts]
+        return np.array(counts, dtype=np.int64).reshape(-1, len(STATUS))

@@ -10,8 +10,9 @@ Loads and springs work what they work, whatever contact does on the way. Where b
 supports have come to rest after the first step of the flow: from there on the difference is what
 viscous forces have had to take up.
 
-Multipliers and meshed masters do not answer on the way as if nothing had been after it. Where
-bodies flow there, work goes into contact that its laws take up: they store it, or dissipate it.
+Multipliers and meshed masters do not answer on the way as if nothing had been after it. There, and
+under loads that stay as they are, work goes into contact that its laws take up: they store it, or
+dissipate it with the mean of the pressures of both ends.
 """
 
 from __future__ import annotations
@@ -24,6 +25,8 @@ import numpy as np
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import MPI
+from anisocontact.contact import Contact
+from anisocontact.contact.initial import OVERLAP
 from anisocontact.interface import STATUS
 from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.parts import Parts
@@ -35,6 +38,9 @@ CHANGED = 0.05
 COARSE = LARGE
 #: Share of the work so far by which a point may change the rule, and points at which it ends.
 FINE, MOST = 1e-3, 32
+#: Share of the pressure that points may lose which open: half of what friction does there is missed
+#: by the laws, which have no pressure at the end.
+LOST = 2.0 * LARGE
 _AT_ONCE = 1e-9
 
 
@@ -131,8 +137,10 @@ class ContactWork:
         answers = all(contact.retraceable for contact in self._contacts)
         if len(self._passed) > 1 and not (prescribed and answers):
             return self._taken_up(nodal, prescribed)
-        if not (prescribed and answers and self._kinks()):
+        if not self._kinks():
             return 0.0
+        if not (prescribed and answers):
+            return self._by_the_laws(nodal, work, prescribed)
         places = [*self._places, self._here(nodal)]
         pieces = np.array([self._piece(a, b, dt, work) for a, b in pairwise(places)])
         missed = pieces[:, 0] - pieces[:, 1]
@@ -168,6 +176,35 @@ class ContactWork:
             return 0.0
         self._parts.stabilisation.released -= rest if prescribed else begun + rest
         return begun if prescribed else 0.0
+
+    def _by_the_laws(self, nodal: Floats, work: float, prescribed: bool) -> float:
+        """As `beyond_the_means`, by what the laws store and dissipate on a way in equilibrium.
+
+        The mean of both ends stays where something else than motion drives the bodies, where they
+        may have leapt, and where the difference would be no warning.
+        """
+        if not (prescribed or self._led()) or self._leapt(prescribed):
+            return 0.0
+        local = float(sum(contact.taken_up(mean_pressure=True) for contact in self._contacts))
+        local -= self._passed[0].mean_work(self._passing(nodal)) + self._mean_of_rigid()
+        missed = float(self._comm.allreduce(local))
+        return missed if np.isfinite(missed) and abs(missed) > COARSE * abs(work) else 0.0
+
+    def _led(self) -> bool:
+        """Whether prescribed motion alone drives the bodies, under loads that stay as they are."""
+        parts = self._parts
+        held = not (parts.attached or any(parts.stabilisation.stiffnesses))
+        local = np.array([not parts.supports.rest, not parts.loads.rest])
+        moves, loads_change = self._comm.allreduce(local, MPI.LOR)
+        moves |= not parts.rigid.rest
+        return bool(held and moves and not loads_change and parts.rigid.loads_rest)
+
+    def _leapt(self, prescribed: bool) -> bool:
+        """Whether loads landed bodies, pressure was lost, or some lay below a master without."""
+        local = np.array([_pressures(contact) for contact in self._contacts])
+        before, lost, after, below = np.reshape(self._comm.allreduce(local), (-1, 4)).T
+        landed = not prescribed and bool(np.any((before == 0.0) & (after > 0.0)))
+        return landed or bool(lost.sum() > LOST * before.sum() or below.any())
 
     def _passing(self, nodal: Floats) -> _Passed:
         taken_up = sum(contact.taken_up() for contact in self._contacts)
@@ -235,6 +272,24 @@ class ContactWork:
             touching += int(np.count_nonzero(now != STATUS.index("open")))
         changed, touching = self._comm.allreduce(np.array([changed, touching]))
         return len(self._places) > 1 or bool(changed > CHANGED * touching)
+
+
+def _pressures(contact: Contact) -> tuple[float, float, float, int]:
+    """Pressures over areas before and after an increment, on this rank.
+
+    Returns:
+        Their sum before, that of points which have opened, their sum after, force; and how many
+        points were below their master without any.
+    """
+    before, now = contact.state, contact.trial.state
+    force, free = contact.areas * before["pressure"], before["pressure"] <= 0.0
+    below = contact.master.located(before) & (before["gap"] < -OVERLAP * contact.facet_size)
+    return (
+        float(force.sum()),
+        float(force[now["pressure"] <= 0.0].sum()),
+        float(now["pressure"].sum()),
+        int(np.count_nonzero(free & below)),
+    )
 
 
 def _rule(powers: dict[float, Floats], rest: float) -> tuple[Floats, list[float]]:

@@ -69,6 +69,16 @@ class Drive:
         self._load.stop(fraction)
 
     @property
+    def rests(self) -> bool:
+        """Whether no motion is prescribed along the step."""
+        return self._turn is None and self._motion.rests
+
+    @property
+    def load_rests(self) -> bool:
+        """Whether the load stays as it is along the step."""
+        return self._load.rests
+
+    @property
     def last_load(self) -> Floats:
         """Loads at the end of the step, from which the next one goes on, (6,)."""
         return self._load.end

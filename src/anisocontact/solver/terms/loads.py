@@ -66,6 +66,11 @@ class DeadLoads(Term):
         for one in self._values.values():
             one.stop(factor)
 
+    @property
+    def rest(self) -> bool:
+        """Whether they stay as they are along the step, on this rank."""
+        return not self._released.any() and all(one.rests for one in self._values.values())
+
     @override
     def add_force(self, u: Floats, out: Floats) -> None:
         out += self._now
@@ -132,6 +137,11 @@ class Loads(TermGroup):
     def __init__(self, model: Model, materials: Mapping[str, Material]) -> None:
         self._dead, self._pressures = DeadLoads(model), PressureLoads(model, materials)
         super().__init__([self._dead, self._pressures])
+
+    @property
+    def rest(self) -> bool:
+        """Whether all of them stay as they are along the step, on this rank."""
+        return self._dead.rest and self._pressures.rest
 
     def given(self, step: Step) -> Iterator[Given]:
         """What a step that has begun gives other than zero."""

@@ -63,6 +63,11 @@ class Prescribed:
         """Whether a component follows a course."""
         return bool(self._courses)
 
+    @property
+    def rests(self) -> bool:
+        """Whether all components stay as they are along the step."""
+        return not self._courses and bool((self.start == self.end).all())
+
     def at(self, fraction: float) -> Floats:
         """Values at a fraction of the step, (size,)."""
         values = (1.0 - fraction) * self.start + fraction * self.end

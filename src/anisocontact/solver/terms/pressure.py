@@ -67,6 +67,11 @@ class PressureLoads(Term):
                 self._surfaces[group].add_force(1.0, rest, force)
                 yield Given("pressure", group, "", force)
 
+    @property
+    def rest(self) -> bool:
+        """Whether they stay as they are along the step."""
+        return all(one.rests for one in self._values.values())
+
     @override
     def set_load_factor(self, factor: float, dt: float) -> None:
         self._now = {group: float(one.at(factor)[0]) for group, one in self._values.items()}

@@ -200,6 +200,17 @@ class RigidBodies(Term):
         parts = [self._drives[b].load(self._load_factor) / self._scales[b] for b in self.free]
         return np.concatenate([np.zeros(0), *parts])
 
+    @property
+    def rest(self) -> bool:
+        """Whether no motion of them is prescribed along the step."""
+        return all(drive.rests for drive in self._drives.values())
+
+    @property
+    def loads_rest(self) -> bool:
+        """Whether loads on them stay as they are along the step, and no springs act."""
+        sprung = any(body.springs.any() for body in self.bodies)
+        return not sprung and all(drive.load_rests for drive in self._drives.values())
+
     def spring_forces(self) -> Floats:
         """Forces of the springs at the trial as the rows have them, (size,), force.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats, Ints
+from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.course import Course
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, Vec
@@ -108,13 +108,22 @@ class Supports:
 
     def resting(self) -> list[tuple[Ints, Floats]]:
         """Nodes that are held where they are all along the step along each axis, and the axis."""
+        nodes, axes = np.divmod(self.unknowns[self._still()], 3)
+        return [(nodes[axes == i], np.eye(3)[i]) for i in range(3)]
+
+    @property
+    def rest(self) -> bool:
+        """Whether all of them stay where they are all along the step, on this rank."""
+        return bool(self._still().all())
+
+    def _still(self) -> Flags:
+        """Which of the unknowns stay where they are all along the step."""
         still = np.abs(self.end - self.start) <= self._same
         for _, turned, _ in self._turned:
             still[np.searchsorted(self.unknowns, turned)] = False
         for _, place in self._courses:
             still[place] = False
-        nodes, axes = np.divmod(self.unknowns[still], 3)
-        return [(nodes[axes == i], np.eye(3)[i]) for i in range(3)]
+        return np.asarray(still)
 
     @property
     def owners(self) -> dict[Support, Ints]:
