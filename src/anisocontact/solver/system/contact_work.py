@@ -194,10 +194,10 @@ class ContactWork:
         """Whether prescribed motion alone drives the bodies, under loads that stay as they are."""
         parts = self._parts
         held = not (parts.attached or any(parts.stabilisation.stiffnesses))
-        local = np.array([not parts.supports.rest, not parts.loads.rest])
-        moves, loads_change = self._comm.allreduce(local, MPI.LOR)
-        moves |= not parts.rigid.rest
-        return bool(held and moves and not loads_change and parts.rigid.loads_rest)
+        local = np.array([not parts.supports.rest, not parts.loads.rest], dtype=np.int64)
+        moving, changing = self._comm.allreduce(local).tolist()
+        moves = moving > 0 or not parts.rigid.rest
+        return bool(held and moves and changing == 0 and parts.rigid.loads_rest)
 
     def _leapt(self, prescribed: bool) -> bool:
         """Whether loads landed bodies, pressure was lost, or some lay below a master without."""

@@ -1,0 +1,121 @@
+"""Work of increments in which contact or sliding begins, by what the laws take up."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from tests.verification.test_energy_balance import jumping
+
+from anisocontact.solver import Problem, Solver, Step
+from anisocontact.solver.stepping.energy_watch import CAUSES
+
+
+@pytest.mark.parametrize(
+    ("pair", "exact", "mortar", "strategy", "push"),
+    [
+        (False, True, True, "direct", 0.0),
+        (False, True, True, "condensed", 5.0),
+        (False, False, False, "direct", 5.0),
+        (True, True, True, "direct", 0.0),
+        (True, True, True, "condensed", 0.0),
+        (True, True, False, "direct", 5.0),
+        (True, False, False, "direct", 0.0),
+    ],
+)
+def test_sliding_begins_within_an_increment(
+    pair: bool, exact: bool, mortar: bool, strategy: str, push: float
+) -> None:
+    """Drag from rest, with multipliers, meshed masters, and loads that stay as they are.
+
+    Requirement: in one increment 3 % of the work and no warning, and work of supports within 3 % of
+    that of 16 increments. Source: balance of energy. Tolerance: the block tilts, and friction
+    has the pressure of the end. The mean of both ends took half of the force.
+    """
+    found = []
+    for increments in (1, 16):
+        problem, steps = dragged(pair, exact, mortar, increments, push=push)
+        warnings: list[str] = []
+        *_, last = Solver(problem, steps, strategy=strategy).run(on_warning=warnings.append)
+        assert warnings == []
+        assert abs(last.energies["residual"]) < 0.03 * last.energies["external"]
+        found.append(last.energies["external"])
+    assert found[0] == pytest.approx(found[1], rel=0.03)
+
+
+def dragged(
+    pair: bool, exact: bool, mortar: bool, increments: int, push: float = 0.0, **loads: Any
+) -> tuple[Problem, list[Step]]:
+    """A block that is pressed and pushed sideways, then dragged far beyond stick."""
+    base = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}} if pair else {}
+    start = {"traction": {"block.right": {"x": -push}}} if push else {}
+    press = {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}} | base
+    drag = {"block.top": {"x": 0.2, "y": 0.1}}
+    steps = [Step("press", 1, press, **start), Step("drag", increments, drag, **loads)]
+    return jumping(pair, exact, mortar), steps
+
+
+def test_what_loads_do_meanwhile_stays_open() -> None:
+    """As above, with a load that grows in the increment in which sliding begins.
+
+    Requirement: nothing is added to the work of supports, because loads may have made the bodies
+    leap, and the warning says that sliding began.
+    """
+    load = {"block.right": {"x": 5.0}}
+    problem, steps = dragged(False, True, True, 1, traction=load)
+    *_, last = Solver(problem, steps).run()
+    assert last.imbalance.large
+    assert last.imbalance.cause == CAUSES[3]
+    assert "sliding began" in CAUSES[3]
+
+
+@pytest.mark.parametrize("gap", [0.05, 1.0])
+def test_multipliers_close_within_an_increment(gap: float) -> None:
+    """A block on a rigid plane and on a body that sinks in as far: multipliers do no work.
+
+    Requirement: the work is what the bodies store, to 1e-6. The mean of both ends has the force on
+    the way to contact as well, 83 and 99 % too much.
+    """
+    for pair in (False, True):
+        problem = jumping(pair, True, True, gap=gap)
+        base = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}} if pair else {}
+        steps = [Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -gap - 0.01}} | base)]
+        (accepted,) = Solver(problem, steps).run()
+        stored = accepted.energies["elastic"] + accepted.energies["friction"]
+        assert accepted.energies["elastic"] > 0.9 * stored
+        assert accepted.energies["external"] == pytest.approx(stored, rel=0.02)
+        assert not accepted.imbalance.large
+
+
+RANKS = """
+from tests.verification.test_energy_of_sliding import dragged
+from anisocontact.solver import Solver
+
+problem, steps = dragged(True, True, False, 1, push=5.0)
+*_, last = Solver(problem, steps, options={"snes_rtol": 1e-12}).run()
+if problem.comm.rank == 0:
+    print(last.energies["external"], last.energies["residual"])
+"""
+
+
+@pytest.mark.mpi
+@pytest.mark.slow
+def test_processes_find_the_same_work() -> None:
+    """Sliding begins within an increment, on one and on two processes: 1e-8, sums in any order."""
+    if shutil.which("mpirun") is None:
+        pytest.skip("no mpirun")
+    found = []
+    for count in (1, 2):
+        command = ["mpirun", "-n", str(count), sys.executable, "-c", RANKS]
+        root = Path(__file__).parents[2]
+        done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        found.append([float(word) for word in done.stdout.split()])
+    assert found[1] == pytest.approx(found[0], rel=1e-8, abs=1e-8 * found[0][0])
