@@ -6,7 +6,6 @@ from functools import cached_property
 from typing import Any, override
 
 import numpy as np
-import scipy
 
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.fenicsx import Mat, PETSc, la
@@ -82,34 +81,14 @@ class NodeUnknowns:
         sides = (side.astype(PETSc.IntType) for side in (rows, columns))
         matrix.setValuesBlockedRCV(*sides, values, PETSc.InsertMode.ADD_VALUES)
 
-    def pattern(self, rows: Ints, columns: Ints, unknowns: int) -> scipy.sparse.csr_array:
-        """Pattern of the unknowns of pairs of nodes on one process, (unknowns, unknowns).
+    def blocks(self, rows: Ints, columns: Ints) -> tuple[Ints, Ints]:
+        """Rows and columns, in blocks of unknowns, of what couples pairs of nodes, (blocks,).
 
         Args:
-            rows: Nodes, (p,); those beyond the mesh continue its numbers.
-            columns: Likewise.
-            unknowns: How many there are, with those beyond the mesh.
-        """
-        nodes = unknowns // 3
-        there = np.ones(len(rows), dtype=bool)
-        pairs = scipy.sparse.csr_array((there, (rows, columns)), shape=(nodes, nodes))
-        blocks = np.ones((pairs.nnz, 3, 3), dtype=bool)
-        return scipy.sparse.bsr_array(
-            (blocks, pairs.indices, pairs.indptr), shape=(unknowns, unknowns)
-        ).tocsr()
-
-    def entries(self, rows: Ints, columns: Ints) -> tuple[Ints, Ints]:
-        """Rows and columns of the entries of blocks between pairs of nodes, (entries,).
-
-        Args:
-            rows: Nodes by their numbers in the whole mesh, (p,).
+            rows: Nodes by their numbers in the whole mesh, (p,); those beyond it continue them.
             columns: Likewise.
         """
-        component = np.arange(3)
-        shape = (len(rows), 3, 3)
-        r = np.broadcast_to(3 * rows[:, None, None] + component[:, None], shape)
-        c = np.broadcast_to(3 * columns[:, None, None] + component, shape)
-        return r.reshape(-1), c.reshape(-1)
+        return rows, columns
 
 
 class PlacedUnknowns(NodeUnknowns):
@@ -181,13 +160,7 @@ class PlacedUnknowns(NodeUnknowns):
         matrix.setValuesRCV(*sides, values, PETSc.InsertMode.ADD_VALUES)
 
     @override
-    def pattern(self, rows: Ints, columns: Ints, unknowns: int) -> scipy.sparse.csr_array:
-        entries = self.entries(rows, columns)
-        there = np.ones(len(entries[0]), dtype=bool)
-        return scipy.sparse.csr_array((there, entries), shape=(unknowns, unknowns))
-
-    @override
-    def entries(self, rows: Ints, columns: Ints) -> tuple[Ints, Ints]:
+    def blocks(self, rows: Ints, columns: Ints) -> tuple[Ints, Ints]:
         shape = (len(rows), 3, 3)
         r = np.broadcast_to(self._everywhere[rows][:, :, None], shape)
         c = np.broadcast_to(self._everywhere[columns][:, None, :], shape)

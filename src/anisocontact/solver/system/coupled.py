@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
-from typing import Any
 
 import numpy as np
 import scipy
@@ -15,6 +13,7 @@ from anisocontact.contact.far_nodes import globally
 from anisocontact.contact.quadrature import Couplings
 from anisocontact.contact.reachable import NodePairs
 from anisocontact.mesh.node_unknowns import NodeUnknowns
+from anisocontact.mesh.split import Route, Split
 
 #: Couplings over those that are needed or foreseen, at which the others lose their places.
 MOST_LEFT = 2.0
@@ -81,23 +80,6 @@ class CoupledTangent:
         blocks = self._blocks if len(self._blocks) == len(row) else np.zeros((len(row), 9))
         return row, column, blocks
 
-    @cached_property
-    def _of_bulk(self) -> scipy.sparse.csr_array:
-        """Pattern of the bulk in the rows of this rank, columns of the whole system."""
-        starts, columns, _ = self._stiffness.getValuesCSR()
-        starts = np.append(starts, [starts[-1]] * (self._size[0] + 1 - len(starts)))
-        shape = (self._size[0], self._size[1])
-        return scipy.sparse.csr_array(
-            (np.ones(len(columns), dtype=bool), columns, starts), shape=shape
-        )
-
-    @cached_property
-    def _entries(self) -> tuple[Ints, Ints]:
-        """Rows and columns of the entries of the bulk on this rank."""
-        pattern = self._of_bulk
-        rows = np.arange(pattern.shape[0]) + self._first
-        return np.repeat(rows, np.diff(pattern.indptr)), pattern.indices
-
     def new_matrix(self, foreseen: Sequence[NodePairs] = ()) -> Mat:
         """Matrix for `make_room` and `add`.
 
@@ -163,18 +145,36 @@ class CoupledTangent:
         return grown
 
     def _preallocate(self, matrix: Mat) -> None:
-        row, column = self._places()
-        if self._comm.size == 1:  # a quarter of the time of the way for several
-            whole = self._of_bulk + self._unknowns.pattern(row, column, self._size[0])
-            sides = (a.astype(PETSc.IntType) for a in (whole.indptr, whole.indices))
-            matrix.setPreallocationCSR(tuple(sides))
-        else:
-            rows, columns = self._unknowns.entries(row, column)
-            matrix.setPreallocationCOO(
-                _joined(self._entries[0], rows), _joined(self._entries[1], columns)
-            )
+        pairs, block = self._of_bulk() + self._of_couplings(), self._unknowns.block
+        full = np.ones((pairs.nnz, block, block), dtype=bool)
+        sides = (side.astype(PETSc.IntType) for side in (pairs.indices, pairs.indptr))
+        whole = scipy.sparse.bsr_array((full, *sides), shape=self._size).tocsr()
+        matrix.setPreallocationCSR((whole.indptr, whole.indices))
         matrix.setOption(PETSc.Mat.Option.KEEP_NONZERO_PATTERN, True)
         matrix.assemble()
+
+    def _of_bulk(self) -> scipy.sparse.csr_array:
+        """Pattern of the bulk in the rows of this rank, columns of the whole system, in blocks."""
+        own, total = (size // self._unknowns.block for size in self._size)
+        step = self._unknowns.block
+        (unknowns, _), _ = self._stiffness.getSizes()
+        first = PETSc.IS().createStride(unknowns // step, self._first, step, self._comm)
+        part = self._stiffness.createSubMatrix(first, first)
+        starts, columns, _ = part.getValuesCSR()
+        part.destroy()
+        starts = np.append(starts, [starts[-1]] * (own + 1 - len(starts)))
+        there = np.ones(len(columns), dtype=bool)
+        return scipy.sparse.csr_array((there, columns, starts), shape=(own, total))
+
+    def _of_couplings(self) -> scipy.sparse.csr_array:
+        """The same of the couplings that any rank has; collective."""
+        own, total = (size // self._unknowns.block for size in self._size)
+        rows, columns = self._unknowns.blocks(*self._places())
+        owners = Split(self._comm, own)
+        route = Route(self._comm, owners.owner(rows))
+        rows, columns = route.there(rows) - owners.first, route.there(columns)
+        there = np.ones(len(rows), dtype=bool)
+        return scipy.sparse.csr_array((there, (rows, columns)), shape=(own, total))
 
     def _named(self, pairs: Sequence[NodePairs]) -> Ints:
         """Each pair of nodes once, as one number."""
@@ -194,10 +194,6 @@ def _found(known: Ints, keys: Ints) -> Flags:
         return np.zeros(len(keys), dtype=bool)
     places = np.minimum(np.searchsorted(known, keys), len(known) - 1)
     return np.asarray(known[places] == keys)
-
-
-def _joined(bulk: Any, contact: Any) -> Any:
-    return np.concatenate([bulk, contact]).astype(PETSc.IntType)
 
 
 def _keys(rows: Locals, columns: Locals, nodes: int) -> Ints:
