@@ -22,7 +22,8 @@ from anisocontact.contact.hints import warn_of_overlaps
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.mesh.own_space import own_unknowns
 from anisocontact.solver.stepping.pace import Pace
-from anisocontact.solver.strategies.newton import Newton, OptionValue
+from anisocontact.solver.strategies.database import Database, OptionValue
+from anisocontact.solver.strategies.newton import Newton
 from anisocontact.solver.system.assembled import AssembledSystem
 from anisocontact.solver.system.assembly import Assembly, TrialState
 from anisocontact.solver.system.fields import fields_beside
@@ -132,7 +133,9 @@ class ContactProblem(AssembledSystem):
         bodies_of = [connected_body(unknowns.nodes, (), [part.nodes]) for part in self._parts]
         self._sides = SidesKept(contacts, bodies_of)
         options = {**self._fields.options, **(petsc_options or {})}
-        self.newton = Newton(self, petsc_options_prefix, options, lambda *_: None)
+        self._options = Database(petsc_options_prefix, petsc_options or {})
+        with self._options:
+            self.newton = Newton(self, petsc_options_prefix, options, lambda *_: None)
 
     @typed
     def solve(self, dt: float = 1.0) -> int:
@@ -160,7 +163,8 @@ class ContactProblem(AssembledSystem):
         self._check_supported(x)
         self._fields.measure(self._assembly.bodies)
         self._fields.weigh_by(lambda: self._start(x))
-        result = self.newton.solve(x)
+        with self._options:
+            result = self.newton.solve(x)
         reason = result.reason
         if not reason:
             self.evaluate(x)
@@ -173,8 +177,8 @@ class ContactProblem(AssembledSystem):
         terms.accept(self.nodal)
         for body in self._bodies:
             body.commit()
-        for behind in self._sides.fresh():
-            warnings.warn(str(behind), ModelWarning, stacklevel=3)
+        for said in (*self._options.unread(self.comm), *self._sides.fresh()):
+            warnings.warn(str(said), ModelWarning, stacklevel=3)
         return result.iterations
 
     @typed

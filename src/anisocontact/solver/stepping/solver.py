@@ -26,7 +26,7 @@ from anisocontact.solver.stepping.report import Accepted, Cut, Progress, Stopped
 from anisocontact.solver.stepping.turned import PRESCRIBED, TurnWatch, half_turns
 from anisocontact.solver.stepping.watch import StatusWatch
 from anisocontact.solver.strategies.choice import choose
-from anisocontact.solver.strategies.newton import OptionValue
+from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.strategy import IncrementSolver, Task
 from anisocontact.solver.system.interior import PENDING
 from anisocontact.solver.system.problem import Problem
@@ -118,6 +118,7 @@ class Solver:
         self.place = self._beginning(0, 0.0)
         self._task = Task(problem, self.steps, options_prefix, dict(options or {}))
         self.choice = choose(strategy, self._task)
+        self._options = Database(options_prefix, self._task.options)
         self._newton: IncrementSolver | None = None
         self._kept: Arrays = {}
         self._waiting: Arrays = {}
@@ -155,18 +156,20 @@ class Solver:
         warn = on_warning or (lambda text: note(f"warning: {text}"))
         for text in self._doubtful:
             warn(text)
+        comm = self.problem.comm
         self._energy.begin()
         self._predictor.begin()
         strategy = self.choice.strategy
         if not (strategy.reduces and self._kept):
             self.problem.reduction.recover()
-        self._newton = newton = strategy.solver(self._task, self._report, note, self._kept)
+        with self._options:
+            self._newton = newton = strategy.solver(self._task, self._report, note, self._kept)
         attempts, alarms = Attempts(self.problem, newton, self._watch, self._turns), Alarms()
         try:
             while self.place.step < len(self.steps):
                 step = self.steps[self.place.step]
                 for accepted in self._step(attempts, step):
-                    for text in alarms.of(accepted):
+                    for text in (*self._options.unread(comm), *alarms.of(accepted)):
                         warn(text)
                     yield accepted
                 self._go_on(step)
@@ -286,7 +289,8 @@ class Solver:
         self._turns.permitted = pace.cuttable
         # where friction cannot hold the loads no smaller part leads to the end of the increment
         overloaded = pace.cuts > 0 and too_much_load(self.problem, whole / step.increments) != ""
-        return attempts.solve(first, last, ratio, pace, overloaded)
+        with self._options:
+            return attempts.solve(first, last, ratio, pace, overloaded)
 
     def _cut(self, step: Step, outcome: Outcome) -> None:
         """Make the next part smaller, or give up."""

@@ -14,13 +14,12 @@ from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
 from anisocontact.contact import NotHeldError
 from anisocontact.solver.strategies.backtracking import Backtracking
+from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.system.culprit import Culprit, LostError
 from anisocontact.solver.system.force_balance import ForceBalance
 from anisocontact.solver.terms.contacts import Contacts
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
-
-OptionValue = str | int | float | bool | None
 
 DEFAULTS: dict[str, OptionValue] = {
     "snes_type": "newtonls",
@@ -368,26 +367,3 @@ class Newton:
         }
         text = known.get(reason, f"SNES stopped with reason {reason}")
         return text.format(n=self.snes.getIterationNumber(), r=last)
-
-
-class Database:
-    """PETSc options while something reads them; those of the user come first and stay.
-
-    Args:
-        prefix: Prefix of the options.
-        options: Values by name, without prefix.
-    """
-
-    def __init__(self, prefix: str, options: Mapping[str, OptionValue]) -> None:
-        self._options = PETSc.Options(prefix)
-        self._given = dict(options)
-        self._set: list[str] = []
-
-    def __enter__(self) -> None:
-        self._set = [name for name in self._given if not self._options.hasName(name)]
-        for name in self._set:
-            self._options.setValue(name, self._given[name])
-
-    def __exit__(self, *_: object) -> None:
-        for name in self._set:
-            self._options.delValue(name)

@@ -9,7 +9,8 @@ from typing import Protocol
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import PETSc, Vec
 from anisocontact.base.registry import Entry
-from anisocontact.solver.strategies.newton import NewtonResult, OptionValue
+from anisocontact.solver.strategies.database import OptionValue
+from anisocontact.solver.strategies.newton import NewtonResult
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.step import Step

@@ -21,7 +21,7 @@ from anisocontact.solver.strategies.condensed.mumps import (
     partial_factor,
     schur_matrix,
 )
-from anisocontact.solver.strategies.newton import Database
+from anisocontact.solver.strategies.database import Database
 
 #: PETSc: the Schur complement has a factor of its own; the place of "solve for a dense matrix".
 _FACTORED, _MAT_SOLVE = 1, 100

@@ -10,8 +10,9 @@ import numpy as np
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.solver.strategies.condensed.kept_stiffness import KeptStiffness
 from anisocontact.solver.strategies.condensed.lagged import LaggedFactor
+from anisocontact.solver.strategies.database import OptionValue
 from anisocontact.solver.strategies.forcing import Forcing
-from anisocontact.solver.strategies.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 

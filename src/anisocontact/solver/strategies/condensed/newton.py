@@ -10,7 +10,8 @@ from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import PETSc, Vec
 from anisocontact.solver.strategies.condensed.condensed import Condensed
 from anisocontact.solver.strategies.condensed.system import ContactSystem
-from anisocontact.solver.strategies.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.strategies.database import OptionValue
+from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
 

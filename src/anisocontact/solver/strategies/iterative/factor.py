@@ -10,8 +10,8 @@ from collections.abc import Sequence
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
+from anisocontact.solver.strategies.database import Database
 from anisocontact.solver.strategies.iterative.split import set_any
-from anisocontact.solver.strategies.newton import Database
 
 #: Error of a known solution, over it, up to which a factor in single precision is trusted.
 TRUSTED = 0.05

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
+from anisocontact.solver.strategies.database import OptionValue
 from anisocontact.solver.strategies.iterative.levels import Levels
 from anisocontact.solver.strategies.iterative.patch import Patch
-from anisocontact.solver.strategies.newton import Newton, NewtonResult, OptionValue
+from anisocontact.solver.strategies.newton import Newton, NewtonResult
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.step import Step
 
