@@ -77,3 +77,9 @@ def test_sliding_begins_in_its_first_increment(results: Results) -> None:
     history = results.history
     assert results.summary["warnings"] == []
     assert np.all(np.abs(history["energy.residual"]) < 0.04 * history["energy.external"])
+
+
+@pytest.mark.slow
+def test_numbers_have_units(results: Results) -> None:
+    """Requirement: `[units]` of the case are in the summary, with the stress that follows."""
+    assert results.summary["units"] == {"length": "mm", "force": "N", "stress": "MPa"}
