@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 
 __all__ = ["page", "step_rows", "write_report"]
 
+#: Resultant of the pressures over their sum beyond which a contact is nearly a plane.
+LEVEL = 0.9
 #: Of each contact: name of the picture, who draws it, heading and caption.
 _OF_CONTACT: tuple[tuple[str, Callable[[RunData, int], Figure], str, str], ...] = (
     (
@@ -52,8 +54,9 @@ _OF_CONTACT: tuple[tuple[str, Callable[[RunData, int], Figure], str, str], ...] 
         "domain",
         curves.domain,
         "Path of the resultant and adhesion domain",
-        "Left: the resultant tangential force over the normal force; it cannot leave the friction "
-        "ellipse. Right: the mean elastic slip around the centre of the adhesion domain, with the "
+        "Left: the resultant tangential force over the normal force; where the axes are the same "
+        "at all points it cannot leave the friction ellipse. Right: the mean elastic slip around "
+        "the centre of the adhesion domain, with the "
         "ellipse e.(BFB)e = N² for the mean pressure at the end of each step.",
     ),
     (
@@ -66,8 +69,9 @@ _OF_CONTACT: tuple[tuple[str, Callable[[RunData, int], Figure], str, str], ...] 
 #: Heading and caption of the domain where multipliers hold.
 _WITHOUT_ADHESION = (
     "Path of the resultant",
-    "The resultant tangential force over the normal force; it cannot leave the friction ellipse. "
-    "Multipliers hold what sticks: there is no elastic slip and no adhesion domain.",
+    "The resultant tangential force over the normal force; where the axes are the same at all "
+    "points it cannot leave the friction ellipse. Multipliers hold what sticks: there is no "
+    "elastic slip and no adhesion domain.",
 )
 #: Of the bodies: heading and caption by the name of the picture.
 _OF_BODIES = {
@@ -192,19 +196,19 @@ def _of_contact(run: RunData, number: int, album: _Album) -> list[_Wanted]:
         def drawn(path: Path, draw: Callable[[RunData, int], Figure] = draw) -> None:
             save(labelled(draw(run, number), run.units), path)
 
-        # the resultants in one tangent plane mean nothing all around a master
-        if name != "domain" or not _closed(run, number):
+        # around a master resultants in one plane may lie outside of the friction ellipse
+        if name != "domain" or _in_a_plane(run, number):
             of_pair = f"{name}-{number}" if many else name
             found.append(album.wanted(of_pair, f"{title}{pair}", caption, drawn))
     return found
 
 
-def _closed(run: RunData, number: int) -> bool:
-    """Whether slave points are all around the master; not known where they cannot be read."""
+def _in_a_plane(run: RunData, number: int) -> bool:
+    """Whether points touch in one plane, nearly; taken so where they cannot be read."""
     try:
-        return run.view(run.moments[-1].index, number).closed
+        return run.view(run.moments[-1].index, number).level > LEVEL
     except Exception:  # each picture says what is wrong
-        return False
+        return True
 
 
 def step_rows(run: RunData) -> list[dict[str, Any]]:

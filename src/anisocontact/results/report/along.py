@@ -65,7 +65,7 @@ def _direction(view: ContactView, which: int) -> str:
 
 
 def _finished(figure: Figure, axes: Axes, view: ContactView, label: str) -> Figure:
-    axes.set_xlabel(f"{view.frame.names()[0]} [length]")
+    axes.set_xlabel(f"{view.names()[0]} [length]")
     axes.set_ylabel(label)
     axes.grid(alpha=0.3)
     axes.legend(loc="best")

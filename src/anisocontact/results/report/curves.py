@@ -10,7 +10,7 @@ from matplotlib.ticker import MaxNLocator
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.figure_style import ACCENT, GREY, STEP_COLOURS, new_figure, plain
-from anisocontact.results.report.frame import ContactView
+from anisocontact.results.report.frame import ContactView, Frame
 from anisocontact.results.report.run_data import RunData
 
 if TYPE_CHECKING:
@@ -21,13 +21,17 @@ if TYPE_CHECKING:
 BESIDE = 0.04
 #: How an ellipse is drawn that the path on it must not hide: a broad band below it.
 _BEHIND: dict[str, Any] = {"lw": 7.0, "alpha": 0.3, "zorder": 1.5, "solid_capstyle": "butt"}
+#: Component along x of a normal from which on forces along it are radial ones in part.
+_RADIAL = 0.01
 _DOMAIN = "adhesion domain at the end of each step"
 
 
 def force(run: RunData, contact: int) -> Figure:
     """Force on the slave over the distance moved: tangential components and normal force."""
     view = run.view(-1, contact)
-    frame = view.frame
+    frame, seen_along = view.frame, view.closed
+    if run.around_an_axis and abs(frame.normal[0]) > _RADIAL:
+        frame, seen_along = Frame.across(np.array([0.0, 1.0, 0.0])), True
     forces = np.vstack([np.zeros(3), run.vectors(f"contacts.{contact}.force")])
     shown = [run.is_resultant(axis) for axis in frame.axes]
     tangential = frame.of(forces) * shown
@@ -41,11 +45,11 @@ def force(run: RunData, contact: int) -> Figure:
             upper.plot(at, tangential[:, i], line, color=colour, label=name)
     size = np.linalg.norm(tangential, axis=1)
     upper.plot(at, size, "-", color="black", lw=1.0, label="size")
-    kind = "" if view.closed else "tangential "
+    kind = "" if seen_along else "tangential "
     upper.set_ylabel(f"{kind}force on the slave [force]")
     upper.legend(loc="best")
     lower.plot(at, forces @ frame.normal, color="black")
-    along = f"force along {frame.normal_name}" if view.closed else "normal force"
+    along = f"force along {frame.normal_name}" if seen_along else "normal force"
     lower.set_ylabel(f"{along} [force]")
     lower.set_ylim(bottom=min(0.0, float((forces @ frame.normal).min())))
     lower.set_xlabel(label)
@@ -128,6 +132,8 @@ def _friction_ellipse(run: RunData, contact: int) -> Floats | None:
     """Points of `T.FT = N^2` for N = 1 in the frame, (n, 2); None without one for all points."""
     law = run.summary["contacts"][contact]["laws"]["friction"]
     axes = run.view(run.moments[-1].index, contact).mean_axes("friction")
+    if "coefficients" in law and len(set(law["coefficients"])) == 1:
+        axes = np.eye(2)  # a circle, whatever the axes are
     if axes is None or "coefficients" not in law:
         return None
     turn = np.linspace(0.0, 2.0 * np.pi, 361)

@@ -14,6 +14,7 @@ from anisocontact.base.array_types import Flags, Floats, Ints
 from anisocontact.base.figure_style import STATUS_COLOURS
 from anisocontact.base.peaks import PEAK
 from anisocontact.results.dataset import DataSet
+from anisocontact.results.report.contour import Contour, contour_of
 from anisocontact.results.report.facet_map import FacetMap, polygons_of
 
 if TYPE_CHECKING:
@@ -81,6 +82,7 @@ class ContactView:
     Args:
         points: All slave points of a run.
         number: Which contact.
+        contour: The outline of the slave as it is seen at another moment; its own if left out.
 
     Attributes:
         closed: Whether the points go all around the master.
@@ -88,7 +90,7 @@ class ContactView:
 
     closed: bool
 
-    def __init__(self, points: DataSet, number: int) -> None:
+    def __init__(self, points: DataSet, number: int, contour: Contour | None = None) -> None:
         chosen = np.asarray(points.point_data["contact"]) == number
         self.data: dict[str, npt.NDArray[Any]] = {
             name: np.asarray(points.point_data[name])[chosen] for name in points.point_data
@@ -104,12 +106,15 @@ class ContactView:
         if "covered" in self.data:
             self.touching &= self.data["covered"] > PEAK
         self._polygons = polygons_of(points, chosen)
+        found = None if self.closed else contour or contour_of(points, chosen)
+        self.contour = found if contour or found is None else found.opened(self.touching)
 
     def _seen_against(self) -> Floats:
         """Mean normal, or an axis of space where the master is closed and the mean means nothing.
 
-        It is the axis that most normals are along, the last one of several. Points far from a
-        meshed master have no normal; where none has one, it is that of the plane through them.
+        The mean is that of the points that touch, if any does. The axis is the one that most
+        normals are along, the last one of several. Points far from a meshed master have no
+        normal; where none has one, it is that of the plane through them.
         """
         normal = self.data["normal"]
         if not normal.any():
@@ -120,7 +125,11 @@ class ContactView:
         total = np.asarray(normal.sum(axis=0))
         self.closed = bool(np.linalg.norm(total) < CLOSED * np.linalg.norm(normal, axis=1).sum())
         if not self.closed:
-            return _straight(total / np.linalg.norm(total))
+            near = np.asarray(normal[self.data["status"] > 0].sum(axis=0))
+            seen = (
+                near if np.linalg.norm(near) > CLOSED * (self.data["status"] > 0).sum() else total
+            )
+            return _straight(seen / np.linalg.norm(seen))
         share = np.mean(normal**2, axis=0)
         axis = np.flatnonzero(share >= 0.99 * share.max())[-1]
         return np.asarray(-np.eye(3)[axis] if axis == 1 else np.eye(3)[axis])
@@ -132,8 +141,23 @@ class ContactView:
 
     @cached_property
     def flat(self) -> Floats:
-        """Positions along the axes of the frame, (n, 2)."""
-        return self.frame.of(self.position)
+        """Positions along the axes of the frame, or along an outline that folds, (n, 2)."""
+        flat = self.frame.of(self.position)
+        if not self._folds:
+            return flat
+        assert self.contour is not None
+        return np.column_stack([self.contour.way(self.position), np.zeros(len(flat))])
+
+    @cached_property
+    def _folds(self) -> bool:
+        """Whether places along the first axis are those of several points of an outline."""
+        along = self.frame.of(self.position)[:, 0]
+        return self.contour is not None and self.contour.folds(along)
+
+    def names(self) -> tuple[str, str]:
+        """What the two coordinates of positions are called."""
+        first, second = self.frame.names()
+        return ("way along the slave", "across") if self._folds else (first, second)
 
     def mean_axes(self, law: str) -> Floats | None:
         """Axes of "adhesion" or "friction" in the frame, (2, 2); None where they vary."""
@@ -144,6 +168,13 @@ class ContactView:
         # The mean of equal unit vectors has length one; those that deforming bodies carry differ by
         # a degree or two, which no picture shows.
         return mean if np.all(np.linalg.norm(mean, axis=1) > 1.0 - ALIKE) else None
+
+    @cached_property
+    def level(self) -> float:
+        """Size of the resultant of all pressures over their sum, 1 in a plane; 0 without any."""
+        force = (self.data["pressure"] * self.data["area"])[:, None] * self.data["normal"]
+        sizes = float(np.linalg.norm(force, axis=1).sum())
+        return float(np.linalg.norm(force.sum(axis=0))) / sizes if sizes > 0.0 else 0.0
 
     @cached_property
     def box(self) -> Floats:
@@ -199,7 +230,7 @@ class ContactView:
         Returns:
             What a scale of colours is made of.
         """
-        first, second = self.frame.names()
+        first, second = self.names()
         axes.set_xlabel(f"{first} [length]")
         axes.set_ylabel(f"{second} [length]")
         if self._facets is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
@@ -15,6 +16,8 @@ from anisocontact.base.figure_style import plain
 from anisocontact.results.read import Results
 from anisocontact.results.report.frame import ContactView
 
+#: Share of the length of a path below which a step in which bodies turn is too short on it.
+HARDLY = 0.1
 #: Component along x of an axis from which on it is the radial one.
 RADIAL = 0.5
 
@@ -93,7 +96,12 @@ class RunData:
 
     def is_resultant(self, axis: Floats) -> bool:
         """Whether forces along an axis have a resultant: around an axis radial ones have none."""
-        return self.summary.get("idealisation") != "axisymmetric" or abs(axis[0]) < RADIAL
+        return not self.around_an_axis or abs(axis[0]) < RADIAL
+
+    @property
+    def around_an_axis(self) -> bool:
+        """Whether the mesh is a section of a body of revolution about x = 0."""
+        return bool(self.summary.get("idealisation") == "axisymmetric")
 
     def exact(self, contact: int, law: str) -> bool:
         """Whether multipliers make a law of a contact exact: its stiffness is no property then."""
@@ -101,11 +109,16 @@ class RunData:
 
     @cache  # noqa: B019 (one object for one report)
     def view(self, index: int, contact: int) -> ContactView:
-        """A contact in a written state."""
-        return ContactView(self.results.slave_points(index), contact)
+        """A contact in a written state; an outline begins where it does in the last one."""
+        last = self.moments[-1].index if self.moments else index
+        contour = None if index in (last, -1) else self.view(last, contact).contour
+        return ContactView(self.results.slave_points(index), contact, contour)
 
     def path_length(self) -> tuple[str, Floats]:
-        """How far what moves most has come: a group, a rigid body, its angle, or else the time."""
+        """How far what moves most has come: a group, a rigid body, its angle, or else the time.
+
+        The time as well where a body turns in a step in which it hardly comes any farther.
+        """
         rigid = self.summary.get("rigid", {})
         moves = {g: f"displacements.{g}" for g in self.summary["displacements"]}
         moves |= {body: f"rigid.{body}.translation" for body in rigid}
@@ -117,8 +130,20 @@ class RunData:
             paths = {name: self._path(column) for name, column in columns.items()}
             longest = max(paths, key=lambda name: paths[name][-1], default=None)
             if longest is not None and paths[longest][-1] > 0.0:
+                if columns is moves and self._turns_at(paths[longest], turns.values()):
+                    break
                 return text.format(plain(longest)), paths[longest]
         return "time [time]", self.history["time"]
+
+    def _turns_at(self, path: Floats, turns: Iterable[str]) -> bool:
+        """Whether something turns in a step that has next to nothing of the length of a path."""
+        turned = [self._path(column) for column in turns]
+        for _, rows in self.steps:
+            before = max(rows[0] - 1, 0)
+            still = path[rows[-1]] - path[before] < HARDLY * path[-1]
+            if still and any(angle[rows[-1]] > angle[before] for angle in turned):
+                return True
+        return False
 
     def _path(self, column: str) -> Floats:
         """Length of the path of a vector up to each row, (rows,)."""
