@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from functools import cache
 from typing import Any
 
 from anisocontact.base.errors import MachineError
@@ -58,6 +59,7 @@ def call_petsc(function: str, *arguments: Any) -> None:
         raise PETSc.Error(code)
 
 
+@cache
 def _petsc_library() -> ctypes.CDLL:
     """The library that petsc4py is linked to: a search in it goes on to what it needs."""
     return ctypes.CDLL(PETSc.__file__)

@@ -6,10 +6,7 @@ import numpy as np
 
 from anisocontact.solver.strategies.newton import System
 
-#: Residual of a correction over its right-hand side where the last one has not brought the forces
-#: nearer to balance.
-_CAREFUL = 1e-5
-#: The same where multipliers follow, over the forces out of balance, and over all.
+#: Residual of a correction where multipliers follow, over the forces out of balance, and over all.
 _FINE, _FINEST = 1e-5, 1e-13
 _TINY = float(np.finfo(np.float64).tiny)
 
@@ -23,10 +20,11 @@ class Forcing:
     Args:
         tolerance: Residual over the forces at work at which Newton stops.
         rough: Residual of a correction over its right-hand side, far from the solution.
+        careful: The same where the last one has not brought the forces nearer to balance.
     """
 
-    def __init__(self, tolerance: float, rough: float = 1e-2) -> None:
-        self.tolerance, self._rough = tolerance, rough
+    def __init__(self, tolerance: float, rough: float = 1e-2, careful: float = 1e-5) -> None:
+        self.tolerance, self._rough, self._careful = tolerance, rough, careful
         self._before = np.inf
 
     def begin(self) -> None:
@@ -41,7 +39,7 @@ class Forcing:
             size: Norm of the right-hand side, force.
         """
         relative = size / max(system.balance.force_scale, _TINY)
-        rough = self._rough if relative < self._before else _CAREFUL
+        rough = self._rough if relative < self._before else self._careful
         self._before = 0.5 * relative
         if system.contact_term.simultaneous:
             # forces that take violations away are large beside those that are out of balance

@@ -24,7 +24,7 @@ _MATRIX, _BORDER = "lagged.matrix", "lagged.border."
 #: Most Krylov iterations of a correction before a new factor is made, if that costs no more.
 _PATIENCE = 20
 #: See `Wear`: the cost of a correction alone depends on how many points change.
-_LAST, _MARGIN = 10, 1.15
+_LAST, _MARGIN = 10, 1.25
 
 
 class LaggedFactor:
@@ -104,6 +104,8 @@ class LaggedFactor:
         fresh = self._due and self._renewed(tangent)
         self.krylov.append(0)
         found, left = self._corrected(tangent, b, rtol, fresh)
+        if not left <= rtol and self._factor is not None and self._factor.forget():
+            found, left = self._corrected(tangent, b, rtol, fresh)
         if not left <= rtol and not fresh and self._renewed(tangent):
             found, left = self._corrected(tangent, b, rtol, True)
         if not left <= rtol and self._single and self._doubled(tangent):

@@ -19,6 +19,9 @@ from anisocontact.solver.terms.persistent import Arrays
 #: Residual of a correction over its right-hand side, far from the solution: ten times rougher,
 #: points of a stiff contact end an iteration in another status, and iterations are more.
 ROUGH = 1e-3
+#: The same where the last one has gained next to nothing: 1e-5 takes a tenth more Krylov iterations
+#: and as many of Newton's method.
+CAREFUL = 1e-4
 #: The linear system is solved by `LaggedNewton.apply`.
 LINEAR: dict[str, OptionValue] = {"ksp_type": "preonly", "pc_type": "python"}
 

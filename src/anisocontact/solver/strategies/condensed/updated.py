@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -32,17 +32,26 @@ class UpdatedFactor:
         solve: Solves with P_0, for one vector (n,) or several (n, k).
         held: What contacts do in P_0, (n, n).
         stiff: Diagonal of the bodies' stiffness, (n,).
+        clearly: Shares of the largest entry of its column, one tried after the other.
+        mild: Stiffness of the bodies up to times which a change is none.
 
     Attributes:
         first: `held` as it was given.
         held: What contacts do in P, (n, n).
     """
 
-    def __init__(self, solve: Callable[[Reals], Reals], held: Sparse, stiff: Reals) -> None:
-        self._known, self.first = solve, held
+    def __init__(
+        self,
+        solve: Callable[[Reals], Reals],
+        held: Sparse,
+        stiff: Reals,
+        clearly: Sequence[float] = _CLEARLY,
+        mild: float = _MILD,
+    ) -> None:
+        self._known, self.first, self._clearly = solve, held, clearly
         self.held = held
         self._found: list[Ints] = []
-        self._size, self._mild = stiff + abs(held).max(axis=0).toarray().ravel(), _MILD * stiff
+        self._size, self._mild = stiff + abs(held).max(axis=0).toarray().ravel(), mild * stiff
         self._place: Ints = np.full(len(stiff), -1)
         self._columns: Reals = np.zeros((len(stiff), 0), dtype=held.dtype, order="F")
         self._rows: Sparse | None = None
@@ -66,7 +75,7 @@ class UpdatedFactor:
         change = (held - self.first).tocsr()
         size, column = np.abs(change.data), change.indices
         change.data[size <= self._mild[column]] = 0.0
-        for share in _CLEARLY:
+        for share in self._clearly:
             change.data[size <= share * self._size[column]] = 0.0
             rows = np.flatnonzero(abs(change).max(axis=1).toarray())
             missing = rows[self._place[rows] < 0]
