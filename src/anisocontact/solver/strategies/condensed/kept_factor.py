@@ -30,6 +30,8 @@ PATIENCE = 24
 _OPERATIONS_PER_ENTRY = 20.0
 #: See `Wear`: between increments much changes at once.
 _LAST, _MARGIN = 1, 1.0
+#: Iterations for a decimal with a factor that is new: between corrections something changes.
+_FRESH = 2.0
 #: Residual that Krylov iterations reach before they begin anew, by precision.
 _PRECISIONS = {np.float32: 1e-4, np.float64: 1e-12}
 #: Most of such beginnings with one factor.
@@ -78,7 +80,7 @@ class KeptFactor:
         self._bases: list[Sparse | None] = [None, None]
         # the last of `_held`, and what it is of
         self._last: tuple[Front, Sparse, Sparse] | None = None
-        self._wear, self._front_wear = Wear(_LAST, _MARGIN), Wear(_LAST, _MARGIN)
+        self._wear, self._front_wear = Wear(_LAST, _MARGIN, _FRESH), Wear(_LAST, _MARGIN)
         self.factors = 0
         self.iterations = 0
 
