@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.base.array_types import Floats
+from anisocontact.base.array_types import Flags, Floats
 from anisocontact.base.fenicsx import MPI
 from anisocontact.contact import Contact
 from anisocontact.contact.initial import OVERLAP
@@ -33,6 +33,8 @@ from anisocontact.solver.system.parts import Parts
 
 #: Share of the touching points that have to begin or end contact or slip.
 CHANGED = 0.05
+#: Cosine of the angle of friction before and after from which on it has been reversed.
+BACK = -0.5
 #: What the middle of an increment has to add to the mean of its ends, over the work so far: what
 #: would be a warning; where bodies flow it is always added.
 COARSE = LARGE
@@ -201,7 +203,7 @@ class ContactWork:
 
     def _leapt(self, prescribed: bool) -> bool:
         """Whether loads landed bodies, pressure was lost, or some lay below a master without."""
-        local = np.array([_pressures(contact) for contact in self._contacts])
+        local = np.array([_pressures(contact, prescribed) for contact in self._contacts])
         before, lost, after, below = np.reshape(self._comm.allreduce(local), (-1, 4)).T
         landed = not prescribed and bool(np.any((before == 0.0) & (after > 0.0)))
         return landed or bool(lost.sum() > LOST * before.sum() or below.any())
@@ -264,29 +266,46 @@ class ContactWork:
         return _WayPoint(nodal.copy(), np.reshape(values, (-1, 6)))
 
     def _kinks(self) -> bool:
-        """Whether enough points begin or end contact or slip, or bodies flow."""
+        """Whether enough points begin, end or reverse contact or slip, or bodies flow."""
         changed = touching = 0
         for contact in self._contacts:
             before, now = contact.state["status"], contact.trial.state["status"]
-            changed += int(np.count_nonzero(before != now))
+            changed += int(np.count_nonzero((before != now) | _reversed(contact)))
             touching += int(np.count_nonzero(now != STATUS.index("open")))
         changed, touching = self._comm.allreduce(np.array([changed, touching]))
         return len(self._places) > 1 or bool(changed > CHANGED * touching)
 
 
-def _pressures(contact: Contact) -> tuple[float, float, float, int]:
+def _reversed(contact: Contact) -> Flags:
+    """Points whose friction has turned round within an increment, (n,)."""
+    sides = []
+    for response in (contact.last, contact.trial):
+        along = np.einsum("nd,nd->n", response.traction, response.normal)
+        sides.append(response.traction - along[:, None] * response.normal)
+    sizes = np.linalg.norm(sides[0], axis=1) * np.linalg.norm(sides[1], axis=1)
+    return np.asarray(np.einsum("nd,nd->n", *sides) < BACK * sizes)
+
+
+def _pressures(contact: Contact, lifted: bool) -> tuple[float, float, float, int]:
     """Pressures over areas before and after an increment, on this rank.
 
+    Args:
+        contact: The contact.
+        lifted: Whether motion alone has lifted points that have opened in front of their master.
+
     Returns:
-        Their sum before, that of points which have opened, their sum after, force; and how many
-        points were below their master without any.
+        Their sum before, that of points which have lost it otherwise, their sum after, force; and
+        how many points were below their master without any.
     """
     before, now = contact.state, contact.trial.state
     force, free = contact.areas * before["pressure"], before["pressure"] <= 0.0
     below = contact.master.located(before) & (before["gap"] < -OVERLAP * contact.facet_size)
+    lost = now["pressure"] <= 0.0
+    if lifted:
+        lost &= ~contact.master.located(now)
     return (
         float(force.sum()),
-        float(force[now["pressure"] <= 0.0].sum()),
+        float(force[lost].sum()),
         float(now["pressure"].sum()),
         int(np.count_nonzero(free & below)),
     )
