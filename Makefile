@@ -5,7 +5,7 @@
 
 IN_VENV := tools/venv-run
 EXAMPLE := milled_block
-N := 12 24 36
+N :=
 MARKS := not slow
 CPP := $(shell find cpp src tests -name '*.hpp' -o -name '*.cpp' 2>/dev/null)
 
@@ -66,7 +66,7 @@ format: setup ## format Python and C++, and write the types of the core anew
 	@$(IN_VENV) ruff format --quiet .
 	@[ -z "$(CPP)" ] || $(IN_VENV) clang-format -i $(CPP)
 
-bench: setup ## all benchmarks, this code and others; N="12 24" for sizes
+bench: setup ## all benchmarks, this code and others; N="12 24" for other sizes
 	@$(IN_VENV) python benchmarks/run.py $(N) --docs
 
 scoreboard: setup ## hard cases with every method and strategy; CASES="pair plate" for some

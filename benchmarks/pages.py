@@ -7,6 +7,7 @@ from pathlib import Path
 from string import ascii_lowercase
 
 import finite_strain.runs as finite
+import processes
 from about import ROOT
 from blocks import runs, show
 from parts import PRINTED, SCRIPTS
@@ -52,9 +53,10 @@ def write(records: Sequence[Record], tables: Path = KEPT.parent, figures: Path =
         said = f"{show.versions(blocks)}; {runs.SAID}.\n\n{legend(marks, blocks)}"
         (tables / "blocks.md.in").write_text(f"{show.table(blocks, marked)}\n{said}")
         show.picture(blocks, figures / "benchmarks-blocks.png")
-    for part in (finite.PART, finite.RANKS):
+    tables_of = dict.fromkeys((processes.RANKS, processes.MILLION), processes.table)
+    for part, table in {finite.PART: finite.table, **tables_of}.items():
         found = of(part, records)
-        text = f"{finite.table(found, marked)}\n{legend(marks, found)}" if found else ABSENT
+        text = f"{table(found, marked)}\n{legend(marks, found)}" if found else ABSENT
         (tables / f"{part.replace(' ', '-')}.md.in").write_text(text)
     run = {record.case: record for record in of(PRINTED, records)}
     for name, what in SCRIPTS.items():

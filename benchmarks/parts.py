@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import sys
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
 import finite_strain.runs
 import measure
+import processes
 from about import made, paths
 from records import Record
 
@@ -25,8 +26,8 @@ SCRIPTS = {
 }
 
 
-def printed(name: str, limit: float) -> Iterator[Record]:
-    """Run a script beside this one and keep the tables that it prints."""
+def printed(name: str, limit: float, _: Sequence[int]) -> Iterator[Record]:
+    """Run a script beside this one and keep the tables that it prints; it has sizes of its own."""
     script = Path(__file__).with_name(f"{name}.py")
     if not script.exists():
         print(f"{script.name}: not there, left out", file=sys.stderr)
@@ -55,9 +56,10 @@ def tables(lines: list[str]) -> str:
     return text
 
 
-#: Runs a part; its argument is the time that a process may take, s.
-PARTS: dict[str, Callable[[float], Iterator[Record]]] = {
+#: Runs a part, given the time that a process may take, s, and sizes; none for its own.
+PARTS: dict[str, Callable[[float, Sequence[int]], Iterator[Record]]] = {
     "finite-strain": finite_strain.runs.everything,
-    "ranks": finite_strain.runs.on_ranks,
+    processes.RANKS: processes.on_ranks,
+    processes.MILLION: processes.million,
     **{name: partial(printed, name) for name in SCRIPTS},
 }

@@ -29,25 +29,25 @@ def parsed(arguments: list[str]) -> argparse.Namespace:
     """What the command line asks for."""
     doc = __doc__ or ""
     parser = argparse.ArgumentParser(description=doc.partition("\n")[0])
-    parser.add_argument("n", nargs="*", type=int, help=f"cells of an edge of the block: {SIZES}")
+    parser.add_argument(
+        "n", nargs="*", type=int, help=f"cells of an edge: {SIZES}, or a part's own"
+    )
     names = [*runs.CODES, *PARTS]
     parser.add_argument("--only", nargs="+", default=names, choices=names, metavar="NAME")
     parser.add_argument("--problems", nargs="+", default=KINDS, choices=KINDS)
     parser.add_argument("--limit", type=float, default=runs.LIMIT, help="s for each process")
     parser.add_argument("--records", type=Path, default=records.KEPT, help="where they are kept")
     parser.add_argument("--docs", action="store_true", help="write tables and pictures")
-    asked = parser.parse_args(arguments)
-    asked.n = asked.n or SIZES
-    return asked
+    return parser.parse_args(arguments)
 
 
 def everything(asked: argparse.Namespace) -> Iterator[Record]:
     """Run what is asked for."""
     codes = [name for name in asked.only if name in runs.CODES]
-    yield from runs.everything(asked.n, asked.problems, codes, asked.limit)
+    yield from runs.everything(asked.n or SIZES, asked.problems, codes, asked.limit)
     for name in asked.only:
         if name in PARTS:
-            yield from PARTS[name](asked.limit)
+            yield from PARTS[name](asked.limit, asked.n)
 
 
 def main(arguments: list[str]) -> None:

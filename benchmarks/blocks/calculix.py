@@ -17,7 +17,7 @@ import blocks.problem as given
 from blocks.code import Increment
 from blocks.problem import KINDS, grid
 
-kinds = KINDS
+kinds, solver = KINDS, "SPOOLES"
 
 
 def command(kind: str, n: int, folder: Path) -> list[str]:

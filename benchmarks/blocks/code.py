@@ -36,6 +36,10 @@ class Code(Protocol):
     def kinds(self) -> tuple[str, ...]:
         """Problems that it has a contact for."""
 
+    @property
+    def solver(self) -> str:
+        """What solves its linear systems."""
+
     def version(self) -> str:
         """Its version; empty where it is not installed."""
 
@@ -75,20 +79,22 @@ class Script:
     Attributes:
         module: The script.
         said: Python that imports the code and prints its version.
+        solver: What solves its linear systems.
         kinds: Problems that it has a contact for.
     """
 
     module: str
     said: str
+    solver: str
     kinds: tuple[str, ...] = KINDS
 
     def version(self) -> str:
         """Its version; empty where no Python has it."""
-        return _found(self.said)[1]
+        return found(self.said)[1]
 
     def command(self, kind: str, n: int, folder: Path) -> list[str]:
         """How to run it."""
-        return [_found(self.said)[0], "-m", self.module, kind, str(n)]
+        return [found(self.said)[0], "-m", self.module, kind, str(n)]
 
     def increments(self, folder: Path) -> list[Increment]:
         """What it printed."""
@@ -96,7 +102,8 @@ class Script:
 
 
 @cache
-def _found(said: str) -> tuple[str, str]:
+def found(said: str) -> tuple[str, str]:
+    """The first Python that can do what `said` says, and what that printed; else empty."""
     for python in pythons():
         try:
             done = subprocess.run([python, "-c", said], capture_output=True, text=True, check=False)

@@ -13,11 +13,16 @@ import blocks.problem as given
 from blocks.code import Increment
 from blocks.problem import DRAGS, KINDS, PRESSES
 
-kinds = KINDS
+kinds, solver = KINDS, "auto"
 
 
 def case_text(
-    kind: str, n: int, strategy: str = "auto", degree: int = 2, drags: int = DRAGS
+    kind: str,
+    n: int,
+    strategy: str = "auto",
+    degree: int = 2,
+    presses: int = PRESSES,
+    drags: int = DRAGS,
 ) -> str:
     """The case file.
 
@@ -26,6 +31,7 @@ def case_text(
         n: Cells of an edge of the block.
         strategy: How the equations are solved.
         degree: Degree of the quadrature of the contact.
+        presses: Increments on the way down.
         drags: Increments of the drag.
     """
     pair = kind == KINDS[1]
@@ -35,8 +41,8 @@ def case_text(
         bodies += box("base", (-0.5, -0.5, -0.5), (2, 2, 0.5), given.lower(n), material)
     surface = "" if pair else PLANE
     below = coulomb(pair, given.PENALTY, given.FRICTION, f"degree = {degree}\n")
-    way = press_and_drag(pair, given.DOWN, given.ALONG, PRESSES, drags)
-    every = f"[output]\nevery = {PRESSES + drags}\npictures = false\n"
+    way = press_and_drag(pair, given.DOWN, given.ALONG, presses, drags)
+    every = f"[output]\nevery = {presses + drags}\npictures = false\n"
     return f'{bodies}{surface}{below}{way}\n{every}\n[solver]\nstrategy = "{strategy}"\n'
 
 

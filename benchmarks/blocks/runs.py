@@ -23,16 +23,23 @@ import getfem, shutil, subprocess
 query = ["dpkg-query", "-W", "-f", "${Version}", "python3-getfem"]
 print(subprocess.check_output(query, text=True) if shutil.which(query[0]) else "unknown")
 """
+# it finds MKL where that is a package beside it
+_NGSOLVE = """
+import ngsolve, importlib.metadata
+importlib.metadata.version("mkl")
+print(ngsolve.__version__)
+"""
 CODES: dict[str, Code] = {
     OURS: ours,
     "CalculiX": calculix,
-    "NGSolve": Script("blocks.ngsolve_block", "import ngsolve; print(ngsolve.__version__)"),
+    "NGSolve": Script("blocks.ngsolve_block", _NGSOLVE, "Pardiso"),
     "FElupe": Script(
         "blocks.felupe_block",
         "import felupe, pypardiso; print(felupe.__version__)",
+        "Pardiso",
         KINDS[:1],
     ),
-    "GetFEM": Script("blocks.getfem_block", _GETFEM),
+    "GetFEM": Script("blocks.getfem_block", _GETFEM, "MUMPS"),
 }
 THREADS = 2
 #: The same in words; this code runs as it is installed.
@@ -70,6 +77,7 @@ def one(name: str, kind: str, n: int, limit: float = LIMIT) -> Record:
     """Run one code on one problem; a record without values says why."""
     code = CODES[name]
     about = made() | {"version": code.version(), "threads": str(THREADS)}
+    about["solver"] = code.solver
     with tempfile.TemporaryDirectory() as there:
         folder = Path(there)
         where = {"PYTHONPATH": paths()}

@@ -51,15 +51,16 @@ def table(records: Sequence[Record], marks: Mapping[tuple[str, str, int, str], s
         ]
         for r in sorted((r for r in records if r.case == kind), key=lambda r: (r.n, _order(r))):
             mark = marks[r.key]
+            code = f"{r.code}, {r.made['solver']}" if "solver" in r.made else r.code
             if r.note:
-                lines.append(f"| {r.n} | | {r.code} | {r.note} |" + " |" * 8 + f" {mark} |")
+                lines.append(f"| {r.n} | | {code} | {r.note} |" + " |" * 8 + f" {mark} |")
                 continue
             own = next((o for o in records if o.key == (r.part, kind, r.n, OURS)), None)
             cells = [format(r.values[name], form) for name, form in COLUMNS.items()]
             cells.insert(1, _ratio(r, own, "wall s"))
             cells.insert(3, _ratio(r, own, "processor s"))
             found = " | ".join(cells)
-            lines.append(f"| {r.n} | {r.values['unknowns']:.0f} | {r.code} | {found} | {mark} |")
+            lines.append(f"| {r.n} | {r.values['unknowns']:.0f} | {code} | {found} | {mark} |")
         parts.append("\n".join(lines))
     return "\n\n".join(parts) + "\n"
 

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 from case_text import PLANE, box, coulomb, press_and_drag
 
@@ -57,6 +58,19 @@ def count(problem: Problem, clock: Clock) -> None:
         clock.count(problem.bulk, method, "assembly")
 
 
+def remembered(owner: type) -> list[Any]:
+    """The instances of a class that are made from now on."""
+    found: list[Any] = []
+    begin = owner.__init__  # type: ignore[misc]
+
+    def made(self: Any, *arguments: Any, **named: Any) -> None:
+        begin(self, *arguments, **named)
+        found.append(self)
+
+    owner.__init__ = made  # type: ignore[misc]
+    return found
+
+
 def main(kind: str, n: int, strategy: str) -> None:
     """Solve and print."""
     with tempfile.TemporaryDirectory() as there:
@@ -66,6 +80,7 @@ def main(kind: str, n: int, strategy: str) -> None:
     clock = Clock()
     count(built.problem, clock)
     clock.count(LaggedFactor, "solve", "linear")
+    lagged = remembered(LaggedFactor)
     PETSc.Log.begin()
     start = time.perf_counter()
     iterations, forces = 0, []
@@ -74,11 +89,12 @@ def main(kind: str, n: int, strategy: str) -> None:
         force = built.problem.contacts[0].resultant()[0]
         forces.append((-force[0], force[2]))
     solving = time.perf_counter() - start
+    factors = sum(one.factors for one in lagged)
     if strategy == "direct":
         events = [PETSc.Log.Event(name).getPerfInfo() for name in LINEAR]
         clock.seconds["linear"] = sum(event["time"] for event in events)
-    if built.problem.comm.rank == 0:
-        show(clock, solving, iterations, forces, built.problem.unknowns)
+        factors = events[1]["count"]
+    show(clock, solving, iterations, forces, built.problem.unknowns, factors)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,8 @@
-"""Block on plane in a plain DOLFINx script: `python -m finite_strain.penalty_script plane n`.
+"""Block on plane in a plain DOLFINx script: `python -m finite_strain.penalty_script plane n BY`.
 
 Contact is a form of its own, so that its time can be told from that of the material. The elastic
 slip at the 2 x 2 points of a face is kept as a discontinuous trilinear function, whose values at
-the four corners of the face give those at the points.
+the four corners of the face give those at the points. `mumps` solves, or `pardiso`.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import anisocontact  # isort: skip  # noqa: F401  (before dolfinx)
 
 import sys
 import time
+from collections.abc import Callable
 from typing import Any
 
 import basix
@@ -24,6 +25,8 @@ from dolfinx import fem, mesh
 from dolfinx.fem import petsc
 from petsc4py import PETSc
 
+#: The solution of a system with the matrix of now.
+type Solve = Callable[[np.ndarray], np.ndarray]
 TOLERANCE, ITERATIONS, HALVINGS, TINY = 1e-8, 40, 6, 1e-30
 
 
@@ -99,18 +102,54 @@ class Block:
         return area * (PENALTY * (slip[0] * v[0] + slip[1] * v[1]) - self._pressure() * v[2])
 
 
+def by_mumps(matrix: PETSc.Mat) -> Solve:
+    """A factor by MUMPS, whose analysis is kept."""
+    solver = PETSc.KSP().create(MPI.COMM_WORLD)
+    solver.setOperators(matrix)
+    solver.setType("preonly")
+    solver.getPC().setType("lu")
+    solver.getPC().setFactorSolverType("mumps")
+
+    def solve(force: np.ndarray) -> np.ndarray:
+        right, step = matrix.createVecLeft(), matrix.createVecRight()
+        right.array[:] = force
+        solver.solve(right, step)
+        return step.array.copy()
+
+    return solve
+
+
+def by_pardiso(matrix: PETSc.Mat) -> Solve:
+    """A factor by Pardiso, whose analysis is kept."""
+    import pypardiso
+    import scipy
+
+    solver, analysed = pypardiso.PyPardisoSolver(), False
+
+    def solve(force: np.ndarray) -> np.ndarray:
+        nonlocal analysed
+        rows, columns, values = matrix.getValuesCSR()
+        csr = scipy.sparse.csr_matrix((values, columns, rows))
+        if not analysed:
+            solver._check_A(csr)
+            solver.set_phase(11)
+            solver._call_pardiso(csr, np.zeros_like(force))
+            analysed = True
+        solver.set_phase(23)
+        found: np.ndarray = solver._call_pardiso(csr, force)
+        return found
+
+    return solve
+
+
 class Newton:
     """Newton's method with a direct solver; every part of it is timed."""
 
-    def __init__(self, block: Block) -> None:
+    def __init__(self, block: Block, solver: Callable[[PETSc.Mat], Solve]) -> None:
         self.block, self.clock = block, Clock()
         self.matrix = petsc.create_matrix(block.tangents[0])
         self.force = self.matrix.createVecLeft()
-        self.solver = PETSc.KSP().create(MPI.COMM_WORLD)
-        self.solver.setOperators(self.matrix)
-        self.solver.setType("preonly")
-        self.solver.getPC().setType("lu")
-        self.solver.getPC().setFactorSolverType("mumps")
+        self.solver = solver(self.matrix)
         #: Unknowns of the top, (nodes, 3).
         self.rows = 3 * block.top[:, None] + np.arange(3)
 
@@ -149,23 +188,22 @@ class Newton:
             self.tangent()
             with self.clock.phase("assembly"):
                 self.matrix.zeroRows(self.rows.ravel().astype(PETSc.IntType), 1.0)
-            self.force.array[:] = force
-            step = self.force.duplicate()
             with self.clock.phase("linear"):
-                self.solver.solve(self.force, step)
+                step = self.solver(force)
             before, start = norm, self.block.u.x.array.copy()
             for halving in range(HALVINGS):
-                self.block.u.x.array[:] = start - 0.5**halving * step.array
+                self.block.u.x.array[:] = start - 0.5**halving * step
                 norm, force, total = self.balance()
                 if norm < before:
                     break
         raise SystemExit("no balance")
 
 
-def main(n: int) -> None:
+def main(n: int, by: str) -> None:
     """Solve and print."""
     block = Block(n)
-    newton, iterations, forces = Newton(block), 0, []
+    newton = Newton(block, {"mumps": by_mumps, "pardiso": by_pardiso}[by])
+    iterations, forces = 0, []
     start = time.perf_counter()
     for number, (x, z) in enumerate(path()):
         last = block.u.x.array.copy()
@@ -180,8 +218,8 @@ def main(n: int) -> None:
         iterations += spent
         forces.append((force[0], -force[2]))
     solving = time.perf_counter() - start
-    show(newton.clock, solving, iterations, forces, len(block.u.x.array))
+    show(newton.clock, solving, iterations, forces, len(block.u.x.array), iterations)
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[2]))
+    main(int(sys.argv[2]), sys.argv[3])

@@ -68,7 +68,12 @@ class Clock:
 
 
 def show(
-    clock: Clock, solving: float, iterations: int, forces: list[tuple[float, float]], unknowns: int
+    clock: Clock,
+    solving: float,
+    iterations: int,
+    forces: list[tuple[float, float]],
+    unknowns: int,
+    factors: int,
 ) -> None:
     """Print what was found.
 
@@ -78,12 +83,14 @@ def show(
         iterations: Newton iterations.
         forces: Tangential and normal force after each increment.
         unknowns: Number of unknowns.
+        factors: Number of factorisations.
     """
     values = {f"{name} s": clock.seconds[name] for name in PHASES}
     values |= {
         "solving s": solving,
         "iterations": iterations,
         "unknowns": unknowns,
+        "factorisations": factors,
         "normal force pressed": forces[PRESSES - 1][1],
         "tangential force at the end": abs(forces[-1][0]),
     }
