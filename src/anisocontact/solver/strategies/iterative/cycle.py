@@ -20,11 +20,13 @@ class Smoother:
     Args:
         matrix: Matrix of the interior.
         unknowns: Where its unknowns are among those of the level.
+        first: Number of the first unknown of the level on this rank.
         prefix: Prefix of the options of the iteration.
     """
 
-    def __init__(self, matrix: Mat, unknowns: PETSc.IS, prefix: str) -> None:
-        self._unknowns, self._empty = unknowns, unknowns.getSize() == 0
+    def __init__(self, matrix: Mat, unknowns: PETSc.IS, first: int, prefix: str) -> None:
+        self._here, self._empty = unknowns.getIndices() - first, unknowns.getSize() == 0
+        self._part, self._correction = matrix.createVecs()
         self._solver = PETSc.KSP().create(matrix.getComm())
         self._solver.setOptionsPrefix(f"{prefix}smoother_")
         self._solver.setNormType(PETSc.KSP.NormType.NONE)
@@ -39,11 +41,9 @@ class Smoother:
         """Add to unknowns what the interior finds for a residual."""
         if self._empty:
             return
-        part = rest.getSubVector(self._unknowns)
-        correction = part.duplicate()
-        self._solver.solve(part, correction)
-        rest.restoreSubVector(self._unknowns, part)
-        x.isaxpy(self._unknowns, 1.0, correction)
+        self._part.array[:] = rest.array_r[self._here]
+        self._solver.solve(self._part, self._correction)
+        x.array[self._here] += self._correction.array_r
 
     def destroy(self) -> None:
         """Give back PETSc's objects."""

@@ -53,6 +53,7 @@ class Levels:
         self._interior: Mat | None = None
         self._smoother: Smoother | None = None
         self._coarse: CoarseLevel | None = None
+        self._rest = problem.new_vector()
         self._bulk: object = None
         self._fresh = 0
         self._worn, self._single = False, True
@@ -87,7 +88,8 @@ class Levels:
         tangent, _ = pc.getOperators()
         assert self._coarse is not None and self._smoother is not None
         x.zeroEntries()
-        rest = b.copy()
+        rest = self._rest
+        b.copy(rest)
         self._solve_given(tangent, b, rest, x)
         cycle(tangent, self._smoother, self._coarse, b, rest, x)
 
@@ -124,7 +126,7 @@ class Levels:
             scale,
             lambda matrix: below.inverse(matrix, levels, (prolong,)),
         )
-        self._smoother = Smoother(interior, split.interior, self._prefix)
+        self._smoother = Smoother(interior, split.interior, split.first, self._prefix)
         self._fresh, self._worn = 0, False
         counts = ", then ".join(str(level.count) for level in levels)
         self._note(

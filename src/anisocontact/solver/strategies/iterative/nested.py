@@ -52,7 +52,9 @@ class Nested:
         self._matrix, self._interior = matrix, columns.interior
         self._inside = matrix.createSubMatrix(self._interior, self._interior)
         prolong = smoothed(rough, matrix, self._inside, columns)
-        self._smoother = Smoother(self._inside, self._interior, prefix)
+        self._smoother = Smoother(
+            self._inside, self._interior, matrix.getOwnershipRange()[0], prefix
+        )
         self._coarse = CoarseLevel(
             matrix, prolong, columns.patch, scale, lambda below: inverse(below, prolong)
         )
