@@ -126,11 +126,11 @@ class FacetMaster(MeshedMaster):
 
     @override
     def feet(self) -> Locals:
-        return np.unique(self.facets[self._hint.facet[located(self._hint)]])
+        return np.unique(self.named_facets[self._hint.facet[located(self._hint)]])
 
     @override
     def below(self, state: State) -> Locals:
-        return np.unique(self.facets[state["facet"][self.located(state)]])
+        return np.unique(self.named_facets[state["facet"][self.located(state)]])
 
     @override
     def probe(self, laws: tuple[NormalLaw, Adhesion, Friction], state: State) -> Codes:

@@ -103,6 +103,35 @@ def owned_among(space: Any, nodes: Locals) -> Locals:
     return np.flatnonzero(marked).astype(np.int32)
 
 
+def marked_nodes(space: Any, named: Locals) -> Flags:
+    """Local nodes among those that any process names; collective.
+
+    Args:
+        space: Vector Lagrange space of the displacement.
+        named: Names of `FarNodes.coupled`, of any shape.
+
+    Returns:
+        Flags of the local nodes with ghosts, (local nodes,).
+    """
+    index_map = space.dofmap.index_map
+    owners = Split(space.mesh.comm, index_map.size_local)
+    own = owners.marked(globally(np.unique(named), space))
+    return with_ghosts(space, own)
+
+
+def all_marked(space: Any, flags: Flags, named: Locals) -> bool:
+    """Whether all nodes that any process names are marked; collective.
+
+    Args:
+        space: Vector Lagrange space of the displacement.
+        flags: Of the local nodes, (local nodes,).
+        named: Names of `FarNodes.coupled`, (n,).
+    """
+    comm, owned = space.mesh.comm, space.dofmap.index_map.size_local
+    found = Split(comm, owned).fetch(flags[:owned], globally(named, space))
+    return all(comm.allgather(bool(found.all())))
+
+
 def with_ghosts(space: Any, flags: Flags) -> Flags:
     """Flags of local nodes with those of ghosts as their owners have them; collective.
 

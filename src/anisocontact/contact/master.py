@@ -191,7 +191,7 @@ class Master(Protocol):
         return nodes
 
     def feet(self) -> Locals:
-        """Local nodes of the master below points of the trial."""
+        """Nodes of the master below points of the trial, named as in `Couplings`."""
         return np.zeros(0, dtype=np.int32)
 
     def opposite(self) -> tuple[Locals, Locals, Floats] | None:
@@ -204,7 +204,7 @@ class Master(Protocol):
         return None
 
     def below(self, state: State) -> Locals:
-        """Local nodes of the master below points of a state."""
+        """Nodes of the master below points of a state, named as in `Couplings`."""
         return np.zeros(0, dtype=np.int32)
 
     def reachable(self, way: Floats, margin: float, hops: int) -> list[NodePairs]:

@@ -13,7 +13,7 @@ from anisocontact.contact.point_tangent import Nodes
 from anisocontact.contact.sides import Sides
 from anisocontact.contact.whereabouts import Seen, Whereabouts, carried
 from anisocontact.interface import ContactLaw, State
-from anisocontact.surfaces.facets import FacetProjections
+from anisocontact.surfaces.facets import FacetProjections, FacetSurface
 
 
 class MeshedMaster(Master):
@@ -45,6 +45,30 @@ class MeshedMaster(Master):
     def facets(self) -> Locals:
         """Nodes of the facets that this rank has, (m, k)."""
         return self._gathered.local_names(self.sides.master.nodes)
+
+    @property
+    def named_facets(self) -> Locals:
+        """The same, with nodes as `Couplings` name them."""
+        return self._gathered.coupled(self.sides.master.nodes)
+
+    @property
+    def named_slaves(self) -> Locals:
+        """Nodes of the facets of the slave points, named in the same way, (n, k)."""
+        return self._gathered.coupled(self.sides.points.nodes)
+
+    def seen_within(self, u: Floats, far: float) -> tuple[FacetSurface, Locals]:
+        """The surface up to a distance from the slave points; collective.
+
+        Args:
+            u: Displacements of the local nodes, (nodes, 3), length.
+            far: The distance, length; on one process all is there.
+
+        Returns:
+            The surface where the nodes are, and the nodes of its facets as `Couplings` name them.
+        """
+        if not self._gathered.distributed:
+            return self.sides.surface, self.named_facets
+        return self.sides.seen_within(self._gathered.local(self.sides.reference) + u, far)
 
     @override
     def local_names(self, nodes: Locals) -> Locals:

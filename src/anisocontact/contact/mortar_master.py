@@ -284,7 +284,7 @@ class MortarMaster(MeshedMaster):
 
     @override
     def feet(self) -> Locals:
-        named = self._gathered.local_names(self._at.weights.masters)
+        named = self._gathered.coupled(self._at.weights.masters)
         return np.unique(named[named >= 0])
 
     @override
@@ -305,7 +305,7 @@ class MortarMaster(MeshedMaster):
 
     @override
     def below(self, state: State) -> Locals:
-        named = self._gathered.local_names(self._then.named()[self.located(state)])
+        named = self._gathered.coupled(self._then.named()[self.located(state)])
         return np.unique(named[named >= 0])
 
     @override

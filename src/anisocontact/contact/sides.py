@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
-from anisocontact.base.array_types import Codes, Flags, Floats, Ints
+from anisocontact.base.array_types import Codes, Flags, Floats, Ints, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import facet_keys, facet_sides
 from anisocontact.contact.facet_mesh import (
@@ -186,6 +187,20 @@ class Sides:
         slave, master = np.max(self.comm.allgather(most), axis=0).tolist()
         # where the way is not finite, nothing is found anyway
         return bool(self.reach < 3.0 * slave + master < np.inf)
+
+    def seen_within(self, now: Floats, far: float) -> tuple[FacetSurface, Locals]:
+        """The master up to a distance from the slave, which this rank may not have; collective.
+
+        Args:
+            now: Positions of the local nodes, (nodes, 3), length.
+            far: The distance, length.
+
+        Returns:
+            Its surface there, and the nodes of its facets as `Couplings` name them.
+        """
+        wider = copy(self.gathered)
+        _collect(wider, self.slave, self.points, now, far, NONE)
+        return _surface(wider, now), wider.coupled(wider.facets.nodes)
 
     def gather(self, now: Floats, more: Ints) -> Sides:
         """Both sides with the facets of the master that are near now; collective.

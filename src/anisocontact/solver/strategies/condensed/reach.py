@@ -10,7 +10,7 @@ import numpy as np
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
 from anisocontact.base.course import Course
 from anisocontact.contact import Contact
-from anisocontact.contact.far_nodes import node_count
+from anisocontact.contact.far_nodes import all_marked, marked_nodes, node_count
 from anisocontact.mesh import Model
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
@@ -41,21 +41,23 @@ class Reach:
         others: Locals,
     ) -> None:
         self._contacts, self._others = contacts, others
+        self._space, self._comm = model.space, model.mesh.comm
         self._ranges = {body: _prescribed_range(steps, body) for body in model.body_names()}
         self._start: Floats = np.zeros((node_count(model.space), 3))
         self._factor = 1.0
         self.nodes: Flags = np.zeros(len(self._start), dtype=np.bool_)
 
     def select(self, u: Floats) -> None:
-        """Take the nodes in reach of a state of all nodes, (nodes, 3), length."""
+        """Take the nodes in reach of a state of local nodes, (nodes, 3), length; collective."""
         self._start = u.copy()
-        self.nodes = np.zeros(len(u), dtype=np.bool_)
-        self.nodes[self._others] = True
+        named = [self._others]
         for contact in self._contacts:
-            if contact.of_two_groups:
-                self._select_contact(contact)
-            else:
-                self.nodes[contact.couplable()] = True
+            named += self._of(contact, u) if contact.of_two_groups else [contact.couplable()]
+        self.nodes = marked_nodes(self._space, np.concatenate([one.ravel() for one in named]))
+
+    def has(self, named: Locals) -> bool:
+        """Whether all nodes that any process names are in reach; see `all_marked`."""
+        return all_marked(self._space, self.nodes, named)
 
     def persistent(self) -> Arrays:
         """Where the last selection was made, and what came of it."""
@@ -102,28 +104,34 @@ class Reach:
         planned = sum(float(np.linalg.norm(extent)) for extent in bodies)
         return float(self._factor * (planned + _SLACK * contact.slave_points.size))
 
-    def _select_contact(self, contact: Contact) -> None:
+    def _of(self, contact: Contact, u: Floats) -> list[Locals]:
+        """Nodes in reach of a contact, named as in `Couplings`."""
         motion = self._motion(contact)
         master: Any = contact.master
-        points, surface = contact.points, master.sides.surface
-        nearest = np.linalg.norm(surface.project(points).position - points, axis=1)
-        able = np.flatnonzero(nearest <= master.reach + motion)
-        self.nodes[master.local_names(contact.slave_points.nodes[able])] = True
         spread = contact.slave_points.spread
         if self._factor > 1.0:
             # of a master coarser than the slave a facet may be met that has no slave node below it
             spread += np.sqrt(2.0) * contact.master_size
+        far = master.reach + 3.0 * motion + spread
+        points, (surface, facets) = contact.points, master.seen_within(u, far)
+        nearest = np.linalg.norm(surface.project(points).position - points, axis=1)
+        able = np.flatnonzero(nearest <= master.reach + motion)
+        found = [master.named_slaves[able], master.below(contact.state)]
         limit = nearest[able] + 2.0 * motion + spread
-        for some in _alike(limit):
-            near = surface.within(points[able[some]], float(limit[some].max()))
-            self.nodes[master.facets[near.facets]] = True
-        self.nodes[master.below(contact.state)] = True
+        for some, largest in _alike(limit, self._comm):
+            near = surface.within(points[able[some]], largest)
+            found.append(facets[near.facets])
+        return found
 
 
-def _alike(limit: Floats) -> list[Ints]:
-    """Which of some positive lengths differ by less than a quarter."""
+def _alike(limit: Floats, comm: Any) -> list[tuple[Ints, float]]:
+    """Which of some positive lengths differ by less than a quarter; the largest on all ranks."""
     level = np.floor(np.log(limit) / np.log(1.25))
-    return [np.flatnonzero(level == one) for one in np.unique(level)]
+    own = {one: float(limit[level == one].max()) for one in np.unique(level).tolist()}
+    found = comm.allgather(own)
+    return [
+        (np.flatnonzero(level == one), max(there.get(one, 0.0) for there in found)) for one in own
+    ]
 
 
 def touched_nodes(problem: Problem, steps: Sequence[Step]) -> Flags:

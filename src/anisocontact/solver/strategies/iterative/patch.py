@@ -26,20 +26,15 @@ class Patch:
 
     def __init__(self, problem: Problem, steps: Sequence[Step]) -> None:
         self._problem = problem
-        meshed = [c for c in problem.contacts if c.meshed]
-        #: On several processes the reach of meshed contacts is not searched: all their nodes count.
-        self._whole = meshed if problem.comm.size > 1 else []
-        self._searched = [c for c in meshed if c not in self._whole]
-        rest = [c for c in problem.contacts if c not in self._whole]
-        self._reach = Reach(problem.model, rest, steps, np.zeros(0, dtype=np.int32))
+        self._meshed = [c for c in problem.contacts if c.meshed]
+        none = np.zeros(0, dtype=np.int32)
+        self._reach = Reach(problem.model, problem.contacts, steps, none)
 
     def select(self) -> Flags:
         """Nodes of the patch from the accepted state on, of those this rank owns, (owned,)."""
         problem = self._problem
         self._reach.select(problem.u.x.array.reshape(-1, 3))
         found: list[npt.NDArray[Any]] = [np.flatnonzero(self._reach.nodes)]
-        for contact in self._whole:
-            found.append(contact.couplable())
         for rows, columns, _ in problem.attached.couplings():
             found += [rows.ravel(), columns.ravel()]
         named = np.unique(np.concatenate(found))
@@ -55,8 +50,8 @@ class Patch:
 
         The next selection then allows for more motion.
         """
-        feet = [contact.master.feet() for contact in self._searched]
-        outside = any(not self._reach.nodes[below].all() for below in feet)
+        feet = [contact.master.feet() for contact in self._meshed]
+        outside = bool(feet) and not self._reach.has(np.concatenate(feet))
         if outside:
             self._reach.widen()
         return outside
