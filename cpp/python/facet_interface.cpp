@@ -2,6 +2,8 @@
 
 #include <nanobind/stl/optional.h>
 
+#include <span>
+
 #include "anisocontact/kernel/parallel.hpp"
 #include "facet_blocks.hpp"
 #include "facet_output.hpp"
@@ -109,6 +111,25 @@ nb::dict law_input(const FacetInterface& h, const Input& q) {
   return inputs.result();
 }
 
+/// Evaluates some points, one after the other.
+template <bool tangent>
+void evaluate(const FacetInterface& h, const Input& q, std::span<const std::size_t> points,
+              Output& out, [[maybe_unused]] BlockWriter& writer) {
+  constexpr std::size_t ahead = 2;
+  kernel::PairSlopes by;
+  Seen s;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::size_t p = points[i];
+    q.states.prefetch(points[std::min(i + ahead, points.size() - 1)]);
+    const kernel::PointState old = q.states[p];
+    q.batch.see(old, p, s);
+    const auto r = q.update<tangent>(h, p, old, s.point, &by);
+    out.put(p, r, tangent ? &by : nullptr, s);
+    if constexpr (tangent)
+      if (touches(r)) writer.add(p, r, by, s, old.facet);
+  }
+}
+
 /// Forces of nodes and blocks of facets that meet.
 template <bool tangent>
 nb::dict assemble(const FacetInterface& h, const Input& q) {
@@ -119,22 +140,14 @@ nb::dict assemble(const FacetInterface& h, const Input& q) {
                           {slots.history.size(), ks + km, km, h.pool}};
   {
     nb::gil_scoped_release free;
-    kernel::parallel_pieces(slots.runs.size() - 1, q.threads,
-                            [&](std::size_t first, std::size_t last) {
-                              BlockWriter writer(q.batch, slots, blocks);
-                              kernel::PairSlopes by;
-                              Seen s;
-                              for (std::size_t i = slots.runs[first]; i < slots.runs[last]; ++i) {
-                                const std::size_t p = slots.order[i];
-                                q.states.prefetch(slots.order[std::min(i + 2, q.points - 1)]);
-                                const kernel::PointState old = q.states[p];
-                                q.batch.see(old, p, s);
-                                const auto r = q.update<tangent>(h, p, old, s.point, &by);
-                                out.put(p, r, tangent ? &by : nullptr, s);
-                                if constexpr (tangent)
-                                  if (touches(r)) writer.add(p, r, by, s, old.facet);
-                              }
-                            });
+    kernel::parallel_pieces(
+        slots.runs.size() - 1, q.threads, [&](std::size_t first, std::size_t last) {
+          BlockWriter writer(q.batch, slots, blocks);
+          const std::span points(slots.order.data() + slots.runs[first],
+                                 slots.order.data() + slots.runs[last]);
+          with_widest(
+              [&]() ANISOCONTACT_INLINE_LAMBDA { evaluate<tangent>(h, q, points, out, writer); });
+        });
     blocks.own.clear_rest();
     blocks.earlier.clear_rest();
   }

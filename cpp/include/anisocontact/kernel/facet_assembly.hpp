@@ -44,9 +44,24 @@ struct Block {
 
 namespace detail {
 
+/// Three times a number of nodes, constant where that is.
+template <std::size_t N>
+constexpr auto entries(std::integral_constant<std::size_t, N>) {
+  return std::integral_constant<std::size_t, 3 * N>{};
+}
+constexpr std::size_t entries(std::size_t n) { return 3 * n; }
+template <std::size_t N, std::size_t M>
+constexpr auto total(std::integral_constant<std::size_t, N>,
+                     std::integral_constant<std::size_t, M>) {
+  return std::integral_constant<std::size_t, N + M>{};
+}
+constexpr std::size_t total(std::size_t n, std::size_t m) { return n + m; }
+
 /// Begins with a line of the cache, so that wide registers do not read across two of them.
 struct alignas(64) Row : std::array<double, 3 * 2 * most_nodes> {};
 using Rows = std::array<Row, 3>;
+/// One number for each node.
+struct alignas(64) NodeRow : std::array<double, 2 * most_nodes> {};
 
 /// Columns of some nodes, one after the other: rows of the changes, times area, of what the values of
 /// the shape functions, their derivatives and their second derivatives are multiplied with.
@@ -63,14 +78,23 @@ constexpr std::array<std::size_t, 2> bends(std::size_t masters) {
   return {0, 3};
 }
 
-/// out = sum of factors times rows.
-template <std::size_t K, class Length>
+/// out = sum of factors times rows, or out += sum where it is not `Fresh`.
+template <bool Fresh, std::size_t K, class Length>
 ANISOCONTACT_INLINE void combine(Length length, const std::array<double, K>& c,
-                                 const std::array<const double*, K>& rows, double* out) noexcept {
+                                 const std::array<const double*, K>& rows,
+                                 double* __restrict out) noexcept {
   const auto sum = [&]<std::size_t... I>(std::index_sequence<I...>) ANISOCONTACT_INLINE_LAMBDA {
-    for (std::size_t j = 0; j < length; ++j) out[j] = (... + (c[I] * rows[I][j]));
+    for (std::size_t j = 0; j < length; ++j)
+      if constexpr (Fresh)
+        out[j] = (... + (c[I] * rows[I][j]));
+      else
+        out[j] = (out[j] + ... + (c[I] * rows[I][j]));
   };
   sum(std::make_index_sequence<K>{});
+}
+
+ANISOCONTACT_INLINE double part(const Vec3<double>& v, std::size_t i) {
+  return v[static_cast<Eigen::Index>(i)];
 }
 
 /// Writes the columns of one point: its linear forms in the displacements of nodes, and from them what
@@ -90,24 +114,22 @@ class Columns {
   template <class Slaves, class Masters, class Length>
   ANISOCONTACT_INLINE void own(Slaves slaves, Masters masters, Length length, bool merged,
                                ColumnRows& out) noexcept {
+    const auto nodes = total(slaves, masters);
+    put_shapes(nodes, 0, slaves, s_.slave, Input::slave, slave_input(0));
+    put_shapes(nodes, slaves, masters, s_.master, Input::position, tangent_input(0));
+    if (merged)
+      put_shapes(nodes, slaves, masters, s_.before, Input::before_position, before_input(0));
     for (std::size_t f = 0; f < 2; ++f) {
       const auto& by = d_.friction[f].by;
-      double* to = friction_[f].data();
-      to = spread(slaves, s_.slave, by[index(Input::slave)], by[slave_input(0)], by[slave_input(1)],
-                  to);
-      spread(masters, s_.master, by[index(Input::position)], by[tangent_input(0)],
-             by[tangent_input(1)], to);
-      if (merged) add_before(masters, by, to);
+      if (merged)
+        spread(nodes, by, Inputs<0, 1, 2, 3, 7, 8, 4, 5, 6>{}, friction_[f].data());
+      else
+        spread(nodes, by, Inputs<0, 1, 2, 3, 7, 8>{}, friction_[f].data());
     }
     const std::size_t forms = d_.interior ? PairSlopes::first_beside : PairSlopes::near_forms;
-    for (std::size_t f = 0; f < forms; ++f) {
-      const auto& by = d_.near[f].by;
-      double* to = near_[f].data();
-      for (std::size_t a = 0; a < slaves; ++a)
-        for (Eigen::Index j = 0; j < 3; ++j) *to++ = s_.slave.N[a] * by[0][j];
-      spread(masters, s_.master, by[1], by[2], by[3], to);
-    }
-    put_growth(slaves, length);
+    for (std::size_t f = 0; f < forms; ++f)
+      spread(nodes, d_.near[f].by, Inputs<0, 1, 2, 3>{}, near_[f].data());
+    put_growth(nodes, length);
     force(length, out.acting[0]);
     for (std::size_t j = 0; j < 2; ++j) {
       if (d_.interior)
@@ -122,53 +144,60 @@ class Columns {
   /// Columns of the nodes of the facet on which the history was committed.
   template <class Masters, class Length>
   ANISOCONTACT_INLINE void before(Masters masters, Length length, ColumnRows& out) noexcept {
-    for (std::size_t f = 0; f < 2; ++f) {
-      std::fill_n(friction_[f].data(), 3 * masters, 0.0);
-      add_before(masters, d_.friction[f].by, friction_[f].data());
-    }
+    put_shapes(masters, 0, masters, s_.before, Input::before_position, before_input(0));
+    for (std::size_t f = 0; f < 2; ++f)
+      spread(masters, d_.friction[f].by, Inputs<4, 5, 6>{}, friction_[f].data());
     for (std::size_t q = 0; q < PairSlopes::acting; ++q)
       for (std::size_t i = 0; i < 3; ++i) {
         const auto& to = d_.along_friction[q];
-        combine<2>(length, {area_ * part(to[0], i), area_ * part(to[1], i)},
-                   {friction_[0].data(), friction_[1].data()}, out.acting[q][i].data());
+        combine<true, 2>(length, {area_ * part(to[0], i), area_ * part(to[1], i)},
+                         {friction_[0].data(), friction_[1].data()}, out.acting[q][i].data());
       }
   }
 
  private:
-  ANISOCONTACT_INLINE static double part(const Vec3<double>& v, std::size_t i) {
-    return v[static_cast<Eigen::Index>(i)];
+  template <std::size_t... I>
+  using Inputs = std::index_sequence<I...>;
+
+  /// Writes the shape functions that an input and the two after `first_slope` follow: those of some of
+  /// the nodes in the columns, from the first on, and zeros for the others.
+  template <class Nodes, class Count>
+  ANISOCONTACT_INLINE void put_shapes(Nodes nodes, std::size_t first, Count count,
+                                      const NodalShape& s, Input value,
+                                      std::size_t first_slope) noexcept {
+    NodeRow &v = shapes_[index(value)], &v1 = shapes_[first_slope], &v2 = shapes_[first_slope + 1];
+    for (NodeRow* row : {&v, &v1, &v2}) std::fill_n(row->data(), nodes, 0.0);
+    for (std::size_t a = 0; a < count; ++a) {
+      v[first + a] = s.N[a];
+      v1[first + a] = s.dN[a][0];
+      v2[first + a] = s.dN[a][1];
+    }
   }
 
-  /// A form in value and derivatives of a displacement, by the nodes; returns the end.
-  template <class Count>
-  ANISOCONTACT_INLINE static double* spread(Count count, const NodalShape& s, const Vec3<double>& v,
-                                            const Vec3<double>& v1, const Vec3<double>& v2,
-                                            double* to) {
-    for (std::size_t a = 0; a < count; ++a)
-      for (Eigen::Index j = 0; j < 3; ++j)
-        *to++ = s.N[a] * v[j] + s.dN[a][0] * v1[j] + s.dN[a][1] * v2[j];
-    return to;
-  }
-  template <class Count>
-  ANISOCONTACT_INLINE void add_before(Count count, const std::array<Vec3<double>, inputs>& by,
-                                      double* to) const {
-    const auto& s = s_.before;
-    const auto &v = by[index(Input::before_position)], &v1 = by[before_input(0)],
-               &v2 = by[before_input(1)];
-    for (std::size_t a = 0; a < count; ++a)
-      for (Eigen::Index j = 0; j < 3; ++j)
-        *to++ += s.N[a] * v[j] + s.dN[a][0] * v1[j] + s.dN[a][1] * v2[j];
+  /// Writes a form in some inputs by the nodes: component by component, then side by side.
+  template <std::size_t... I, class Nodes, class By>
+  ANISOCONTACT_INLINE void spread(Nodes nodes, const By& by, Inputs<I...>,
+                                  double* to) const noexcept {
+    std::array<NodeRow, 3> apart;
+    each<3>([&](std::size_t c) ANISOCONTACT_INLINE_LAMBDA {
+      combine<true, sizeof...(I)>(nodes, {part(by[I], c)...}, {shapes_[I].data()...},
+                                  apart[c].data());
+    });
+    for (std::size_t a = 0; a < nodes; ++a)
+      for (std::size_t c = 0; c < 3; ++c) to[3 * a + c] = apart[c][a];
   }
 
   /// Change of the area with the nodes of the slave.
-  template <class Slaves, class Length>
-  ANISOCONTACT_INLINE void put_growth(Slaves slaves, Length length) {
-    std::fill_n(growth_.data(), length, 0.0);
-    if (!s_.area.current) return;
-    const Vec3<double> zero = Vec3<double>::Zero();
-    const Vec3<double> c1 = s_.area.weight * s_.area.tangents[1].cross(cross_),
-                       c2 = s_.area.weight * cross_.cross(s_.area.tangents[0]);
-    spread(slaves, s_.slave, zero, c1, c2, growth_.data());
+  template <class Nodes, class Length>
+  ANISOCONTACT_INLINE void put_growth(Nodes nodes, Length length) {
+    if (!s_.area.current) {
+      std::fill_n(growth_.data(), length, 0.0);
+      return;
+    }
+    std::array<Vec3<double>, inputs> by;
+    by[slave_input(0)] = s_.area.weight * s_.area.tangents[1].cross(cross_);
+    by[slave_input(1)] = s_.area.weight * cross_.cross(s_.area.tangents[0]);
+    spread(nodes, by, Inputs<7, 8>{}, growth_.data());
   }
 
   template <class Length>
@@ -176,12 +205,12 @@ class Columns {
     const auto& f = d_.along_friction[0];
     const auto& n = d_.along[0];
     for (std::size_t i = 0; i < 3; ++i)
-      combine<6>(length,
-                 {area_ * part(f[0], i), area_ * part(f[1], i), area_ * part(n[2], i),
-                  area_ * part(n[3], i), area_ * part(n[4], i), part(r_.traction, i)},
-                 {friction_[0].data(), friction_[1].data(), near_[2].data(), near_[3].data(),
-                  near_[4].data(), growth_.data()},
-                 out[i].data());
+      combine<true, 6>(length,
+                       {area_ * part(f[0], i), area_ * part(f[1], i), area_ * part(n[2], i),
+                        area_ * part(n[3], i), area_ * part(n[4], i), part(r_.traction, i)},
+                       {friction_[0].data(), friction_[1].data(), near_[2].data(), near_[3].data(),
+                        near_[4].data(), growth_.data()},
+                       out[i].data());
   }
 
   /// d (A m_j) - A t d xi^j, with the first `Terms` of its forms.
@@ -197,7 +226,7 @@ class Columns {
       std::array<double, K> c{area_ * part(to[0], i), area_ * part(to[1], i), part(r_.couple[j], i),
                               -area_ * part(r_.traction, i)};
       for (std::size_t t = 0; t < Terms; ++t) c[4 + t] = area_ * part(d_.along[1 + j][terms[t]], i);
-      combine<K>(length, c, rows, out[i].data());
+      combine<true, K>(length, c, rows, out[i].data());
     }
   }
 
@@ -206,9 +235,9 @@ class Columns {
   ANISOCONTACT_INLINE void bend(Length length, std::size_t k, Rows& out) {
     const std::size_t a = k / 2, b = k - a;  // 11, 12, 22
     for (std::size_t i = 0; i < 3; ++i)
-      combine<2>(length,
-                 {area_ * part(r_.couple[a], i), a == b ? 0.0 : area_ * part(r_.couple[b], i)},
-                 {near_[b].data(), near_[a].data()}, out[i].data());
+      combine<true, 2>(
+          length, {area_ * part(r_.couple[a], i), a == b ? 0.0 : area_ * part(r_.couple[b], i)},
+          {near_[b].data(), near_[a].data()}, out[i].data());
   }
 
   const PairResult& r_;
@@ -216,10 +245,29 @@ class Columns {
   const PairShapes& s_;
   Vec3<double> cross_;  ///< of the tangents of the slave; its direction where the area follows
   double area_;
+  std::array<NodeRow, inputs> shapes_;  ///< that each input follows, of the nodes in the columns
   std::array<Row, 2> friction_;
   std::array<Row, PairSlopes::near_forms> near_;
   Row growth_;
 };
+
+/// Adds the rows of the nodes of the master, with so many bends from the first on.
+template <bool Fresh, std::size_t Bends, class Masters, class Length>
+ANISOCONTACT_INLINE void add_master_rows(Masters masters, Length length, std::size_t first,
+                                         const NodalShape& s, const ColumnRows& columns,
+                                         double* out) noexcept {
+  for (std::size_t b = 0; b < masters; ++b)
+    for (std::size_t i = 0; i < 3; ++i, out += length) {
+      std::array<double, 3 + Bends> c{s.N[b], -s.dN[b][0], -s.dN[b][1]};
+      std::array<const double*, 3 + Bends> rows{
+          columns.acting[0][i].data(), columns.acting[1][i].data(), columns.acting[2][i].data()};
+      for (std::size_t k = 0; k < Bends; ++k) {
+        c[3 + k] = -s.d2N[b][first + k];
+        rows[3 + k] = columns.bend[first + k][i].data();
+      }
+      combine<Fresh, 3 + Bends>(length, c, rows, out);
+    }
+}
 
 /// Adds rows times columns, or writes them where the block is `Fresh`; `length` is the number of
 /// entries in a row. Without `bent` nothing in these columns moves the projection.
@@ -227,34 +275,16 @@ template <bool Fresh, class Slaves, class Masters, class Length>
 ANISOCONTACT_INLINE void add_rows(Slaves slaves, Masters masters, Length length,
                                   const PairShapes& s, const ColumnRows& columns, bool bent,
                                   double* out) noexcept {
-  const auto old = [&](std::size_t j) ANISOCONTACT_INLINE_LAMBDA { return Fresh ? 0.0 : out[j]; };
   for (std::size_t a = 0; a < slaves; ++a)
-    for (std::size_t i = 0; i < 3; ++i, out += length) {
-      const double* const force = columns.acting[0][i].data();
-      for (std::size_t j = 0; j < length; ++j) out[j] = old(j) - s.slave.N[a] * force[j];
-    }
-  const auto [first_bend, last_bend] = bends(masters);
-  for (std::size_t b = 0; b < masters; ++b) {
-    const double n = s.master.N[b], n1 = s.master.dN[b][0], n2 = s.master.dN[b][1];
-    for (std::size_t i = 0; i < 3; ++i, out += length) {
-      const double *const force = columns.acting[0][i].data(),
-                          *const first = columns.acting[1][i].data(),
-                          *const second = columns.acting[2][i].data();
-      if (bent && last_bend == first_bend + 1) {
-        const double bend = s.master.d2N[b][first_bend];
-        const double* const moved = columns.bend[first_bend][i].data();
-        for (std::size_t j = 0; j < length; ++j)
-          out[j] = old(j) + n * force[j] - n1 * first[j] - n2 * second[j] - bend * moved[j];
-        continue;
-      }
-      for (std::size_t j = 0; j < length; ++j)
-        out[j] = old(j) + n * force[j] - n1 * first[j] - n2 * second[j];
-      for (std::size_t k = first_bend; bent && k < last_bend; ++k) {
-        const double* const moved = columns.bend[k][i].data();
-        for (std::size_t j = 0; j < length; ++j) out[j] -= s.master.d2N[b][k] * moved[j];
-      }
-    }
-  }
+    for (std::size_t i = 0; i < 3; ++i, out += length)
+      combine<Fresh, 1>(length, {-s.slave.N[a]}, {columns.acting[0][i].data()}, out);
+  const auto [first, last] = bends(masters);
+  if (!bent || last == first)
+    add_master_rows<Fresh, 0>(masters, length, first, s.master, columns, out);
+  else if (last == first + 1)
+    add_master_rows<Fresh, 1>(masters, length, first, s.master, columns, out);
+  else
+    add_master_rows<Fresh, 3>(masters, length, first, s.master, columns, out);
 }
 template <class Slaves, class Masters, class Length>
 ANISOCONTACT_INLINE void add_rows(Slaves slaves, Masters masters, Length length,
@@ -265,19 +295,6 @@ ANISOCONTACT_INLINE void add_rows(Slaves slaves, Masters masters, Length length,
   else
     add_rows<false>(slaves, masters, length, s, columns, bent, block.values);
 }
-
-/// Three times a number of nodes, constant where that is.
-template <std::size_t N>
-constexpr auto entries(std::integral_constant<std::size_t, N>) {
-  return std::integral_constant<std::size_t, 3 * N>{};
-}
-constexpr std::size_t entries(std::size_t n) { return 3 * n; }
-template <std::size_t N, std::size_t M>
-constexpr auto total(std::integral_constant<std::size_t, N>,
-                     std::integral_constant<std::size_t, M>) {
-  return std::integral_constant<std::size_t, N + M>{};
-}
-constexpr std::size_t total(std::size_t n, std::size_t m) { return n + m; }
 
 template <class Slaves, class Masters>
 ANISOCONTACT_INLINE void add_tangent_of(Slaves slaves, Masters masters, const PairResult& r,
