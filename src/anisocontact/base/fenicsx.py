@@ -76,6 +76,7 @@ __all__ = [
     "middle_nodes",
     "prescribe",
     "prescribed_rows",
+    "release_unreferenced",
     "scalar_element",
     "ufl",
     "vector_space",
@@ -383,3 +384,16 @@ def prescribed_rows(bcs: Sequence[Any]) -> Locals:
     """Owned unknowns that Dirichlet conditions prescribe, local numbers."""
     rows = [dofs[:owned] for dofs, owned in (bc.dof_indices() for bc in bcs)]
     return np.unique(np.concatenate([np.empty(0, dtype=np.int32), *rows])).astype(np.int32)
+
+
+def release_unreferenced(comm: MPI.Comm) -> None:
+    """Give back PETSc objects that Python has let go of; collective, nothing on one process.
+
+    On several processes petsc4py only sets them aside: Python may let go of them at another moment
+    on each, and PETSc destroys them together.
+
+    Args:
+        comm: Communicator that they were made with.
+    """
+    if comm.size > 1:
+        PETSc.garbage_cleanup(comm)

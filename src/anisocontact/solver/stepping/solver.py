@@ -8,7 +8,7 @@ from typing import NoReturn
 
 import numpy as np
 
-from anisocontact.base.fenicsx import Vec
+from anisocontact.base.fenicsx import Vec, release_unreferenced
 from anisocontact.base.limits import Limits
 from anisocontact.base.strategies import AUTO
 from anisocontact.base.typed import typed
@@ -287,6 +287,7 @@ class Solver:
         if before is not None:
             first, ratio = self._predictor.state(last, before, pace.part / pace.last)
         self._turns.permitted = pace.cuttable
+        release_unreferenced(self.problem.comm)
         # where friction cannot hold the loads no smaller part leads to the end of the increment
         overloaded = pace.cuts > 0 and too_much_load(self.problem, whole / step.increments) != ""
         with self._options:
