@@ -111,7 +111,8 @@ nb::dict law_input(const FacetInterface& h, const Input& q) {
   return inputs.result();
 }
 
-/// Evaluates some points, one after the other.
+/// Evaluates some points, one after the other. Only their blocks are for the widest registers: fused
+/// products would move the digits of a point that is evaluated alone, or without a tangent.
 template <bool tangent>
 void evaluate(const FacetInterface& h, const Input& q, std::span<const std::size_t> points,
               Output& out, [[maybe_unused]] BlockWriter& writer) {
@@ -126,7 +127,8 @@ void evaluate(const FacetInterface& h, const Input& q, std::span<const std::size
     const auto r = q.update<tangent>(h, p, old, s.point, &by);
     out.put(p, r, tangent ? &by : nullptr, s);
     if constexpr (tangent)
-      if (touches(r)) writer.add(p, r, by, s, old.facet);
+      if (touches(r))
+        with_widest([&]() ANISOCONTACT_INLINE_LAMBDA { writer.add(p, r, by, s, old.facet); });
   }
 }
 
@@ -140,14 +142,13 @@ nb::dict assemble(const FacetInterface& h, const Input& q) {
                           {slots.history.size(), ks + km, km, h.pool}};
   {
     nb::gil_scoped_release free;
-    kernel::parallel_pieces(
-        slots.runs.size() - 1, q.threads, [&](std::size_t first, std::size_t last) {
-          BlockWriter writer(q.batch, slots, blocks);
-          const std::span points(slots.order.data() + slots.runs[first],
-                                 slots.order.data() + slots.runs[last]);
-          with_widest(
-              [&]() ANISOCONTACT_INLINE_LAMBDA { evaluate<tangent>(h, q, points, out, writer); });
-        });
+    kernel::parallel_pieces(slots.runs.size() - 1, q.threads,
+                            [&](std::size_t first, std::size_t last) {
+                              BlockWriter writer(q.batch, slots, blocks);
+                              const std::span points(slots.order.data() + slots.runs[first],
+                                                     slots.order.data() + slots.runs[last]);
+                              evaluate<tangent>(h, q, points, out, writer);
+                            });
     blocks.own.clear_rest();
     blocks.earlier.clear_rest();
   }
