@@ -14,6 +14,7 @@ pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
 
 from tests.verification.test_energy_balance import jumping
 
+from anisocontact.contact.one_pass import Pass
 from anisocontact.solver import Problem, Solver, Step
 from anisocontact.solver.stepping.energy_watch import CAUSES
 
@@ -77,6 +78,32 @@ def test_sliding_is_reversed_within_an_increment(pair: bool, exact: bool, mortar
         work = max(work, accepted.energies["external"])
         assert abs(accepted.energies["residual"]) < 0.03 * work
         assert not accepted.imbalance.large
+
+
+@pytest.mark.parametrize("times", [-1.0, 2.5])
+@pytest.mark.parametrize(("pair", "exact", "mortar"), [(False, True, True), (True, False, False)])
+def test_laws_that_count_wrongly_are_told(
+    monkeypatch: pytest.MonkeyPatch, pair: bool, exact: bool, mortar: bool, times: float
+) -> None:
+    """What friction dissipates has the wrong sign everywhere, or is 2.5 times what it is.
+
+    Requirement: the balance stays open and warns. Source: forces between those of both ends of an
+    increment miss half of their difference times the way at most.
+    """
+    problem, steps = dragged(pair, exact, mortar, 1)
+    taken_up, energies = Pass.taken_up, Pass.energies
+
+    def wrong(self: Pass, mean_pressure: bool = False) -> float:
+        return times * taken_up(self, mean_pressure)
+
+    def booked(self: Pass) -> dict[str, float]:
+        known = energies(self)
+        return known | {"friction": times * known["friction"]}
+
+    monkeypatch.setattr(Pass, "taken_up", wrong)
+    monkeypatch.setattr(Pass, "energies", booked)
+    *_, last = Solver(problem, steps).run()
+    assert last.imbalance.large
 
 
 def test_what_loads_do_meanwhile_stays_open() -> None:

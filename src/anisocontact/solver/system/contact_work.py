@@ -43,6 +43,9 @@ FINE, MOST = 1e-3, 32
 #: Share of the pressure that points may lose which open: half of what friction does there is missed
 #: by the laws, which have no pressure at the end.
 LOST = 2.0 * LARGE
+#: Times what forces between those of both ends can miss, up to which laws are believed: half of it
+#: is the tangential force, with pressures that change meanwhile as much again.
+BELIEVED = 2.0
 _AT_ONCE = 1e-9
 
 
@@ -79,6 +82,11 @@ class _Passed:
         """Work from outside against contact on the way to the next one, by the mean of both."""
         way = (after.place - self.place).reshape(-1)[: len(self.force)]
         return float(-0.5 * (self.force + after.force) @ way)
+
+    def most_missed(self, after: _Passed) -> float:
+        """What that mean misses at most where forces on the way lie between those of both ends."""
+        way = (after.place - self.place).reshape(-1)[: len(self.force)]
+        return float(0.5 * abs(after.force - self.force) @ abs(way))
 
 
 class ContactWork:
@@ -172,7 +180,7 @@ class ContactWork:
         passed = [*self._passed, self._passing(nodal)]
         means = [a.mean_work(b) for a, b in pairwise(passed)]
         first, end = passed[1].taken_up, passed[-1].taken_up
-        local = [first - means[0] - self._mean_of_rigid(), end - first - sum(means[1:])]
+        local = [first - means[0] - self._mean_of_rigid()[0], end - first - sum(means[1:])]
         begun, rest = self._comm.allreduce(np.array(local)).tolist()
         if not np.isfinite(begun + rest):
             return 0.0
@@ -183,14 +191,19 @@ class ContactWork:
         """As `beyond_the_means`, by what the laws store and dissipate on a way in equilibrium.
 
         The mean of both ends stays where something else than motion drives the bodies, where they
-        may have leapt, and where the difference would be no warning.
+        may have leapt, where the difference would be no warning, and where it is more than forces
+        between those of both ends can explain: laws that count wrongly are then told.
         """
         if not (prescribed or self._led()) or self._leapt(prescribed):
             return 0.0
+        before, end = self._passed[0], self._passing(nodal)
+        mean, most = self._mean_of_rigid()
         local = float(sum(contact.taken_up(mean_pressure=True) for contact in self._contacts))
-        local -= self._passed[0].mean_work(self._passing(nodal)) + self._mean_of_rigid()
-        missed = float(self._comm.allreduce(local))
-        return missed if np.isfinite(missed) and abs(missed) > COARSE * abs(work) else 0.0
+        local -= before.mean_work(end) + mean
+        sums = np.array([local, before.most_missed(end) + most])
+        missed, most = self._comm.allreduce(sums).tolist()
+        counts = COARSE * abs(work) < abs(missed) < BELIEVED * most
+        return missed if counts and np.isfinite(missed) else 0.0
 
     def _led(self) -> bool:
         """Whether prescribed motion alone drives the bodies, under loads that stay as they are."""
@@ -212,16 +225,17 @@ class ContactWork:
         taken_up = sum(contact.taken_up() for contact in self._contacts)
         return _Passed(nodal.copy(), self.forces(nodal), taken_up)
 
-    def _mean_of_rigid(self) -> float:
-        """Work on rigid bodies by the mean of both ends of the whole way, of this rank."""
-        work = 0.0
+    def _mean_of_rigid(self) -> tuple[float, float]:
+        """Work on rigid bodies by the mean of both ends of the whole way, and `most_missed`."""
+        work = most = 0.0
         for body in self._rigid.bodies:
             way = body.trial.values - body.accepted.values
             before = body.reference + body.accepted.translation
             for one in self._rigid.contacts[body]:
-                ends = one.accepted.wrench(before) + one.current.wrench(body.position)
-                work += 0.5 * float(ends @ way)
-        return work
+                start, end = one.accepted.wrench(before), one.current.wrench(body.position)
+                work += 0.5 * float((start + end) @ way)
+                most += 0.5 * float(abs(end - start) @ abs(way))
+        return work, most
 
     def _piece(
         self, start: _WayPoint, end: _WayPoint, dt: float, work: float
