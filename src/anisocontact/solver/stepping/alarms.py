@@ -12,6 +12,8 @@ RELAXED = (
     "the multipliers of the contacts did not converge, so this increment, and later ones like it, "
     "have penalties instead; the summary has the penetration"
 )
+#: Forces out of balance, over those at work, from which on a state is none of equilibrium.
+UNBALANCED = 1e-4
 
 
 class Alarms:
@@ -43,6 +45,9 @@ def _found(accepted: Accepted) -> Iterator[tuple[str, str]]:
         yield f"behind {behind.body} {behind.master}", str(behind)
     if accepted.imbalance.large:
         yield "energy", str(accepted.imbalance)
+    if accepted.residuals[-1] > UNBALANCED:
+        share = f"{accepted.residuals[-1]:.2g} of the forces at work are out of balance"
+        yield "unbalanced", f"{share}: the options snes_rtol and snes_atol let them be"
     if accepted.missed:
         yield f"missed {accepted.step}", missed_event(accepted)
     if accepted.relaxed:

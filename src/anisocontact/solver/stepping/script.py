@@ -133,8 +133,8 @@ class ContactProblem(AssembledSystem):
         bodies_of = [connected_body(unknowns.nodes, (), [part.nodes]) for part in self._parts]
         self._sides = SidesKept(contacts, bodies_of)
         options = {**self._fields.options, **(petsc_options or {})}
-        self._options = Database(petsc_options_prefix, petsc_options or {})
-        with self._options:
+        self._options = Database(petsc_options_prefix, petsc_options or {}, "petsc_options")
+        with self._options.blamed(), self._options:
             self.newton = Newton(self, petsc_options_prefix, options, lambda *_: None)
 
     @typed
@@ -163,7 +163,7 @@ class ContactProblem(AssembledSystem):
         self._check_supported(x)
         self._fields.measure(self._assembly.bodies)
         self._fields.weigh_by(lambda: self._start(x))
-        with self._options:
+        with self._options.blamed(), self._options:
             result = self.newton.solve(x)
         reason = result.reason
         if not reason:

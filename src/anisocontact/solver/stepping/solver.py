@@ -156,30 +156,12 @@ class Solver:
         warn = on_warning or (lambda text: note(f"warning: {text}"))
         for text in self._doubtful:
             warn(text)
-        comm = self.problem.comm
         self._energy.begin()
         self._predictor.begin()
-        strategy = self.choice.strategy
-        if not (strategy.reduces and self._kept):
+        if not (self.choice.strategy.reduces and self._kept):
             self.problem.reduction.recover()
-        with self._options:
-            self._newton = newton = strategy.solver(self._task, self._report, note, self._kept)
-        attempts, alarms = Attempts(self.problem, newton, self._watch, self._turns), Alarms()
-        try:
-            while self.place.step < len(self.steps):
-                step = self.steps[self.place.step]
-                for accepted in self._step(attempts, step):
-                    for text in (*self._options.unread(comm), *alarms.of(accepted)):
-                        warn(text)
-                    yield accepted
-                self._go_on(step)
-        except (Exception, KeyboardInterrupt):
-            self.problem.together.met()
-            raise
-        finally:
-            self._newton, self._kept = None, {}
-            if not self.problem.together.apart:
-                newton.close()
+        with self._options.blamed(self.problem.together):
+            yield from self._all(note, warn)
 
     def persistent(self) -> Persistent:
         """State of the problem and of the run after the last accepted part, of this rank."""
@@ -220,6 +202,28 @@ class Solver:
             before = self.problem.layout.joined(kept.nodal["before"], kept.common["before"])
         pace = Pace(self.limits, **numbers)
         self.place = RunPosition(step, time, pace, begun, before, stopped=stopped)
+
+    def _all(self, note: Callable[[str], None], warn: Callable[[str], None]) -> Iterator[Accepted]:
+        """Step by step, with a solver that is closed however it ends."""
+        comm, strategy = self.problem.comm, self.choice.strategy
+        with self._options:
+            self._newton = newton = strategy.solver(self._task, self._report, note, self._kept)
+        attempts, alarms = Attempts(self.problem, newton, self._watch, self._turns), Alarms()
+        try:
+            while self.place.step < len(self.steps):
+                step = self.steps[self.place.step]
+                for accepted in self._step(attempts, step):
+                    for text in (*self._options.unread(comm), *alarms.of(accepted)):
+                        warn(text)
+                    yield accepted
+                self._go_on(step)
+        except (Exception, KeyboardInterrupt):
+            self.problem.together.met()
+            raise
+        finally:
+            self._newton, self._kept = None, {}
+            if not self.problem.together.apart:
+                newton.close()
 
     def _beginning(self, step: int, time: float) -> RunPosition:
         return RunPosition(step, time, Pace(self.limits, self.limits.largest))

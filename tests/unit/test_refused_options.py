@@ -1,0 +1,69 @@
+"""Options that PETSc refuses, when they are given or later, end a run in one line.
+
+Many options are read when something is first solved: kinds of factors, thresholds of aggregates.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+
+from tests.unit.test_unread_options import said as warned
+from tests.unit.test_unread_options import script
+
+from anisocontact.base.errors import InputError
+from anisocontact.base.fenicsx import PETSc
+from anisocontact.solver import Solver
+
+PREFIX = "unread_"
+WRONG = [
+    ("direct", {"pc_factor_mat_solver_type": "mumpz"}, "Could not locate solver type mumpz"),
+    ("iterative", {"pc_type": "ilu"}, "does not support factorization type ILU"),
+    ("iterative", {"aggregates_pc_gamg_threshold": "x"}, "Input string x has no numeric value"),
+    ("iterative", {"smoother_pc_type": "jacoby"}, "jacoby"),
+    ("condensed", {"snes_type": "newtontr"}, "multiply transpose"),
+]
+
+
+@pytest.mark.parametrize(("strategy", "options", "why"), WRONG)
+def test_what_petsc_refuses_late_is_one_line(
+    fe: Any, strategy: str, options: dict[str, Any], why: str
+) -> None:
+    """Requirement: field, option, and PETSc's reason without its stack; none stay behind."""
+    with pytest.raises(InputError) as refused:
+        warned(fe, strategy, options)
+    line = str(refused.value)
+    assert line.startswith(f"options: PETSc fails with {next(iter(options))}: ")
+    assert why in line
+    assert "error code" not in line
+    assert PETSc.Options(PREFIX).getAll() == {}
+
+
+def test_scripts_are_told_in_one_line() -> None:
+    problem = script({"pc_factor_mat_solver_type": "mumpz"})
+    with pytest.raises(InputError, match=r"^petsc_options: PETSc fails with .*: Could not locate"):
+        problem.solve()
+
+
+@pytest.mark.parametrize("name", ["pc_precision", "coarse_pc_precision"])
+@pytest.mark.parametrize("word", ["half", "singel", 1])
+def test_precisions_that_would_end_the_process_are_refused(fe: Any, name: str, word: Any) -> None:
+    """PETSc crashes where it reads the name of a precision that it does not have."""
+    block = fe.block(fe.interface(), cells=(1, 1, 1))
+    said = f"^options.{name}: {word!r} given, allowed: single, double"
+    with pytest.raises(InputError, match=said):
+        Solver(block.problem, [], options={name: word})
+
+
+@pytest.mark.parametrize("option", ["snes_rtol", "snes_atol"])
+def test_states_out_of_balance_are_told(fe: Any, option: str) -> None:
+    """Requirement: a tolerance that accepts what is no equilibrium is never silent; once a run.
+
+    Tolerance: the run warns from 1e-4 of the forces at work on.
+    """
+    lines = warned(fe, "direct", {option: 0.99 if option == "snes_rtol" else 1e3})
+    assert sum("of the forces at work are out of balance" in line for line in lines) == 1
+    assert warned(fe, "direct", {"snes_rtol": 1e-4}) == []
