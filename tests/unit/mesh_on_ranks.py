@@ -191,6 +191,7 @@ def damaged(path: Path) -> int:
 if __name__ == "__main__":
     folder = Path(sys.argv[1])
     found: dict[str, Any] = {}
+    bodies(MPI.COMM_SELF)  # modules that are imported on the way are not memory of a mesh
     for version, binary in FORMATS:
         path = folder / f"{version}-{binary}.msh"
         if COMM.rank == 0:

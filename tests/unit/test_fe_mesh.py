@@ -285,6 +285,10 @@ def test_unsound_cells_are_refused():
     mesh.cells[0] = mesh.cells[0, [1, 0, 2, 3]]
     with pytest.raises(InputError, match="body 'a': 1 of 2 cells are flat or inverted"):
         check_cells(mesh)
+    mesh = two_tetrahedra(1)  # a needle: its volume is large, the angles at its tip are rounding
+    mesh.points[0] += 1e8 * (mesh.points[0] - mesh.points[mesh.cells[0]].mean(axis=0))
+    with pytest.raises(InputError, match="body 'a': 1 of 2 cells are flat or inverted"):
+        check_cells(mesh)
     mesh = two_tetrahedra(2)
     # The corners stay, the middle of an edge goes through the opposite one.
     edge = next(n for n in mesh.cells[0, 4:] if n not in mesh.cells[1])

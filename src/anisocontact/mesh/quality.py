@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from anisocontact.base.array_types import Floats
@@ -30,6 +32,10 @@ _CORNERS = {
 }
 #: Volume at a corner over the largest in the body, below which a cell is flat.
 FLAT = 1e-12
+#: Scaled Jacobian of a needle ten million times as long as it is thick: the angles at its tip are
+#: zero but for rounding, whatever its volume.
+NEEDLE = 1e-14
+_AT_ONCE = 2000
 
 
 def check_cells(mesh: MeshArrays) -> None:
@@ -43,16 +49,12 @@ def check_cells(mesh: MeshArrays) -> None:
         InputError: Says what is wrong and how often.
     """
     # Sizes whose volumes overflow or underflow count as flat.
-    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
-        here = mesh.with_points()
-        volumes = _corner_volumes(here)
-        if mesh.degree == 2:
-            volumes = np.hstack([volumes, _inner_volumes(here)])
+    with np.errstate(all="ignore"):
+        least, most, shaped = _sizes(mesh.with_points())
     for name, cells in mesh.bodies.items():
-        own = volumes[cells]
-        largest = np.max(mesh.comm.allgather(np.abs(own).max(initial=0.0)))
-        sound = own.min(axis=1) > FLAT * largest
-        bad, count = mesh.sum(len(own) - int(sound.sum())), mesh.sum(len(own))
+        largest = np.max(mesh.comm.allgather(most[cells].max(initial=0.0)))
+        sound = (least[cells] > FLAT * largest) & (shaped[cells] > NEEDLE)
+        bad, count = mesh.sum(len(cells) - int(sound.sum())), mesh.sum(len(cells))
         if bad:
             raise InputError(f"body {name!r}: {bad} of {count} cells are flat or inverted")
     shared = _facets_of_more_than_two(mesh)
@@ -84,6 +86,21 @@ def scaled_jacobian(mesh: MeshArrays) -> Floats:
         longest = np.sort([*lengths, third], axis=0)[1:]
         size = longest.prod(axis=0) * np.sqrt(0.75)
     return np.asarray((_corner_volumes(mesh) / size).min(axis=1))
+
+
+def _sizes(mesh: MeshArrays) -> tuple[Floats, Floats, Floats]:
+    """Least and largest volume of each cell, by size, and its scaled Jacobian, (cells,) each."""
+    found = [np.empty((3, 0))]
+    # some cells after the others: at all corners of all of them at once takes many times the mesh
+    for begin in range(0, len(mesh.cells), _AT_ONCE):
+        some = replace(mesh, cells=mesh.cells[begin : begin + _AT_ONCE])
+        volumes = _corner_volumes(some)
+        if mesh.degree == 2:
+            volumes = np.hstack([volumes, _inner_volumes(some)])
+        most = np.abs(volumes).max(axis=1)
+        found.append(np.stack([volumes.min(axis=1), most, scaled_jacobian(some)]))
+    least, most, shaped = np.concatenate(found, axis=1)
+    return least, most, shaped
 
 
 def _corner_volumes(mesh: MeshArrays) -> Floats:

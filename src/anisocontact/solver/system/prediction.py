@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from itertools import pairwise
 
@@ -129,7 +130,7 @@ def _sampled(ends: Floats, spacing: float, most: int) -> Floats:
     """Places along a polygon, at most `spacing` apart, the first `most` of each side, (w, 3)."""
     places = [ends[:1]]
     for begin, end in pairwise(ends):
-        count = np.ceil(np.linalg.norm(end - begin) / spacing)
+        count = np.ceil(math.hypot(*(end - begin)) / spacing)
         share = np.arange(1.0, min(count, most) + 1.0)[:, None] / max(count, 1.0)
         places.append(begin + share * (end - begin))
     return np.concatenate(places)
