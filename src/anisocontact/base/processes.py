@@ -100,6 +100,11 @@ class Together:
             sys.__stderr__.flush()
 
 
+def launched() -> bool:
+    """Whether a launcher has started this process; others may be beside it."""
+    return any(name in os.environ for name in _TOLD)
+
+
 def started_together() -> Together | None:
     """The processes a launcher has started beside this one.
 
@@ -108,7 +113,7 @@ def started_together() -> Together | None:
     Returns:
         The processes; None without a launcher, or without MPI.
     """
-    if not any(name in os.environ for name in _TOLD):
+    if not launched():
         return None
     try:
         from anisocontact.base.fenicsx import MPI

@@ -5,13 +5,13 @@ from __future__ import annotations
 import argparse
 import atexit
 import gc
-import os
 import sys
 import traceback
 from collections.abc import Sequence
 from importlib import import_module
 
 from anisocontact import __version__
+from anisocontact.base.blas_threads import set_blas_threads
 from anisocontact.base.errors import InputError, RunError, one_line
 from anisocontact.base.import_hooks import when_used
 from anisocontact.base.machine import lack
@@ -131,9 +131,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments = build_parser().parse_args(argv)
     except SystemExit as end:  # argparse has said what is wrong, or printed the help
         return end.code if isinstance(end.code, int) else BAD_INPUT
-    # NumPy and SciPy bring a pool of threads each, which wait for each other in products that the
-    # memory bounds; it is read when they are imported. Contacts have threads of their own.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    set_blas_threads()
     with ended_by_signals():
         together = started_together()
         if together is None:
