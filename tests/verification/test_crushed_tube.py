@@ -29,8 +29,14 @@ def _tube(part: str, around: int) -> Model:
     return Model.from_arrays(flat, idealisation=PlaneStrain())
 
 
-def _crushed(part: str, around: int = 64, depth: float = 0.87) -> Contact:
-    """A tube between plates, without friction; the quarter on its planes of symmetry."""
+def _crushed(
+    part: str, around: int = 64, depth: float = 0.87, increments: int = 20
+) -> list[Contact]:
+    """A tube between plates, without friction; the quarter on its planes of symmetry.
+
+    Returns:
+        The contacts with the plates, and that of the inner wall.
+    """
     model, bonded = _tube(part, around), Adhesion(stiffness=(1e4, 1e4))
     slippery = Friction(coefficients=1e-9)
     plates, motion = [], {}
@@ -55,10 +61,22 @@ def _crushed(part: str, around: int = 64, depth: float = 0.87) -> Contact:
         held = {"t.start": {"y": 0.0}, "t.end": {"x": 0.0}}
     rubber = make_material("neo-hookean", E=1000.0, nu=0.3)
     problem = Problem(model, {"t": rubber}, [*plates, fold])
-    step, options = Step("crush", 20, held, motion=motion), {"snes_rtol": 1e-10}
+    step, options = Step("crush", increments, held, motion=motion), {"snes_rtol": 1e-10}
     for _ in Solver(problem, [step], options=options).run():
         pass
-    return fold
+    return [*plates, fold]
+
+
+def test_two_plates_on_one_surface() -> None:
+    """Contacts that have the same slave nodes, which never touch both plates, are exact.
+
+    Requirement: penetrations stay below the tolerance of the multipliers, a millionth of a facet.
+    Nodes of several contacts gave way by what is needed where they touch two masters at once: here
+    by 1e-4 of a facet.
+    """
+    for plate in _crushed("whole", 32, 0.1, 3)[:-1]:
+        assert (plate.last.pressure > 0.0).any()
+        assert plate.last.gap.min() > -1e-6 * plate.slave_points.size
 
 
 @pytest.mark.slow
@@ -66,10 +84,10 @@ def test_crushed_tube() -> None:
     """A tube crushed flat in the plane: its pressures are even, and those of its quarter.
 
     Source: symmetry. Tolerances, of the largest pressure: 2e-3 where the walls lie on each other
-    (1.1e-3 measured, 2.5e-4 with twice the facets); 1e-2 in the last nodes, where the walls open
+    (1.2e-3 measured, 2.9e-4 with twice the facets); 1e-2 in the last nodes, where the walls open
     within a facet and the normals of slave and plane differ.
     """
-    whole, quarter = _crushed("whole"), _crushed("quarter")
+    whole, quarter = _crushed("whole")[-1], _crushed("quarter")[-1]
     there = np.flatnonzero(whole.last.pressure > 0.0)
     there = there[np.argsort(whole.points[there, 0])]
     pressure = whole.last.pressure[there]

@@ -22,6 +22,7 @@ from anisocontact.contact.multipliers import (
 from anisocontact.contact.points import SlavePoints
 from anisocontact.contact.schemes import USUAL, make_multipliers
 from anisocontact.contact.semismooth import Base, Linearised, Semismooth
+from anisocontact.contact.shared_nodes import SharedNodes
 from anisocontact.contact.supported_share import supported_share
 from anisocontact.interface import State
 from anisocontact.interface.augmentation import Augmentation
@@ -49,7 +50,7 @@ class Trials:
         interface: Laws, as the user gave them.
         start: State from which trials start.
         immovable: Points that supports hold along the normal, left to their penalty, (n,).
-        shared: Points that are slaves of other contacts with multipliers too, (n,).
+        shared: Nodes that other contacts with multipliers have too.
     """
 
     def __init__(
@@ -62,7 +63,8 @@ class Trials:
         self._ways: Mapping[str, Multipliers] = {}
         self._multipliers: Multipliers | None = None
         self._layer: Layer | None = None
-        self.immovable = self.shared = self._slight = np.zeros(len(state), dtype=bool)
+        self.immovable = self._slight = np.zeros(len(state), dtype=bool)
+        self.shared = SharedNodes(())
         self._linear: Linearised | None = None
         self._state: State
         self._accepted: Snapshot
@@ -74,9 +76,6 @@ class Trials:
         Args:
             augmentation: How exactly the contact is to hold.
             size: Facet size, length.
-
-        Raises:
-            InputError: As of `make_multipliers`.
         """
         self._ways = make_multipliers(augmentation, self.interface, size, self._comm)
         self._multipliers = self._ways[USUAL]
@@ -116,6 +115,7 @@ class Trials:
         self.start, self._linear = state, None
         self._state, self._now, self._accepted = state, accepted, accepted
         self.master.begin()
+        self.shared.begin()
         self._slight = self._points.covered(accepted.areas) < SLIGHT
         if self._multipliers is not None:
             start = self._multipliers.begin(state, self.master.located(state))
@@ -390,7 +390,7 @@ class Trials:
             self.master.axes(answer),
             self.immovable | self._slight,
             self._points.covered(trial.areas).clip(LEAST, 1.0),
-            self.shared,
+            self.shared.at(self._points.nodes[:, 0]),
             np.linalg.norm(trial.points, axis=1),
             self.master.held,
             far if own is None else own.closeness(self.start, answer.pressure, answer.gap),
