@@ -200,6 +200,45 @@ def test_parts_of_a_bent_beam(fe: Any, strategy: str) -> None:
     assert found.whole == pytest.approx(0.04, rel=0.1)
 
 
+@pytest.mark.parametrize("plane", [False, True])
+def test_cells_below_a_ball_turn_with_every_strategy(plane: bool) -> None:
+    """A ball, or a cylinder along z, is pressed into a block by 1.2 and 1.5 % of the height.
+
+    Requirement: cells at the rim turn by more than a degree, while nothing moves far or bends;
+    `condensed` tells it at the end of the step, as the others do. Source: `direct`. Tolerance:
+    forces are in balance to 1e-8.
+    """
+    found = [_indented(plane, strategy) for strategy in ("direct", "condensed", "iterative")]
+    assert 1.0 < found[0] < 10.0
+    assert found[1:] == pytest.approx(2 * found[:1], rel=1e-5)
+
+
+def _indented(plane: bool, strategy: str) -> float:
+    """Largest angle of a cell, degrees."""
+    from anisocontact.interface import Interface
+    from anisocontact.laws import Adhesion, Friction, NormalLaw
+    from anisocontact.mesh import Body, PlaneStrain, build_mesh, make_shape
+    from anisocontact.surfaces import make_surface
+
+    if plane:
+        shape = make_shape("rectangle", origin=(-2, -4), size=(4, 4), cells=(24, 12))
+        model = build_mesh([Body("block", shape)], idealisation=PlaneStrain())
+        rigid = make_surface("cylinder", point=(0, 1.95, 0), axis=(0, 0, 1), radius=2.0)
+        touched, held = "block.top", {"block.bottom": {"x": 0.0, "y": 0.0}}
+    else:
+        cells = {"cells": (16, 6, 4), "ratio": (1, 8), "core": 0.6}
+        shape = make_shape("dome", radius=10.0, rim=3.0, height=4.0, **cells)
+        model = build_mesh([Body("block", shape)])
+        rigid = make_surface("plane", point=(0, 0, 0.06), normal=(0, 0, 1))
+        touched, held = "block.bottom", {"block.top": HELD}
+    laws = NormalLaw(penalty=1e4), Adhesion(stiffness=(1e4, 1e4)), Friction(coefficients=(0.3, 0.3))
+    contact = Contact(model, touched, Interface(rigid, *laws), mortar=False)
+    problem = Problem(model, {"block": make_material("linear-elastic", E=1e3, nu=0.3)}, [contact])
+    press = Step("press", 1, held)
+    *_, last = Solver(problem, [press], strategy=strategy).run()
+    return float(np.degrees(last.turned["block"].largest))
+
+
 CASE = """
 [mesh.box.block]
 origin = [-1, -1, 0]

@@ -173,7 +173,8 @@ class Rotations:
         The mean gradient is known without the interior. Rotations of cells need all
         displacements, a solution with the interior: they are looked at where what is known has
         moved so unevenly that cells may have turned otherwise than the whole, and only where
-        that has grown since the last look or a step ends.
+        that has grown since the last look or a step ends; and at the end of a step where facets
+        have turned, as below a ball, where nothing moves far.
 
         Args:
             known: Who knows them.
@@ -188,7 +189,8 @@ class Rotations:
             moved = cells.uneven(kept, gradient)
             before = self.accepted.get(name)
             local = (before.largest, before.bent) if before else (0.0, 0.0)
-            if moved > max(0.0 if last else GROWN * looked.get(name, 0.0), WARNED):
+            grown = moved > max(0.0 if last else GROWN * looked.get(name, 0.0), WARNED)
+            if grown or (last and cells.surface(kept) > WARNED):
                 u = known.displacement(x) if u is None else u
                 local, looked[name] = cells.turned(u), moved
             found[name] = self._turned(name, gradient, *local)
@@ -248,6 +250,7 @@ class _Cells:
         self.mean, volume = self._means(_gradients(element, points), weights)
         self._volume = float(comm.allreduce(volume))
         self.mean /= self._volume
+        self._facets = _facets(element)
         self._own = np.unique(self._nodes)
         own = self._reference[self._own]
         lowest = np.min(comm.allgather(own.min(axis=0, initial=np.inf)), axis=0)
@@ -279,6 +282,21 @@ class _Cells:
         beyond = kept.u[nodes] - self._reference[nodes] @ gradient.T
         ranges = np.ptp(beyond, axis=0) if len(nodes) else np.zeros(3)
         return max(float(np.linalg.norm(ranges)), abs(kept.along_loads)) / self._size
+
+    def surface(self, kept: Kept) -> float:
+        """Largest angle by which the normal of a facet turns all of whose nodes are known, radian.
+
+        Args:
+            kept: What is known.
+        """
+        largest = 0.0
+        for closure, along in self._facets:
+            nodes = self._nodes[:, closure]
+            nodes = nodes[kept.nodes[nodes].all(axis=1)]
+            before = np.swapaxes(self._reference[nodes], 1, 2) @ along
+            after = before + np.swapaxes(kept.u[nodes], 1, 2) @ along
+            largest = max(largest, float(_between(*map(_normals, (before, after))).max(initial=0)))
+        return largest
 
     @cached_property
     def _middles(self) -> tuple[list[Floats], list[Floats]]:
@@ -317,6 +335,34 @@ def _gradients(element: Any, points: Floats) -> Floats:
     gradients = np.zeros((*table.shape[1:3], 3))
     gradients[..., :dim] = np.moveaxis(table[1:, :, :, 0], 0, -1)
     return gradients
+
+
+def _facets(element: Any) -> list[tuple[Locals, Floats]]:
+    """For each facet of the reference cell its nodes, and derivatives of their basis along it.
+
+    They are those in its middle along two directions, of an edge along one, (nodes, 2 or 1).
+    """
+    corners, topology = basix.geometry(element.cell_type), basix.topology(element.cell_type)
+    found = []
+    for vertices, closure in zip(topology[-2], element.entity_closure_dofs[-2], strict=True):
+        ends = corners[vertices]
+        ways = np.zeros((3, min(2, len(ends) - 1)))
+        ways[: ends.shape[1]] = (ends[1:3] - ends[0]).T
+        along = _gradients(element, ends.mean(axis=0))[0] @ ways
+        found.append((np.array(closure), along[closure]))
+    return found
+
+
+def _normals(tangents: Floats) -> Floats:
+    """Normals of facets from their tangents, (n, 3, 2); of edges in a plane from one, (n, 3, 1)."""
+    second = tangents[..., 1] if tangents.shape[2] == 2 else np.array([0.0, 0.0, 1.0])
+    return np.cross(tangents[..., 0], second)
+
+
+def _between(before: Floats, after: Floats) -> Floats:
+    """Angles between vectors, (n, 3) each, radian."""
+    across = np.linalg.norm(np.cross(before, after), axis=1)
+    return np.asarray(np.arctan2(across, np.einsum("ni,ni->n", before, after)))
 
 
 def polar_angle(gradient: Floats) -> float:
