@@ -175,7 +175,14 @@ def _not_compiled(error: Exception) -> Exception:
     return lack_of_compiler(Path(dolfinx.jit.get_options()["cache_dir"])) or error
 
 
-def create_mesh(comm: MPI.Comm, cell: str, degree: int, cells: Ints, points: Floats) -> Any:
+def create_mesh(
+    comm: MPI.Comm,
+    cell: str,
+    degree: int,
+    cells: Ints,
+    points: Floats,
+    owners: Ints | None = None,
+) -> Any:
     """Distributed DOLFINx mesh of Lagrange cells.
 
     Args:
@@ -184,11 +191,16 @@ def create_mesh(comm: MPI.Comm, cell: str, degree: int, cells: Ints, points: Flo
         degree: Degree of the geometry.
         cells: Node numbers of each cell in DOLFINx order, (cells, nodes).
         points: Coordinates of the nodes, (nodes, 3), length.
+        owners: Process to which each cell goes; if there are none, DOLFINx decides.
     """
     element = basix.ufl.element(
         "Lagrange", cell, degree, basix.LagrangeVariant.equispaced, shape=(3,)
     )
-    return dmesh.create_mesh(comm, cells, ufl.Mesh(element), points)
+    if owners is None:
+        return dmesh.create_mesh(comm, cells, ufl.Mesh(element), points)
+    one_each = np.arange(len(owners) + 1, dtype=np.int32)
+    shares = dolfinx.graph.adjacencylist(owners.astype(np.int32), one_each)._cpp_object
+    return dmesh.create_mesh(comm, cells, ufl.Mesh(element), points, partitioner=lambda *_: shares)
 
 
 def cell_permutation(cell: str, nodes: int) -> Ints:

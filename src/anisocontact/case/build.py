@@ -127,7 +127,9 @@ def build(file: CaseFile, python: bool = True) -> Built:
         for i, section in enumerate(case.contact)
     ]
     model = Model.from_arrays(
-        _arrays(file, MPI.COMM_WORLD), idealisation=objects.idealisation(case)
+        _arrays(file, MPI.COMM_WORLD),
+        idealisation=objects.idealisation(case),
+        touching=[section.slave for section in case.contact],
     )
     _check_bodies(case, model)
     adjusted = close_gaps_of(case.tie, model)

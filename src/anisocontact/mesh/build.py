@@ -120,6 +120,7 @@ def build_mesh(
     groups: Mapping[str, Sequence[Selector]] = MappingProxyType({}),
     idealisation: Idealisation = SOLID,
     joined: Mapping[str, Sequence[str]] = MappingProxyType({}),
+    touching: Sequence[str] = (),
 ) -> Model:
     """Model of bodies from shapes and files, in one mesh.
 
@@ -129,6 +130,7 @@ def build_mesh(
             `make_selector`.
         idealisation: What a mesh of two dimensions is taken for.
         joined: Facet groups made of others, "body.group" -> groups of that body.
+        touching: Slave facets of contacts: several processes share them as evenly as the cells.
 
     Returns:
         The model.
@@ -148,7 +150,7 @@ def build_mesh(
     if not parts:
         raise InputError("no body given, at least one needed", "mesh")
     mesh = with_joined(with_groups(merge(parts), groups), joined)
-    return Model.from_arrays(mesh, idealisation=idealisation)
+    return Model.from_arrays(mesh, idealisation=idealisation, touching=touching)
 
 
 def build_box(boxes: Mapping[str, BoxSpec]) -> Model:

@@ -18,6 +18,7 @@ from anisocontact.mesh.idealisation import SOLID, Idealisation
 from anisocontact.mesh.node_groups import nodes_at
 from anisocontact.mesh.node_unknowns import NodeUnknowns
 from anisocontact.mesh.own_space import named_facets, own_unknowns
+from anisocontact.mesh.partition import owners
 
 
 @typed
@@ -72,6 +73,7 @@ class Model:
         arrays: MeshArrays,
         comm: MPI.Comm = MPI.COMM_WORLD,
         idealisation: Idealisation = SOLID,
+        touching: Sequence[str] = (),
     ) -> Model:
         """Distribute plain arrays and name what is in them.
 
@@ -79,12 +81,15 @@ class Model:
             arrays: The mesh: a share of it on every process of `comm`, or all of it on each.
             comm: Communicator of the mesh.
             idealisation: As of `Model`.
+            touching: Facet groups in contact, which the processes share as evenly as the cells, see
+                `owners`; without them DOLFINx cuts the mesh.
 
         Returns:
             The names on a mesh that is distributed.
         """
         own = arrays.shared(comm)
-        mesh = create_mesh(comm, own.cell, own.degree, own.cells, own.points)
+        shares = owners(own, comm.size, touching) if touching and comm.size > 1 else None
+        mesh = create_mesh(comm, own.cell, own.degree, own.cells, own.points, shares)
         dim = mesh.topology.dim
         bodies = _located(mesh, dim, {name: own.cells[cells] for name, cells in own.bodies.items()})
         facets = _located(mesh, dim - 1, own.facets)
