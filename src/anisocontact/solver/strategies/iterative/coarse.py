@@ -134,14 +134,16 @@ class CoarseLevel:
 
     def _without_contact(self, matrix: Mat) -> Mat:
         """G, with a diagonal where neither the bodies nor contact have one."""
-        whole = matrix.ptap(self._prolong)
+        product = matrix.ptap(self._prolong)
+        whole = product.copy()
+        product.destroy()  # it keeps copies of P
         diagonal = np.abs(whole.getDiagonal().array_r)
         comm = matrix.getComm()
         largest = max(comm.tompi4py().allgather(float(diagonal.max(initial=0.0))))
-        first, _ = whole.getOwnershipRange()
-        idle = first + np.flatnonzero(diagonal <= IDLE * largest)
-        own, _ = whole.getLocalSize()
-        unit = sparse(own, own, comm, (idle, idle), np.full(len(idle), self._scale))
+        idle = np.flatnonzero(diagonal <= IDLE * largest)
+        (own, _), _ = whole.getSizes()
+        at = (idle, whole.getOwnershipRange()[0] + idle)
+        unit = sparse(own, own, comm, at, np.full(len(idle), self._scale))
         self._take_contact(matrix)
         different = PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN
         for factor, part in ((1.0, unit), (-1.0, self._contact)):

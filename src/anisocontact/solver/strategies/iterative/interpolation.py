@@ -8,8 +8,14 @@ from typing import Any, Protocol
 import numpy as np
 
 from anisocontact.base.array_types import Floats, Ints
-from anisocontact.base.fenicsx import Mat, PETSc
-from anisocontact.solver.strategies.iterative.split import UnknownSplit, set_any, sparse, weights
+from anisocontact.base.fenicsx import Mat, PETSc, release_unreferenced
+from anisocontact.solver.strategies.iterative.split import (
+    UnknownSplit,
+    by_rows,
+    set_any,
+    sparse,
+    weights,
+)
 
 #: Damping of the smoothed aggregation over the largest eigenvalue of the scaled matrix.
 DAMPING = 4.0 / 3.0
@@ -81,7 +87,7 @@ def tentative(found: Aggregates, parts: Parts, matrix: Mat) -> Mat:
     moves = np.ones(last - first, dtype=bool)
     moves[parts.given] = False
     kept = moves[rows - first]
-    at = (rows[kept], columns[kept])
+    at = (rows[kept] - first, columns[kept])
     return sparse(last - first, found.own + len(patch), comm, at, values[kept])
 
 
@@ -124,12 +130,11 @@ def _without_zeros(matrix: Mat) -> Mat:
     """The same with no place for zeros: those of the patch would fill the whole coarse level."""
     starts, columns, values = matrix.getValuesCSR()
     (rows, _), (own, _) = matrix.getSizes()
-    first, _ = matrix.getOwnershipRange()
-    row = first + np.repeat(np.arange(rows), np.diff(starts))
-    there = values != 0.0
-    out = sparse(rows, own, matrix.getComm(), (row[there], columns[there]), values[there])
+    comm = matrix.getComm()
     matrix.destroy()
-    return out
+    there = values != 0.0
+    starts = np.concatenate([[0], np.cumsum(there)])[starts]
+    return by_rows(rows, own, comm, (starts, columns[there], values[there]))
 
 
 def largest_eigenvalue(matrix: Mat) -> float:
@@ -187,6 +192,7 @@ def aggregates(split: UnknownSplit, interior: Mat, prefix: str) -> list[Aggregat
     levels = range(pc.getMGLevels() - 1, 0, -1)
     found = [_aggregates(pc.getMGInterpolation(level)) for level in levels]
     pc.destroy()
+    release_unreferenced(interior.getComm().tompi4py())
     return found or [NOTHING]
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from anisocontact.base.fenicsx import Mat, PETSc, Vec
+from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec, release_unreferenced
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
 from anisocontact.solver.strategies.iterative.cycle import Smoother, cycle, residual
 from anisocontact.solver.strategies.iterative.interpolation import (
@@ -22,6 +22,8 @@ from anisocontact.solver.system.problem import Problem
 
 #: Given unknowns follow from given ones at most so often, with ties on a symmetry plane.
 CHAIN = 3
+#: Residual of given unknowns over that of all up to which the other rows need not be told of it.
+NEGLIGIBLE = 1e-6
 #: Krylov iterations over those with a new interpolation at which an old one is given up.
 WORN = 1.5
 #: Motions of aggregates over the unknowns of the patch from which on they get a further level.
@@ -116,6 +118,8 @@ class Levels:
         found = aggregates(split, interior, f"{self._prefix}aggregates_")
         rough = problem.constraints.spread(tentative(found[0], split, tangent))
         prolong = smoothed(rough, tangent, interior, split)
+        if problem.linear:  # else every tangent would have to be converted
+            interior.convert(PETSc.Mat.Type.BAIJ)
         kept = split.patch.getSize()
         levels = _worth_it(found, kept)
         below = Below(split.patch.getLocalSize(), scale, self._prefix, self._single)
@@ -128,6 +132,7 @@ class Levels:
         )
         self._smoother = Smoother(interior, split.interior, split.first, self._prefix)
         self._fresh, self._worn = 0, False
+        release_unreferenced(problem.comm)
         counts = ", then ".join(str(level.count) for level in levels)
         self._note(
             f"preconditioner of {1 + len(levels)} levels: {split.interior.getSize()} unknowns of "
@@ -140,7 +145,8 @@ class Levels:
         scale = self._problem.assembly.scale
         before = self._interior
         # on several processes emptied rows and columns are left out of what could be overwritten
-        again = before if self._problem.comm.size == 1 else None
+        overwritten = self._problem.comm.size == 1 and not self._problem.linear
+        again = before if overwritten else None
         self._interior = interior_matrix(tangent, self._split, scale, again)
         self._smoother.renew(self._interior)
         if again is None and before is not None:
@@ -150,12 +156,13 @@ class Levels:
     def _solve_given(self, tangent: Mat, b: Vec, rest: Vec, x: Vec) -> None:
         """Unknowns with a row of their own, and what they leave of the other rows."""
         assert self._split is not None
-        given = self._split.given
+        given, least = self._split.given, NEGLIGIBLE * b.norm()
         for _ in range(CHAIN):
             left = rest.array_r[given]
-            if not self._problem.comm.allreduce(bool(left.any())):
-                return
             x.array[given] += left / self._problem.assembly.scale
+            most = float(np.abs(left).max(initial=0.0))
+            if self._problem.comm.allreduce(most, MPI.MAX) <= least:
+                return
             residual(tangent, b, x, rest)
 
 

@@ -74,14 +74,30 @@ def sparse(rows: int, columns: int, comm: object, at: tuple[Ints, Ints], values:
         rows: Rows of this rank.
         columns: Columns of this rank.
         comm: Communicator.
-        at: Row and column of each entry, global numbers.
+        at: Row and column of each entry: rows of this rank by their number on it, columns by that
+            on all ranks.
         values: The entries.
     """
+    order = np.lexsort(at[::-1])
+    starts = np.concatenate([[0], np.cumsum(np.bincount(at[0], minlength=rows))])
+    return by_rows(rows, columns, comm, (starts, at[1][order], values[order]))
+
+
+def by_rows(rows: int, columns: int, comm: object, entries: tuple[Ints, Ints, Floats]) -> Mat:
+    """Matrix of rows that each have a slice of the entries.
+
+    Args:
+        rows: Rows of this rank.
+        columns: Columns of this rank.
+        comm: Communicator.
+        entries: Where the rows begin, columns numbered over all ranks, and the entries.
+    """
+    starts, places, values = entries
     matrix = PETSc.Mat().create(comm)
     matrix.setSizes(((rows, None), (columns, None)))
     matrix.setType(PETSc.Mat.Type.AIJ)
-    matrix.setPreallocationCOO(*(numbers.astype(PETSc.IntType) for numbers in at))
-    matrix.setValuesCOO(values, PETSc.InsertMode.INSERT_VALUES)
+    sides = (side.astype(PETSc.IntType, copy=False) for side in (starts, places))
+    matrix.setPreallocationCSR((*sides, values))
     return matrix
 
 
