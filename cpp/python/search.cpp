@@ -57,7 +57,7 @@ void check_facets(const FacetSurface& s, const Indices& facet) {
 /// Inputs of a batch of projections; empty arrays stand for what is not given.
 struct QueryInput {
   Points x;
-  Indices hint;
+  Indices hint, named;
   Coordinates start;
   Scalars limit;
   Offsets offsets;
@@ -66,6 +66,7 @@ struct QueryInput {
   search::Query query(std::size_t i) const {
     search::Query q;
     if (hint.shape(0) > 0) q.hint = hint.data()[i];
+    q.named = named.shape(0) > 0 ? named.data()[i] : q.hint;
     if (start.shape(0) > 0 && std::isfinite(start.data()[2 * i]))
       q.start = {start.data()[2 * i], start.data()[2 * i + 1]};
     q.limit = limit.data()[limit.shape(0) == 1 ? 0 : i];
@@ -75,11 +76,11 @@ struct QueryInput {
   }
 };
 
-nb::dict project(const FacetSurface& s, const Points& x, const Indices& hint,
+nb::dict project(const FacetSurface& s, const Points& x, const Indices& hint, const Indices& named,
                  const Coordinates& start, const Scalars& limit, const Offsets& offsets,
                  const Indices& excluded, std::size_t threads) {
   const std::size_t n = x.shape(0);
-  const QueryInput in{x, hint, start, limit, offsets, excluded};
+  const QueryInput in{x, hint, named, start, limit, offsets, excluded};
   Array<std::int32_t> facet({n}, unset);
   Array<std::int8_t> status({n}, unset), feature({n}, unset), entity({n}, unset);
   Array<double> xi({n, 2}, unset), edge({n, 2}, unset), position({n, 3}, unset),
@@ -316,8 +317,8 @@ void bind_search(nb::module_& m) {
           nb::arg("flip"))
       .def(
           "update", [](FacetSurface& s, const Points& x) { s.update(rows(x)); }, nb::arg("points"))
-      .def("project", &project, nb::arg("x"), nb::arg("hint"), nb::arg("start"), nb::arg("limit"),
-           nb::arg("offsets"), nb::arg("excluded"), nb::arg("threads"))
+      .def("project", &project, nb::arg("x"), nb::arg("hint"), nb::arg("named"), nb::arg("start"),
+           nb::arg("limit"), nb::arg("offsets"), nb::arg("excluded"), nb::arg("threads"))
       .def("met_along", &met_along, nb::arg("facet"), nb::arg("xi"), nb::arg("x"),
            nb::arg("normal"), nb::arg("opposed"), nb::arg("threads"))
       .def("shapes", &shapes, nb::arg("facet"), nb::arg("xi"))

@@ -178,6 +178,7 @@ class FacetSurface:
         self,
         x: NDArray[numpy.float64],
         hint: NDArray[numpy.int32],
+        named: NDArray[numpy.int32],
         start: NDArray[numpy.float64],
         limit: NDArray[numpy.float64],
         offsets: NDArray[numpy.int64],

@@ -77,11 +77,19 @@ class FacetMaster(MeshedMaster):
             facets[:] = self._gathered.renumbered(facets)
 
     def _project(self, before: FacetProjections) -> FacetProjections:
-        now, held = self._nodes.now, self._held.points
-        hit = self.sides.project(now, before)
+        held = self._held.points
+        hit = self._closest(before)
         if held.any():
-            hit = on_held_facets(self.sides, now, hit, before.facet, held)
+            hit = on_held_facets(self.sides, self._nodes.now, hit, before.facet, held)
         return hit
+
+    def _closest(self, before: FacetProjections) -> FacetProjections:
+        """Closest points, on the facets of the accepted state where several share them.
+
+        The couple of friction acts on the facet that is named, and what is remembered goes on from
+        its tangents: named by the way of the iterations it would bring two of them to two answers.
+        """
+        return self.sides.project(self._nodes.now, before, self._accepted[1].facet)
 
     @override
     def answer(
@@ -159,7 +167,7 @@ class FacetMaster(MeshedMaster):
         held = self._held.points
         wrong = np.zeros(len(held))
         if held.any():
-            closest = self.sides.project(self._nodes.now, self._hint)
+            closest = self._closest(self._hint)
             both = held & located(closest) & located(self._hint)
             wrong[both] = np.abs(closest.gap - self._hint.gap)[both]
         return wrong
@@ -167,7 +175,7 @@ class FacetMaster(MeshedMaster):
     @override
     def let_go(self) -> bool:
         any_let_go = self._held.points.any() and self._held.let_go(
-            self._hint, self.sides.project(self._nodes.now, self._hint)
+            self._hint, self._closest(self._hint)
         )
         return self._anywhere(bool(any_let_go))
 

@@ -103,15 +103,19 @@ class Sides:
         """Facets of the master that this rank has: all of them on one process."""
         return self.gathered.facets
 
-    def project(self, now: Floats, hint: FacetProjections | None = None) -> FacetProjections:
+    def project(
+        self, now: Floats, hint: FacetProjections | None = None, named: Locals | None = None
+    ) -> FacetProjections:
         """Closest points of the master to the slave points.
 
         Args:
             now: Positions of the nodes, (nodes, 3), length; the surface goes there.
             hint: Where to start from.
+            named: As of `FacetSurface.project`.
         """
         self.surface.update(now)
-        return self.surface.project(self.points.positions(now), hint, self.reach, self.excluded)
+        x = self.points.positions(now)
+        return self.surface.project(x, hint, self.reach, self.excluded, named=named)
 
     def look(self, x: Floats, which: Ints | None = None) -> Seen:
         """The master where it is now from points.

@@ -174,19 +174,21 @@ class FacetSurface(Remade):
         max_distance: npt.ArrayLike = np.inf,
         exclude: FacetSets | None = None,
         threads: int | None = None,
+        named: Locals | None = None,
     ) -> FacetProjections:
         """Closest point of the whole surface, by true distance, for each x.
 
         Args:
             x: Points, (n, 3) [length].
             hint: Projections of the same points some time ago, or the facets, (n,): it takes less
-                time. The closest point does not depend on it; where facets share that point, the
-                one of the hint is named.
+                time. The closest point does not depend on it.
             max_distance: Largest distance of interest, one or (n,) [length]: points farther away
                 are `beyond`.
             exclude: Facets that do not count, for each point; a point nearest to a side or
                 vertex that an excluded facet shares is `off`.
             threads: Number of threads; all processors if left out.
+            named: Facet of each point that is named where several share the closest point, (n,);
+                that of the hint if left out.
 
         Returns:
             The projections.
@@ -197,6 +199,7 @@ class FacetSurface(Remade):
         x = points(x, 3)
         n = x.shape[0]
         facet, start = _hint(hint, n)
+        named = np.zeros(0, np.int32) if named is None else named
         limit = np.atleast_1d(np.asarray(max_distance, dtype=np.float64))
         if limit.shape not in {(1,), (n,)}:
             raise InputError(
@@ -209,7 +212,14 @@ class FacetSurface(Remade):
         sets = exclude or FacetSets(np.zeros(0, np.int64), np.zeros(0, np.int32))
         return FacetProjections(
             **self.core.project(
-                x, facet, start, limit, sets.offsets, sets.facets, threads or default_threads()
+                x,
+                facet,
+                named,
+                start,
+                limit,
+                sets.offsets,
+                sets.facets,
+                threads or default_threads(),
             )
         )
 

@@ -131,6 +131,19 @@ def test_hint_changes_nothing_but_the_name(meshes: SimpleNamespace, topology: st
         assert np.abs(warm.normal - cold.normal).max() < 1e-8
 
 
+def test_name_on_a_shared_edge() -> None:
+    """Below the edge of a valley the facet is named whose normal is nearer to x - rho, whatever the
+    hint; above the edge of a plane, where both are as near, the one that is asked for."""
+    points = np.array([[-1, 0, 1], [0, 0, 0], [1, 0, 1], [-1, 1, 1], [0, 1, 0], [1, 1, 1]], float)
+    facets = np.array([[0, 1, 3, 4], [1, 2, 4, 5]])
+    x = np.array([[0.05, 0.5, -0.2], [-0.05, 0.5, -0.2]])
+    valley = FacetSurface(points, facets, "quad4")
+    plane = FacetSurface(points * [1, 1, 0], facets, "quad4")
+    for hint in (np.array([0, 0], np.int32), np.array([1, 1], np.int32)):
+        assert valley.project(x, hint, named=1 - hint).facet.tolist() == [1, 0]
+        assert np.array_equal(plane.project(x * [0, 1, 1], hint, named=1 - hint).facet, 1 - hint)
+
+
 @pytest.mark.parametrize("turn", [0.0, 0.4])
 @pytest.mark.parametrize("topology", ["tri3", "quad4", "quad9"])
 def test_hint_on_the_wrong_layer(meshes: SimpleNamespace, topology: str, turn: float) -> None:

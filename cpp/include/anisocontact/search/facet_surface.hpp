@@ -36,7 +36,8 @@ struct FacetProjection {
 
 /// What is asked besides the point.
 struct Query {
-  std::int32_t hint{-1};                                  ///< facet of an earlier projection
+  std::int32_t hint{-1};   ///< facet of an earlier projection
+  std::int32_t named{-1};  ///< facet that is named where several share the closest point
   std::optional<std::array<double, 2>> start{};           ///< coordinates on it
   double limit{std::numeric_limits<double>::infinity()};  ///< largest distance
   std::span<const std::int32_t> excluded{};  ///< facets that do not count, in ascending order
@@ -86,8 +87,7 @@ class FacetSurface {
     return surface::facet_jet(kind(f), nodes(f), xi[0], xi[1]);
   }
 
-  /// Closest point of the surface to x. The hint changes the time it takes, and which of several
-  /// facets that share the closest point is named; never the point.
+  /// Closest point of the surface to x. The hint changes the time it takes, never the point.
   FacetProjection closest(const Vec3<double>& x, const Query& q = {}) const noexcept {
     FacetProjection out;
     out.status = Status::failed;
@@ -176,15 +176,29 @@ class FacetSurface {
     return rounding * (std::sqrt(c.point.distance2) + size);
   }
 
+  /// How far x is from the tangent plane of a facet at its closest point.
+  static double above(const Vec3<double>& x, const Candidate& c) noexcept {
+    return std::abs((x - c.point.position).dot(c.point.cross)) / c.point.cross.norm();
+  }
+
   /// Which of two facets with the same closest point is named: the one whose normal is x - rho,
-  /// then the one with the point on an edge, inner edges first, then the hint, then the first.
-  bool goes_before(const Candidate& a, const Candidate& b, const Query& q) const noexcept {
-    const auto rank = [&](const Candidate& c) {
+  /// then the one with the point on an edge, inner edges first, then the one whose normal is nearer
+  /// to x - rho, then the one of the query, then the first. So the name is one of the place, and
+  /// what depends on it is the same from wherever the point has come.
+  bool goes_before(const Vec3<double>& x, const Candidate& a, const Candidate& b,
+                   const Query& q) const noexcept {
+    const auto place = [&](const Candidate& c) {
       const bool border = c.point.feature == Feature::edge &&
                           mesh_.border_side(static_cast<std::size_t>(c.facet),
                                             static_cast<std::size_t>(c.point.entity));
-      return std::array<int, 4>{static_cast<int>(c.point.feature), border ? 1 : 0,
-                                c.facet == q.hint ? 0 : 1, c.facet};
+      return std::array<int, 2>{static_cast<int>(c.point.feature), border ? 1 : 0};
+    };
+    const auto first = place(a), second = place(b);
+    if (first != second) return first < second;
+    const double nearer = above(x, a) - above(x, b);
+    if (std::abs(nearer) > tie(b)) return nearer > 0.0;
+    const auto rank = [&](const Candidate& c) {
+      return std::array<int, 2>{c.facet == q.named ? 0 : 1, c.facet};
     };
     return rank(a) < rank(b);
   }
@@ -216,7 +230,7 @@ class FacetSurface {
         const Candidate c{g, projection::closest_point(kind(g), nodes(g), x, limit * limit)};
         if (c.point.search != projection::Search::found) return;
         const bool same = std::sqrt(c.point.distance2) > top_distance - slack;
-        if (same ? goes_before(c, top, q) : c.point.distance2 < top.point.distance2) top = c;
+        if (same ? goes_before(x, c, top, q) : c.point.distance2 < top.point.distance2) top = c;
       });
       if (top.facet == best.facet) return;
       best = top;
