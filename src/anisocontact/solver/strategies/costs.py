@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import resource
 from collections.abc import Iterator, Sequence
@@ -14,24 +13,20 @@ _ENTRY = 1.25 * 8
 #: Its entries for n unknowns of bodies in space over n^(4/3), the power of nested dissection
 #: [George 1973]. MUMPS, a block of 24 x 24 x 12 hexahedra (22,500 unknowns): 35.3.
 _WHOLE = 35.0
-#: Entries of LDL^T of a body in space with c unknowns left to the end, those that can be touched:
-#: `(20 - 167 n^(-1/3)) n^(4/3) + 1.6 c^2`, at least 8 n^(4/3). Separators of small bodies have less
-#: around them. MUMPS, twelve bodies of hexahedra of orders 1 and 2, n = 3,000 to 37,000: within
-#: 5 %; tetrahedra have 10 to 16 % less.
-_LARGE, _SMALL, _LEAST, _BORDER = 20.0, 167.0, 8.0, 1.6
-#: The same of a mesh of two dimensions, over n log2(n): 5.2 to 5.7.
-_FLAT = 5.5
 #: Factor of MUMPS with its workspace over the entries, beside copies of the border: LDL^T by blocks
 #: (0.9 and 1.2 for two bodies of 22,500 and 36,963 unknowns), and LU.
 _WORK, _WORK_LU = 1.15, 1.3
-#: Bytes for each entry of a stiffness: a sparse matrix; what MUMPS is given, of which about half
-#: stays in use; and what else Newton's method has where all of it changes.
-_STORED, _GIVEN, _LEFT, _CHANGING = 12, 20, 6, 55
-#: Bytes for each entry of the dense matrix of all contact unknowns: single precision, its factor
-#: and what is eliminated of it.
-_DENSE = 3 * 4
+#: Bytes for each entry of a stiffness: a sparse matrix; what MUMPS is given, with its own copy of a
+#: triangle, 16 bytes for an entry of that, which stays; and what else Newton's method has where all
+#: of it changes.
+_STORED, _GIVEN, _LEFT, _CHANGING = 12, 20, 8, 55
+#: Bytes for each entry of the dense matrix of all contact unknowns, in single precision: the matrix
+#: and its factor, or what it is cut into where masters are eliminated.
+_DENSE = 2 * 4
 #: Libraries that are loaded when the first system is solved, bytes.
-_LIBRARIES = 18e6
+_LIBRARIES = 13e6
+#: Bytes of a block of the tangent of a contact, and of its entries in a sparse matrix.
+_BLOCK = 2 * 9 * 8
 #: Share of the free memory that dense matrices or a factor may take.
 MEMORY_SHARE = 0.5
 
@@ -50,60 +45,67 @@ def factor_bytes(unknowns: int) -> float:
 
 
 @dataclass(frozen=True)
+class Part:
+    """A body to be condensed.
+
+    Attributes:
+        unknowns: Those that are not prescribed.
+        touched: Those of them that can be touched.
+        entries: Entries of LDL^T, those that can be touched last.
+    """
+
+    unknowns: int
+    touched: int
+    entries: float
+
+
+@dataclass(frozen=True)
 class Condensable:
     """Bodies to be condensed.
 
     Attributes:
-        parts: Unknowns of each body that are not prescribed, and those that can be touched.
+        parts: The bodies.
         stored: Entries of the stiffness of all.
-        flat: Whether their mesh has two dimensions.
+        blocks: Blocks of 3 x 3 in the tangents of the contacts.
         changing: Whether they are not linear: one LU of all in single precision then, else LDL^T of
             one after the other in double precision.
     """
 
-    parts: Sequence[tuple[int, int]]
+    parts: Sequence[Part]
     stored: float
-    flat: bool = False
+    blocks: float = 0.0
     changing: bool = False
 
 
 def condensing_bytes(bodies: Condensable) -> float:
     """Most memory that a run takes to condense bodies and to solve for what is touched, bytes.
 
-    It is that in which MUMPS has a front on its stack and a copy of its factor. Measured on linear
-    blocks on blocks and sheets of 20,000 to 80,000 unknowns, in space and in the plane, and on one
-    at finite strain: within 5 % of what they take, within 10 % below 10,000 unknowns; where a body
-    is condensed anew while the run goes on, up to a quarter more is taken.
+    It is that in which MUMPS has a front on its stack and a copy of its factor, or that in which
+    the contact unknowns have a dense factor beside those of all bodies.
 
     Args:
         bodies: What is to be condensed.
 
     Example:
-        >>> pair = Condensable([(36963, 1323), (22500, 1875)], stored=4.6e6)
+        >>> pair = Condensable([Part(32856, 1311, 18e6), Part(22500, 1875, 15e6)], stored=4.5e6)
         >>> f"{condensing_bytes(pair) / 1e6:.0f} MB"
-        '642 MB'
+        '619 MB'
     """
-    count = sum(touched for _, touched in bodies.parts)
-    whole = max(sum(unknowns for unknowns, _ in bodies.parts), 1)
-    factors = [(n, _factor_entries(n, c, bodies.flat), c) for n, c in bodies.parts]
-    size, matrices, work = 8, _STORED, _WORK
+    count = sum(part.touched for part in bodies.parts)
+    whole = max(sum(part.unknowns for part in bodies.parts), 1)
+    size, matrices, work, parts = 8, _STORED, _WORK, bodies.parts
     if bodies.changing:
         size, matrices, work = 4, _STORED + _CHANGING, _WORK_LU
-        factors = [(whole, 2.0 * sum(entries for _, entries, _ in factors), count)]
-    most = kept = 0.0
-    for n, entries, c in sorted(factors, reverse=True):
-        factor, border, stored = size * entries, size * c**2, bodies.stored * n / whole
+        parts = [Part(whole, count, 2.0 * sum(part.entries for part in parts))]
+    most = kept = cut = 0.0
+    for part in sorted(parts, key=lambda part: -part.unknowns):
+        factor, border = size * part.entries, size * part.touched**2
+        stored = bodies.stored * part.unknowns / whole
         most = max(most, kept + (work + 1.0) * factor + 2 * border + _GIVEN * stored)
         kept += work * factor + border + _LEFT * stored
-    return _LIBRARIES + matrices * bodies.stored + max(most, kept + _DENSE * count**2)
-
-
-def _factor_entries(unknowns: int, touched: int, flat: bool) -> float:
-    """Entries of LDL^T of a body, see `Condensable`."""
-    if flat:
-        return float(_FLAT * unknowns * math.log2(max(unknowns, 2)))
-    each = max(_LARGE - _SMALL * float(max(unknowns, 1)) ** (-1.0 / 3.0), _LEAST)
-    return float(each * _n43(unknowns) + _BORDER * touched**2)
+        cut = _STORED * stored  # the heap still has it when the last body is done
+    solving = kept + cut + _DENSE * count**2 + _BLOCK * bodies.blocks
+    return _LIBRARIES + matrices * bodies.stored + max(most, solving)
 
 
 def free_memory() -> float:

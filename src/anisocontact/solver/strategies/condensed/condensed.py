@@ -300,6 +300,8 @@ class Condensed:
     def _condense(self) -> None:
         """Eliminate what neither is prescribed nor can be touched from the accepted state on."""
         self.recover()
+        if self._system is not None:
+            self._system.solver.forget()
         u = self._nodal()
         self._reach.select(u)
         system = self._eliminate(u)

@@ -96,6 +96,10 @@ class ContactTangent:
         self.kind, self._scaled = np.float64, []
         self._sum_up()
 
+    def forget(self) -> None:
+        """Give back the memory of what is made again when it is asked for."""
+        self._scaled = []
+
     def _sum_up(self) -> None:
         contact = self._contact
         parts = ((contact.data / self.scale).astype(self.kind), contact.indices, contact.indptr)
@@ -141,7 +145,7 @@ class ContactTangent:
 
     def front_of(self, shares: Sparse, stays: Flags) -> Front:
         """The same with what is known of it, see `Front`."""
-        self._scaled = []  # gives the memory back
+        self.forget()
         return Front(self._bodies, shares, stays)
 
     def _bodies(self) -> Reals:

@@ -151,6 +151,11 @@ class KeptFactor:
         self._wear.restore(kept[_SPENT])
         self._front_wear.restore(kept[_FRONT_SPENT])
 
+    def forget(self) -> None:
+        """Give back the memory; nothing can be solved any more without a new factor."""
+        self._front = self._factor = self._last = None
+        self._tangent.forget()
+
     def _serves(self) -> bool:
         """Whether the factor that there is may do for the tangent of now."""
         front, factor = self._front, self._factor

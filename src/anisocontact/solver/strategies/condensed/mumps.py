@@ -133,6 +133,20 @@ def partial_factor(
     Returns:
         PETSc's preconditioner, which owns it, and the factor.
     """
+    pc, factor = unfactorised(matrix, border, prefix, kind)
+    factor.setMumpsIcntl(_ICNTL_WORKSPACE, extra)
+    factor.setMumpsIcntl(_ICNTL_COMPACT, _BY_COPY)
+    if kind == PETSc.PC.Type.CHOLESKY:
+        factor.setMumpsIcntl(_ICNTL_BLOCKED, _BLOCKED)
+        factor.setMumpsCntl(_CNTL_DROPPED, _NOTHING)
+    pc.setUp()
+    return pc, factor
+
+
+def unfactorised(
+    matrix: Mat, border: Ints, prefix: str = "", kind: str = PETSc.PC.Type.CHOLESKY
+) -> tuple[Any, Mat]:
+    """What `partial_factor` returns before anything is factorised."""
     pc = PETSc.PC().create(comm=PETSc.COMM_SELF)
     pc.setOperators(matrix)
     pc.setType(kind)
@@ -140,15 +154,9 @@ def partial_factor(
     pc.setFactorSetUpSolverType()
     factor = pc.getFactorMatrix()
     factor.setOptionsPrefix(prefix)
-    factor.setMumpsIcntl(_ICNTL_WORKSPACE, extra)
-    factor.setMumpsIcntl(_ICNTL_COMPACT, _BY_COPY)
-    if kind == PETSc.PC.Type.CHOLESKY:
-        factor.setMumpsIcntl(_ICNTL_BLOCKED, _BLOCKED)
-        factor.setMumpsCntl(_CNTL_DROPPED, _NOTHING)
     numbers = PETSc.IS().createGeneral(border.astype(PETSc.IntType), comm=PETSc.COMM_SELF)
     call_petsc("MatFactorSetSchurIS", factor, numbers)
     numbers.destroy()
-    pc.setUp()
     return pc, factor
 
 

@@ -67,19 +67,18 @@ class Condensation:
         self.prescribed: Ints = np.flatnonzero(prescribed)
         self._note = note
         old: dict[int, CondensedPart] = {} if before is None else before._parts
-        frees = {
-            number: np.flatnonzero((part_of == number) & ~prescribed)
-            for number in range(int(part_of.max()) + 1)
-        }
-        made: dict[int, CondensedPart] = {}
+        cuts: dict[int, tuple[Ints, Ints]] = {}
+        for number in range(int(part_of.max()) + 1):
+            free = np.flatnonzero((part_of == number) & ~prescribed)
+            border = free[touched[free]]
+            cuts[number] = free, border if len(border) else free[:1]
+        made = {n: part for n, part in old.items() if _same(part, *cuts[n])}
+        for number in old.keys() - made.keys():  # first of all: a new one needs their memory
+            old.pop(number).factor.close()
         # the largest one first: while a part is factorised it needs most of its memory
-        for number, free in sorted(frees.items(), key=lambda part: -len(part[1])):
-            known = old.pop(number, None)
-            if len(free):
-                border = free[touched[free]]
-                made[number] = self._part(known, free, border if len(border) else free[:1])
-            elif known is not None:
-                known.factor.close()
+        for number, (free, border) in sorted(cuts.items(), key=lambda part: -len(part[1][0])):
+            if len(free) and number not in made:
+                made[number] = self._part(free, border)
         self._parts: dict[int, CondensedPart] = dict(sorted(made.items()))
         parts = self._parts.values()
         self.contact: Ints = np.concatenate([np.zeros(0, np.int64), *(p.border for p in parts)])
@@ -115,11 +114,7 @@ class Condensation:
             part.factor.close()
         self._parts = {}
 
-    def _part(self, known: CondensedPart | None, free: Ints, border: Ints) -> CondensedPart:
-        if known is not None:
-            if np.array_equal(known.free, free) and np.array_equal(known.border, border):
-                return known
-            known.factor.close()
+    def _part(self, free: Ints, border: Ints) -> CondensedPart:
         matrix = self.stiffness[free][:, free].tocsr()
         matrix.sort_indices()
         inside = np.searchsorted(free, border)
@@ -130,3 +125,7 @@ class Condensation:
             f"condensing {len(free)} unknowns of a body on {len(border)} contact unknowns ({name})"
         )
         return CondensedPart(free, border, way(matrix, inside))
+
+
+def _same(part: CondensedPart, free: Ints, border: Ints) -> bool:
+    return np.array_equal(part.free, free) and np.array_equal(part.border, border)

@@ -18,6 +18,8 @@ from anisocontact.solver.terms.step import AXES, Step
 
 #: Motion allowed beyond that of the supports, over the size of a slave facet.
 _SLACK = 0.1
+#: Longest side of a triangle over the root of its area; a facet around another one is no further.
+_SIDE = 2.0
 
 
 class Reach:
@@ -112,15 +114,20 @@ class Reach:
         if self._factor > 1.0:
             # of a master coarser than the slave a facet may be met that has no slave node below it
             spread += np.sqrt(2.0) * contact.master_size
-        far = master.reach + 3.0 * motion + spread
+        around = contact.slave_points.at_nodes
+        far = master.reach + 3.0 * motion + spread + around * _SIDE * contact.master_size
         points, (surface, facets) = contact.points, master.seen_within(u, far)
         nearest = np.linalg.norm(surface.project(points).position - points, axis=1)
         able = np.flatnonzero(nearest <= master.reach + motion)
         found = [master.named_slaves[able], master.below(contact.state)]
-        limit = nearest[able] + 2.0 * motion + spread
-        for some, largest in _alike(limit, self._comm):
+        below = nearest[able] + 2.0 * motion
+        for some, largest in _alike(below + spread, self._comm):
             near = surface.within(points[able[some]], largest)
             found.append(facets[near.facets])
+        for some, largest in _alike(below, self._comm) if around else []:
+            near = surface.within(points[able[some]], largest)
+            # facets around those below a slave node turn its contact plane, also across a corner
+            found.append(facets[np.isin(facets, facets[near.facets]).any(axis=1)])
         return found
 
 

@@ -1,0 +1,63 @@
+"""Entries that the factor of a body will have: MUMPS' analysis, of nodes instead of unknowns."""
+
+from __future__ import annotations
+
+import ctypes
+
+import numpy as np
+import numpy.typing as npt
+import scipy
+
+from anisocontact.base.array_types import Flags, Ints
+from anisocontact.base.fenicsx import Mat, PETSc
+from anisocontact.base.petsc_calls import call_petsc
+from anisocontact.solver.strategies.condensed.factor import aij
+from anisocontact.solver.strategies.condensed.mumps import reachable, unfactorised
+
+#: MUMPS: entries of the factor that its analysis expects, in millions where negative.
+_EXPECTED = 20
+#: More than PETSc's `MatFactorInfo` has.
+_INFO = ctypes.c_double * 32
+
+
+def node_graph(stiffness: Mat) -> scipy.sparse.csr_array:
+    """Which nodes a stiffness couples, an entry for each block of 3 x 3, (nodes, nodes)."""
+    starts, columns = stiffness.getRowIJ()
+    rows = scipy.sparse.csr_array((_ones(columns), columns, starts), shape=stiffness.getSize())
+    return rows[::3][:, ::3].tocsr().astype(np.float64)
+
+
+def _ones(entries: Ints) -> npt.NDArray[np.int8]:
+    return np.ones(len(entries), dtype=np.int8)
+
+
+def factor_entries(graph: scipy.sparse.csr_array, border: Flags, unknowns: int) -> float:
+    """Entries of LDL^T of a body, those of its border last.
+
+    METIS orders nodes: as their unknowns are alike, a factor has as many entries as that of the
+    graph, times the square of the unknowns of a node. Blocks, sheets and a ball of hexahedra and
+    tetrahedra of 7,000 to 33,000 unknowns: within 4 %, smaller ones 11 %, in a third of the time.
+
+    Args:
+        graph: Which of its nodes are coupled, (n, n).
+        border: Nodes that can be touched, (n,).
+        unknowns: Unknowns of all nodes that are not prescribed.
+    """
+    count = graph.shape[0]
+    if border.all():
+        return float(0.5 * unknowns**2)
+    each = unknowns / count
+    if not reachable():
+        return _typical(unknowns, each * np.count_nonzero(border))
+    given, order = aij(graph), PETSc.IS().createStride(count, comm=PETSc.COMM_SELF)
+    pc, factor = unfactorised(given, np.flatnonzero(border) if border.any() else np.array([0]))
+    call_petsc("MatCholeskyFactorSymbolic", factor, given, order, ctypes.byref(_INFO()))
+    expected = float(factor.getMumpsInfog(_EXPECTED))
+    for used in (pc, given, order):
+        used.destroy()
+    return float(each**2 * (expected if expected >= 0.0 else -1e6 * expected))
+
+
+def _typical(unknowns: float, touched: float) -> float:
+    """The same of blocks of hexahedra, where nobody tells."""
+    return float(20.0 * unknowns ** (4.0 / 3.0) + 0.5 * touched**2)
