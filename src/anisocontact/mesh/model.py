@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from anisocontact.base.array_types import Ints, Locals
+from anisocontact.base.array_types import Floats, Ints, Locals
 from anisocontact.base.errors import InputError
 from anisocontact.base.fenicsx import MPI, create_mesh, fem, locate_entities, vector_space
 from anisocontact.base.typed import typed
@@ -151,6 +151,13 @@ class Model:
     def space(self) -> Any:
         """Vector Lagrange space of the displacement."""
         return vector_space(self.mesh, self.order)
+
+    @cached_property
+    def positions(self) -> Floats:
+        """Positions of the local nodes in the reference configuration, (nodes, 3), length."""
+        found: Floats = np.asarray(self.space.tabulate_dof_coordinates())
+        found.flags.writeable = False
+        return found
 
     @cached_property
     def unknowns(self) -> NodeUnknowns:

@@ -24,7 +24,6 @@ from numpy.lib.recfunctions import repack_fields
 from anisocontact.base.array_types import Floats, Ints
 from anisocontact.base.errors import InputError
 from anisocontact.base.whole_files import replacing
-from anisocontact.contact.facet_mesh import node_positions
 from anisocontact.mesh import Model
 from anisocontact.results.files import Disk
 from anisocontact.solver.terms.persistent import Arrays, Persistent, under
@@ -327,7 +326,7 @@ def _where(model: Model) -> tuple[Floats, Ints]:
     body = np.full(owned + index_map.num_ghosts, len(model.body_names()), dtype=np.int64)
     for number, name in reversed(list(enumerate(model.body_names()))):
         body[model.space.dofmap.list[model.cells(name)]] = number
-    return node_positions(model.space)[:owned].copy(), body[:owned]
+    return model.positions[:owned].copy(), body[:owned]
 
 
 def _matched(there: Floats, kind_there: Ints, here: Floats, kind_here: Ints, near: float) -> Ints:

@@ -53,8 +53,7 @@ class Images:
 
 def _planes(problem: Problem, contact: Contact) -> Iterator[tuple[Floats, float]]:
     """Normal and distance from the origin of the planes of symmetry at the slave; collective."""
-    comm, space = problem.model.mesh.comm, problem.model.space
-    x = np.asarray(space.tabulate_dof_coordinates())
+    comm, x = problem.model.mesh.comm, problem.model.positions
     slave = np.unique(contact.quadrature.nodes)
     slave = slave[slave < len(x)]
     found: list[Floats] = []

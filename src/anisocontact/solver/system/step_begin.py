@@ -71,7 +71,7 @@ def _rehearsed(
     model = parts.model
     supports, loads = Supports(model), Loads(model, parts.materials)
     guides = parts.guides.fresh()
-    nothing = np.zeros(model.space.tabulate_dof_coordinates().size)
+    nothing = np.zeros(model.positions.size)
     for step in steps:
         supports.begin(step, nothing)
         guides.take_over(step, nothing)
@@ -157,7 +157,7 @@ def contact_must_hold(parts: Parts, steps: Sequence[Step]) -> bool:
     rehearsed = _rehearsed(parts, steps)
     for (step, supports, guides, loads), frames in zip(rehearsed, all_frames, strict=True):
         held = [*supports.supported(), *guides.supported()]
-        rest = np.zeros_like(parts.model.space.tabulate_dof_coordinates())
+        rest = np.zeros_like(parts.model.positions)
         load = loads.at_end(rest) if parts.attached else None
         all_supported = [*frames, *_cut_faces(parts)]
         parts.stabilisation.find_free(held, step.name, load, False, all_supported)

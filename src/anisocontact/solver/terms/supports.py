@@ -38,7 +38,7 @@ class Supports:
 
     def __init__(self, model: Model) -> None:
         self._model = model
-        x = np.abs(model.space.tabulate_dof_coordinates()).max(initial=0.0)
+        x = np.abs(model.positions).max(initial=0.0)
         # Two values for a node are one if they differ by round-off of a rotation.
         self._same = SAME * float(model.mesh.comm.allreduce(x, MPI.MAX))
         self._fixed = _fixed(model)
@@ -181,8 +181,7 @@ class Supports:
         return start if goal is None else (1.0 - share) * start + share * np.full(start.shape, goal)
 
     def _positions(self, nodes: Ints, u: Floats) -> Floats:
-        reference = np.asarray(self._model.space.tabulate_dof_coordinates())
-        return np.asarray(reference[nodes] + u.reshape(-1, 3)[nodes])
+        return np.asarray(self._model.positions[nodes] + u.reshape(-1, 3)[nodes])
 
     def reactions(self, force: Floats) -> dict[str, Floats]:
         """Force of each group's supports on the body.
@@ -224,6 +223,6 @@ class Supports:
 def _fixed(model: Model) -> Ints:
     """Unknowns this rank owns that what the mesh is taken for holds at zero."""
     owned = model.space.dofmap.index_map.size_local
-    x = np.asarray(model.space.tabulate_dof_coordinates())[:owned]
-    supported = [3 * nodes + axis for nodes, axis in model.idealisation.held(x)]
+    at = model.positions[:owned]
+    supported = [3 * nodes + axis for nodes, axis in model.idealisation.held(at)]
     return np.concatenate([np.zeros(0, dtype=np.int64), *supported])

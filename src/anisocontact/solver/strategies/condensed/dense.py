@@ -61,6 +61,7 @@ class ContactTangent:
         self._scaled: list[tuple[slice, Reals]] = []
         self._places = Places(number if spread is None else np.arange(len(number)))
         self._contact = scipy.sparse.csr_array((count, count))
+        self._known: tuple[Floats, Floats] | None = None
         self._beside: Sequence[Opposite] = ()
         self._slaves = np.zeros(count, dtype=np.bool_)
         self.basis: Sparse | None = None
@@ -87,7 +88,7 @@ class ContactTangent:
         if self._spread is not None:
             contact = (self._spread.T @ contact @ self._spread).tocsr()
             opposite = beside = ()
-        self._contact, self._beside = contact, beside
+        self._contact, self._beside, self._known = contact, beside, None
         self._sum_up()
         self.shares, self._slaves = self._places.shares(opposite, self.count)
 
@@ -112,8 +113,10 @@ class ContactTangent:
             self.summed = (self.basis.T @ self.summed @ self.basis).tocsr()
 
     def times(self, x: Floats) -> Floats:
-        """The product with a vector, (c,)."""
-        return np.asarray(self._contact @ x + blocks_times(self._blocks, x))
+        """The product with a vector, (c,); of a correction it is asked for twice."""
+        if self._known is None or not np.array_equal(self._known[0], x):
+            self._known = x.copy(), self._contact @ x + blocks_times(self._blocks, x)
+        return self._known[1].copy()
 
     def bodies_times(self, x: Reals) -> Reals:
         """The product of S over `scale`, in w, with a vector that is zero on most blocks, (c,)."""
