@@ -1,40 +1,101 @@
-"""How many threads the libraries of dense matrices have, said before they are loaded."""
+"""How many threads the libraries of dense matrices have: one, and two where it pays."""
 
 from __future__ import annotations
 
+import ctypes
 import os
-from collections.abc import MutableMapping
+from collections.abc import Callable, Iterator, MutableMapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
 
 from anisocontact.base.processes import launched
 
 #: Number of threads of OpenBLAS, by the first of these that is set.
 _NUMBER = ("OPENBLAS_NUM_THREADS", "GOTO_NUM_THREADS", "OMP_NUM_THREADS")
 #: How long a thread of OpenBLAS looks for work before it sleeps, and the shortest: 2^4 cycles.
-_PATIENCE, _NONE = "OPENBLAS_THREAD_TIMEOUT", "4"
+_PATIENCE, _SHORTEST = "OPENBLAS_THREAD_TIMEOUT", "4"
 #: More have not been measured.
 _MOST = 2
+#: Rows of a matrix whose factorisation threads share: it takes 0.02 s, many times what they wait.
+LARGE = 1500
+#: Names of what sets the number of threads: in the wheels of SciPy, and in OpenBLAS as it is.
+_SETTERS = ("scipy_openblas_set_num_threads", "openblas_set_num_threads")
 
 
-def set_blas_threads(environment: MutableMapping[str, str] = os.environ) -> None:
-    """Give OpenBLAS a second processor, and have its threads sleep where there is no work.
+@dataclass
+class _Given:
+    """Threads that `shared` gives; none in a process whose threads are somebody else's."""
 
-    NumPy, SciPy, and PETSc with MUMPS bring a pool of threads each, which read the environment when
-    they are loaded. Left alone an idle thread spins for 2^26 cycles, and takes its processor from
-    the pool that is at work. A process that a launcher has started beside others has one thread.
+    threads: int = 0
+
+
+_GIVEN = _Given()
+
+
+def set_blas_threads() -> None:
+    """Choose the threads of OpenBLAS for the command, once: what is set then is not the user's."""
+    _GIVEN.threads = _GIVEN.threads or choice(os.environ)
+
+
+def choice(environment: MutableMapping[str, str]) -> int:
+    """Give OpenBLAS one thread, and see how many it may have where `shared` says so.
+
+    NumPy, SciPy, and PETSc bring a pool of threads each, which read the environment when they are
+    loaded. Short products gain nothing from a second thread, and wait for it where the machine has
+    other work. Left alone an idle thread spins for 2^26 cycles. A process that a launcher has
+    started beside others has one thread throughout.
 
     Args:
         environment: Where it is set, unless the user has.
 
+    Returns:
+        Threads for `shared`; 1 where the user has set a number.
+
     Example:
         >>> chosen = {"OMP_NUM_THREADS": "4"}
-        >>> set_blas_threads(chosen)
-        >>> chosen
-        {'OMP_NUM_THREADS': '4', 'OPENBLAS_THREAD_TIMEOUT': '4'}
+        >>> choice(chosen), chosen
+        (1, {'OMP_NUM_THREADS': '4', 'OPENBLAS_THREAD_TIMEOUT': '4'})
     """
-    environment.setdefault(_PATIENCE, _NONE)
-    if not any(environment.get(name) for name in _NUMBER):
-        count = 1 if launched() else min(_MOST, _processors())
-        environment[_NUMBER[0]] = str(count)
+    environment.setdefault(_PATIENCE, _SHORTEST)
+    if any(environment.get(name) for name in _NUMBER):
+        return 1
+    environment[_NUMBER[0]] = "1"
+    return 1 if launched() else min(_MOST, _processors())
+
+
+@contextmanager
+def shared(size: int) -> Iterator[None]:
+    """Around long work of SciPy with dense matrices, which threads share.
+
+    Nothing changes where the user has set a number of threads, or did not start the command.
+
+    Args:
+        size: Rows of a square matrix that is factorised or multiplied with as large ones.
+    """
+    change = _setter() if _GIVEN.threads > 1 and size >= LARGE else None
+    if change is None:
+        yield
+        return
+    change(_GIVEN.threads)
+    try:
+        yield
+    finally:
+        change(1)
+
+
+@cache
+def _setter() -> Callable[[int], Any] | None:
+    """What sets the number of threads of the OpenBLAS that SciPy has; None with another BLAS."""
+    from scipy.linalg import _fblas
+
+    library = ctypes.CDLL(_fblas.__file__)  # what it is linked to is looked through as well
+    for name in _SETTERS:
+        if hasattr(library, name):
+            found: Callable[[int], Any] = getattr(library, name)
+            return found
+    return None
 
 
 def _processors() -> int:

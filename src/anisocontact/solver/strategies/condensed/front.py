@@ -16,6 +16,7 @@ import numpy.typing as npt
 import scipy
 
 from anisocontact.base.array_types import Flags, Ints
+from anisocontact.base.blas_threads import shared
 
 #: Single or double precision.
 Reals = npt.NDArray[Any]
@@ -70,7 +71,9 @@ class Front:
         self._factor = factorised(left)
         self._follows = self._factor(follows)
         (product,) = scipy.linalg.get_blas_funcs(("gemm",), (front,))
-        self._matrix = product(-1.0, self._across, self._follows, beta=1.0, c=front, overwrite_c=1)
+        with shared(len(front)):
+            across, follows = self._across, self._follows
+            self._matrix = product(-1.0, across, follows, beta=1.0, c=front, overwrite_c=1)
 
     def shares_with(self, now: Sparse) -> Sparse:
         """P of now, and that of this front where nothing is opposite any more."""
@@ -173,11 +176,15 @@ def factorised(matrix: Reals) -> Callable[[Reals], Reals]:
         ZeroDivisionError: The matrix is singular.
     """
     getrf, getrs = scipy.linalg.get_lapack_funcs(("getrf", "getrs"), (matrix,))
-    lu, pivots, info = getrf(matrix, overwrite_a=1)
+    with shared(len(matrix)):
+        lu, pivots, info = getrf(matrix, overwrite_a=1)
     if info != 0:
         raise ZeroDivisionError("the matrix is singular")
 
     def solve(b: Reals) -> Reals:
-        return np.asarray(getrs(lu, pivots, b)[0])
+        if b.ndim == 1:
+            return np.asarray(getrs(lu, pivots, b)[0])
+        with shared(len(lu)):
+            return np.asarray(getrs(lu, pivots, b)[0])
 
     return solve
