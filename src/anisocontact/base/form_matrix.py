@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 
 from anisocontact.base.fenicsx import Mat, PETSc, Vec, assemble_into, create_stiffness, fem, la
+from anisocontact.base.places_in_matrix import PlacesInMatrix
 
 
 class FormMatrix:
     """A bilinear form, assembled anew wherever its coefficients have changed.
 
     On one process DOLFINx puts the matrices of the cells into rows of its own, in a third of the
-    time that PETSc takes for it; whole rows then go over to PETSc.
+    time that PETSc takes for it; from there entries are copied to where PETSc has them.
 
     Args:
         form: The compiled form.
@@ -44,6 +45,7 @@ class FormMatrix:
             sizes = self.matrix.getSizes()
             csr = (*sides, self._rows.data)
             self._wrapped: Mat = PETSc.Mat().createAIJWithArrays(sizes, csr, comm=form.mesh.comm)
+            self._places = PlacesInMatrix(*parts)
 
     def write(self, out: Mat, *, again: bool = False) -> None:
         """Write the matrix into one that has room for it, assembled.
@@ -61,7 +63,8 @@ class FormMatrix:
                 self._rows.data[:] = 0.0
                 fem.assemble_matrix(self._rows, self._form)
                 self._wrapped.assemble()
-            add_matrix(out, self._wrapped)
+            if not self._places.copy(self._rows.data, out):
+                add_matrix(out, self._wrapped)
         out.assemble(PETSc.Mat.AssemblyType.FINAL)
 
     def times(self, x: Vec, out: Vec) -> None:
