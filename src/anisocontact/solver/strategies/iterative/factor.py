@@ -1,18 +1,26 @@
-"""Factor of the coarsest level.
+"""Factor of the coarsest level, or multigrid where it would not fit into memory.
 
-It is in single precision, in half of the memory and of the time, while that tells stiff contacts
-from soft bodies: Krylov iterations need no more of a preconditioner.
+The factor is in single precision, in half of the memory and of the time, while that tells stiff
+contacts from soft bodies: Krylov iterations need no more of a preconditioner.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from anisocontact.base.fenicsx import Mat, PETSc, Vec
+from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec
 from anisocontact.base.petsc_calls import check_memory
-from anisocontact.solver.strategies.database import Database
+from anisocontact.solver.strategies.costs import factor_bytes, too_large
+from anisocontact.solver.strategies.database import Database, OptionValue
 from anisocontact.solver.strategies.iterative.split import set_any
 
+#: Options of the solver: of a factor, and where there is no room for one.
+FACTORISED: dict[str, OptionValue] = {
+    "ksp_type": "preonly",
+    "pc_type": "lu",
+    "pc_factor_mat_solver_type": "mumps",
+}
+ITERATED: dict[str, OptionValue] = {"ksp_type": "gmres", "ksp_rtol": 1e-2, "ksp_max_it": 30}
 #: Error of a known solution, over it, up to which a factor in single precision is trusted.
 TRUSTED = 0.05
 #: Stiffness against motions of the aggregates that depend on each other, over the largest one.
@@ -22,21 +30,36 @@ AT_REST = 1e-3
 
 
 class Factor:
-    """Inverse of a matrix by factorisation.
+    """Inverse of a matrix by factorisation; approximate, by multigrid, if there is no room for it.
 
     Args:
         matrix: The matrix, which is overwritten in place from one tangent to the next.
         prolongs: Interpolations from here to all unknowns, the finest one last.
         prefix: Prefix of the options of the solver.
         single: Whether it is in single precision, where this PETSc can.
+        note: Called with a line where there is no room.
 
     Attributes:
         single: Whether it still is: from where that is not enough on it is in double precision.
     """
 
-    def __init__(self, matrix: Mat, prolongs: Sequence[Mat], prefix: str, single: bool) -> None:
+    def __init__(
+        self,
+        matrix: Mat,
+        prolongs: Sequence[Mat],
+        prefix: str,
+        single: bool,
+        note: Callable[[str], None],
+    ) -> None:
         self.single, self._prefix, self._prolongs = single, prefix, prolongs
-        self._matrix = matrix
+        self._matrix, self._options = matrix, FACTORISED
+        chosen = "pc_type" in PETSc.Options(prefix).getAll()
+        reason = "" if chosen else _no_room(matrix)
+        self._exact = not reason
+        if reason:
+            kind = "hypre" if PETSc.Sys.hasExternalPackage("hypre") else "gamg"
+            self._options = ITERATED | {"pc_type": kind}
+            note(f"{reason}: it is solved by GMRES with {kind}")
         self._solver = self._new_solver()
         self._right, self._left = matrix.createVecs()
 
@@ -46,7 +69,7 @@ class Factor:
             self._solver.reset()
         self._matrix = matrix
         found = self._factorised()
-        if self.single and not (found and self._trusted()):
+        if self._exact and self.single and not (found and self._trusted()):
             self.single = False
             self._solver.destroy()
             self._solver = self._new_solver()
@@ -65,7 +88,8 @@ class Factor:
     def _new_solver(self) -> PETSc.KSP:
         solver = PETSc.KSP().create(self._matrix.getComm())
         solver.setOptionsPrefix(self._prefix)
-        solver.setFromOptions()
+        with Database(self._prefix, self._options):
+            solver.setFromOptions()
         return solver
 
     def _factorised(self) -> bool:
@@ -111,3 +135,17 @@ class Factor:
         error, size = self._left.norm(), known.norm()
         known.destroy()
         return bool(error <= TRUSTED * size)
+
+
+def _no_room(matrix: Mat) -> str:
+    """Why its factor would not fit, in the words of the first process that says so; collective.
+
+    Processes of one machine share its memory. Contact fills what is in single precision so that it
+    takes what an ordinary system takes in double precision.
+    """
+    comm = matrix.getComm().tompi4py()
+    beside = comm.Split_type(MPI.COMM_TYPE_SHARED)
+    needed = factor_bytes(matrix.getSize()[0]) * beside.size / comm.size
+    beside.Free()
+    found = comm.allgather(next(too_large("a factor of the coarse level", needed), ""))
+    return next(filter(None, found), "")

@@ -122,7 +122,8 @@ class Levels:
             interior.convert(PETSc.Mat.Type.BAIJ)
         kept = split.patch.getSize()
         levels = _worth_it(found, kept)
-        below = Below(split.patch.getLocalSize(), scale, self._prefix, self._single)
+        size = split.patch.getLocalSize()
+        below = Below(size, scale, self._prefix, self._single, self._note)
         self._coarse = CoarseLevel(
             tangent,
             prolong,

@@ -97,12 +97,14 @@ class Below:
         scale: Diagonal of coarse unknowns that move nothing, force/length.
         prefix: Prefix of the options of solvers.
         single: Whether the factor is in single precision.
+        note: Called with a line where there is no room for it.
     """
 
     patch: int
     scale: float
     prefix: str
     single: bool
+    note: Callable[[str], None]
 
     def inverse(
         self, matrix: Mat, levels: Sequence[Aggregates], prolongs: Sequence[Mat]
@@ -115,7 +117,7 @@ class Below:
             prolongs: Interpolations from here to all unknowns, the finest one last.
         """
         if len(levels) == 1:
-            return Factor(matrix, prolongs, f"{self.prefix}coarse_", self.single)
+            return Factor(matrix, prolongs, f"{self.prefix}coarse_", self.single, self.note)
         first, comm = matrix.getOwnershipRange()[0], matrix.getComm()
         own = levels[0].own
         columns = Columns(

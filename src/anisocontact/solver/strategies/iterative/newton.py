@@ -23,9 +23,6 @@ DEFAULTS: dict[str, OptionValue] = {
     "smoother_ksp_type": "chebyshev",
     "smoother_ksp_max_it": 2,
     "smoother_pc_type": "jacobi",
-    "coarse_ksp_type": "preonly",
-    "coarse_pc_type": "lu",
-    "coarse_pc_factor_mat_solver_type": "mumps",
 }
 #: Residual of a correction over that of its start, at most.
 LOOSEST = 1e-4
