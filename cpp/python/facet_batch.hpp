@@ -84,22 +84,18 @@ struct Batch {
   Hits hits;
   bool on_master, on_slave;  ///< on whose reference there are directions
 
-  void see_slave(std::size_t p, Seen& s) const {
+  ANISOCONTACT_INLINE void see_slave(std::size_t p, Seen& s) const {
     auto& own = s.point.own;
-    for (auto* j : {&own.now, &own.reference}) {
-      j->position.setZero();
-      j->d1 = {Vec3<double>::Zero(), Vec3<double>::Zero()};
-    }
-    for (std::size_t a = 0; a < slave.width; ++a) {
-      const auto node = static_cast<std::size_t>(slave.nodes[p * slave.width + a]);
-      add_node(s.shapes.slave, a, row3(mesh.now, node), own.now);
-      if (on_slave) add_node(s.shapes.slave, a, row3(mesh.reference, node), own.reference);
-    }
+    const std::int32_t* const nodes = slave.nodes + p * slave.width;
+    surface::put_jet<false>(slave.width, FacetNodes{mesh.now, nodes}, s.shapes.slave, own.now);
+    if (on_slave)
+      surface::put_jet<false>(slave.width, FacetNodes{mesh.reference, nodes}, s.shapes.slave,
+                              own.reference);
     s.point.slave = own.now.position;
     s.shapes.area.tangents = own.now.d1;
   }
 
-  void see_master(std::size_t p, Seen& s) const {
+  ANISOCONTACT_INLINE void see_master(std::size_t p, Seen& s) const {
     const auto f = static_cast<std::size_t>(hits.facet[p]);
     s.point.facet = hits.facet[p];
     s.point.master.xi = {hits.xi[2 * p], hits.xi[2 * p + 1]};
@@ -108,22 +104,22 @@ struct Batch {
     const auto kind = mesh.kind(f);
     auto& shape = s.shapes.master;
     put_shape(kind, s.point.master.xi, shape);
-    surface::put_facet_jet(kind, mesh.nodes(mesh.now, f), shape, true, s.point.master.now);
+    const std::size_t count = kind.nodes();
+    surface::put_jet<true>(count, mesh.nodes(mesh.now, f), shape, s.point.master.now);
     if (on_master)
-      surface::put_facet_jet(kind, mesh.nodes(mesh.reference, f), shape, true,
-                             s.point.master.reference);
+      surface::put_jet<true>(count, mesh.nodes(mesh.reference, f), shape, s.point.master.reference);
   }
 
-  void see_committed(const kernel::PointState& state, Seen& s) const {
+  ANISOCONTACT_INLINE void see_committed(const kernel::PointState& state, Seen& s) const {
     const auto c = static_cast<std::size_t>(state.facet);
     const auto kind = mesh.kind(c);
     auto& shape = s.shapes.before;
     put_shape(kind, state.xi, shape);
-    surface::put_facet_jet(kind, mesh.nodes(mesh.now, c), shape, false, s.point.before);
+    surface::put_jet<false>(kind.nodes(), mesh.nodes(mesh.now, c), shape, s.point.before);
   }
 
   /// What there was of another point stays where this one has nothing.
-  void see(const kernel::PointState& state, std::size_t p, Seen& s) const {
+  ANISOCONTACT_INLINE void see(const kernel::PointState& state, std::size_t p, Seen& s) const {
     slave.at(p, s.shapes.slave);
     s.shapes.area.weight = slave.weight[p];
     s.shapes.area.current = slave.current_area;
@@ -137,15 +133,10 @@ struct Batch {
 
  private:
   /// Facets of fewer nodes than the widest have zeros at the end.
-  void put_shape(const surface::FacetKind& kind, const std::array<double, 2>& xi,
-                 NodalShape& s) const {
+  ANISOCONTACT_INLINE void put_shape(const surface::FacetKind& kind,
+                                     const std::array<double, 2>& xi, NodalShape& s) const {
     s.count = mesh.width;
     surface::shape(kind, xi[0], xi[1], s);
-  }
-  static void add_node(const NodalShape& s, std::size_t a, const Vec3<double>& x,
-                       surface::Jet<double>& j) {
-    j.position += s.N[a] * x;
-    for (std::size_t i = 0; i < 2; ++i) j.d1[i] += s.dN[a][i] * x;
   }
 };
 

@@ -114,8 +114,9 @@ nb::dict law_input(const FacetInterface& h, const Input& q) {
 /// Evaluates some points, one after the other. Only their blocks are for the widest registers: fused
 /// products would move the digits of a point that is evaluated alone, or without a tangent.
 template <bool tangent>
-void evaluate(const FacetInterface& h, const Input& q, std::span<const std::size_t> points,
-              Output& out, [[maybe_unused]] BlockWriter& writer) {
+ANISOCONTACT_INLINE void evaluate(const FacetInterface& h, const Input& q,
+                                  std::span<const std::size_t> points, Output& out,
+                                  [[maybe_unused]] BlockWriter& writer) {
   constexpr std::size_t ahead = 2;
   kernel::PairSlopes by;
   Seen s;
@@ -125,10 +126,10 @@ void evaluate(const FacetInterface& h, const Input& q, std::span<const std::size
     const kernel::PointState old = q.states[p];
     q.batch.see(old, p, s);
     const auto r = q.update<tangent>(h, p, old, s.point, &by);
-    out.put(p, r, tangent ? &by : nullptr, s);
+    // before the output: what goes to far memory is in the way of what is read back at once
     if constexpr (tangent)
-      if (touches(r))
-        with_widest([&]() ANISOCONTACT_INLINE_LAMBDA { writer.add(p, r, by, s, old.facet); });
+      if (touches(r)) writer.add(p, r, by, s, old.facet);
+    out.put(p, r, tangent ? &by : nullptr, s);
   }
 }
 
@@ -142,13 +143,14 @@ nb::dict assemble(const FacetInterface& h, const Input& q) {
                           {slots.history.size(), ks + km, km, h.pool}};
   {
     nb::gil_scoped_release free;
-    kernel::parallel_pieces(slots.runs.size() - 1, q.threads,
-                            [&](std::size_t first, std::size_t last) {
-                              BlockWriter writer(q.batch, slots, blocks);
-                              const std::span points(slots.order.data() + slots.runs[first],
-                                                     slots.order.data() + slots.runs[last]);
-                              evaluate<tangent>(h, q, points, out, writer);
-                            });
+    kernel::parallel_pieces(
+        slots.runs.size() - 1, q.threads, [&](std::size_t first, std::size_t last) {
+          BlockWriter writer(q.batch, slots, blocks);
+          const std::span points(slots.order.data() + slots.runs[first],
+                                 slots.order.data() + slots.runs[last]);
+          with_unfused(
+              [&]() ANISOCONTACT_INLINE_LAMBDA { evaluate<tangent>(h, q, points, out, writer); });
+        });
     blocks.own.clear_rest();
     blocks.earlier.clear_rest();
   }

@@ -37,7 +37,8 @@ struct Output {
         touching(n) {}
 
   /// With the slopes of a point that touches.
-  void put(std::size_t p, const kernel::PairResult& r, const kernel::PairSlopes* d, const Seen& s) {
+  ANISOCONTACT_INLINE void put(std::size_t p, const kernel::PairResult& r,
+                               const kernel::PairSlopes* d, const Seen& s) {
     store(state.data, p, r.state);
     put3(traction.data, p, r.traction);
     put3(normal.data, p, r.normal);
@@ -90,14 +91,16 @@ struct Output {
   }
 
  private:
-  void put_on_master(std::size_t p, const kernel::PairResult& r, const NodalShape& shape) const {
+  ANISOCONTACT_INLINE void put_on_master(std::size_t p, const kernel::PairResult& r,
+                                         const NodalShape& shape) const {
     const double dA = area.data[p];
     const Vec3<double> t = dA * r.traction, m0 = dA * r.couple[0], m1 = dA * r.couple[1];
     for (std::size_t c = 0; c < km; ++c)
       put3(on_master.data, p * km + c, shape.dN[c][0] * m0 + shape.dN[c][1] * m1 - shape.N[c] * t);
   }
   /// Size of a point's block: of |dt/dx| and of the shape functions on both sides.
-  double size_of_block(std::size_t p, const kernel::PairSlopes& d, const Seen& s) const {
+  ANISOCONTACT_INLINE double size_of_block(std::size_t p, const kernel::PairSlopes& d,
+                                           const Seen& s) const {
     double squares = 0.0;
     for (const auto* shape : {&s.shapes.slave, &s.shapes.master})
       for (std::size_t a = 0; a < shape->count; ++a) squares += shape->N[a] * shape->N[a];

@@ -6,8 +6,8 @@
 namespace anisocontact::kernel {
 
 /// State of a point that is not in contact, or before its law has answered: where it is.
-inline PointState opened(const PointState& old, const std::array<double, 2>& xi, double gap,
-                         std::int64_t facet) {
+ANISOCONTACT_INLINE PointState opened(const PointState& old, const std::array<double, 2>& xi,
+                                      double gap, std::int64_t facet) {
   PointState s = lasting(old);
   s.xi = s.origin = xi;
   s.gap = gap;
@@ -33,7 +33,7 @@ inline const PlaneAxes* moving_axes(const InterfaceLaw& l, const LawAxes& axes) 
 namespace detail {
 
 /// Tangents of the slave, axes and turns.
-inline void put_companions(const Located& at, PointState& s) {
+ANISOCONTACT_INLINE void put_companions(const Located& at, PointState& s) {
   const auto keep = [&](const Vec3<double>& v, std::size_t i, KeptPair& kept) {
     const auto c = at.basis.project_contra(v);
     kept[2 * i] = c[0];
@@ -52,8 +52,9 @@ inline void put_companions(const Located& at, PointState& s) {
 }  // namespace detail
 
 /// Moves an `opened` state on by what a law has answered: the one place where a state advances.
-inline void advance(const InterfaceLaw& l, const PointState& old, const ContactFrame& in,
-                    const Reaction& r, const Located& at, PointState& s) {
+ANISOCONTACT_INLINE void advance(const InterfaceLaw& l, const PointState& old,
+                                 const ContactFrame& in, const Reaction& r, const Located& at,
+                                 PointState& s) {
   const auto& g = at.basis;
   s.traction = g.project_co(at.plane.spatial(r.traction)).c;
   s.stored = g.project_co(at.plane.spatial(r.stored)).c;

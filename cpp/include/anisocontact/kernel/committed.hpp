@@ -19,8 +19,10 @@ struct CommittedSlopes {
 class CommittedPoint {
  public:
   /// `own`: the slave, if it is known; `halfway`: slip as of `Transport`, else of `BackwardEuler`.
-  CommittedPoint(const ContactPlane& plane, const surface::Geometry<double>& before,
-                 const Vec3<double>& now, const PointState& state, const Carrier* own, bool halfway)
+  ANISOCONTACT_INLINE CommittedPoint(const ContactPlane& plane,
+                                     const surface::Geometry<double>& before,
+                                     const Vec3<double>& now, const PointState& state,
+                                     const Carrier* own, bool halfway)
       : plane_(plane),
         state_(state),
         normal_(before.normal),
@@ -106,7 +108,7 @@ class CommittedPoint {
     double fall{0.0};  ///< c
   };
 
-  void remember(const surface::Geometry<double>& before) {
+  ANISOCONTACT_INLINE void remember(const surface::Geometry<double>& before) {
     for (std::size_t i = 0; i < 2; ++i) {
       const Vec3<double>& b = before.jet.d1[i];
       fall_[i] = share_ * b.dot(plane_.n);
@@ -127,7 +129,7 @@ class CommittedPoint {
   }
 
   /// The chord as the path that it spans, see `ArcOfNormals`: n_0 along the plane is nu.
-  void put_slip() {
+  ANISOCONTACT_INLINE void put_slip() {
     flat_ = plane_.along(way_);
     rise_ = way_.dot(plane_.n);
     if (halfway_) arc_ = ArcOfNormals(cosine_);

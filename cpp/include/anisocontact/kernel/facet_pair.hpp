@@ -115,35 +115,32 @@ inline void put_slopes(const InterfaceLaw& law, FacetFrame& frame, const PairPoi
   couple.differentiate(r.traction, d);
 }
 
-}  // namespace detail
-
-/// Pure update of one slave point against a facet; `reacts` is the tangential law of `law`. Where there
-/// are `slopes` to be written, all derivatives of a point that touches. Those of others are not
-/// written.
+/// Writes what `update_pair` answers to `out`, which is new.
 template <bool tangent>
-PairResult update_pair(const InterfaceLaw& law, const Law& reacts, const PointState& state,
-                       const PairPoint& p, double dt,
-                       [[maybe_unused]] PairSlopes* slopes = nullptr) noexcept {
-  PairResult out;
-  out.state = lasting(state);
-  if (p.feature == Feature::off) return out;
+ANISOCONTACT_INLINE void answer_pair(const InterfaceLaw& law, const Law& reacts,
+                                     const PointState& state, const PairPoint& p, double dt,
+                                     [[maybe_unused]] PairSlopes* slopes,
+                                     PairResult& out) noexcept {
+  if (p.feature == Feature::off) {
+    out.state = lasting(state);
+    return;
+  }
   FacetFrame frame(p);
   const ContactPlane& plane = frame.plane;
   out.normal = plane.n;
   const double gap = frame.gap() - state.offset;
   out.state = opened(state, p.master.xi, gap, p.facet);
   const Dual<1> pressure = pressure_of(law, state, gap, dt);
-  if (!(pressure.v > 0.0)) return out;
+  if (!(pressure.v > 0.0)) return;
   out.traction = pressure.v * plane.n;
   const auto fail = [&](Failure why) {
     out.failure = why;
     out.state = state;
     out.state.facet = p.facet;
-    return out;
   };
   PlaneAxis start;
   if (!frame.start(p, start)) return fail(Failure::direction);
-  detail::PairAxes<tangent> axes_at(p, plane.n, start);
+  PairAxes<tangent> axes_at(p, plane.n, start);
   const LawAxes axes = law_axes(law, axes_at);
   if (!axes.valid()) return fail(Failure::direction);
   put_axes(axes, out.adhesion_axes, out.friction_axes);
@@ -153,7 +150,7 @@ PairResult update_pair(const InterfaceLaw& law, const Law& reacts, const PointSt
                     looks_back(law.evolution));
   const CommittedPoint* committed = history ? &*history : nullptr;
   ContactFrame in = contact_frame(law, state, gap, dt, pressure, committed, axes, plane);
-  const detail::HeldDirections held(p.held, plane);
+  const HeldDirections held(p.held, plane);
   in.increment = held.rest(in.increment);
   Reaction r = reacts.evaluate(state, in, tangent);
   if (r.failure != Failure::none) return fail(r.failure);
@@ -169,8 +166,23 @@ PairResult update_pair(const InterfaceLaw& law, const Law& reacts, const PointSt
   for (std::size_t j = 0; j < 2; ++j) out.couple[j] = couple.on_tangent(j);
   if constexpr (tangent)
     with_widest([&]() ANISOCONTACT_INLINE_LAMBDA {
-      detail::put_slopes(law, frame, p, couple, pressure, r, axes, committed, *slopes);
+      put_slopes(law, frame, p, couple, pressure, r, axes, committed, *slopes);
     });
+}
+
+}  // namespace detail
+
+/// Pure update of one slave point against a facet; `reacts` is the tangential law of `law`. Where there
+/// are `slopes` to be written, all derivatives of a point that touches. Those of others are not
+/// written.
+template <bool tangent>
+PairResult update_pair(const InterfaceLaw& law, const Law& reacts, const PointState& state,
+                       const PairPoint& p, double dt,
+                       [[maybe_unused]] PairSlopes* slopes = nullptr) noexcept {
+  PairResult out;
+  with_unfused([&]() ANISOCONTACT_INLINE_LAMBDA {
+    detail::answer_pair<tangent>(law, reacts, state, p, dt, slopes, out);
+  });
   return out;
 }
 

@@ -30,10 +30,10 @@ inline Flat slopes_of(const Reaction& r, Slope s, std::size_t a) {
 }
 
 /// What the law sees of a point. Without a committed point there is no history and no slip.
-inline ContactFrame contact_frame(const InterfaceLaw& l, const PointState& state, double gap,
-                                  double dt, const Dual<1>& pressure,
-                                  const CommittedPoint* committed, const LawAxes& axes,
-                                  const ContactPlane& p) {
+ANISOCONTACT_INLINE ContactFrame contact_frame(const InterfaceLaw& l, const PointState& state,
+                                               double gap, double dt, const Dual<1>& pressure,
+                                               const CommittedPoint* committed, const LawAxes& axes,
+                                               const ContactPlane& p) {
   const law::NormalModel& m = law::normal_model(l.normal);
   ContactFrame in{gap,
                   dt,

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "anisocontact/tensor/inline.hpp"
+
 namespace anisocontact::kernel {
 
 enum class Contact : std::int64_t { open = 0, stick = 1, slip = 2 };
@@ -88,7 +90,7 @@ inline bool remembers(const PointState& s) {
 }
 
 /// What a point keeps whatever happens to it.
-inline PointState lasting(const PointState& old) {
+ANISOCONTACT_INLINE PointState lasting(const PointState& old) {
   PointState s;
   s.slip_accumulated = old.slip_accumulated;
   s.dissipation = old.dissipation;

@@ -12,6 +12,7 @@
 
 #include "anisocontact/surface/facet_shapes.hpp"
 #include "anisocontact/surface/geometry.hpp"
+#include "anisocontact/tensor/lanes.hpp"
 
 namespace anisocontact::surface {
 
@@ -48,59 +49,49 @@ constexpr std::array<double, 2> side_direction(const FacetKind& k, std::size_t s
 
 namespace detail {
 
-/// `count` is a constant where loops are to be written out.
-template <class Count, class S, class Nodes>
-ANISOCONTACT_INLINE void sum_nodes(Count count, const Nodes& nodes, const Shape<S>& s, bool curved,
-                                   Jet<S>& j) noexcept {
-  for (Eigen::Index c = 0; c < 3; ++c) {
-    S position(0.0);
-    std::array<S, 2> d1{S(0.0), S(0.0)};
-    for (std::size_t i = 0; i < count; ++i) {
-      const S x(nodes[i][c]);
-      position += s.N[i] * x;
-      d1[0] += s.dN[i][0] * x;
-      d1[1] += s.dN[i][1] * x;
-    }
-    j.position[c] = position;
-    j.d1[0][c] = d1[0];
-    j.d1[1][c] = d1[1];
-    if (!curved) continue;
-    std::array<S, 3> d2{S(0.0), S(0.0), S(0.0)};
-    for (std::size_t i = 0; i < count; ++i) {
-      const S x(nodes[i][c]);
-      d2[0] += s.d2N[i][0] * x;
-      d2[1] += s.d2N[i][1] * x;
-      d2[2] += s.d2N[i][2] * x;
-    }
-    for (std::size_t d = 0; d < 3; ++d) j.d2[d][c] = d2[d];
+/// Sums the nodes of a facet, all components at once: position and first derivatives, or where it is
+/// `curved` second derivatives too. `count` is a constant where loops are to be written out.
+template <bool curved, class Count, class Nodes>
+ANISOCONTACT_INLINE void sum_nodes(Count count, const Nodes& nodes, const Shape<double>& s,
+                                   Jet<double>& j) noexcept {
+  constexpr std::size_t sums = curved ? 6 : 3;
+  std::array<Lanes<4>, sums> sum{};
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto x = Lanes<4>::of(nodes[i][0], nodes[i][1], nodes[i][2], 0.0);
+    sum[0].add(s.N[i], x);
+    for (std::size_t d = 0; d < 2; ++d) sum[1 + d].add(s.dN[i][d], x);
+    if constexpr (curved)
+      for (std::size_t d = 0; d < 3; ++d) sum[3 + d].add(s.d2N[i][d], x);
   }
+  const auto put = [&](std::size_t k, Vec3<double>& to)
+                       ANISOCONTACT_INLINE_LAMBDA { to = {sum[k][0], sum[k][1], sum[k][2]}; };
+  put(0, j.position);
+  for (std::size_t d = 0; d < 2; ++d) put(1 + d, j.d1[d]);
+  if constexpr (curved)
+    for (std::size_t d = 0; d < 3; ++d) put(3 + d, j.d2[d]);
 }
 
 }  // namespace detail
 
-/// Jet of a facet; `nodes[i]` is the position of node i (Vec3<S>, or Vec3<double> for any S).
-/// Without `curved` the second derivatives are not written.
-template <class S, class Nodes>
-void put_facet_jet(const FacetKind& k, const Nodes& nodes, const Shape<S>& s, bool curved,
-                   Jet<S>& j) noexcept {
-  if (k.topology == Topology::quad4)
-    detail::sum_nodes(std::integral_constant<std::size_t, 4>{}, nodes, s, curved, j);
+/// Jet of `count` nodes, with components `nodes[i][c]`; without `curved` the second derivatives are
+/// not written.
+template <bool curved, class Nodes>
+ANISOCONTACT_INLINE void put_jet(std::size_t count, const Nodes& nodes, const Shape<double>& s,
+                                 Jet<double>& j) noexcept {
+  if (count == 4)
+    detail::sum_nodes<curved>(std::integral_constant<std::size_t, 4>{}, nodes, s, j);
   else
-    detail::sum_nodes(k.nodes(), nodes, s, curved, j);
-}
-template <class S, class Nodes>
-Jet<S> facet_jet(const FacetKind& k, const Nodes& nodes, const Shape<S>& s) noexcept {
-  Jet<S> j;
-  put_facet_jet(k, nodes, s, true, j);
-  return j;
+    detail::sum_nodes<curved>(count, nodes, s, j);
 }
 
 /// Jet of a facet at the coordinates xi^1, xi^2.
-template <class S, class Nodes>
-Jet<S> facet_jet(const FacetKind& k, const Nodes& nodes, const S& xi1, const S& xi2) noexcept {
-  Shape<S> s;
+template <class Nodes>
+Jet<double> facet_jet(const FacetKind& k, const Nodes& nodes, double xi1, double xi2) noexcept {
+  Shape<double> s;
   shape(k, xi1, xi2, s);
-  return facet_jet(k, nodes, s);
+  Jet<double> j;
+  put_jet<true>(k.nodes(), nodes, s, j);
+  return j;
 }
 
 }  // namespace anisocontact::surface

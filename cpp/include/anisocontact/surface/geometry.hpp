@@ -84,7 +84,7 @@ struct Geometry {
 
 /// Metric, area and normal from a jet; curvature and connection stay zero.
 template <class S>
-Geometry<S> tangent_plane(const Jet<S>& jet) {
+ANISOCONTACT_INLINE Geometry<S> tangent_plane(const Jet<S>& jet) {
   using std::sqrt;
   Geometry<S> g{.jet = jet};
   const auto& r = g.jet.d1;

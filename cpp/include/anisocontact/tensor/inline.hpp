@@ -25,6 +25,8 @@ ANISOCONTACT_INLINE constexpr void each(const F& f) {
 
 #if defined(__GNUC__) && defined(__x86_64__)
 #define ANISOCONTACT_WIDE [[gnu::noinline, gnu::flatten, gnu::target("avx2,fma")]]
+/// Without fused products, which round once where a product and a sum round twice.
+#define ANISOCONTACT_UNFUSED [[gnu::noinline, gnu::flatten, gnu::target("avx2")]]
 #define ANISOCONTACT_HAS_WIDE
 /// Whether this processor has registers of four numbers. Which code runs depends on the machine
 /// alone, so that results are the same from run to run.
@@ -34,6 +36,7 @@ inline const bool wide_registers = [] {
 }();
 #else
 #define ANISOCONTACT_WIDE
+#define ANISOCONTACT_UNFUSED
 inline constexpr bool wide_registers = false;
 #endif
 
@@ -62,6 +65,10 @@ ANISOCONTACT_LONG void call_long(const F& f) {
   f();
 }
 template <class F>
+ANISOCONTACT_UNFUSED void call_unfused(const F& f) {
+  f();
+}
+template <class F>
 void call_narrow(const F& f) {
   f();
 }
@@ -76,7 +83,17 @@ void with_widest(const F& f) {
     detail::call_narrow(f);
 }
 
-/// The same for loops along rows of numbers, compiled once more for registers of eight.
+/// The same with results that have the same digits whatever is compiled beside: where there are no fused
+/// products to choose, a number does not depend on what else is asked for.
+template <class F>
+void with_unfused(const F& f) {
+  if (wide_registers)
+    detail::call_unfused(f);
+  else
+    detail::call_narrow(f);
+}
+
+/// As `with_widest` for loops along rows of numbers, compiled once more for registers of eight.
 template <class F>
 void with_longest(const F& f) {
   if (long_registers)
