@@ -3,14 +3,31 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import Any, Protocol
 
 import numpy as np
 
 from anisocontact.base.array_types import Flags, Locals
+from anisocontact.contact.history import Snapshot
+from anisocontact.contact.points import SlavePoints
 
-if TYPE_CHECKING:
-    from anisocontact.contact.contact import Contact
+
+class AtSlavePoints(Protocol):
+    """What is asked of a contact.
+
+    Attributes:
+        slave_points: Its points.
+        accepted: The points in the accepted increment.
+        trials: Its trials, see `Trials`, which look here in turn.
+    """
+
+    slave_points: SlavePoints
+    accepted: Snapshot
+    trials: Any
+
+    @property
+    def current(self) -> Snapshot:
+        """The points in the trial."""
 
 
 class SharedNodes:
@@ -25,7 +42,7 @@ class SharedNodes:
         contacts: Contacts with multipliers at nodes; none where a contact has its nodes alone.
     """
 
-    def __init__(self, contacts: Sequence[Contact]) -> None:
+    def __init__(self, contacts: Sequence[AtSlavePoints]) -> None:
         self._contacts = contacts
         most = max((one.slave_points.nodes.max(initial=-1) for one in contacts), default=-1)
         self._shared = np.zeros(most + 1, dtype=bool)
@@ -43,14 +60,14 @@ class SharedNodes:
         return self._shared[nodes]
 
 
-def _near(contact: Contact) -> Flags:
+def _near(contact: AtSlavePoints) -> Flags:
     """Points that touch, or began the increment within a facet of the master, (n,)."""
     begun = contact.accepted.response
     near = contact.trials.master.located(begun.state) & (begun.gap < contact.slave_points.size)
     return np.asarray(near | (contact.current.response.pressure > 0.0))
 
 
-def mark_shared(contacts: Sequence[Contact]) -> None:
+def mark_shared(contacts: Sequence[AtSlavePoints]) -> None:
     """Let the multipliers of contacts know which slave nodes others have as well.
 
     A slave node is looked at where it is owned, by all contacts that have it.
