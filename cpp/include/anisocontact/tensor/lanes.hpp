@@ -11,9 +11,10 @@
 namespace anisocontact {
 
 namespace detail {
+/// Without vectors of the compiler a register is one number.
 template <std::size_t W>
 struct RegisterOf {
-#if defined(__GNUC__)
+#if defined(__GNUC__) && !defined(ANISOCONTACT_NO_VECTORS)
   using type [[gnu::vector_size(W * sizeof(double))]] = double;
   using anywhere [[gnu::vector_size(W * sizeof(double)), gnu::aligned(8), gnu::may_alias]] = double;
 #else
@@ -47,12 +48,13 @@ class alignas(W * sizeof(double)) Lanes {
   ANISOCONTACT_INLINE static Lanes from(const double* p, std::size_t stride = W) {
     Lanes out;
     for (std::size_t c = 0; c < count; ++c)
-      out.r_[c] = *reinterpret_cast<const Anywhere*>(p + c * stride);
+      out.r_[c] = *reinterpret_cast<const Anywhere*>(p + offset(c, stride));
     return out;
   }
   /// Writes them there.
   ANISOCONTACT_INLINE void to(double* p, std::size_t stride = W) const {
-    for (std::size_t c = 0; c < count; ++c) *reinterpret_cast<Anywhere*>(p + c * stride) = r_[c];
+    for (std::size_t c = 0; c < count; ++c)
+      *reinterpret_cast<Anywhere*>(p + offset(c, stride)) = r_[c];
   }
   ANISOCONTACT_INLINE double operator[](std::size_t l) const {
     double x;
@@ -94,6 +96,13 @@ class alignas(W * sizeof(double)) Lanes {
   using Register = typename detail::RegisterOf<W>::type;
   using Anywhere = typename detail::RegisterOf<W>::anywhere;
   static constexpr std::size_t count = L * sizeof(double) / sizeof(Register);
+  /// Number of r_ in W numbers: one, or W without vectors.
+  static constexpr std::size_t parts = W * sizeof(double) / sizeof(Register);
+
+  /// Where r_[c] is in memory where W numbers follow those before in a distance of `stride`.
+  ANISOCONTACT_INLINE static constexpr std::size_t offset(std::size_t c, std::size_t stride) {
+    return c / parts * stride + c % parts;
+  }
 
   template <class F>
   ANISOCONTACT_INLINE static Lanes each(const Lanes& x, const Lanes& y, const F& f) {
