@@ -99,10 +99,9 @@ def _check_answer(found: PointResult, state: PointState, who: str) -> None:
 
     A stress that is none is that of a trial which went too far: the increment is cut.
     """
-    flat = len(found.stress), -1
     known = np.isfinite(state.strain).all(axis=(1, 2)) & np.isfinite(found.stress).all(axis=(1, 2))
     for part, values in {"tangent": found.tangent, **found.after}.items():
-        if not np.isfinite(values.reshape(flat)[known]).all():
+        if not np.isfinite(values[known]).all():
             raise InputError(f"{who} returned numbers that are not finite", part)
     pairs = (("stress", found.stress, (0, 2, 1)), ("tangent", found.tangent, (0, 1, 2, 4, 3)))
     for part, values, other in pairs:

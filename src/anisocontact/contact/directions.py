@@ -76,9 +76,9 @@ def facet_directions(
             "f",
         )
     comm = model.mesh.comm
+    fields = np.moveaxis(values, 1, 0) if values.ndim == 3 else [values]
     points, first, *second = (
-        np.concatenate(comm.allgather(part)).reshape(-1)
-        for part in (x, *np.moveaxis(values.reshape(len(x), -1, 3), 1, 0))
+        np.concatenate(comm.allgather(part)).reshape(-1) for part in (x, *fields)
     )
     more = {"second_vectors": second[0]} if second else {}
     return make_directions(

@@ -59,7 +59,7 @@ class BodyGrid:
         ones: Floats = np.ones(self._stress.x.array.shape)
         self._share = 1.0 / self._summed(ones).clip(1.0)
         cells, kinds, self._points = dolfinx.plot.vtk_mesh(model.space)
-        rows = cells.reshape(len(kinds), -1)
+        rows = cells.reshape(len(kinds), 1 + model.space.dofmap.dof_layout.num_dofs)
         if model.idealisation.dim == 3:
             rows = _turned_outwards(rows, self._points)
         nodes = rows[:, 1:]
