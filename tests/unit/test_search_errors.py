@@ -75,6 +75,10 @@ MISTAKES: list[tuple[Callable[[], object], str]] = [
         "hint: shape (2,) given, (1,) needed",
     ),
     (
+        lambda: square().project([[0, 0, 1]], named=[0, 0]),
+        "named: shape (2,) given, (1,) needed",
+    ),
+    (
         lambda: square().project([[0, 0, 1]], max_distance=-1.0),
         "max_distance: given -1.0, must not be negative",
     ),

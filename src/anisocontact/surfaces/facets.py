@@ -181,14 +181,15 @@ class FacetSurface(Remade):
         Args:
             x: Points, (n, 3) [length].
             hint: Projections of the same points some time ago, or the facets, (n,): it takes less
-                time. The closest point does not depend on it.
+                time. The closest point does not depend on it but where two places are equally near
+                to rounding.
             max_distance: Largest distance of interest, one or (n,) [length]: points farther away
                 are `beyond`.
             exclude: Facets that do not count, for each point; a point nearest to a side or
                 vertex that an excluded facet shares is `off`.
             threads: Number of threads; all processors if left out.
-            named: Facet of each point that is named where several share the closest point, (n,);
-                that of the hint if left out.
+            named: Facet that is named for each point where facets share the closest point and are
+                turned alike from x, (n,); that of the hint if left out.
 
         Returns:
             The projections.
@@ -199,7 +200,7 @@ class FacetSurface(Remade):
         x = points(x, 3)
         n = x.shape[0]
         facet, start = _hint(hint, n)
-        named = np.zeros(0, np.int32) if named is None else named
+        named = np.zeros(0, np.int32) if named is None else _of_each(named, n, "named")
         limit = np.atleast_1d(np.asarray(max_distance, dtype=np.float64))
         if limit.shape not in {(1,), (n,)}:
             raise InputError(
@@ -370,7 +371,13 @@ def _hint(hint: FacetProjections | npt.ArrayLike | None, n: int) -> tuple[Locals
     if isinstance(hint, FacetProjections):
         facet, start = hint.facet, hint.xi
     else:
-        facet, start = np.ascontiguousarray(np.atleast_1d(hint), dtype=np.int32), np.zeros((0, 2))
-    if facet.shape != (n,):
-        raise InputError(f"shape {facet.shape} given, ({n},) needed", field="hint")
-    return facet, start
+        facet, start = np.atleast_1d(hint), np.zeros((0, 2))
+    return _of_each(facet, n, "hint"), start
+
+
+def _of_each(facet: npt.ArrayLike, n: int, field: str) -> Locals:
+    """A facet for each of n points."""
+    found: Locals = np.ascontiguousarray(facet, dtype=np.int32)
+    if found.shape != (n,):
+        raise InputError(f"shape {found.shape} given, ({n},) needed", field=field)
+    return found

@@ -87,7 +87,8 @@ class FacetSurface {
     return surface::facet_jet(kind(f), nodes(f), xi[0], xi[1]);
   }
 
-  /// Closest point of the surface to x. The hint changes the time it takes, never the point.
+  /// Closest point of the surface to x. The hint changes the time it takes, and which of places that are
+  /// equally near to rounding is found.
   FacetProjection closest(const Vec3<double>& x, const Query& q = {}) const noexcept {
     FacetProjection out;
     out.status = Status::failed;

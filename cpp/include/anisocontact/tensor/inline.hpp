@@ -83,8 +83,9 @@ void with_widest(const F& f) {
     detail::call_narrow(f);
 }
 
-/// The same with results that have the same digits whatever is compiled beside: where there are no fused
-/// products to choose, a number does not depend on what else is asked for.
+/// The same with results that have the same digits whatever is compiled beside: where there are no
+/// fused products to choose, a number does not depend on what else is asked for. Where the compiler
+/// may fuse everywhere, as with ANISOCONTACT_NATIVE and beside x86-64, the last digits may.
 template <class F>
 void with_unfused(const F& f) {
   if (wide_registers)
