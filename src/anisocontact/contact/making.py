@@ -15,7 +15,7 @@ from anisocontact.base.fenicsx import facet_keys, facet_sides
 from anisocontact.contact.analytic import AnalyticMaster
 from anisocontact.contact.defaults import takes_nodes
 from anisocontact.contact.facet_master import FacetMaster
-from anisocontact.contact.facet_mesh import facet_mesh, node_positions
+from anisocontact.contact.facet_mesh import facet_mesh
 from anisocontact.contact.master import Master
 from anisocontact.contact.mortar_master import MortarMaster
 from anisocontact.contact.penalty import facet_size
@@ -186,7 +186,7 @@ def _slave_nodes(
         raise InputError(text, "pass")
     mesh = facet_mesh(model.space, facets, sweep, order)
     whole = around_own_nodes(model.space, mesh, facet_keys(model.mesh, np.sort(facets)))
-    x = whole.far.everywhere(node_positions(model.space))
+    x = whole.far.everywhere(model.positions)
     if sweep is None:
         found = nodes_of_facets(whole, x, comm, towards)
     else:

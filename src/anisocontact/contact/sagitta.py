@@ -10,7 +10,6 @@ from anisocontact.contact.facet_mesh import (
     FacetShapes,
     facet_corners,
     facet_mesh,
-    node_positions,
 )
 from anisocontact.contact.sweep import Sweep
 from anisocontact.mesh import Model
@@ -43,7 +42,7 @@ def sagitta(model: Model, group: str) -> float:
     """
     sweep = Sweep.of(model)
     mesh = facet_mesh(model.space, model.facets(group), sweep)
-    x = node_positions(model.space)
+    x = model.positions
     heights = _heights(mesh, x if sweep is None else sweep.positions(x))
     everywhere = np.concatenate(model.mesh.comm.allgather(heights))
     return float(np.median(everywhere)) if len(everywhere) else 0.0

@@ -99,7 +99,7 @@ class WholeGroups:
         used = np.unique(
             np.concatenate([np.zeros(0, int), *(g.cells.ravel() for g in own.values())])
         )
-        x = node_positions(self.model.space)
+        x = self.model.positions
         everywhere = comm.allgather((mine, numbers[used], x[used]))
         found, first = np.unique(np.concatenate([one[1] for one in everywhere]), return_index=True)
         self.nodes = found.astype(np.int64)

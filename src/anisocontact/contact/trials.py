@@ -76,6 +76,9 @@ class Trials:
         Args:
             augmentation: How exactly the contact is to hold.
             size: Facet size, length.
+
+        Raises:
+            InputError: As of `make_multipliers`.
         """
         self._ways = make_multipliers(augmentation, self.interface, size, self._comm)
         self._multipliers = self._ways[USUAL]
