@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import select
 import shutil
 import tomllib
 from types import SimpleNamespace
@@ -25,8 +26,8 @@ from anisocontact.results import Results
 from anisocontact.results.beside import report_beside
 from anisocontact.results.deformed import SHOWN, magnification
 from anisocontact.results.report import maps, shape, write_report
-from anisocontact.results.report.halves import attempts
 from anisocontact.results.report.run_data import RunData
+from anisocontact.results.report.shared_work import attempts
 from anisocontact.results.solids import Solid
 from anisocontact.results.writer import Writer
 
@@ -289,11 +290,26 @@ def test_a_report_is_drawn_beside_the_run(run, tmp_path):
     assert pictures() == first
 
 
-def test_half_of_the_work_is_done_by_a_copy():
-    """Every second one; by this process where a copy dies."""
-    here, whose = os.getpid(), lambda: str(os.getpid() == here)
-    assert attempts([whose] * 4, forks=True) == ["True", "False"] * 2
-    assert attempts([whose] * 3, forks=False) == ["True"] * 3
+def test_work_is_shared_with_a_copy():
+    """Each piece is done once and told in its place, by whoever is free; all here if a copy dies.
+
+    The first piece waits for what the second one does, which one process alone would do after it.
+    """
+    ours, theirs = os.pipe()
+    here = os.getpid()
+
+    def waits():
+        ready, _, _ = select.select([ours], [], [], 20.0)
+        return os.read(ours, 1).decode() if ready else "alone"
+
+    def frees():
+        os.write(theirs, b"x")
+        return "frees"
+
+    assert attempts([waits, frees, lambda: "last"], forks=True) == ["x", "frees", "last"]
+    os.close(ours)
+    os.close(theirs)
+    assert attempts([lambda: str(os.getpid() == here)] * 3, forks=False) == ["True"] * 3
 
     def dying():
         if os.getpid() != here:

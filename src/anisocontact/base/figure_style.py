@@ -58,6 +58,7 @@ def png(figure: Figure) -> bytes:
     out = io.BytesIO()
     canvas: Any = FigureCanvasAgg(figure)
     told: Any = {"Software": None}
+    _leave_out_spines(figure)
     with warnings.catch_warnings():
         # letters of a name that the font has not are drawn as boxes
         warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from font", UserWarning)
@@ -72,6 +73,16 @@ def png(figure: Figure) -> bytes:
         pil_kwargs=quick,
     )
     return out.getvalue()
+
+
+def _leave_out_spines(figure: Figure) -> None:
+    """Let a layout be found without spines, which lie on the border of their axes.
+
+    Each would make the ticks of its axis once more to say where it ends.
+    """
+    for axes in figure.axes:
+        for spine in axes.spines.values():
+            spine.set_in_layout(False)
 
 
 def save(figure: Figure, path: Path) -> None:

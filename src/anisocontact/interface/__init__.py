@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from typing import TYPE_CHECKING, Any
 
+from anisocontact.base.statuses import STATUS
 from anisocontact.interface.augmentation import Augmentation
 from anisocontact.interface.contact_law import VECTOR_FORMS, AdhesionAndFriction, ContactLaw
 from anisocontact.interface.interface import Interface
@@ -13,7 +14,6 @@ from anisocontact.interface.python_law import PythonLaw
 from anisocontact.interface.states import (
     FAILURE,
     STATE,
-    STATUS,
     Response,
     SlaveSurface,
     State,

@@ -11,8 +11,6 @@ from anisocontact import _core
 from anisocontact.base.array_types import Codes, Flags, Floats
 from anisocontact.base.errors import InputError
 
-#: Names of the codes of a point's status.
-STATUS = ("open", "stick", "slip")
 #: What could not be done at a point, by its failure code.
 FAILURE = (
     "",

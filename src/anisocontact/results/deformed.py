@@ -5,6 +5,7 @@ A program of its own that imports what it draws with and nothing else.
 
 from __future__ import annotations
 
+import gc
 import json
 import math
 import sys
@@ -166,7 +167,8 @@ def _main() -> None:
     from anisocontact.results.scene import Scene
     from anisocontact.results.solids import read_solid
 
-    scene = Scene(1200, 800)
+    gc.disable()  # what is made here lives as long as the program
+    scene = Scene()
     _get_ready(scene)
     asked = sys.stdin.read()
     if not asked:
@@ -174,7 +176,7 @@ def _main() -> None:
     source, pictures = json.loads(asked)
     grid = read_solid(Path(source))
     for name, picture, unit, length, colours in pictures:
-        scene.clear()
+        scene.begin(1200, 800)
         _add(scene, grid, SHOWN[name], unit, length, bytes.fromhex(colours))
         scene.write(picture)
 
@@ -185,7 +187,8 @@ def _get_ready(scene: Scene) -> None:
 
     shown = SHOWN["deformed"]
     grid = one_cell().with_values(shown.array, np.eye(8, 3))
-    _add(scene, grid, shown, "", "", bytes(range(256)) * 4)
+    scene.begin(60, 40)
+    _add(scene, grid, shown, "", "", b"\xff" * 1024)
     scene.render()
 
 

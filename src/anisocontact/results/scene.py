@@ -40,27 +40,29 @@ _OF_AXES, _OF_BAR, _OF_HEADING = 11.0, 20, 24
 
 
 class Scene:
-    """A window without a display; one picture after the other is drawn in it.
+    """A window without a display; one picture after the other is drawn in it."""
 
-    Args:
-        width: Width of the pictures, pixels.
-        height: Their height.
-    """
-
-    def __init__(self, width: int, height: int) -> None:
+    def __init__(self) -> None:
         self._renderer: Any = vtkRenderer()
         self._renderer.SetBackground(1.0, 1.0, 1.0)
+        # what one can look through has one colour, so that its order means nothing
+        self._renderer.UseOITOff()
         self._lights: Any = vtkLightKit()
         self._lights.AddLightsToRenderer(self._renderer)
         self._window: Any = vtkRenderWindow()
         self._window.SetOffScreenRendering(1)
         self._window.SetMultiSamples(4)
-        self._window.SetSize(width, height)
         self._window.AddRenderer(self._renderer)
 
-    def clear(self) -> None:
-        """Begin a picture."""
+    def begin(self, width: int, height: int) -> None:
+        """Begin a picture.
+
+        Args:
+            width: Its width, pixels.
+            height: Its height.
+        """
         self._renderer.RemoveAllViewProps()
+        self._window.SetSize(width, height)
 
     def add_coloured(
         self,

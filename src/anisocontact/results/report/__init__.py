@@ -13,10 +13,10 @@ from anisocontact.results.deformed import SHOWN
 from anisocontact.results.files import write_text
 from anisocontact.results.no_energy import energies_by_name
 from anisocontact.results.report import curves, maps, shape
-from anisocontact.results.report.halves import attempts
 from anisocontact.results.report.labels import labelled
 from anisocontact.results.report.page import Picture, page
 from anisocontact.results.report.run_data import RunData
+from anisocontact.results.report.shared_work import attempts
 
 if TYPE_CHECKING:
     import subprocess

@@ -11,7 +11,7 @@ from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.patches import Patch
 
 from anisocontact.base.figure_style import STATUS_COLOURS, new_figure, plain
-from anisocontact.interface import STATUS
+from anisocontact.base.statuses import STATUS
 from anisocontact.results.report.along import pressure_along, traction_along
 from anisocontact.results.report.frame import ContactView
 from anisocontact.results.report.run_data import Moment, RunData

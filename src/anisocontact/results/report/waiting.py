@@ -8,16 +8,18 @@ import os
 import sys
 from pathlib import Path
 
-from anisocontact.base.figure_style import new_figure, png
-from anisocontact.results.report import shape, write_report
-
 __all__: list[str] = []
 
 
 def _main() -> None:
+    gc.disable()  # there is nothing to be collected in what is imported
+    from anisocontact.results.report import shape, write_report
+
     vtk = shape.start_vtk()
     try:
         _get_ready()
+        gc.freeze()
+        gc.enable()
         if folder := sys.stdin.buffer.read():
             failed = write_report(Path(os.fsdecode(folder)), vtk=vtk, forks=sys.platform == "linux")
             print(json.dumps(failed))
@@ -26,12 +28,12 @@ def _main() -> None:
 
 
 def _get_ready() -> None:
-    """Draw a figure, for which Matplotlib imports what pictures need."""
+    """Draw axes, for which Matplotlib imports what pictures need."""
+    from anisocontact.base.figure_style import new_figure, png
+
     figure = new_figure(1.0, 1.0)
-    axes = figure.subplots()
-    figure.colorbar(axes.tripcolor([0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 2.0]), ax=axes)
+    figure.subplots()
     png(figure)
-    gc.freeze()  # there is nothing to be collected in what was imported
 
 
 if __name__ == "__main__":
