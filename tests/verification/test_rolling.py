@@ -123,7 +123,9 @@ def test_a_whole_facet_takes_few_iterations(tmp_path: Path) -> None:
 
     The contact is two facets long: displacements that are extrapolated press the points that the
     roller leaves and lift those that it comes to. From these 14 iterations an increment were
-    needed; with the roller extrapolated and the slab as it is six, and as many for each way.
+    needed; with the roller extrapolated and the slab as it is six, and as many for each way. It
+    rolls so from the fourth facet on: until then points leave that were pressed under a roller that
+    was held, and stuck with a shear of 2 % of the pressure.
 
     Nothing drives or brakes the roller: shear is at most 1 % of the pressure. Points that came to
     it along a straight way would have 4 %, a quarter of their own pressure.
@@ -132,7 +134,28 @@ def test_a_whole_facet_takes_few_iterations(tmp_path: Path) -> None:
     path.write_text(CASE.format(planned=8, way=8 * 0.125, cells=[24, 4]))
     solver = build(load(path)).solver
     found = list(islice((part.iterations for part in solver.run()), BEFORE + 8))
-    assert max(found[BEFORE + 1 :]) <= 9
+    assert max(found[BEFORE + 3 :]) <= 9
     (contact,) = solver.problem.contacts
     shear = np.abs(contact.state["stored"][:, 0]) / RADIUS
     assert shear.max() <= 0.01 * contact.state["pressure"].max()
+
+
+def test_what_is_freed_later_changes_nothing_before(tmp_path: Path) -> None:
+    """Requirement: an increment is the same whatever steps follow, as a run that goes on assumes.
+
+    A roller that the case lets turn in a later step took away the friction of the points that came
+    to it while it was held: the shear of the press was 15 % of what it is without that step.
+    """
+    path = tmp_path / "case.toml"
+    whole = CASE.format(planned=8, way=8 * 0.125, cells=[24, 4])
+    states = []
+    for text in (whole, whole[: whole.rindex("[[step]]")]):
+        path.write_text(text)
+        solver = build(load(path)).solver
+        for _ in islice(solver.run(), BEFORE):
+            pass
+        (contact,) = solver.problem.contacts
+        states.append(contact.state.copy())
+    assert np.array_equal(states[0]["stored"], states[1]["stored"])
+    assert np.array_equal(states[0]["pressure"], states[1]["pressure"])
+    assert np.abs(states[0]["stored"]).max() > 0.01 * RADIUS * states[0]["pressure"].max()

@@ -71,7 +71,7 @@ class RigidBody:
     Attributes:
         accepted: Pose of the accepted state.
         trial: Pose of the state that is tried.
-        turns_freely: Whether a step leaves it free to turn, so that points may come to it as to a
+        turns_freely: Whether the step leaves it free to turn, so that points may come to it as to a
             wheel.
 
     Raises:

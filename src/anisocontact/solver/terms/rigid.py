@@ -101,17 +101,14 @@ class RigidBodies(Term):
     def rehearsed(self, steps: Iterable[Step]) -> Iterator[list[SupportedFrame]]:
         """What each of the steps holds of the motion of faces, without solving.
 
-        Bodies learn from it whether a step leaves them free to turn.
-
         Raises:
             InputError: See `begin`.
         """
         drives = {body: Drive(body) for body in self.bodies}
         for step in steps:
             self._known(step)
-            for body, drive in drives.items():
+            for drive in drives.values():
                 drive.begin(step, drive.values(1.0), np.zeros(6))
-                body.turns_freely |= not drive.prescribed[3:].all()
             yield self._frames(drives)
 
     @override
@@ -119,7 +116,9 @@ class RigidBodies(Term):
         self._known(step)
         reactions = self._accepted_outside + self._accepted_of_faces - self._accepted_load
         for body, reaction in zip(self.bodies, reactions, strict=True):
-            self._drives[body].begin(step, body.accepted.values, reaction)
+            drive = self._drives[body]
+            drive.begin(step, body.accepted.values, reaction)
+            body.turns_freely = not drive.prescribed[3:].all()
 
     def prescribed_turn(self, step: Step) -> float:
         """Largest rotation along the step that is prescribed of a body or facet group, radian."""
