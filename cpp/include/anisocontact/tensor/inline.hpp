@@ -27,6 +27,9 @@ ANISOCONTACT_INLINE constexpr void each(const F& f) {
 #define ANISOCONTACT_WIDE [[gnu::noinline, gnu::flatten, gnu::target("avx2,fma")]]
 /// Without fused products, which round once where a product and a sum round twice.
 #define ANISOCONTACT_UNFUSED [[gnu::noinline, gnu::flatten, gnu::target("avx2")]]
+/// What other processors run: by itself too, for code that is compiled for wide registers holds code that
+/// is compiled twice, and would hold this half of it again.
+#define ANISOCONTACT_NARROW [[gnu::noinline]]
 #define ANISOCONTACT_HAS_WIDE
 /// Whether this processor has registers of four numbers. Which code runs depends on the machine
 /// alone, so that results are the same from run to run.
@@ -37,6 +40,7 @@ inline const bool wide_registers = [] {
 #else
 #define ANISOCONTACT_WIDE
 #define ANISOCONTACT_UNFUSED
+#define ANISOCONTACT_NARROW
 inline constexpr bool wide_registers = false;
 #endif
 
@@ -69,7 +73,7 @@ ANISOCONTACT_UNFUSED void call_unfused(const F& f) {
   f();
 }
 template <class F>
-void call_narrow(const F& f) {
+ANISOCONTACT_NARROW void call_narrow(const F& f) {
   f();
 }
 }  // namespace detail
