@@ -60,8 +60,8 @@ constexpr std::size_t total(std::size_t n, std::size_t m) { return n + m; }
 /// Begins with a line of the cache, so that wide registers do not read across two of them.
 struct alignas(64) Row : std::array<double, 3 * 2 * most_nodes> {};
 using Rows = std::array<Row, 3>;
-/// One number for each node.
-struct alignas(64) NodeRow : std::array<double, 2 * most_nodes> {};
+/// One number for each node of a facet.
+struct alignas(64) NodeRow : std::array<double, most_nodes> {};
 
 /// Columns of some nodes, one after the other: rows of the changes, times area, of what the values of
 /// the shape functions, their derivatives and their second derivatives are multiplied with.
@@ -114,22 +114,24 @@ class Columns {
   template <class Slaves, class Masters, class Length>
   ANISOCONTACT_INLINE void own(Slaves slaves, Masters masters, Length length, bool merged,
                                ColumnRows& out) noexcept {
-    const auto nodes = total(slaves, masters);
-    put_shapes(nodes, 0, slaves, s_.slave, Input::slave, slave_input(0));
-    put_shapes(nodes, slaves, masters, s_.master, Input::position, tangent_input(0));
-    if (merged)
-      put_shapes(nodes, slaves, masters, s_.before, Input::before_position, before_input(0));
+    put_shapes(slaves, s_.slave, Input::slave, slave_input(0));
+    put_shapes(masters, s_.master, Input::position, tangent_input(0));
+    if (merged) put_shapes(masters, s_.before, Input::before_position, before_input(0));
     for (std::size_t f = 0; f < 2; ++f) {
       const auto& by = d_.friction[f].by;
+      double* const to = friction_[f].data();
+      spread(slaves, by, Inputs<0, 7, 8>{}, to);
       if (merged)
-        spread(nodes, by, Inputs<0, 1, 2, 3, 7, 8, 4, 5, 6>{}, friction_[f].data());
+        spread(masters, by, Inputs<1, 2, 3, 4, 5, 6>{}, to + entries(slaves));
       else
-        spread(nodes, by, Inputs<0, 1, 2, 3, 7, 8>{}, friction_[f].data());
+        spread(masters, by, Inputs<1, 2, 3>{}, to + entries(slaves));
     }
     const std::size_t forms = d_.interior ? PairSlopes::first_beside : PairSlopes::near_forms;
-    for (std::size_t f = 0; f < forms; ++f)
-      spread(nodes, d_.near[f].by, Inputs<0, 1, 2, 3>{}, near_[f].data());
-    put_growth(nodes, length);
+    for (std::size_t f = 0; f < forms; ++f) {
+      spread(slaves, d_.near[f].by, Inputs<0>{}, near_[f].data());
+      spread(masters, d_.near[f].by, Inputs<1, 2, 3>{}, near_[f].data() + entries(slaves));
+    }
+    put_growth(slaves, length);
     force(length, out.acting[0]);
     for (std::size_t j = 0; j < 2; ++j) {
       if (d_.interior)
@@ -144,7 +146,7 @@ class Columns {
   /// Columns of the nodes of the facet on which the history was committed.
   template <class Masters, class Length>
   ANISOCONTACT_INLINE void before(Masters masters, Length length, ColumnRows& out) noexcept {
-    put_shapes(masters, 0, masters, s_.before, Input::before_position, before_input(0));
+    put_shapes(masters, s_.before, Input::before_position, before_input(0));
     for (std::size_t f = 0; f < 2; ++f)
       spread(masters, d_.friction[f].by, Inputs<4, 5, 6>{}, friction_[f].data());
     for (std::size_t q = 0; q < PairSlopes::acting; ++q)
@@ -159,22 +161,19 @@ class Columns {
   template <std::size_t... I>
   using Inputs = std::index_sequence<I...>;
 
-  /// Writes the shape functions that an input and the two after `first_slope` follow: those of some of
-  /// the nodes in the columns, from the first on, and zeros for the others.
-  template <class Nodes, class Count>
-  ANISOCONTACT_INLINE void put_shapes(Nodes nodes, std::size_t first, Count count,
-                                      const NodalShape& s, Input value,
+  /// Writes the shape functions of some nodes that an input and the two after `first_slope` follow.
+  template <class Nodes>
+  ANISOCONTACT_INLINE void put_shapes(Nodes nodes, const NodalShape& s, Input value,
                                       std::size_t first_slope) noexcept {
     NodeRow &v = shapes_[index(value)], &v1 = shapes_[first_slope], &v2 = shapes_[first_slope + 1];
-    for (NodeRow* row : {&v, &v1, &v2}) std::fill_n(row->data(), nodes, 0.0);
-    for (std::size_t a = 0; a < count; ++a) {
-      v[first + a] = s.N[a];
-      v1[first + a] = s.dN[a][0];
-      v2[first + a] = s.dN[a][1];
+    for (std::size_t a = 0; a < nodes; ++a) {
+      v[a] = s.N[a];
+      v1[a] = s.dN[a][0];
+      v2[a] = s.dN[a][1];
     }
   }
 
-  /// Writes a form in some inputs by the nodes: component by component, then side by side.
+  /// Writes a form by the nodes that some inputs follow: component by component, then side by side.
   template <std::size_t... I, class Nodes, class By>
   ANISOCONTACT_INLINE void spread(Nodes nodes, const By& by, Inputs<I...>,
                                   double* to) const noexcept {
@@ -188,16 +187,15 @@ class Columns {
   }
 
   /// Change of the area with the nodes of the slave.
-  template <class Nodes, class Length>
-  ANISOCONTACT_INLINE void put_growth(Nodes nodes, Length length) {
-    if (!s_.area.current) {
-      std::fill_n(growth_.data(), length, 0.0);
-      return;
-    }
+  template <class Slaves, class Length>
+  ANISOCONTACT_INLINE void put_growth(Slaves slaves, Length length) {
+    const std::size_t own = s_.area.current ? entries(slaves) : 0;
+    std::fill_n(growth_.data() + own, length - own, 0.0);
+    if (!s_.area.current) return;
     std::array<Vec3<double>, inputs> by;
     by[slave_input(0)] = s_.area.weight * s_.area.tangents[1].cross(cross_);
     by[slave_input(1)] = s_.area.weight * cross_.cross(s_.area.tangents[0]);
-    spread(nodes, by, Inputs<7, 8>{}, growth_.data());
+    spread(slaves, by, Inputs<7, 8>{}, growth_.data());
   }
 
   template <class Length>
@@ -245,7 +243,7 @@ class Columns {
   const PairShapes& s_;
   Vec3<double> cross_;  ///< of the tangents of the slave; its direction where the area follows
   double area_;
-  std::array<NodeRow, inputs> shapes_;  ///< that each input follows, of the nodes in the columns
+  std::array<NodeRow, inputs> shapes_;  ///< that each input follows
   std::array<Row, 2> friction_;
   std::array<Row, PairSlopes::near_forms> near_;
   Row growth_;
