@@ -114,6 +114,22 @@ def test_warning_says_the_worst_of_the_run(tmp_path, case_text):
     assert "was up to 15% of the facet size, at time 1;" in said
 
 
+@pytest.mark.parametrize("strategy", ["direct", "condensed"])
+def test_summary_says_what_is_out_of_balance(tmp_path, case_text, strategy):
+    """A tolerance that accepts what is no equilibrium is a warning of the summary as well.
+
+    Source: the limit of 1e-4 of the forces at work; with 1e30 every state is taken as it comes.
+    """
+    options = f'[solver]\nstrategy = "{strategy}"\noptions = {{ snes_atol = 1e30 }}\n'
+    (tmp_path / "case.toml").write_text(case_text + options)
+    done = run_case(tmp_path / "case.toml", tmp_path / "out", pictures=False)
+    done.writer.close("done")
+    summary = done.writer.summary
+    assert summary["unbalanced"][0] == done.accepted[0].time
+    (said,) = [line for line in summary["warnings"] if "out of balance" in line]
+    assert f"in {len(summary['unbalanced'])} increments or parts" in said
+
+
 def test_summary_is_the_last_increment(run):
     """Numbers of the file against those of the solver, the same doubles."""
     summary, last = run.results.summary, run.accepted[-1]

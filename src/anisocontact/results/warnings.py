@@ -11,6 +11,7 @@ from anisocontact.contact import Contact, coarse_slaves, doubtful_sides
 from anisocontact.contact.hints import MISSED, faceted, jumping_rules, overlapping, pressed_aside
 from anisocontact.interface import STATUS
 from anisocontact.solver import Accepted
+from anisocontact.solver.stepping.alarms import UNBALANCED
 from anisocontact.solver.stepping.turned import MARGIN
 from anisocontact.solver.system.imbalance import LARGE
 from anisocontact.solver.system.rotations import CURE, WARNED
@@ -78,7 +79,7 @@ def worst_of_models(accepted: Accepted, before: Mapping[str, Any]) -> dict[str, 
         before: What this gave at the one before; empty at the start.
 
     Returns:
-        "turned", by body, "energy_residual" and "relaxed", as JSON can have them.
+        "turned", by body, "energy_residual", "relaxed" and "unbalanced", as JSON can have them.
     """
     turned = dict(before.get("turned", {}))
     for name, now in accepted.turned.items():
@@ -90,12 +91,13 @@ def worst_of_models(accepted: Accepted, before: Mapping[str, Any]) -> dict[str, 
     if not left or share > left["worst_share"]:
         cause = accepted.imbalance.cause
         left |= {"worst_share": share, "worst_time": accepted.time, "cause": cause}
-    relaxed = [*before.get("relaxed", [])] + [accepted.time] * accepted.relaxed
-    return {"turned": turned, "energy_residual": left | {"share": share}, "relaxed": relaxed}
+    so = {"relaxed": accepted.relaxed, "unbalanced": accepted.residuals[-1] > UNBALANCED}
+    times = {key: [*before.get(key, []), *[accepted.time] * bool(now)] for key, now in so.items()}
+    return {"turned": turned, "energy_residual": left | {"share": share}, **times}
 
 
 def of_models(summary: Mapping[str, Any]) -> list[str]:
-    """Bodies that turned beyond small strain, energies out of balance, increments with penalties.
+    """Bodies that turned beyond small strain, energies and forces out of balance, penalties.
 
     Args:
         summary: Content of the summary, with what `worst_of_models` gave.
@@ -115,6 +117,11 @@ def of_models(summary: Mapping[str, Any]) -> list[str]:
         found.append(
             f"penalties held in {len(relaxed)} increments or parts, from time {relaxed[0]:.4g} on, "
             "as multipliers did not converge: bodies overlap there by the penetrations of contacts"
+        )
+    if unbalanced := summary.get("unbalanced"):
+        found.append(
+            f"forces are out of balance in {len(unbalanced)} increments or parts, from time "
+            f"{unbalanced[0]:.4g} on: the options snes_rtol and snes_atol let them be"
         )
     return found
 
