@@ -229,10 +229,15 @@ class Multipliers:
             pressure: N, (n,), stress.
             gap: Gap of the trial, (n,), length.
         """
-        way = np.maximum(start["gap"] - gap, SMALLEST * start["gap"])
-        closing = self.tangential & (start["gap"] > 0.0)
         stands_for = pressure / (self._penalties[0] * self.factors[0])
-        return np.asarray(np.where(closing, stands_for / np.where(closing, way, 1.0), np.inf))
+        way = self.way(start, gap)
+        none = np.full(len(way), np.inf)
+        return np.asarray(np.divide(stands_for, way, out=none, where=way > 0.0))
+
+    def way(self, start: State, gap: Floats) -> Floats:
+        """Ways of the gaps that close, zero for others, (n,), length; as of `closeness`."""
+        way = np.maximum(start["gap"] - gap, SMALLEST * start["gap"])
+        return np.asarray(np.where(self.tangential & (start["gap"] > 0.0), way, 0.0))
 
     def coming_to(self, body: RigidBody | None, start: State) -> State:
         """What the trials start from where points come to a rigid body.

@@ -205,6 +205,9 @@ class Semismooth(Multipliers):
             compliant = 1.0 - step.kept[:, 1:]
             compliant[overshot, 0] = 1.0 / ratio[overshot, 1]
             more += compliant * step.now.vector(trial["stored"]) / stiffness
+            # the way of a gap, which friction is divided by, does not grow with what is no motion
+            way = self.way(step.start, step.answer.gap)[weak] * part[weak]
+            more[weak] -= (deep[weak] / way)[:, None] * held[weak]
             state["gap"][overshot] = 0.0
             slip += np.where(step.remembers, step.now.chord(more, trial["spin"]), 0.0)
         slip[apart] = 0.0

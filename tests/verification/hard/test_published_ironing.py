@@ -57,6 +57,23 @@ displacement = {{ "die.left" = {{ x = 4.8 }} }}
 """
 
 
+@pytest.mark.parametrize("height", [7.0, 7.05])
+def test_first_touch(to_the_end: Callable[..., Any], height: float) -> None:
+    """The die comes to the slab from a gap, and its points stick from the touch on.
+
+    Requirement: at most five corrections, the last of which leaves 3e-4 of the residual: they are
+    exact but for the share of a violation that multipliers leave, 1e-4. Friction is divided by the
+    way of the gap; with corrections in which a violation of no gap lengthens that, the last one
+    leaves 2e-3 in the lower place, and it takes six.
+    """
+    text = CASE.format("slab.top", "die.outer").partition('[[step]]\nname = "slide"')[0]
+    text = text.replace("increments = 10", "increments = 1").replace("y = -1 ", "y = -0.1 ")
+    run = to_the_end(text.replace("3.6, 7, 0", f"3.6, {height}, 0"))
+    (part,) = run.accepted
+    assert part.iterations <= 5
+    assert part.residuals[-1] <= 3e-4 * part.residuals[-2]
+
+
 @pytest.mark.slow
 def test_both_sides_give_the_same_forces(to_the_end: Callable[..., Any]) -> None:
     """Forces of every increment, iterations, friction over pressure."""
