@@ -186,11 +186,6 @@ def test_few_rows_of_a_border_are_put_right() -> None:
     again.restore(factor.persistent())
     again.solve(b, y)
     np.testing.assert_array_equal(y.array_r, x.array_r)
-    assert factor.forget()
-    assert factor.renew(now, *none) == first
-    factor.solve(b, y)
-    np.testing.assert_allclose(y.array_r, x.array_r, atol=1e-5)
-    assert not factor.forget()
 
 
 def test_bodies_that_only_springs_hold_are_not_eliminated() -> None:

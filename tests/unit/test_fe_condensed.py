@@ -154,6 +154,26 @@ def test_gmres_ends_where_a_product_overflows(good: int) -> None:
     assert left == wanted[1]
 
 
+def test_gmres_ends_where_the_most_iterations_will_not_do() -> None:
+    """A cyclic shift: the residual stays what it was until the last of as many iterations as rows.
+
+    Requirement: with a trial of 5 iterations it ends after those where 20 would not do, and not
+    where a residual falls fast enough. Source: the shift is the standard example of a matrix on
+    which GMRES stagnates [Nachtigal Reddy Trefethen 1992].
+    """
+    start = np.zeros(30)
+    start[0] = 1.0
+    for trial, expected in ((None, 20), (5, 5)):
+        _, left, used = gmres(lambda v: (v, np.roll(v, 1)), start, 1e-3, 20, trial)
+        assert used == expected
+        assert left == pytest.approx(1.0)
+    rates = 1.0 + 0.3 * np.linspace(0.0, 1.0, 30)
+    wanted = gmres(lambda v: (v, rates * v), np.ones(30), 1e-12, 20)
+    found = gmres(lambda v: (v, rates * v), np.ones(30), 1e-12, 20, 5)
+    assert 5 < found[2] == wanted[2] < 20
+    np.testing.assert_array_equal(found[0], wanted[0])
+
+
 def test_bulk_is_recovered_only_when_asked_for(fe: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     """Reactions, energies and means need no solution with the interior; the displacement does."""
     from anisocontact.solver.strategies.condensed.parts import Condensation as Bulk

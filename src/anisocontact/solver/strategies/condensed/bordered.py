@@ -155,12 +155,6 @@ class BorderedLU:
             raise singular() from None
         return cost + per_border
 
-    def forget(self) -> bool:
-        """Factorise the border next time; whether it has only been put right last time."""
-        put_right = self._given is not None
-        self._updated = self._given = None
-        return put_right
-
     def _made(self, front: Front, held: Sparse) -> UpdatedFactor:
         """A factor of the border with what contacts do."""
         self._updated = self._given = None  # gives the memory back

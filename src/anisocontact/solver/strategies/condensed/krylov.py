@@ -17,6 +17,7 @@ def gmres[T: (np.float32, np.float64)](
     b: npt.NDArray[T],
     rtol: float,
     most: int,
+    trial: int | None = None,
 ) -> tuple[npt.NDArray[T], float, int]:
     """Generalised minimal residuals, preconditioned from the right, without restart.
 
@@ -27,6 +28,8 @@ def gmres[T: (np.float32, np.float64)](
         b: Right-hand side, (n,); its precision is that of the vectors.
         rtol: Norm of the residual over that of `b` at which to stop.
         most: Most iterations.
+        trial: Iterations after which it also ends where at the rate so far the most will not do;
+            it goes on if not given.
 
     Returns:
         Solution, norm of its residual over that of `b`, number of iterations.
@@ -60,11 +63,18 @@ def gmres[T: (np.float32, np.float64)](
         left = reduced.add(column) / norm
         if left <= rtol or length == 0.0:
             break
+        if trial is not None and used >= trial and _too_slow(left, used, rtol, most):
+            break
         basis[:, used] = w / length
     if not used:
         return np.zeros_like(b), 1.0, 0
     y = reduced.solution().astype(b.dtype)
     return product(1.0, directions[:, :used], y), left, used
+
+
+def _too_slow(left: float, used: int, rtol: float, most: int) -> bool:
+    """Whether a residual that goes on to fall as it has on average does not fall far enough."""
+    return most * math.log(left) > used * math.log(rtol)
 
 
 class _Reduced:

@@ -23,6 +23,8 @@ from anisocontact.solver.terms.term import SingularError
 _MATRIX, _BORDER = "lagged.matrix", "lagged.border."
 #: Most Krylov iterations of a correction before a new factor is made, if that costs no more.
 _PATIENCE = 20
+#: Share of them after which an old factor that leads nowhere is given up.
+_TRIAL = 0.5
 #: See `Wear`: the cost of a correction alone depends on how many points change.
 _LAST, _MARGIN = 10, 1.25
 
@@ -104,8 +106,6 @@ class LaggedFactor:
         fresh = self._due and self._renewed(tangent)
         self.krylov.append(0)
         found, left = self._corrected(tangent, b, rtol, fresh)
-        if not left <= rtol and self._factor is not None and self._factor.forget():
-            found, left = self._corrected(tangent, b, rtol, fresh)
         if not left <= rtol and not fresh and self._renewed(tangent):
             found, left = self._corrected(tangent, b, rtol, True)
         if not left <= rtol and self._single and self._doubled(tangent):
@@ -155,7 +155,8 @@ class LaggedFactor:
             return direction.array_r, product.array_r
 
         most = max(_PATIENCE, int(factor.solutions_per_factor))
-        found, left, used = gmres(step, b, rtol, most)
+        # of a new factor all that it can do is wanted: those in double precision are dearer
+        found, left, used = gmres(step, b, rtol, most, None if fresh else int(_TRIAL * most))
         self.krylov[-1] += used
         self._count(factor, spent + used, left, fresh)
         return found, left
