@@ -14,12 +14,17 @@ from anisocontact.contact import Contact
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import BoxSpec, build_box
+from anisocontact.mesh.idealisation import make_idealisation
 from anisocontact.results.paraview import slave_points
-from anisocontact.results.round_area import round_radius
+from anisocontact.results.round_area import FEWEST, Images, round_radius
 from anisocontact.surfaces import make_surface
 
 WHOLE = SimpleNamespace(
-    share=1.0, maps=[(np.eye(3), np.zeros(3))], of=lambda x: x, of_vectors=lambda v: v
+    share=1.0,
+    fewest=FEWEST,
+    maps=[(np.eye(3), np.zeros(3))],
+    of=lambda x: x,
+    of_vectors=lambda v: v,
 )
 
 
@@ -59,6 +64,29 @@ def test_a_disc_is_round(radius):
 )
 def test_others_are_not(inside):
     assert np.isnan(radius_of(inside))
+
+
+@pytest.mark.parametrize("rings", [3, 6, 9, 20])
+def test_a_disc_of_revolution_is_known_from_eight_facets_on(rings):
+    """A point of a section is a ring: with few of them half a ring is more than 6 % of the radius.
+
+    The disc ends in the middle between two nodes, so that the area of its rings is exact: the
+    radius is met to rounding.
+    """
+    width = 0.1
+    at = width * np.arange(rings)
+    inner, outer = np.maximum(at - 0.5 * width, 0.0), at + 0.5 * width
+    areas = np.pi * (outer**2 - inner**2)
+    contact = SimpleNamespace(
+        space=SimpleNamespace(mesh=SimpleNamespace(comm=MPI.COMM_SELF)),
+        points=np.column_stack([at, 0.0 * at, 0.0 * at]),
+        last=SimpleNamespace(normal=np.tile([0.0, 1.0, 0.0], (rings, 1))),
+        touching=lambda: areas,
+        counted=lambda: np.ones(rings, dtype=bool),
+    )
+    model = SimpleNamespace(idealisation=make_idealisation("axisymmetric"))
+    found = round_radius(contact, Images(SimpleNamespace(model=model), contact))
+    assert np.isnan(found) if rings < 8 else found == pytest.approx(outer[-1], rel=1e-12)
 
 
 @pytest.mark.parametrize("cell", ["tetrahedron", "hexahedron"])

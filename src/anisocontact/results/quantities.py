@@ -345,7 +345,7 @@ _TABLE = {
                 "of symmetry mirror; no number unless it is round: its two semi-axes (of the "
                 "ellipse with its second moments) differ by at most 15 %, no point of it with half "
                 "its own size is farther than 1.17 radii from its middle, and it is no smaller "
-                "than sixteen points",
+                "than sixteen points, in an axisymmetric section than four of the largest rings",
                 lambda c: c.radius(),
             ),
             ("elastic_slip", "length", "its mean over that area, a vector", lambda c: c.means[1]),

@@ -17,6 +17,9 @@ AXES, FARTHEST = 1.15, 1.17
 FEWEST = 16.0
 #: Sectors that stand for a body of revolution.
 SECTORS = 16
+#: Area over the largest of a ring from which on half a ring is at most 6 % of the radius: one ring
+#: has the whole edge of contact, which in space passes many points in different places.
+RINGS = 4.0
 #: Distance over the size of a facet below which nodes are in a plane.
 FLAT = 1e-4
 
@@ -33,11 +36,13 @@ class Images:
 
     def __init__(self, problem: Problem, contact: Contact) -> None:
         self.share = 1.0
+        #: Area over the largest of an image of a point from which on the radius is known.
+        self.fewest = FEWEST
         ideal = problem.model.idealisation
         #: Rotations and mirrors of space, each with a shift.
         self.maps: list[tuple[Floats, Floats]] = [(np.eye(3), np.zeros(3))]
         if ideal.turn.any():
-            self.share = 1.0 / SECTORS
+            self.share, self.fewest = 1.0 / SECTORS, SECTORS * RINGS
             self.maps = [ideal.image(k / SECTORS) for k in range(SECTORS)]
         elif ideal.dim == 3:
             self.maps = _mirrors(list(_planes(problem, contact)))
@@ -116,6 +121,6 @@ def round_radius(contact: Contact, images: Images) -> float:
     reach = np.linalg.norm(away, axis=1) + 0.5 * np.sqrt(areas)
     farthest = max(comm.allgather(float(reach.max(initial=0.0))))
     largest = max(comm.allgather(float(areas.max(initial=0.0))))
-    resolved = area >= FEWEST * largest
+    resolved = area >= images.fewest * largest
     is_round = resolved and major <= AXES * minor and farthest <= FARTHEST * radius
     return radius if is_round else float("nan")
