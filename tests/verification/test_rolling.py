@@ -124,7 +124,7 @@ def test_a_whole_facet_takes_few_iterations(tmp_path: Path) -> None:
     The contact is two facets long: displacements that are extrapolated press the points that the
     roller leaves and lift those that it comes to. From these 14 iterations an increment were
     needed; with the roller extrapolated and the slab as it is six, and as many for each way. It
-    rolls so from the fourth facet on: until then points leave that were pressed under a roller that
+    rolls so from the third facet on: until then points leave that were pressed under a roller that
     was held, and stuck with a shear of 2 % of the pressure.
 
     Nothing drives or brakes the roller: shear is at most 1 % of the pressure. Points that came to
