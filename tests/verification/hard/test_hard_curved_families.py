@@ -170,8 +170,7 @@ def test_curved_pairs(to_the_end, seed):
     Requirement: no cut; at most twenty iterations in an increment, which is one attempt and a way
     with smaller penalties. 97 of the hundred take twelve at most. Nodes in planes of symmetry,
     whose multipliers did not follow in Newton's step, took 90 iterations; a roll whose ends lie on
-    edges of the block, and are hollow there, stopped; one of order 2 whose end is within facets,
-    where vertices were held against what is facets off, took 22.
+    edges of the block, and are hollow there, stopped.
     """
     run = to_the_end(member(seed), most=MOST)
     assert not run.cuts

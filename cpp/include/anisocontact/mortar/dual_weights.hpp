@@ -155,9 +155,7 @@ struct HandOver {
 
 /// Shares lambda that nodes give, smooth in what is covered, and those q that they get,
 ///   lambda = t^2 (3 - 2 t), t = (kept - s) / (kept - given), s = D_i / D_i^whole over the largest,
-///   q_i = (1 - lambda_i) D_i / sum_k (1 - lambda_k) D_k .
-/// In equal shares a node of little weight, as a vertex of a facet of order 2, would get more than its own:
-/// its mean of the master would lie facets away.
+///   q_i = (1 - lambda_i) / sum_k (1 - lambda_k) .
 inline HandOver shares_handed_over(const Eigen::VectorXd& per_whole, const Eigen::VectorXd& area) {
   HandOver out;
   const Eigen::VectorXd covered = area.cwiseProduct(per_whole);
@@ -165,8 +163,8 @@ inline HandOver shares_handed_over(const Eigen::VectorXd& per_whole, const Eigen
   out.covered = covered / largest;
   const Eigen::ArrayXd t = ((kept - out.covered.array()) / (kept - given)).max(0.0).min(1.0);
   out.gives = t * t * (3.0 - 2.0 * t);
-  out.gets = (1.0 - out.gives.array()) * area.array();
-  out.gets /= out.gets.sum();
+  const double rest = static_cast<double>(area.size()) - out.gives.sum();
+  out.gets = (1.0 - out.gives.array()) / rest;
   return out;
 }
 
@@ -181,11 +179,8 @@ inline std::array<DualWeights::Matrix, 2> slopes_handed_over(const Eigen::Vector
   DualWeights::Matrix gives = per_whole.asDiagonal() * in.d_area;
   gives -= by.covered * Eigen::RowVectorXd(gives.row(by.most));
   gives = slope.asDiagonal() * gives;
-  const Eigen::VectorXd keeps = 1.0 - by.gives.array();
-  const DualWeights::Matrix kept_area =
-      keeps.asDiagonal() * in.d_area - in.area.asDiagonal() * gives;
-  const DualWeights::Matrix gets =
-      (kept_area - by.gets * kept_area.colwise().sum()) / keeps.dot(in.area);
+  DualWeights::Matrix gets = by.gets * gives.colwise().sum() - gives;
+  gets /= static_cast<double>(in.area.size()) - by.gives.sum();
   return {gives, gets};
 }
 

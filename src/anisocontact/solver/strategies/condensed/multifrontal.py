@@ -10,7 +10,6 @@ from typing import Any, override
 import numpy as np
 import numpy.typing as npt
 import scipy
-from scipy.linalg import blas, lapack
 
 from anisocontact import _core
 from anisocontact.base.array_types import Flags, Floats, Ints, Locals
@@ -221,13 +220,15 @@ def _pivoted(own: Floats, rest: Floats) -> Floats:
     width = own.shape[1]
     # by columns these are the transposes
     top, below = own[:width].T, own[width:].T
-    _, info = lapack.dpotrf(top, lower=0, clean=0, overwrite_a=1)
+    _, info = scipy.linalg.lapack.dpotrf(top, lower=0, clean=0, overwrite_a=1)
     if info != 0:
         raise singular()
     if not len(rest):
         return rest
-    blas.dtrsm(1.0, top, below, trans_a=1, overwrite_b=1)
-    left: Floats = blas.dsyrk(-1.0, below, beta=1.0, c=rest.T, trans=1, overwrite_c=1).T
+    scipy.linalg.blas.dtrsm(1.0, top, below, trans_a=1, overwrite_b=1)
+    left: Floats = scipy.linalg.blas.dsyrk(
+        -1.0, below, beta=1.0, c=rest.T, trans=1, overwrite_c=1
+    ).T
     return left
 
 
@@ -235,7 +236,7 @@ def _solved(own: Floats, b: Floats, transposed: bool) -> Floats:
     """Solve with the triangle of a front, in place: L, or its transpose."""
     top = own[: own.shape[1]].T
     if b.shape[1] == 1:
-        blas.dtrsv(top, b[:, 0], trans=int(transposed), overwrite_x=1)
+        scipy.linalg.blas.dtrsv(top, b[:, 0], trans=int(transposed), overwrite_x=1)
     else:
-        blas.dtrsm(1.0, top, b.T, side=1, trans_a=int(not transposed), overwrite_b=1)
+        scipy.linalg.blas.dtrsm(1.0, top, b.T, side=1, trans_a=int(not transposed), overwrite_b=1)
     return b
