@@ -1,4 +1,4 @@
-// Matrices of unknowns from blocks of pairs of nodes, and sums of fronts of a factorisation.
+// Matrices of unknowns from blocks of pairs of nodes.
 
 #include <nanobind/stl/tuple.h>
 
@@ -61,34 +61,11 @@ nb::tuple block_entries(const Nodes& row, const Nodes& column, const Numbers& nu
   return nb::make_tuple(numbers.array, columns.array, begin.array);
 }
 
-using Front = nb::ndarray<double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
-using Left = nb::ndarray<const double, nb::shape<-1, -1>, nb::c_contig, nb::device::cpu>;
-using Places = nb::ndarray<const std::int32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
-
-/// Add the lower triangle of what a front leaves to the next one: to the columns that are eliminated there, and
-/// to the rest. Places, of rows and columns alike, ascend.
-void add_front(const Front& columns, const Front& rest, const Left& left, const Places& places) {
-  const std::size_t n = places.shape(0), width = columns.shape(1), size = rest.shape(1);
-  const std::vector<std::size_t> place(places.data(), places.data() + n);
-  const auto split =
-      static_cast<std::size_t>(std::lower_bound(place.begin(), place.end(), width) - place.begin());
-  for (std::size_t a = 0; a < n; ++a) {
-    const double* from = left.data() + a * n;
-    double* to = columns.data() + place[a] * width;
-    for (std::size_t b = 0; b < std::min(split, a + 1); ++b) to[place[b]] += from[b];
-    if (a < split) continue;
-    to = rest.data() + (place[a] - width) * size;
-    for (std::size_t b = split; b <= a; ++b) to[place[b] - width] += from[b];
-  }
-}
-
 }  // namespace
 
 void bind_blocks(nb::module_& m) {
   m.def("block_entries", &block_entries, nb::arg("row"), nb::arg("column"), nb::arg("number"),
         nb::arg("size"));
-  m.def("add_front", &add_front, nb::arg("columns"), nb::arg("rest"), nb::arg("left"),
-        nb::arg("places"));
 }
 
 }  // namespace anisocontact::bindings

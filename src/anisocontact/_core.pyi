@@ -434,9 +434,3 @@ def plane_slopes(
 def block_entries(
     row: NDArray[numpy.int64], column: NDArray[numpy.int64], number: NDArray[numpy.int64], size: int
 ) -> Any: ...
-def add_front(
-    columns: NDArray[numpy.float64],
-    rest: NDArray[numpy.float64],
-    left: NDArray[numpy.float64],
-    places: NDArray[numpy.int32],
-) -> None: ...

@@ -120,7 +120,7 @@ class Condensation:
         inside = np.searchsorted(free, border)
         if len(border) == len(free):
             return CondensedPart(free, border, WholeBorder(matrix.toarray()))
-        name, way = chosen(len(free), len(border))
+        name, way = chosen()
         self._note(
             f"condensing {len(free)} unknowns of a body on {len(border)} contact unknowns ({name})"
         )
