@@ -117,7 +117,7 @@ def _panels(
 
 def _margin(view: ContactView) -> float:
     """Height of all that is no map, inches."""
-    return 2.1 if view.aspect < FLAT else 1.4
+    return 2.4 if view.aspect < FLAT else 1.7
 
 
 def _scale(
