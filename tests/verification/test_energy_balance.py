@@ -315,3 +315,25 @@ def test_a_press_fit_is_named(fe: Any) -> None:
     (accepted,) = Solver(block.problem, [hold]).run()
     assert accepted.imbalance.share > 0.5
     assert accepted.imbalance.cause == CAUSES[5]
+
+
+@pytest.mark.parametrize("strategy", STRATEGIES)
+def test_a_body_that_only_approaches_leaves_nothing_open(strategy: str) -> None:
+    """A block at finite strain that is moved towards another one and touches nothing.
+
+    Requirement: nothing is said of a balance whose energies are rounded. Source: no force acts,
+    so no work is done; the energy of F = I + grad(u) is rounded by 1e-16 of E times the volume,
+    which `condensed` left as 100 % of the work, its factors being in single precision.
+    """
+    bodies = [
+        Body("block", BoxSpec((-0.63, -0.51, 1e-3), (1.13, 1.07, 0.81), (3, 3, 3))),
+        Body("base", BoxSpec((-1.1, -1, -1), (2.2, 2, 1), (4, 4, 2))),
+    ]
+    model = build_mesh(bodies)
+    rubber = make_material("neo-hookean", E=1e3, nu=0.3)
+    contact = Contact(model, "block.bottom", "base.top", Friction(coefficients=0.3))
+    problem = Problem(model, dict.fromkeys(("block", "base"), rubber), [contact])
+    hold = {"base.bottom": {"x": 0.0, "y": 0.0, "z": 0.0}}
+    press = Step("approach", 2, {"block.top": {"x": 0.0, "y": 0.0, "z": -7e-4}} | hold)
+    for accepted in Solver(problem, [press], strategy=strategy).run():
+        assert accepted.imbalance.share == 0.0

@@ -100,10 +100,14 @@ class EnergyWatch:
         return 0.0 if residual <= rounded else residual / max(self._work, held)
 
     def _stiffness_energy(self) -> float:
-        """Energy of all nodes held but one, `sum of K_ii u_i^2`: the scale of what is rounded."""
-        diagonal = self._problem.bulk.diagonal.array_r
-        u = self._problem.accepted().array_r[: len(diagonal)]
-        return float(self._problem.comm.allreduce(float(diagonal @ u**2)))
+        """Energy of all nodes held but one, `sum of K_ii u_i^2`: the scale of what is rounded.
+
+        At finite strain also of what has hardly moved, as energies of F = I + grad(u) are rounded.
+        """
+        bulk = self._problem.bulk
+        diagonal = bulk.diagonal.array_r
+        moved = np.abs(self._problem.accepted().array_r[: len(diagonal)]) + bulk.rest_length
+        return float(self._problem.comm.allreduce(float(diagonal @ moved**2)))
 
     def _changed(self) -> tuple[bool, bool]:
         """Whether many points have begun or ended contact, or sliding, and more than the other."""
