@@ -53,7 +53,7 @@ class LaggedNewton(Newton):
         self._note = note
         self._system, self._stiffness = problem, KeptStiffness(problem)
         self._factor = LaggedFactor(problem, note, kept)
-        self._forcing = Forcing(self.snes.getTolerances()[0], ROUGH)
+        self._forcing = Forcing(self.snes.getTolerances()[0], ROUGH, CAREFUL)
         pc = self.snes.getKSP().getPC()
         pc.setType(PETSc.PC.Type.PYTHON)
         pc.setPythonContext(self)
