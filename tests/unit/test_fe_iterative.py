@@ -11,12 +11,13 @@ from anisocontact.solver import Problem, Solver, Step, StoppedError
 from anisocontact.solver.strategies import costs, direct
 from anisocontact.solver.strategies.choice import Choice, choose
 from anisocontact.solver.strategies.costs import factor_bytes
-from anisocontact.solver.strategies.iterative import levels, strategy
+from anisocontact.solver.strategies.iterative import levels, newton, strategy
 from anisocontact.solver.strategies.iterative.newton import IterativeNewton
 from anisocontact.solver.strategies.strategy import Task
 
 PRESS = Step("press", 1, {"block.top": {"x": 0.0, "y": 0.0, "z": -0.01}})
 RUBBER = {"model": "neo-hookean", "E": 1000.0, "nu": 0.3}
+RUBBER_CELLS = {"model": "neo-hookean-incompressible", "E": 1000.0}
 
 
 def _problem(**material: Any) -> Problem:
@@ -78,6 +79,15 @@ def test_auto_takes_it_where_a_factor_does_not_fit(monkeypatch: pytest.MonkeyPat
     assert _choice(problem).name == "direct"
 
 
+@pytest.mark.parametrize(("nu", "taken"), [(0.499, "iterative"), (0.4999, "direct")])
+def test_auto_factorises_bodies_that_keep_their_volume(
+    monkeypatch: pytest.MonkeyPatch, nu: float, taken: str
+) -> None:
+    """Iterations grow as the root of the bulk modulus over the shear modulus."""
+    monkeypatch.setattr(direct, "MOST_FACTORISED", 100)
+    assert _choice(_problem(**RUBBER_CELLS, nu=nu)).name == taken
+
+
 def test_auto_leaves_the_choice_to_options(monkeypatch: pytest.MonkeyPatch) -> None:
     """A linear solver that the user asks for is one of the whole system."""
     monkeypatch.setattr(direct, "MOST_FACTORISED", 100)
@@ -100,6 +110,39 @@ def test_options_reach_the_krylov_method() -> None:
     with pytest.raises(StoppedError, match="the Krylov method did not converge in 2 iterations"):
         list(solver.run(on_note=notes.append))
     assert sum('take the strategy "direct"' in note for note in notes) == 1
+
+
+def test_levels_that_lead_nowhere_are_given_up(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Requirement: a line says so, nothing is cut and forces are those of `direct`, to 1e-6.
+
+    Source: a factorisation, an independent way. Tolerance: what Newton's method leaves.
+    """
+    (theirs,) = Solver(_problem(), [PRESS], strategy="direct").run()
+    (name,) = theirs.resultants
+    monkeypatch.setitem(newton.DEFAULTS, "ksp_max_it", 3)
+    notes: list[str] = []
+    (ours,) = Solver(_problem(), [PRESS], strategy="iterative").run(on_note=notes.append)
+    assert ours.done == theirs.done == 1.0
+    force = theirs.resultants[name][0]
+    assert ours.resultants[name][0] == pytest.approx(force, rel=1e-6, abs=1e-6 * max(abs(force)))
+    assert sum("all unknowns are factorised from now on" in note for note in notes) == 1
+    assert notes[-1].endswith("at most 3")
+
+
+@pytest.mark.parametrize(("room", "told"), [(True, 1), (False, 0)])
+def test_levels_stay_where_there_is_no_room(
+    monkeypatch: pytest.MonkeyPatch, room: bool, told: int
+) -> None:
+    """For a factor of all unknowns: the solution fails for the reason that it has."""
+    monkeypatch.setitem(newton.DEFAULTS, "ksp_max_it", 3)
+    monkeypatch.setattr(levels, "too_large", lambda *_: iter([] if room else ["no room"]))
+    problem, notes = _problem(), list[str]()
+    own = IterativeNewton(problem, [PRESS], "room_", {}, lambda *_: None, notes.append)
+    problem.begin(PRESS)
+    problem.set_load_factor(1.0, 1.0)
+    result = own.solve(problem.accepted())
+    assert result.reason == ("" if room else "the Krylov method did not converge in 3 iterations")
+    assert sum("all unknowns are factorised" in note for note in notes) == told
 
 
 def test_another_preconditioner() -> None:

@@ -62,6 +62,8 @@ class LinearBulk:
         self.diagonal = self.stiffness.getDiagonal()
         #: The same for surfaces that give way by shear, as of `CellPressures`.
         self.yielding = self._pressures.yielding(self.diagonal)
+        #: As of `CellPressures`.
+        self.hardness = self._pressures.hardness
 
     def force(self, u: Vec) -> Vec:
         """Internal force `K u`.

@@ -84,6 +84,8 @@ class NonlinearBulk:
         _check_stiff(model, materials, self.diagonal)
         #: The same for surfaces that give way by shear, as of `CellPressures`.
         self.yielding = self._pressures.yielding(self.diagonal)
+        #: As of `CellPressures`.
+        self.hardness = self._pressures.hardness
 
     def _histories(
         self, model: Model, given: Mapping[str, Any], degree: int

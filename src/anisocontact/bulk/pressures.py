@@ -71,6 +71,7 @@ class CellPressures:
     Attributes:
         of: The pressure of each of these bodies by name, a DOLFINx function.
         follow: Whether tangents are to have the pressures that corrections lead to.
+        hardness: Stiffness of a node at rest against changes of volume over the rest, at most.
     """
 
     def __init__(
@@ -87,7 +88,7 @@ class CellPressures:
         self._pressure, self._width = pressure, space.element.space_dimension
         q, p = ufl.TestFunction(space), ufl.TrialFunction(space)
         weight, self.of = model.idealisation.weight(model.mesh), {}
-        self.follow = False
+        self.follow, self.hardness = False, 0.0
         self._from: tuple[Vec, Floats] | None = None
         mass, change, self._work = 0, 0, 0
         for i, name in enumerate(model.body_names()):
@@ -176,8 +177,10 @@ class CellPressures:
             return diagonal
         held = self._stiffness.getDiagonal().array_r
         found, rest = diagonal.copy(), diagonal.array_r - held
-        stiff = bool((held > FOLLOW * rest).any())
-        self.follow = any(self._pressure.function_space.mesh.comm.allgather(stiff))
+        shape = np.maximum(rest, np.finfo(np.float64).eps * held)
+        hardest = float((held[held > 0.0] / shape[held > 0.0]).max(initial=0.0))
+        self.hardness = max(self._pressure.function_space.mesh.comm.allgather(hardest))
+        self.follow = self.hardness > FOLLOW
         found.array[:] -= np.maximum(held - MOST * rest, 0.0)
         return found
 

@@ -47,6 +47,8 @@ class FormBulk:
     heated: Mapping[str, Heated] = MappingProxyType({})
     #: Pressures are among the unknowns of the form.
     pressures: Mapping[str, Any] = MappingProxyType({})
+    #: No volume is kept by pressures that are not.
+    hardness = 0.0
 
     def __init__(self, F: Any, u: Any, J: Any = None) -> None:
         space = u.function_space

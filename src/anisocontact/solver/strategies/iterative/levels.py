@@ -7,8 +7,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from anisocontact.base.fenicsx import MPI, Mat, PETSc, Vec, release_unreferenced
+from anisocontact.solver.strategies.costs import factor_bytes, too_large
 from anisocontact.solver.strategies.iterative.coarse import CoarseLevel
 from anisocontact.solver.strategies.iterative.cycle import Smoother, cycle, residual
+from anisocontact.solver.strategies.iterative.factor import Factor
 from anisocontact.solver.strategies.iterative.interpolation import (
     Aggregates,
     aggregates,
@@ -38,7 +40,8 @@ class Levels:
     Given unknowns are solved from their rows. The rest takes one multiplicative cycle: smoothing of
     the interior, the coarse level `P^T J P`, smoothing again. Contact lies in the patch, which P
     leaves as it is, so the coarse level has all of it and the smoother nothing. Where most of the
-    coarse level are aggregates it is solved by such a cycle in its turn.
+    coarse level are aggregates it is solved by such a cycle in its turn. Where levels do not lead
+    to the solution a factor of all unknowns takes their place.
 
     Args:
         problem: The problem.
@@ -55,6 +58,8 @@ class Levels:
         self._interior: Mat | None = None
         self._smoother: Smoother | None = None
         self._coarse: CoarseLevel | None = None
+        self._whole = False
+        self._factor: Factor | None = None
         self._rest = problem.new_vector()
         self._bulk: object = None
         self._fresh = 0
@@ -66,9 +71,27 @@ class Levels:
             self._fresh = iterations
         self._worn = iterations > WORN * max(self._fresh, 10)
 
+    def give_up(self) -> str:
+        """Factorise all unknowns from the next tangent on.
+
+        Returns:
+            Why not, in a line: there is no room, or it is what has been done; empty if so.
+        """
+        count, comm = self._problem.solved_for, self._problem.comm
+        full = next(too_large(f"a factorisation of {count} unknowns", factor_bytes(count)), "")
+        against = next(filter(None, comm.allgather(full)), "")
+        if self._whole or against:
+            return against or "all unknowns are factorised"
+        self.close()
+        self._whole = True
+        return ""
+
     def setUp(self, pc: PETSc.PC) -> None:
         """Take the tangent that the linear solver has been given."""
         tangent, _ = pc.getOperators()
+        if self._whole:
+            self._factorise(pc, tangent)
+            return
         # what the tangent without contact depends on, beside the state where bodies are not linear
         bulk = self._problem.stabilisation.stiffnesses
         changed = not self._problem.linear or bulk != self._bulk
@@ -86,7 +109,10 @@ class Levels:
             pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
 
     def apply(self, pc: PETSc.PC, b: Vec, x: Vec) -> None:
-        """One cycle from zero."""
+        """One cycle from zero, or a solution with the factor."""
+        if self._factor is not None:
+            self._factor.solve(b).copy(x)
+            return
         tangent, _ = pc.getOperators()
         assert self._coarse is not None and self._smoother is not None
         x.zeroEntries()
@@ -97,10 +123,19 @@ class Levels:
 
     def close(self) -> None:
         """Give back PETSc's objects."""
-        for part in (self._smoother, self._interior, self._coarse):
+        for part in (self._smoother, self._interior, self._coarse, self._factor):
             if part is not None:
                 part.destroy()
+        self._factor = None
         self._split = self._smoother = self._interior = self._coarse = None
+
+    def _factorise(self, pc: PETSc.PC, tangent: Mat) -> None:
+        """Make a factor of the tangent."""
+        if self._factor is None:
+            prefix = f"{self._prefix}coarse_"
+            self._factor = Factor(tangent, (), prefix, self._single, self._note)
+        if not self._factor.renew(tangent, grown=True, bodies=True):
+            pc.setFailedReason(PETSc.PC.FailedReason.FACTOR_NUMERIC_ZEROPIVOT)
 
     def _outdated(self, bulk_changed: bool) -> bool:
         """Whether the interpolation has to be made anew; the same on all ranks."""

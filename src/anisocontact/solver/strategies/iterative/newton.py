@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import override
 
 from anisocontact.base.fenicsx import SNES, Mat, PETSc, Vec
 from anisocontact.solver.strategies.database import OptionValue
@@ -69,6 +71,7 @@ class IterativeNewton(Newton):
         self._failures = 0
         given = [*options, *PETSc.Options(prefix).getAll()]
         self._adapts = "ksp_rtol" not in given
+        self._asked = any(name.startswith("ksp_") for name in given)
         ksp = self.snes.getKSP()
         ksp.setPostSolve(self._count)
         self._levels: Levels | None = None
@@ -101,6 +104,28 @@ class IterativeNewton(Newton):
         if self._levels is not None:
             self._levels.close()
         super().close()
+
+    @override
+    def _equilibrium(self, x: Vec) -> NewtonResult:
+        """As of `Newton`, with a factor of all unknowns from where the levels lead nowhere on."""
+        result = super()._equilibrium(x)
+        if self._levels is None or self._asked or not self._exhausted:
+            return result
+        count = self.krylov[-1]
+        if self._levels.give_up():
+            return result
+        self._note(
+            f"the Krylov method has not converged in {count} iterations, as with bodies that keep "
+            'their volume: all unknowns are factorised from now on, as "direct" does'
+        )
+        again = super()._equilibrium(x)
+        return replace(again, iterations=result.iterations + again.iterations)
+
+    @property
+    def _exhausted(self) -> bool:
+        """Whether the last solution has taken all iterations that there are, for nothing."""
+        reason = self.snes.getKSP().getConvergedReason()
+        return bool(reason == PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT)
 
     def _jacobian(self, snes: SNES, x: Vec, matrix: Mat, other: Mat) -> None:
         super()._jacobian(snes, x, matrix, other)
