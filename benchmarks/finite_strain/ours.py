@@ -29,7 +29,13 @@ CONTACT = ("update", "add_force", "add_tangent", "couplings", "lever", "commit",
 
 
 def case_text(kind: str, n: int, strategy: str = "direct") -> str:
-    """The case file."""
+    """The case file.
+
+    Raises:
+        ValueError: There is no such kind.
+    """
+    if kind not in KINDS:
+        raise ValueError(f"kind {kind!r} given, must be one of {', '.join(KINDS)}")
     pair = kind == KINDS[1]
     elastic = f'model = "neo-hookean"\nnu = {given.POISSON}\nE = '
     bodies = box("block", (0, 0, 0), (1, 1, 0.5), (n, n, n // 2), f"{elastic}{given.YOUNG}")

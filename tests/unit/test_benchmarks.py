@@ -163,6 +163,13 @@ def test_finite_strain_agrees_with_a_dolfinx_script(benchmarks):
         assert 0.0 < runs.share(ours, "contact") < 1.0
 
 
+def test_finite_strain_has_two_kinds(benchmarks):
+    """What is no kind is none of them in disguise."""
+    pytest.importorskip("anisocontact.base.fenicsx", exc_type=ImportError)
+    with pytest.raises(ValueError, match="'mortar' given, must be one of plane, pair"):
+        benchmarks("finite_strain.ours").case_text("mortar", 4)
+
+
 def test_every_hard_case_is_a_case_file_that_says_what_is_hard(benchmarks, tmp_path):
     from anisocontact.case import load
 
