@@ -54,8 +54,9 @@ def say(line: str) -> None:
 
 def environment(folder: Path) -> dict[str, str]:
     """Variables of a user who has nothing of ours: no import path, no settings, own caches."""
-    ours = ("PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV", "PIP_TARGET", "PIP_PREFIX", "PIP_USER")
-    env = {name: value for name, value in os.environ.items() if name not in ours}
+    paths = ("PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV")
+    settings = ("PIP_TARGET", "PIP_PREFIX", "PIP_USER", "PYTHONDONTWRITEBYTECODE")
+    env = {name: value for name, value in os.environ.items() if name not in (*paths, *settings)}
     env |= {"PIP_DISABLE_PIP_VERSION_CHECK": "1", "PIP_NO_INPUT": "1", "PYTHONNOUSERSITE": "1"}
     env |= {"MPLBACKEND": "Agg", "MPLCONFIGDIR": str(folder / "matplotlib")}
     if "CC" not in env:  # the compiler that Python was built with may not be on this machine
@@ -106,9 +107,12 @@ def make_venv(python: str, place: Path) -> Path:
 
 
 def install(python: Path, *what: str | Path) -> None:
-    """Install into the environment of a Python, in the versions of constraints.txt."""
+    """Install into the environment of a Python, in the versions of constraints.txt.
+
+    Most of what packages have is never imported: bytecode of it would take longer than to install.
+    """
     pip: Words = [python, "-m", "pip", "install", "--quiet", "--progress-bar", "off"]
-    run([*pip, "--constraint", CONSTRAINTS, *what], python.parents[2])
+    run([*pip, "--no-compile", "--constraint", CONSTRAINTS, *what], python.parents[2])
 
 
 def build(python: str, folder: Path) -> tuple[Path, Path]:
