@@ -14,6 +14,7 @@ import pytest
 
 from anisocontact.bulk import make_material
 from anisocontact.contact import Augmentation, Contact
+from anisocontact.contact.line_weights import LineWeights
 from anisocontact.interface import ContactLaw
 from anisocontact.laws import Adhesion, Friction, NormalLaw
 from anisocontact.mesh import Body, BoxSpec, PlaneStrain, build_box, build_mesh
@@ -79,3 +80,43 @@ def test_force_of_a_punch_wherever_its_edges_are(n: int, bound: float) -> None:
     forces = [_punched(share / n, n) for share in (0.0, 1e-3, 0.1, 0.3, 0.4, 0.5, 0.8)]
     np.testing.assert_allclose(forces, exact, rtol=bound)
     assert forces[1] == pytest.approx(forces[0], rel=1e-5)
+
+
+def _strip(up_to: float) -> LineWeights:
+    """Weights of an edge of order 2 of length one, its first part covered by a straight master."""
+    x, weight = np.polynomial.legendre.leggauss(4)
+    t = 0.5 * (x + 1.0)
+    place = up_to * t
+    shape = np.array(
+        [(1 - place) * (1 - 2 * place), place * (2 * place - 1), 4 * place * (1 - place)]
+    )
+    d_shape = np.array([4 * place - 3, 4 * place - 1, 4 - 8 * place]) * t
+    area = 0.5 * up_to * shape @ weight
+    d_area = 0.5 * (shape + up_to * d_shape) @ weight
+    # dual functions are exact on a straight master: its mean is the node, here its two ends
+    at = np.array([[1.0, 0.0], [0.0, 1.0], [0.5, 0.5]])
+    slopes = d_area[None, :, None], (at * d_area[:, None])[None, ..., None]
+    weights = area[None], (at * area[:, None])[None]
+    return LineWeights(np.array([[0, 1]], dtype=np.int32), *weights, *slopes)
+
+
+def test_weights_of_an_edge_that_is_handed_over() -> None:
+    """A strip that grows along an edge of order 2: forces, what is met, and derivatives.
+
+    Requirement: the whole weight stays; what a node that keeps some meets is the node, but for an
+    eighth of the edge (0.123 at most); derivatives are those of central differences, wherever nodes
+    hand over all, a part or nothing.
+    """
+    whole, h, in_part = np.array([1.0, 1.0, 4.0]) / 6.0, 1e-6, 0
+    for up_to in np.linspace(0.05, 0.99, 95):
+        before, now = _strip(up_to), _strip(up_to).handed_over(whole)
+        assert now.area.sum() == pytest.approx(before.area.sum(), rel=1e-13)
+        has = now.area[0] > 0.0
+        in_part += int(has.all() and not np.allclose(now.area, before.area, rtol=1e-3))
+        mean = now.weight[0, has] @ [0.0, 1.0] / now.area[0, has]
+        assert np.abs(mean - np.array([0.0, 1.0, 0.5])[has]).max() < 0.125
+        more, less = (_strip(up_to + way).handed_over(whole) for way in (h, -h))
+        for name in ("area", "weight"):
+            slope = (getattr(more, name) - getattr(less, name)) / (2.0 * h)
+            np.testing.assert_allclose(getattr(now, f"d_{name}")[..., 0], slope, atol=1e-6)
+    assert in_part > 0

@@ -154,9 +154,12 @@ class LineWeights:
         t = np.clip((KEPT - share) / (KEPT - GIVEN), 0.0, 1.0)
         gives = t * t * (3.0 - 2.0 * t)
         d_gives = (-6.0 * t * (1.0 - t) / ((KEPT - GIVEN) * covered))[..., None] * d_share
-        rest = np.maximum((1.0 - gives).sum(axis=1), 1.0)[:, None]
-        gets = (1.0 - gives) / rest
-        d_gets = (gets[..., None] * d_gives.sum(axis=1, keepdims=True) - d_gives) / rest[..., None]
+        rest = ((1.0 - gives) @ whole)[:, None]
+        rest[rest == 0.0] = 1.0  # edges of which nothing is covered
+        gets = (1.0 - gives) * whole / rest
+        d_keeps = -whole[:, None] * d_gives
+        d_gets = d_keeps - gets[..., None] * d_keeps.sum(axis=1, keepdims=True)
+        d_gets /= rest[..., None]
 
         def moved(x: Floats, dx: Floats) -> tuple[Floats, Floats]:
             """(1 - lambda_i) x_i + q_i sum_j lambda_j x_j, x of (f, k, c), and its derivative."""

@@ -47,7 +47,7 @@ SMALLEST = 1e-9
 _EXPLICIT = "explicit"
 
 #: Codes of a status.
-OPEN, STICK = STATUS.index("open"), STATUS.index("stick")
+OPEN, STICK, SLIP = (STATUS.index(name) for name in ("open", "stick", "slip"))
 
 
 def check(augmentation: Augmentation, law: AugmentedLaw) -> None:

@@ -14,6 +14,7 @@ from anisocontact.contact.layer import Layer
 from anisocontact.contact.master import Answer, Master
 from anisocontact.contact.multipliers import (
     RATIO,
+    SLIP,
     STICK,
     AugmentedLaw,
     ContactTrial,
@@ -63,7 +64,7 @@ class Trials:
         self._ways: Mapping[str, Multipliers] = {}
         self._multipliers: Multipliers | None = None
         self._layer: Layer | None = None
-        self.immovable = self._slight = np.zeros(len(state), dtype=bool)
+        self.immovable = self._slight = self._slid = np.zeros(len(state), dtype=bool)
         self.shared = SharedNodes(())
         self._linear: Linearised | None = None
         self._state: State
@@ -119,6 +120,7 @@ class Trials:
         self._state, self._now, self._accepted = state, accepted, accepted
         self.master.begin()
         self.shared.begin()
+        self._slid = np.zeros(len(state), dtype=bool)
         self._slight = self._points.covered(accepted.areas) < SLIGHT
         if self._multipliers is not None:
             start = self._multipliers.begin(state, self.master.located(state))
@@ -241,13 +243,15 @@ class Trials:
         before = self._frames(self.start)
         traction = about.base.after(change, semismooth.share)
         if semismooth.tangential and self.master.held is not None:
+            status = self._now.response.status
+            self._slid = self._slid | (status == SLIP)
             traction = supported_share(
                 traction,
                 self.master.held,
                 last=before.turned_to(now, before.vector(self._state["stored"])),
                 carried=about.base.traction,
                 normal=now.normal,
-                stick=self._now.response.status == STICK,
+                kept=(status == STICK) & ~self._slid,
             )
         self.start = semismooth.advance(self.start, traction, now, before)
         self._let_go_of_immovable()

@@ -163,14 +163,17 @@ def _members(fast: tuple[int, ...], count: int) -> list:
     return [*fast, *slow]
 
 
-@pytest.mark.parametrize("seed", _members((1, 3, 6, 13, 40), 100))
+@pytest.mark.parametrize("seed", _members((0, 1, 2, 3, 6, 13, 40), 100))
 def test_curved_pairs(to_the_end, seed):
     """A dome, a roll or a block on a block, a dome or in a groove, pressed and dragged.
 
     Requirement: no cut; at most twenty iterations in an increment, which is one attempt and a way
     with smaller penalties. 97 of the hundred take twelve at most. Nodes in planes of symmetry,
     whose multipliers did not follow in Newton's step, took 90 iterations; a roll whose ends lie on
-    edges of the block, and are hollow there, stopped.
+    edges of the block, and are hollow there, stopped; one of order 2 whose end is within facets,
+    where vertices were held against what is a facet off, took 22 to 30; nodes in the plane of
+    symmetry that had slid on the way, and got back what the support had carried of them before,
+    were to slide again, 62.
     """
     run = to_the_end(member(seed), most=MOST)
     assert not run.cuts

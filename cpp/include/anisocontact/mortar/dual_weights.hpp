@@ -155,7 +155,10 @@ struct HandOver {
 
 /// Shares lambda that nodes give, smooth in what is covered, and those q that they get,
 ///   lambda = t^2 (3 - 2 t), t = (kept - s) / (kept - given), s = D_i / D_i^whole over the largest,
-///   q_i = (1 - lambda_i) / sum_k (1 - lambda_k) .
+///   q_i = (1 - lambda_i) D_i^whole / sum_k (1 - lambda_k) D_k^whole .
+/// So a node gets no more of others than suits its own: in equal shares the mean of the master that a vertex
+/// of order 2 meets would lie facets away. Weights of now would let those of which little is covered get
+/// next to nothing, and carry a force on a sliver that a slip of the border takes away.
 inline HandOver shares_handed_over(const Eigen::VectorXd& per_whole, const Eigen::VectorXd& area) {
   HandOver out;
   const Eigen::VectorXd covered = area.cwiseProduct(per_whole);
@@ -163,8 +166,8 @@ inline HandOver shares_handed_over(const Eigen::VectorXd& per_whole, const Eigen
   out.covered = covered / largest;
   const Eigen::ArrayXd t = ((kept - out.covered.array()) / (kept - given)).max(0.0).min(1.0);
   out.gives = t * t * (3.0 - 2.0 * t);
-  const double rest = static_cast<double>(area.size()) - out.gives.sum();
-  out.gets = (1.0 - out.gives.array()) / rest;
+  out.gets = (1.0 - out.gives.array()) / per_whole.array();
+  out.gets /= out.gets.sum();
   return out;
 }
 
@@ -179,8 +182,9 @@ inline std::array<DualWeights::Matrix, 2> slopes_handed_over(const Eigen::Vector
   DualWeights::Matrix gives = per_whole.asDiagonal() * in.d_area;
   gives -= by.covered * Eigen::RowVectorXd(gives.row(by.most));
   gives = slope.asDiagonal() * gives;
-  DualWeights::Matrix gets = by.gets * gives.colwise().sum() - gives;
-  gets /= static_cast<double>(in.area.size()) - by.gives.sum();
+  const Eigen::VectorXd whole = per_whole.cwiseInverse();
+  DualWeights::Matrix gets = by.gets * (whole.transpose() * gives) - whole.asDiagonal() * gives;
+  gets /= whole.dot(Eigen::VectorXd(1.0 - by.gives.array()));
   return {gives, gets};
 }
 
