@@ -63,13 +63,17 @@ def _pair(kind: Any = Contact, material: dict[str, Any] = RUBBER, **extra: Any) 
 
 
 def _on_plane(
-    body: RigidBody | None = None, cells: int = 4, order: int = 1, **options: Any
+    body: RigidBody | None = None,
+    cells: int = 4,
+    order: int = 1,
+    material: dict[str, Any] = RUBBER,
+    **options: Any,
 ) -> Problem:
     """A block on a rigid plane."""
     model = build_box({"block": BoxSpec((0, 0, 0), (1, 1, 0.5), (cells, cells, 2), order=order)})
     plane = Interface(make_surface("plane", point=(0, 0, 0), normal=(0, 0, 1)), *LAWS)
     contact = Contact(model, "block.bottom", MovingSurface(plane, body), mortar=False)
-    return Problem(model, {"block": make_material(**RUBBER)}, [contact], **options)
+    return Problem(model, {"block": make_material(**material)}, [contact], **options)
 
 
 def _run(
@@ -141,25 +145,38 @@ def test_follower_pressure() -> None:
     _same(_on_plane, [press, blow])
 
 
-def test_free_rigid_die() -> None:
+MATERIALS = pytest.mark.parametrize(
+    "material", [RUBBER, HARDLY_COMPRESSIBLE], ids=["rubber", "nu=0.499"]
+)
+
+
+@MATERIALS
+def test_free_rigid_die(material: dict[str, Any]) -> None:
     """A die on springs, whose unknowns come after those of the mesh."""
     top = {"block.top": {"x": 0.0, "y": 0.0, "z": 0.0}}
     push = Step("push", 2, top, load={"die": {"x": 2.0, "z": 30.0}}, motion={"die": FREE})
 
     def make() -> Problem:
-        return _on_plane(RigidBody("die", (0.5, 0.5, 0.0), free=True, springs={"x": 50.0}))
+        body = RigidBody("die", (0.5, 0.5, 0.0), free=True, springs={"x": 50.0})
+        return _on_plane(body, material=material)
 
     _same(make, [push])
 
 
-def test_symmetry_plane() -> None:
+@pytest.mark.parametrize(
+    "material",
+    [RUBBER, pytest.param(HARDLY_COMPRESSIBLE, marks=pytest.mark.slow)],
+    ids=["rubber", "nu=0.499"],
+)
+def test_symmetry_plane(material: dict[str, Any]) -> None:
     """Nodes that stay in a plane, some of them in contact."""
     top = {"block.top": {"x": 0.0, "z": -0.03}}
     drag = Step("drag", 2, {"block.top": {"x": 0.03}})
-    _same(lambda: _on_plane(symmetry=["block.front"]), [Step("press", 2, top), drag])
+    steps = [Step("press", 2, top), drag]
+    _same(lambda: _on_plane(symmetry=["block.front"], material=material), steps)
 
 
-@pytest.mark.parametrize("material", [RUBBER, HARDLY_COMPRESSIBLE], ids=["rubber", "nu=0.499"])
+@MATERIALS
 def test_what_a_tangent_has_missed_is_of_second_order(material: dict[str, Any]) -> None:
     """Forces less those that the last tangent tells fall with the square of the way from there.
 
@@ -190,10 +207,17 @@ def test_what_a_tangent_has_missed_is_of_second_order(material: dict[str, Any]) 
     assert np.array_equal(first, again)
 
 
-def _corrected(problem: Problem, factor: LaggedFactor, distortion: float) -> tuple[float, float]:
-    """Residual of a correction at a random state over its right-hand side, what `direct` leaves."""
+def _corrected(
+    problem: Problem, factor: LaggedFactor, distortion: float, shear: float = 0.0
+) -> tuple[float, float]:
+    """Residual of a correction over its right-hand side, what `direct` leaves.
+
+    The state is one of random displacements on top of simple shear, which keeps the volume.
+    """
     x, matrix = problem.new_vector(), problem.new_tangent()
     x.array[:] = distortion * np.random.default_rng(5).standard_normal(x.getLocalSize())
+    nodes = problem.model.space.tabulate_dof_coordinates()
+    x.array[: nodes.size : 3] += shear * nodes[:, 2]
     b = -problem.evaluate(x)
     problem.tangent(x, matrix)
     found = factor.solve(matrix, b, 1e-6)
@@ -222,6 +246,24 @@ def test_a_worn_factor_is_made_anew() -> None:
     assert factor.krylov[-1] < lagged._PATIENCE
     assert _corrected(problem, factor, 0.05) < 1e-5
     assert factor.factors == made <= 2
+    factor.close()
+
+
+@pytest.mark.parametrize("nu", [0.45, 0.499, 0.4999])
+def test_volume_that_is_kept_wears_no_factor(nu: float) -> None:
+    """Sheared bodies with the factor of the state at rest.
+
+    Requirement: the residual that is asked for, of the displacements alone, with that factor;
+    iterations that hardly grow with nu, from 7 to 11 at a residual at which single precision shows.
+    Without the mixed form the factor is given up at 0.499.
+    """
+    problem = _on_plane(cells=6, material=HARDLY_COMPRESSIBLE | {"nu": nu})
+    problem.set_load_factor(1.0, 1.0)
+    factor = LaggedFactor(problem, lambda _: None)
+    assert _corrected(problem, factor, 1e-9) < 1e-6
+    assert _corrected(problem, factor, 1e-6, shear=0.1) < 1e-6
+    assert factor.factors == 1
+    assert factor.krylov[-1] <= 12
     factor.close()
 
 

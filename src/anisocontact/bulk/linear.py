@@ -14,7 +14,7 @@ from anisocontact.bulk.at_points import AtPoints
 from anisocontact.bulk.cell_energy import CellIntegrals
 from anisocontact.bulk.expansion import Heated
 from anisocontact.bulk.materials import Material, body_measure, linear_parts
-from anisocontact.bulk.pressures import CellPressures
+from anisocontact.bulk.pressures import CellPressures, VolumeRows
 from anisocontact.mesh import Model
 
 
@@ -132,6 +132,10 @@ class LinearBulk:
         out.zeroEntries()
         add_matrix(out, self.stiffness)
         out.assemble()
+
+    def volume_rows(self) -> VolumeRows | None:
+        """As of `CellPressures.rows`."""
+        return self._pressures.rows()
 
     def times(self, x: Vec) -> Vec:
         """The product of the stiffness with a vector."""

@@ -26,7 +26,7 @@ from anisocontact.bulk.expansion import Expanding, Heated, bare
 from anisocontact.bulk.history import BodyHistory
 from anisocontact.bulk.materials import Density, Material, body_measure, linear_parts
 from anisocontact.bulk.point_law import BodyPoints
-from anisocontact.bulk.pressures import CellPressures
+from anisocontact.bulk.pressures import CellPressures, VolumeRows
 from anisocontact.mesh import Idealisation, Model
 
 
@@ -173,6 +173,10 @@ class NonlinearBulk:
             with self._pressures.predicted():
                 self._tangent.write(out)
         self._pressures.add_tangent(out, again=again)
+
+    def volume_rows(self) -> VolumeRows | None:
+        """As of `CellPressures.rows`."""
+        return self._pressures.rows()
 
     def times(self, x: Vec) -> Vec:
         """The product of what `tangent` has written last with a vector, on one process."""

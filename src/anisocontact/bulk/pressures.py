@@ -17,10 +17,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+import scipy
 
 from anisocontact.base.array_types import Floats
 from anisocontact.base.fenicsx import (
@@ -56,6 +58,24 @@ def pressure_element(space: Any) -> Any:
     linear = element.cell_type.name in ("hexahedron", "quadrilateral") and element.degree == 2
     kind = ("DPC", 1) if linear else ("DG", 0)
     return basix.ufl.element(kind[0], element.cell_type, kind[1], dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class VolumeRows:
+    """What pressures answer to, on one process: `add_tangent` adds `B^T C^-1 B`.
+
+    Attributes:
+        slope: B, derivatives of the changes of volume `<q, e>`, (pressures, displacements).
+        stiffness: C^-1, the inverse of `<q, p> / K`, of each cell, (cells, k, k).
+    """
+
+    slope: scipy.sparse.csr_array
+    stiffness: Floats
+
+    def pressures(self, change: Floats) -> Floats:
+        """`C^-1 e`, (pressures,)."""
+        by_cell = change.reshape(*self.stiffness.shape[:2], 1)
+        return np.asarray((self.stiffness @ by_cell).reshape(-1))
 
 
 class CellPressures:
@@ -158,6 +178,14 @@ class CellPressures:
             self._inverse.ptap(self._slope, result=self._stiffness)
         add_matrix(out, self._stiffness)
         out.assemble()
+
+    def rows(self) -> VolumeRows | None:
+        """What `add_tangent` has added last, in its parts; None where no volume is kept apart."""
+        if not self.of:
+            return None
+        starts, columns, values = self._slope.getValuesCSR()
+        slope = scipy.sparse.csr_array((values, columns, starts), self._slope.getSize())
+        return VolumeRows(slope, self._blocks)
 
     def add_product(self, x: Vec, out: Vec) -> None:
         """Add the product of what `add_tangent` has added last with a vector; collective."""

@@ -13,14 +13,15 @@ from anisocontact.base.petsc_calls import check_memory
 from anisocontact.solver.strategies.condensed.bordered import PARTS, BorderedLU
 from anisocontact.solver.strategies.condensed.factor import aij
 from anisocontact.solver.strategies.condensed.krylov import gmres
+from anisocontact.solver.strategies.condensed.mixed import MixedForm
 from anisocontact.solver.strategies.condensed.touched import Touched
 from anisocontact.solver.strategies.condensed.wear import Wear
 from anisocontact.solver.system.problem import Problem
 from anisocontact.solver.terms.persistent import Arrays
 from anisocontact.solver.terms.term import SingularError
 
-#: What is kept of the factor, and of its border.
-_MATRIX, _BORDER = "lagged.matrix", "lagged.border."
+#: What is kept of the factor, of changes of volume then, and of its border.
+_MATRIX, _SLOPE, _BORDER = "lagged.matrix", "lagged.slope", "lagged.border."
 #: Most Krylov iterations of a correction before a new factor is made, if that costs no more.
 _PATIENCE = 20
 #: Share of them after which an old factor that leads nowhere is given up.
@@ -34,7 +35,8 @@ class LaggedFactor:
 
     The preconditioner is an earlier tangent, factorised once, whose border has the contacts of now:
     `P = J_old + C - C_old` with C what acts on the unknowns that contact can couple. All that
-    changes at once is in it, and what it lacks is the change of the bodies since.
+    changes at once is in it, and what it lacks is the change of the bodies since. Where volume is
+    kept apart it is the mixed form that is preconditioned, see `MixedForm`.
 
     A factor is made anew where it is worn, see `Wear`. Where a new one in double precision does not
     lead to the correction either, all unknowns are factorised for this correction alone.
@@ -56,6 +58,7 @@ class LaggedFactor:
         self._factor: BorderedLU | None = None
         self._touched: Touched | None = None
         self._of_factor = scipy.sparse.csr_array((0, 0))
+        self._slope = scipy.sparse.csr_array((0, 0))
         self._single, self._due = True, True
         self._wear = Wear(_LAST, _MARGIN)
         self.factors = 0
@@ -76,6 +79,7 @@ class LaggedFactor:
             "lagged.spent": self._wear.persistent(),
             "lagged.flags": np.array([self._single, self._due]),
             **{f"{_MATRIX}.{part}": getattr(self._of_factor, part) for part in PARTS},
+            **{f"{_SLOPE}.{part}": getattr(self._slope, part) for part in PARTS},
             **{f"{_BORDER}{name}": one for name, one in factor.persistent().items()},
         }
 
@@ -83,6 +87,9 @@ class LaggedFactor:
         n, unknowns = self._problem.unknowns, kept["lagged.unknowns"]
         parts = tuple(kept[f"{_MATRIX}.{part}"] for part in PARTS)
         self._of_factor = scipy.sparse.csr_array(parts, (n, n))
+        slope = tuple(kept[f"{_SLOPE}.{part}"] for part in PARTS)
+        columns = self._problem.bulk.stiffness.getSize()[1]
+        self._slope = scipy.sparse.csr_array(slope, (len(slope[-1]) - 1, columns))
         self._single, self._due = map(bool, kept["lagged.flags"])
         self._wear.restore(kept["lagged.spent"])
         self._factor = self._made(unknowns)
@@ -146,17 +153,32 @@ class LaggedFactor:
             spent = factor.renew(touched.tangent(), *touched.shares())
         except SingularError:
             return b, np.inf
-        given, direction, product = (tangent.createVecRight() for _ in range(3))
+        given, direction, out = (tangent.createVecRight() for _ in range(3))
 
-        def step(v: Floats) -> tuple[Floats, Floats]:
+        def solution(v: Floats) -> Floats:
             given.array[:] = v
             factor.solve(given, direction)
-            tangent.mult(direction, product)
-            return direction.array_r, product.array_r
+            return np.asarray(direction.array_r)
+
+        def product(v: Floats) -> Floats:
+            given.array[:] = v
+            tangent.mult(given, out)
+            return np.asarray(out.array_r)
 
         most = max(_PATIENCE, int(factor.solutions_per_factor))
         # of a new factor all that it can do is wanted: those in double precision are dearer
-        found, left, used = gmres(step, b, rtol, most, None if fresh else int(_TRIAL * most))
+        trial = None if fresh else int(_TRIAL * most)
+        rows = self._problem.bulk.volume_rows()
+        if rows is None:
+
+            def step(v: Floats) -> tuple[Floats, Floats]:
+                found = solution(v)
+                return found, product(found)
+
+            found, left, used = gmres(step, b, rtol, most, trial)
+        else:
+            mixed = MixedForm(self._problem, self._slope, rows)
+            found, left, used = mixed.solve(solution, product, b, rtol, most, trial)
         self.krylov[-1] += used
         self._count(factor, spent + used, left, fresh)
         return found, left
@@ -182,6 +204,9 @@ class LaggedFactor:
             self._of_factor = before
             return False
         self.close()
+        rows = self._problem.bulk.volume_rows()
+        if rows is not None:
+            self._slope = rows.slope
         self._factor, self._touched = factor, touched
         self._due = False
         self.factors += 1

@@ -1,0 +1,88 @@
+"""Corrections of displacements and pressures together, where an old factor preconditions them.
+
+With pressures eliminated in cells a tangent is `J = A + B^T C^-1 B`, where C goes to zero as bodies
+become incompressible: what an old one lacks, `C^-1 (B - B_0)`, goes to infinity however little B
+has changed. In the mixed form, where pressures are unknowns of their own, it lacks `B - B_0` alone
+[Benzi Golub Liesen 2005, section 10].
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from anisocontact.base.array_types import Floats
+from anisocontact.bulk.pressures import VolumeRows
+from anisocontact.solver.strategies.condensed.front import Sparse
+from anisocontact.solver.strategies.condensed.krylov import gmres
+from anisocontact.solver.system.problem import Problem
+
+#: Residual of the displacements alone over that of the mixed form, at most.
+_OF_BOTH = 2.0**0.5
+
+
+class MixedForm:
+    """GMRES with unknowns u and s: `J u + B^T s = b`, `s = 0`.
+
+    By s pressures are off what displacements say, `C^-1 B u`. The preconditioner is the mixed form
+    of an old tangent `J_0 = A_0 + B_0^T C^-1 B_0`; eliminating its pressures leaves `J_0`, so that
+    a factor of that is all it takes: for a right-hand side (f, g)
+
+        u = J_0^-1 (f - B_0^T g),  s = C^-1 (B_0 - B) u + g.
+
+    Pressures are counted with the forces that they make, so that a residual is never smaller than
+    that of the displacements alone.
+
+    Args:
+        problem: The problem, on one process.
+        then: B_0, of the tangent that the factor is of.
+        now: B and C^-1 of the last tangent.
+    """
+
+    def __init__(self, problem: Problem, then: Sparse, now: VolumeRows) -> None:
+        self._problem, self._now, self._then = problem, now, then
+        self._changed = then - now.slope
+        self._free = np.ones(problem.unknowns)
+        self._free[problem.constrained()] = 0.0
+        # forces of as many pressures meet at a node
+        meeting = np.bincount(now.slope.indices).max(initial=1)
+        sizes = np.sqrt(meeting * now.slope.power(2).sum(axis=1))
+        self._sizes = np.where(sizes > 0.0, sizes, 1.0)
+
+    def solve(
+        self,
+        solution: Callable[[Floats], Floats],
+        product: Callable[[Floats], Floats],
+        b: Floats,
+        rtol: float,
+        most: int,
+        trial: int | None,
+    ) -> tuple[Floats, float, int]:
+        """As `gmres`.
+
+        Args:
+            solution: With the old tangent.
+            product: With the tangent of now.
+            b: Right-hand side, (n,).
+            rtol: Norm of the residual over that of `b` at which to stop.
+            most: Most iterations.
+            trial: As of `gmres`.
+        """
+        n = len(b)
+        right = np.concatenate([b, np.zeros(len(self._sizes))])
+
+        def step(v: Floats) -> tuple[Floats, Floats]:
+            off = v[n:] / self._sizes
+            u = solution(v[:n] - self._forces(self._then, off))
+            s = self._now.pressures(self._changed @ u[: self._changed.shape[1]]) + off
+            above, below = product(u) + self._forces(self._now.slope, s), self._sizes * s
+            return np.concatenate([u, below]), np.concatenate([above, below])
+
+        found, left, used = gmres(step, right, rtol / _OF_BOTH, most, trial)
+        return found[:n], left * _OF_BOTH, used
+
+    def _forces(self, slope: Sparse, pressures: Floats) -> Floats:
+        """`B^T p` as the equations have it, zero where unknowns are prescribed, (n,)."""
+        forces = self._problem.constraints.handed(slope.T @ pressures)
+        return np.pad(forces, (0, len(self._free) - len(forces))) * self._free
