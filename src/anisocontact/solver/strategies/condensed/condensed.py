@@ -146,10 +146,12 @@ class Condensed:
 
     def _fixed(self) -> tuple[Flags, scipy.sparse.csr_array | None]:
         """Unknowns that are prescribed or follow from others; and how forces are handed on."""
-        fixed = np.zeros(self._stiffness.shape[0], dtype=np.bool_)
+        count = self._stiffness.shape[0]
+        fixed = np.zeros(count, dtype=np.bool_)
         fixed[self._problem.supports.unknowns] = True
         gathering = self._problem.constraints.gathering()
         if gathering is not None:
+            gathering = gathering[:count, :count]  # unknowns of rigid bodies follow from nothing
             fixed |= abs(gathering).sum(axis=1) == 0.0
         return fixed, gathering
 
