@@ -74,6 +74,8 @@ class VolumeRows:
 
     def pressures(self, change: Floats) -> Floats:
         """`C^-1 e`, (pressures,)."""
+        if self.stiffness.shape[1] == 1:
+            return self.stiffness.reshape(-1) * change
         by_cell = change.reshape(*self.stiffness.shape[:2], 1)
         return np.asarray((self.stiffness @ by_cell).reshape(-1))
 

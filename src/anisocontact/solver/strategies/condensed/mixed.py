@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
+import scipy
 
 from anisocontact.base.array_types import Floats
 from anisocontact.bulk.pressures import VolumeRows
@@ -41,10 +42,9 @@ class MixedForm:
     """
 
     def __init__(self, problem: Problem, then: Sparse, now: VolumeRows) -> None:
-        self._problem, self._now, self._then = problem, now, then
-        self._changed = then - now.slope
-        self._free = np.ones(problem.unknowns)
-        self._free[problem.constrained()] = 0.0
+        self._now, self._changed = now, then - now.slope
+        self._columns = now.slope.shape[1]
+        self._forces, self._forces_then = (_forces(problem, slope) for slope in (now.slope, then))
         # forces of as many pressures meet at a node
         meeting = np.bincount(now.slope.indices).max(initial=1)
         sizes = np.sqrt(meeting * now.slope.power(2).sum(axis=1))
@@ -74,15 +74,22 @@ class MixedForm:
 
         def step(v: Floats) -> tuple[Floats, Floats]:
             off = v[n:] / self._sizes
-            u = solution(v[:n] - self._forces(self._then, off))
-            s = self._now.pressures(self._changed @ u[: self._changed.shape[1]]) + off
-            above, below = product(u) + self._forces(self._now.slope, s), self._sizes * s
+            u = solution(v[:n] - self._forces_then @ off)
+            s = self._now.pressures(self._changed @ u[: self._columns]) + off
+            above, below = product(u) + self._forces @ s, self._sizes * s
             return np.concatenate([u, below]), np.concatenate([above, below])
 
         found, left, used = gmres(step, right, rtol / _OF_BOTH, most, trial)
         return found[:n], left * _OF_BOTH, used
 
-    def _forces(self, slope: Sparse, pressures: Floats) -> Floats:
-        """`B^T p` as the equations have it, zero where unknowns are prescribed, (n,)."""
-        forces = self._problem.constraints.handed(slope.T @ pressures)
-        return np.pad(forces, (0, len(self._free) - len(forces))) * self._free
+
+def _forces(problem: Problem, slope: Sparse) -> Sparse:
+    """B^T as the equations have it, empty where unknowns are prescribed, (n, pressures)."""
+    free = np.ones(problem.unknowns)
+    free[problem.constrained()] = 0.0
+    forces = slope.T.tocsr()
+    gathering = problem.constraints.gathering()
+    if gathering is not None:
+        forces = gathering[: forces.shape[0], : forces.shape[0]] @ forces
+    forces.resize(problem.unknowns, forces.shape[1])
+    return scipy.sparse.diags_array(free) @ forces
