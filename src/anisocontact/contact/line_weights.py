@@ -225,6 +225,7 @@ def _dual(masters: Locals, total: Floats, rates: Floats) -> LineWeights:
     inverse = unit[:, :, None] * np.linalg.inv(scaled) * unit[:, None]
     inverse[~covered] = 0.0
     z = inverse @ w
+    z += inverse @ (w - m @ z)  # near an end functions are close to dependent
     area = np.where(covered[:, None], m.sum(axis=2), 0.0)
     d_area = np.where(covered[:, None, None], dm.sum(axis=2), 0.0)
     right = dw - np.einsum("fijv,fjc->ficv", dm, z)

@@ -106,6 +106,7 @@ class ContactTrial:
         axes: Axes of adhesion as the frames have them, (n, 2, 3); zero at open points.
         immovable: Points that supports hold along the normal, which no multiplier can bring to no
             gap, or of which next to nothing is covered: they keep a penalty, (n,).
+        slight: The latter of them, which keep one along the surface as well, (n,).
         covered: Share of the weight of each point that the master covers, above 0, (n,).
         shared: Points that are slaves of other contacts with multipliers as well, (n,).
         far: Distances of the points from the origin, (n,), length.
@@ -121,6 +122,7 @@ class ContactTrial:
     before: Frames
     axes: Floats
     immovable: Flags
+    slight: Flags
     covered: Floats
     shared: Flags
     far: Floats
@@ -258,15 +260,20 @@ class Multipliers:
         start["stiffer"][apart] = 0.0
         return start
 
-    def let_go(self, start: State, points: Flags) -> None:
+    def let_go(self, start: State, immovable: Flags, slight: Flags) -> None:
         """Leave points to their penalty: no multiplier, nor what one holds of a gap that closes.
 
         Args:
             start: What the trials start from, changed.
-            points: Which, (n,).
+            immovable: Those that supports hold along the normal, (n,).
+            slight: Those of which next to nothing is covered: a multiplier that holds one along the
+                surface grows with what is not covered, and takes the sliver away, (n,).
         """
+        points = immovable | slight
         start["multiplier"][points] = 0.0
         start["stored"][points & (start["gap"] > 0.0)] = 0.0
+        if self.tangential:
+            start["stored"][slight] = 0.0
 
     def extrapolated(self, start: State, change: Floats, frames: Frames) -> State:
         """What the trials start from where tractions go on as before.
@@ -338,11 +345,13 @@ class Multipliers:
     def values(self, step: ContactTrial) -> tuple[Floats, Floats]:
         """Multipliers, and what they should be: as of `answers`, but for points that cannot move.
 
-        Supports hold these along the normal: they keep their penalty. Shared ones are compliant.
+        Supports hold these along the normal, or next to nothing of them is covered: they keep their
+        penalty. Shared ones are compliant.
         """
         given, found = self.answers(step)
         found *= step.kept[:, [0, 1, 1, 1]]
         found[step.immovable, 0] = given[step.immovable, 0]
+        found[step.slight, 1:] = given[step.slight, 1:]
         if step.held is not None:  # nothing comes along supports: no compliance of a way there
             closing = np.isfinite(step.closeness)[:, None]
             along = step.held @ (found - given)[:, 1:, None]

@@ -217,8 +217,8 @@ class Semismooth(Multipliers):
         """What penalties are multiplied with at the points, normal and tangential, (n, 2).
 
         The force of a node changes as much where little of its weight is covered; where supports
-        hold a point along the normal its penalty is what it is. At shared points it is that of
-        their compliance, see `ContactTrial.kept`.
+        hold a point along the normal, or next to nothing is covered, its penalty is what it is. At
+        shared points it is that of their compliance, see `ContactTrial.kept`.
         """
         most = np.where(step.shared, SHARED_RATIO, self._resolved(step))
         ratio = np.repeat((most / step.covered)[:, None], 2, axis=1)
@@ -230,6 +230,7 @@ class Semismooth(Multipliers):
             ratio[closing, 1] = ratio[closing, 0]
             overshot = self._overshot(step)
             ratio[overshot, 1] = np.minimum(self._at_no_gap(step), ratio[:, 0])[overshot]
+            ratio[step.slight, 1] = 1.0
         return ratio
 
     def _at_no_gap(self, step: ContactTrial) -> Floats:

@@ -258,7 +258,7 @@ class Trials:
 
     def _let_go_of_immovable(self) -> None:
         if self._multipliers is not None:
-            self._multipliers.let_go(self.start, self.immovable | self._slight)
+            self._multipliers.let_go(self.start, self.immovable, self._slight)
 
     def add_multiplier_residual(self, out: Floats) -> None:
         """Add the condensed residual of the multipliers: what a step takes beyond the trial.
@@ -396,6 +396,7 @@ class Trials:
             self._frames(self.start),
             self.master.axes(answer),
             self.immovable | self._slight,
+            self._slight,
             self._points.covered(trial.areas).clip(LEAST, 1.0),
             self.shared.at(self._points.nodes[:, 0]),
             np.linalg.norm(trial.points, axis=1),

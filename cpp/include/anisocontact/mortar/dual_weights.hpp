@@ -130,7 +130,13 @@ ANISOCONTACT_INLINE bool put_weights(const Integrals<L>& in, std::size_t n,
   z.resize(count);
   out.area.resize(static_cast<Index>(n));
   out.weight.resize(static_cast<Index>(n), static_cast<Index>(count));
-  for (std::size_t k = 0; k < count; ++k) z[k] = times(inverse, in.value[n + k]);
+  // On a part near a corner functions are close to dependent: a second step takes what the inverse has lost.
+  for (std::size_t k = 0; k < count; ++k) {
+    z[k] = times(inverse, in.value[n + k]);
+    Lanes<L> left = in.value[n + k];
+    for (std::size_t j = 0; j < n; ++j) left.add(-z[k][j], in.value[j]);
+    z[k].add(1.0, times(inverse, left));
+  }
   for (std::size_t i = 0; i < n; ++i) {
     out.area[static_cast<Index>(i)] = area[i];
     for (std::size_t k = 0; k < count; ++k) out.weight.data()[i * count + k] = area[i] * z[k][i];
