@@ -267,6 +267,24 @@ def test_volume_that_is_kept_wears_no_factor(nu: float) -> None:
     factor.close()
 
 
+def test_a_factor_that_is_made_again_goes_on_as_the_first_one() -> None:
+    """Requirement: a run that goes on finds the same corrections, to the last bit.
+
+    Derivatives of the changes of volume at the state of the factor are kept with it.
+    """
+    problem = _on_plane(cells=6, material=HARDLY_COMPRESSIBLE)
+    problem.set_load_factor(1.0, 1.0)
+    first = LaggedFactor(problem, lambda _: None)
+    _corrected(problem, first, 1e-9)
+    again = LaggedFactor(problem, lambda _: None, first.persistent())
+    left = [_corrected(problem, one, 1e-6, shear=0.1) for one in (first, again)]
+    assert left[0] == left[1] < 1e-6
+    assert again.factors == 0
+    assert again.krylov[-1] == first.krylov[-1]
+    for one in (first, again):
+        one.close()
+
+
 def test_couplings_that_are_in_the_border_need_no_new_factor() -> None:
     """Nodes that slide on couple others, all of which contact could couple before.
 
